@@ -1,0 +1,1 @@
+//! Async driver for Franka robots

@@ -1,0 +1,1 @@
+//! Kinematics, dynamics and limits of Franka robots

@@ -1,0 +1,1 @@
+//! A simulated Franka robot that speaks the wire protocol

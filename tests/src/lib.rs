@@ -1,0 +1,1 @@
+//! Cross-crate suites: lockstep harness, golden vectors, live tests and benchmarks

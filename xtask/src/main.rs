@@ -1,0 +1,2 @@
+//! One-command tasks of this workspace
+fn main() {}
