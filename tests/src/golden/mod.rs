@@ -1,0 +1,35 @@
+//! Golden vectors: the crates against numbers and bytes that other implementations produced.
+//!
+//! ```text
+//! DIR/<file>.json -> Node (checked access, names the place of a fault)
+//!                 -> Suite::check (one per file) -> Report -> one line of output
+//! ```
+//!
+//! A suite is a row of [`SUITES`]: the file it reads, below the directory of the vectors, and the function that
+//! checks it. To add one, write `golden/<subject>.rs` with a function like this and add the row:
+//!
+//! ```
+//! use franka_tests::golden::{Malformed, Node, Report};
+//!
+//! pub fn check(root: &Node<'_>) -> Result<Report, Malformed> {
+//!     let mut report = Report::default();
+//!     for sample in root.get("samples")?.list()? {
+//!         let (q, expected) = (sample.get("q")?.numbers::<2>()?, sample.get("sum")?.number()?);
+//!         report.case(sample.path(), |case| case.near("sum", &[q[0] + q[1]], &[expected], 1e-12));
+//!     }
+//!     Ok(report)
+//! }
+//! # let value = serde_json::json!({ "samples": [{ "q": [1.0, 2.0], "sum": 3.0 }] });
+//! # assert_eq!(check(&Node::root(&value)).unwrap().passed(), 1);
+//! ```
+
+mod node;
+mod report;
+mod run;
+
+pub use node::{Malformed, Node};
+pub use report::{Case, Failure, Report, Worst};
+pub use run::{Outcome, Suite, Verdict, failed, run};
+
+/// Every file of vectors that the project checks, in the order of the crates.
+pub const SUITES: &[Suite] = &[];
