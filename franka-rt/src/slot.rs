@@ -1,0 +1,267 @@
+//! One writer, any number of readers, newest value only: how goals enter the thread and states leave it.
+//!
+//! A sequence lock over `AtomicU64` words. The writer makes the count odd, stores the words, makes the count even. A
+//! reader that finds the count odd, or changed while it read, has a torn copy and throws it away. Writing never waits;
+//! a read is one attempt, so neither side can hold the other up, whatever their priorities. A cycle that meets a torn
+//! goal keeps the previous one; a task outside the thread may try again with [`SlotReader::read_retry`].
+//!
+//! ```
+//! use franka_rt::slot::{self, Read};
+//!
+//! let (mut writer, mut reader) = slot::slot::<[u64; 2]>();
+//! assert_eq!(reader.read_newer(), Read::Same);
+//! writer.write(&[1, 2]);
+//! writer.write(&[3, 4]);
+//! assert_eq!(reader.read_newer(), Read::Newer([3, 4]));
+//! assert_eq!(reader.read_newer(), Read::Same);
+//! ```
+//!
+//! The words are atomics, so a torn read is a wrong value and not a data race, and no `unsafe` is needed. Memory order
+//! is argued at the two loops; `tests/loom.rs` explores the interleavings.
+
+#[cfg(loom)]
+use loom::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+#[cfg(not(loom))]
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+
+/// A plain value that crosses as a fixed number of words.
+///
+/// `load` must accept whatever `store` wrote. Neither may allocate or block when one end of the slot is on the
+/// real-time thread.
+pub trait Words: Sized {
+    /// Number of words.
+    const WORDS: usize;
+
+    /// Writes the value into `words`, which has [`Self::WORDS`] elements. All of them travel; ones left alone keep
+    /// the content of an earlier value.
+    fn store(&self, words: &mut [u64]);
+
+    /// Reads back what one call of [`Self::store`] left in `words`.
+    fn load(words: &[u64]) -> Self;
+}
+
+impl<const N: usize> Words for [u64; N] {
+    const WORDS: usize = N;
+
+    fn store(&self, words: &mut [u64]) {
+        words.copy_from_slice(self);
+    }
+
+    fn load(words: &[u64]) -> Self {
+        core::array::from_fn(|i| words[i])
+    }
+}
+
+impl<const N: usize> Words for [f64; N] {
+    const WORDS: usize = N;
+
+    fn store(&self, words: &mut [u64]) {
+        for (word, value) in words.iter_mut().zip(self) {
+            *word = value.to_bits();
+        }
+    }
+
+    fn load(words: &[u64]) -> Self {
+        core::array::from_fn(|i| f64::from_bits(words[i]))
+    }
+}
+
+/// Makes an empty slot. Allocates; neither end does afterwards.
+pub fn slot<T: Words>() -> (SlotWriter<T>, SlotReader<T>) {
+    let shared = Arc::new(Shared {
+        count: AtomicU64::new(0),
+        words: (0..T::WORDS).map(|_| AtomicU64::new(0)).collect(),
+    });
+    let scratch: Box<[u64]> = vec![0; T::WORDS].into();
+    let writer = SlotWriter {
+        shared: shared.clone(),
+        count: 0,
+        scratch: scratch.clone(),
+        value: core::marker::PhantomData,
+    };
+    (
+        writer,
+        SlotReader {
+            shared,
+            seen: 0,
+            scratch,
+            value: core::marker::PhantomData,
+        },
+    )
+}
+
+#[derive(Debug)]
+struct Shared {
+    /// Twice the number of values written, plus one while a write is under way.
+    count: AtomicU64,
+    words: Box<[AtomicU64]>,
+}
+
+/// The only writing end of a slot.
+#[derive(Debug)]
+pub struct SlotWriter<T> {
+    shared: Arc<Shared>,
+    /// The writer's own copy of the count: nobody else changes it.
+    count: u64,
+    scratch: Box<[u64]>,
+    value: core::marker::PhantomData<fn(&T)>,
+}
+
+impl<T: Words> SlotWriter<T> {
+    /// Replaces the value. Wait-free: one store per word and two for the count.
+    pub fn write(&mut self, value: &T) {
+        value.store(&mut self.scratch);
+        // Relaxed: the word stores below carry it.
+        self.shared.count.store(self.count + 1, Ordering::Relaxed);
+        for (word, &new) in self.shared.words.iter().zip(&self.scratch) {
+            // Release, pairs with the Acquire load of this word: who sees it also sees the odd count.
+            word.store(new, Ordering::Release);
+        }
+        self.count += 2;
+        // Release, pairs with the reader's first load of the count: who sees it sees every word of this value.
+        self.shared.count.store(self.count, Ordering::Release);
+    }
+}
+
+/// What one attempt to read found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Read<T> {
+    /// A value newer than the last one that this reader returned.
+    Newer(T),
+    /// Nothing newer.
+    Same,
+    /// A write came between. The next attempt may succeed.
+    Torn,
+}
+
+/// A reading end of a slot. A clone remembers by itself what it has read.
+#[derive(Debug)]
+pub struct SlotReader<T> {
+    shared: Arc<Shared>,
+    /// The count of the value returned last.
+    seen: u64,
+    scratch: Box<[u64]>,
+    value: core::marker::PhantomData<fn() -> T>,
+}
+
+impl<T> Clone for SlotReader<T> {
+    fn clone(&self) -> Self {
+        Self {
+            shared: self.shared.clone(),
+            seen: self.seen,
+            scratch: self.scratch.clone(),
+            value: self.value,
+        }
+    }
+}
+
+impl<T: Words> SlotReader<T> {
+    /// Reads the newest value if this reader has not returned it yet. One attempt, wait-free.
+    pub fn read_newer(&mut self) -> Read<T> {
+        // Acquire, pairs with the writer's last store: an even count comes with every word of its value.
+        let before = self.shared.count.load(Ordering::Acquire);
+        if before == self.seen {
+            return Read::Same;
+        }
+        if before % 2 == 1 {
+            return Read::Torn;
+        }
+        for (copy, word) in self.scratch.iter_mut().zip(&self.shared.words) {
+            // Acquire, pairs with the Release store of this word: if it belongs to a later value, the load of the
+            // count below sees that value's odd count or a later one.
+            *copy = word.load(Ordering::Acquire);
+        }
+        // Relaxed: the loads above come first in program order and are Acquire, so this one cannot move before them.
+        if self.shared.count.load(Ordering::Relaxed) != before {
+            return Read::Torn;
+        }
+        self.seen = before;
+        Read::Newer(T::load(&self.scratch))
+    }
+
+    /// Like [`Self::read_newer`], with up to `attempts` attempts while they are torn. Not for the real-time thread:
+    /// on one core, a reader of higher priority would use all of them up against a writer that cannot run.
+    pub fn read_retry(&mut self, attempts: usize) -> Read<T> {
+        for _ in 1..attempts {
+            match self.read_newer() {
+                Read::Torn => core::hint::spin_loop(),
+                read => return read,
+            }
+        }
+        self.read_newer()
+    }
+}
+
+#[cfg(all(test, not(loom)))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_slot_has_nothing_newer() {
+        let (_writer, mut reader) = slot::<[u64; 3]>();
+        assert_eq!(reader.read_newer(), Read::Same);
+        assert_eq!(reader.read_retry(3), Read::Same);
+    }
+
+    #[test]
+    fn each_reader_gets_the_newest_value_once() {
+        let (mut writer, mut first) = slot::<[f64; 2]>();
+        writer.write(&[1.0, -0.0]);
+        let mut second = first.clone();
+        writer.write(&[f64::MIN_POSITIVE, -3.5]);
+        assert_eq!(first.read_newer(), Read::Newer([f64::MIN_POSITIVE, -3.5]));
+        assert_eq!(first.read_newer(), Read::Same);
+        assert_eq!(second.read_newer(), Read::Newer([f64::MIN_POSITIVE, -3.5]));
+        let mut third = first.clone();
+        assert_eq!(
+            third.read_newer(),
+            Read::Same,
+            "a clone has read what its origin had read"
+        );
+    }
+
+    #[test]
+    fn an_unfinished_write_reads_as_torn_and_keeps_what_was_seen() {
+        let (mut writer, mut reader) = slot::<[u64; 1]>();
+        writer.write(&[1]);
+        assert_eq!(reader.read_newer(), Read::Newer([1]));
+        writer.shared.count.store(3, Ordering::Relaxed);
+        assert_eq!(reader.read_newer(), Read::Torn);
+        assert_eq!(reader.read_retry(5), Read::Torn);
+        writer.write(&[2]);
+        assert_eq!(reader.read_retry(5), Read::Newer([2]));
+    }
+
+    /// Every word of a value is the same number: a mix of two values would show.
+    #[test]
+    fn a_reader_beside_a_busy_writer_sees_whole_values_in_order() {
+        const VALUES: u64 = 200_000;
+        let (mut writer, mut reader) = slot::<[u64; 300]>();
+        let writing = std::thread::spawn(move || {
+            for value in 1..=VALUES {
+                writer.write(&[value; 300]);
+            }
+        });
+        let mut newest = 0;
+        while newest < VALUES {
+            match reader.read_newer() {
+                Read::Newer(words) => {
+                    assert!(
+                        words.iter().all(|&word| word == words[0]),
+                        "a mix of values: {words:?}"
+                    );
+                    assert!(words[0] > newest, "{} after {newest}", words[0]);
+                    newest = words[0];
+                }
+                Read::Same | Read::Torn => std::thread::yield_now(),
+            }
+        }
+        writing.join().expect("the writer does not panic");
+    }
+}
