@@ -1,0 +1,247 @@
+//! Counts and times of the loop, always on.
+//!
+//! One writer, the thread; readers anywhere, at any time, without a lock. Every cell is an atomic of its own, so a
+//! reader may see a cycle half counted: good enough for numbers that are looked at, not computed with. The histograms
+//! are arrays of atomics with logarithmic buckets rather than the `hdrhistogram` crate's, whose plain cells a reader
+//! could only see through a lock or a copy made by the thread.
+
+use core::sync::atomic::{AtomicU64, Ordering};
+use core::time::Duration;
+
+/// What the loop has counted and measured since it started.
+#[derive(Debug, Default)]
+pub struct Stats {
+    /// States received and given to the driver.
+    pub states: Counter,
+    /// Commands sent.
+    pub commands: Counter,
+    /// States that were received but gave way to a newer one that waited too.
+    pub skipped: Counter,
+    /// States that never came, by the gaps in `message_id`; those skipped are not among them.
+    pub lost: Counter,
+    /// States not newer than the newest: late or duplicate ones.
+    pub stale: Counter,
+    /// Datagrams from elsewhere than the robot.
+    pub foreign: Counter,
+    /// Datagrams of the robot too short for a state, or not decodable as one.
+    pub malformed: Counter,
+    /// Receives that failed otherwise than by finding nothing.
+    pub receive_errors: Counter,
+    /// Commands that did not leave.
+    pub send_errors: Counter,
+    /// Records that found their ring full.
+    pub records_lost: Counter,
+    /// Reports of the loop itself (not of the driver) that found the queue full.
+    pub reports_lost: Counter,
+    /// Times between two states in a row, by this host's clock.
+    pub interval: Histogram,
+    /// Times from the receipt of a state to the departure of its command.
+    pub turnaround: Histogram,
+}
+
+/// A count with one writer.
+#[derive(Debug, Default)]
+pub struct Counter(AtomicU64);
+
+impl Counter {
+    /// The count now.
+    pub fn get(&self) -> u64 {
+        // Relaxed: the number stands for itself; nothing else is read on its strength.
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Adds, wrapping. For the one writer only: a load and a store, without the cost of a read-modify-write.
+    pub(crate) fn add(&self, more: u64) {
+        if more != 0 {
+            self.0
+                .store(self.get().wrapping_add(more), Ordering::Relaxed);
+        }
+    }
+}
+
+/// How often which duration occurred, to 1/16 of its value (exact below 16 ns), with exact minimum and maximum.
+///
+/// A value with its highest bit at position e >= 4 falls in one of 16 equal buckets of `[2^e, 2^(e+1))` nanoseconds.
+/// Durations of 2^40 ns (18 minutes) and more share the last bucket.
+#[derive(Debug)]
+pub struct Histogram {
+    buckets: Box<[AtomicU64]>,
+    count: Counter,
+    min: AtomicU64,
+    max: AtomicU64,
+}
+
+impl Default for Histogram {
+    /// An empty histogram. Allocates its buckets (5 kB).
+    fn default() -> Self {
+        Self {
+            buckets: (0..BUCKETS).map(|_| AtomicU64::new(0)).collect(),
+            count: Counter::default(),
+            min: AtomicU64::new(u64::MAX),
+            max: AtomicU64::new(0),
+        }
+    }
+}
+
+impl Histogram {
+    /// Counts one duration. For the one writer only. Constant time, no allocation.
+    pub(crate) fn note(&self, duration: Duration) {
+        let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
+        let bucket = &self.buckets[bucket_of(nanos)];
+        // Relaxed throughout: see the module's word on half-counted cycles.
+        bucket.store(
+            bucket.load(Ordering::Relaxed).wrapping_add(1),
+            Ordering::Relaxed,
+        );
+        self.min.store(
+            self.min.load(Ordering::Relaxed).min(nanos),
+            Ordering::Relaxed,
+        );
+        self.max.store(
+            self.max.load(Ordering::Relaxed).max(nanos),
+            Ordering::Relaxed,
+        );
+        self.count.add(1);
+    }
+
+    /// How many durations there were.
+    pub fn count(&self) -> u64 {
+        self.count.get()
+    }
+
+    /// The shortest one, exactly; `None` if there was none.
+    pub fn min(&self) -> Option<Duration> {
+        (self.count() > 0).then(|| Duration::from_nanos(self.min.load(Ordering::Relaxed)))
+    }
+
+    /// The longest one, exactly; `None` if there was none.
+    pub fn max(&self) -> Option<Duration> {
+        (self.count() > 0).then(|| Duration::from_nanos(self.max.load(Ordering::Relaxed)))
+    }
+
+    /// A duration that the share `quantile` (in `[0, 1]`) of all did not exceed; at most 1/16 above the exact one.
+    /// `None` if there was none. Walks the buckets: not for the real-time thread.
+    pub fn quantile(&self, quantile: f64) -> Option<Duration> {
+        let max = self.max()?;
+        let wanted = (quantile.clamp(0.0, 1.0) * self.count() as f64)
+            .ceil()
+            .max(1.0) as u64;
+        let mut seen = 0;
+        for (index, bucket) in self.buckets.iter().enumerate() {
+            seen += bucket.load(Ordering::Relaxed);
+            if seen >= wanted {
+                return Some(Duration::from_nanos(last_of(index)).min(max));
+            }
+        }
+        Some(max)
+    }
+}
+
+/// log2 of the buckets per power of two.
+const FINENESS: u32 = 4;
+
+/// Buckets per power of two.
+const PER_OCTAVE: usize = 1 << FINENESS;
+
+/// log2 of the first duration that the last bucket takes for all above it, in nanoseconds.
+const OCTAVES_MAX: u32 = 40;
+
+const BUCKETS: usize = (OCTAVES_MAX - FINENESS + 1) as usize * PER_OCTAVE;
+
+fn bucket_of(nanos: u64) -> usize {
+    let nanos = nanos.min((1 << OCTAVES_MAX) - 1);
+    if nanos < PER_OCTAVE as u64 {
+        return nanos as usize;
+    }
+    let shift = nanos.ilog2() - FINENESS;
+    (shift as usize + 1) * PER_OCTAVE + (nanos >> shift) as usize - PER_OCTAVE
+}
+
+/// The longest duration of a bucket, in nanoseconds.
+fn last_of(bucket: usize) -> u64 {
+    if bucket < PER_OCTAVE {
+        return bucket as u64;
+    }
+    let shift = bucket / PER_OCTAVE - 1;
+    let mantissa = (PER_OCTAVE + bucket % PER_OCTAVE) as u64;
+    ((mantissa + 1) << shift) - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn buckets_follow_each_other_without_gap_or_overlap() {
+        let mut first = 0;
+        for bucket in 0..BUCKETS {
+            let last = last_of(bucket);
+            assert_eq!(
+                (bucket_of(first), bucket_of(last)),
+                (bucket, bucket),
+                "{first} to {last}"
+            );
+            assert!(
+                (last - first) as f64 <= first as f64 / 16.0,
+                "{first} to {last}"
+            );
+            first = last + 1;
+        }
+        assert_eq!(first, 1 << OCTAVES_MAX);
+        assert_eq!(bucket_of(u64::MAX), BUCKETS - 1);
+    }
+
+    #[test]
+    fn an_empty_histogram_has_no_numbers() {
+        let histogram = Histogram::default();
+        assert_eq!(
+            (histogram.count(), histogram.min(), histogram.max()),
+            (0, None, None)
+        );
+        assert_eq!(histogram.quantile(0.5), None);
+    }
+
+    #[test]
+    fn quantiles_are_within_a_sixteenth_of_the_sorted_values() {
+        let histogram = Histogram::default();
+        // A multiplicative walk: 40..40 000 000 ns, unevenly spread and out of order.
+        let mut values: Vec<u64> = (0..5000u64)
+            .map(|i| 40 + (i * 7919 % 5000).pow(2) * 8 / 5)
+            .collect();
+        for &value in &values {
+            histogram.note(Duration::from_nanos(value));
+        }
+        values.sort_unstable();
+        for quantile in [0.0, 0.01, 0.5, 0.9, 0.99, 1.0] {
+            let exact = values[((quantile * 5000.0f64).ceil() as usize).max(1) - 1] as f64;
+            let found = histogram.quantile(quantile).expect("not empty").as_nanos() as f64;
+            assert!(
+                exact <= found && found <= exact * (1.0 + 1.0 / 16.0),
+                "{quantile}: {found} for {exact}"
+            );
+        }
+        assert_eq!(histogram.count(), 5000);
+        assert_eq!(histogram.min(), Some(Duration::from_nanos(values[0])));
+        assert_eq!(histogram.max(), Some(Duration::from_nanos(values[4999])));
+    }
+
+    #[test]
+    fn the_largest_durations_keep_their_maximum() {
+        let histogram = Histogram::default();
+        histogram.note(Duration::from_secs(3600));
+        assert_eq!(
+            histogram.quantile(0.5),
+            Some(Duration::from_nanos((1 << OCTAVES_MAX) - 1))
+        );
+        assert_eq!(histogram.max(), Some(Duration::from_secs(3600)));
+    }
+
+    #[test]
+    fn a_counter_adds_up() {
+        let counter = Counter::default();
+        counter.add(3);
+        counter.add(0);
+        counter.add(4);
+        assert_eq!(counter.get(), 7);
+    }
+}
