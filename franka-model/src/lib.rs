@@ -1,1 +1,127 @@
-//! Kinematics, dynamics and limits of Franka robots
+//! Kinematics, dynamics and limits of Franka robots.
+//!
+//! ```text
+//! q, dq ──> chain (axes and origins in base axes) ──> pose, Jacobians
+//!                 │
+//!                 └─> bodies (com and inertia in base axes, load included)
+//!                         └─> mass, Coriolis, gravity, inverse and forward dynamics
+//! ```
+//!
+//! Everything is a function of constants ([`Model`]) and arguments: no workspace, no state, no
+//! allocation, no panic, and a bounded amount of work, so that all of it may run inside a
+//! real-time cycle. What a control law needs in one cycle comes from one call,
+//! [`Model::dynamics`].
+//!
+//! | module | content |
+//! |---|---|
+//! | [`frame`], [`load`] | the ten frames of the vendor's model, end effector, payload |
+//! | [`limits`] | position, velocity, acceleration, jerk, torque and Cartesian limits |
+//! | [`rotation`] | rotation vectors: exponential, logarithm, angular velocity and acceleration |
+//! | [`transform`] | column-major arrays and 4×4 matrices to isometries and back |
+//! | [`differential_ik`] | joint velocities for a twist, exactly inside a box |
+//! | [`inverse_kinematics`] | joint positions for a pose |
+//! | [`elbow`] | the vendor's elbow parameter |
+//!
+//! # Conventions
+//!
+//! SI units and radians. The base frame O is that of link 0: at the centre of the base, z along the
+//! axis of joint 1. Twists and wrenches are `[linear; angular]`. Poses are homogeneous 4×4
+//! matrices, since the vendor's end-effector frame may be slightly off a rotation and is used as
+//! it stands; [`transform::isometry`] is the way to [`nalgebra::Isometry3`].
+//!
+//! # Example
+//!
+//! ```
+//! use franka_model::{EndEffector, GRAVITY_EARTH, JointVector, Load, Model, READY};
+//!
+//! let model = Model::fr3();
+//! let dynamics = model.dynamics(
+//!     &READY,
+//!     &JointVector::zeros(),
+//!     &EndEffector::default(),
+//!     &Load::NONE,
+//!     &GRAVITY_EARTH,
+//! );
+//! assert!((dynamics.pose[(2, 3)] - 0.590_282_052).abs() < 1e-9);
+//! assert!((dynamics.gravity[3] - 18.958_219_373).abs() < 1e-9);
+//! ```
+//!
+//! # What it does not do
+//!
+//! Friction, rotor inertia and joint elasticity are not part of the model, as they are not part of
+//! the vendor's. There is no self-collision check and no robot but the Franka Research 3 yet.
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod bodies;
+mod box_qp;
+mod chain;
+mod dynamics;
+mod fr3;
+mod inertia;
+mod jacobian;
+mod model;
+mod scalar;
+
+pub mod differential_ik;
+pub mod elbow;
+pub mod frame;
+pub mod inverse_kinematics;
+pub mod limits;
+pub mod load;
+pub mod rotation;
+pub mod transform;
+
+#[cfg(test)]
+mod random;
+
+pub use dynamics::Dynamics;
+pub use frame::{EndEffector, Frame};
+pub use jacobian::manipulability;
+pub use load::Load;
+pub use model::{Model, RobotKind};
+
+use nalgebra::{ArrayStorage, SMatrix, SVector, Vector3};
+
+/// One number per joint, base to flange.
+pub type JointVector = SVector<f64, 7>;
+
+/// 6×7: joint velocities to a twist `[linear; angular]`.
+pub type Jacobian = SMatrix<f64, 6, 7>;
+
+/// Joint-space inertia, `[kg·m²]`, symmetric and positive definite.
+pub type MassMatrix = SMatrix<f64, 7, 7>;
+
+/// `[linear; angular]` velocity, `[m/s, rad/s]`, or its derivative.
+pub type Twist = SVector<f64, 6>;
+
+/// `[force; torque]`, `[N, N·m]`.
+pub type Wrench = SVector<f64, 6>;
+
+/// Gravitational acceleration in the base frame of an upright robot, `[m/s²]`.
+///
+/// The value that the vendor's model takes by default (libfranka 0.21, `model.h`).
+pub const GRAVITY_EARTH: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
+
+/// The ready pose of the vendor's examples, `[rad]`: hand in front of the arm, pointing down, far
+/// from limits and singularities.
+pub const READY: JointVector = {
+    use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+    joint_vector([
+        0.0,
+        -FRAC_PI_4,
+        0.0,
+        -3.0 * FRAC_PI_4,
+        0.0,
+        FRAC_PI_2,
+        FRAC_PI_4,
+    ])
+};
+
+/// A [`JointVector`] from an array, usable in constants.
+pub const fn joint_vector(values: [f64; 7]) -> JointVector {
+    JointVector::from_array_storage(ArrayStorage([values]))
+}

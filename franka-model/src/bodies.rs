@@ -1,0 +1,68 @@
+//! The moving bodies in base axes, and rigid composites of them.
+
+use nalgebra::Vector3;
+
+use crate::chain::Chain;
+use crate::inertia::{RigidBody, Symmetric3, cross};
+
+/// Bodies 1 to 7 in base axes, centres of mass from the shoulder.
+///
+/// `links` are in link axes, the load already joined to the last.
+#[inline(always)]
+pub(crate) fn placed(chain: &Chain, links: &[RigidBody; 7]) -> [RigidBody; 7] {
+    core::array::from_fn(|i| RigidBody {
+        mass: links[i].mass,
+        com: com(chain, links, i),
+        inertia: links[i].inertia.rotated(&chain.rotation[i]),
+    })
+}
+
+/// Centre of mass of body `i` in base axes, from the shoulder.
+#[inline(always)]
+pub(crate) fn com(chain: &Chain, links: &[RigidBody; 7], i: usize) -> Vector3<f64> {
+    let (r, c) = (&chain.rotation[i], &links[i].com);
+    chain.origin[i]
+        + Vector3::new(
+            r.m11 * c.x + r.m12 * c.y + r.m13 * c.z,
+            r.m21 * c.x + r.m22 * c.y + r.m23 * c.z,
+            r.m31 * c.x + r.m32 * c.y + r.m33 * c.z,
+        )
+}
+
+/// Bodies frozen together, described about the shoulder.
+pub(crate) struct Composite {
+    pub(crate) mass: f64,
+    /// Mass times centre of mass.
+    pub(crate) first_moment: Vector3<f64>,
+    /// Inertia about the shoulder.
+    pub(crate) inertia: Symmetric3,
+}
+
+impl Composite {
+    pub(crate) const EMPTY: Self = Self {
+        mass: 0.0,
+        first_moment: Vector3::new(0.0, 0.0, 0.0),
+        inertia: Symmetric3::ZERO,
+    };
+
+    #[inline(always)]
+    pub(crate) fn add(&mut self, body: &RigidBody) {
+        self.mass += body.mass;
+        self.first_moment += body.com * body.mass;
+        self.inertia += body.inertia + Symmetric3::of_point(body.mass, &body.com);
+    }
+
+    /// Linear momentum, and angular momentum about the shoulder, when the composite turns about an
+    /// axis at unit rate.
+    #[inline(always)]
+    pub(crate) fn momentum(
+        &self,
+        axis: &Vector3<f64>,
+        moment: &Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        (
+            moment * self.mass + cross(axis, &self.first_moment),
+            self.inertia.times(axis) + cross(&self.first_moment, moment),
+        )
+    }
+}

@@ -1,0 +1,126 @@
+//! The joints in base axes: where every frame is and along what every axis points.
+//!
+//! The geometry is that of the FER and the FR3 alike: an alternating chain in which every joint
+//! frame is rolled by 0 or ±90° against the one before, so a joint costs one plane rotation and a
+//! permutation of columns. Positions are relative to the shoulder S, where axes 1, 2 and 3 meet:
+//! those axes then have no moment about the reference point.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::JointVector;
+use crate::inertia::cross;
+use crate::scalar::sin_cos;
+
+// Lengths in metres, from the joint origins of the vendor's URDF (libfranka 0.21, `test/fr3.urdf`;
+// `franka_description` 1.0.1, `kinematics.yaml` of the FR3 and the FER).
+
+/// Base to shoulder, along the axis of joint 1.
+pub(crate) const SHOULDER: f64 = 0.333;
+/// Shoulder to elbow, along the axis of joint 3.
+pub(crate) const UPPER_ARM: f64 = 0.316;
+/// Offset of the axis of joint 4 from the axes of joints 3 and 5.
+pub(crate) const ELBOW: f64 = 0.0825;
+/// Elbow to wrist, along the axis of joint 5.
+pub(crate) const FOREARM: f64 = 0.384;
+/// Offset of the axis of joint 7 from the wrist, where axes 5 and 6 meet.
+pub(crate) const WRIST: f64 = 0.088;
+/// Frame of link 7 to flange, along the axis of joint 7.
+pub(crate) const FLANGE: f64 = 0.107;
+
+/// Rotations, origins and screws of the seven joint frames, in base axes.
+pub(crate) struct Chain {
+    /// Axes of frame i as columns.
+    pub(crate) rotation: [Matrix3<f64>; 7],
+    /// Origin of frame i, from the shoulder.
+    pub(crate) origin: [Vector3<f64>; 7],
+    /// Direction of axis i.
+    pub(crate) axis: [Vector3<f64>; 7],
+    /// Velocity that a unit rate of joint i gives to the point at the shoulder: `origin × axis`.
+    pub(crate) moment: [Vector3<f64>; 7],
+}
+
+/// Columns of a frame while the chain is built.
+#[derive(Clone, Copy)]
+struct Axes {
+    x: Vector3<f64>,
+    y: Vector3<f64>,
+    z: Vector3<f64>,
+}
+
+impl Axes {
+    /// `RotX(+90°)`, then `RotZ` of the joint.
+    #[inline(always)]
+    fn roll_up(self, (sin, cos): (f64, f64)) -> Self {
+        Self {
+            x: self.x * cos + self.z * sin,
+            y: self.z * cos - self.x * sin,
+            z: -self.y,
+        }
+    }
+
+    /// `RotX(−90°)`, then `RotZ` of the joint.
+    #[inline(always)]
+    fn roll_down(self, (sin, cos): (f64, f64)) -> Self {
+        Self {
+            x: self.x * cos - self.z * sin,
+            y: -(self.x * sin + self.z * cos),
+            z: self.y,
+        }
+    }
+
+    #[inline(always)]
+    fn matrix(&self) -> Matrix3<f64> {
+        Matrix3::new(
+            self.x.x, self.y.x, self.z.x, //
+            self.x.y, self.y.y, self.z.y, //
+            self.x.z, self.y.z, self.z.z,
+        )
+    }
+}
+
+impl Chain {
+    /// All frames at the positions `q`.
+    #[inline(always)]
+    pub(crate) fn at(q: &JointVector) -> Self {
+        let [t1, t2, t3, t4, t5, t6, t7] = q.data.0[0].map(sin_cos);
+        let zero = Vector3::zeros();
+
+        let f1 = Axes {
+            x: Vector3::new(t1.1, t1.0, 0.0),
+            y: Vector3::new(-t1.0, t1.1, 0.0),
+            z: Vector3::new(0.0, 0.0, 1.0),
+        };
+        let f2 = f1.roll_down(t2);
+        let f3 = f2.roll_up(t3);
+        let f4 = f3.roll_up(t4);
+        let f5 = f4.roll_down(t5);
+        let f6 = f5.roll_up(t6);
+        let f7 = f6.roll_up(t7);
+
+        let p3 = f3.z * UPPER_ARM;
+        let p4 = p3 + f3.x * ELBOW;
+        let p5 = p4 + f4.y * FOREARM - f4.x * ELBOW;
+        let p7 = p5 + f6.x * WRIST;
+
+        Self {
+            rotation: [f1, f2, f3, f4, f5, f6, f7].map(|frame| frame.matrix()),
+            origin: [zero, zero, p3, p4, p5, p5, p7],
+            axis: [f1.z, f2.z, f3.z, f4.z, f5.z, f6.z, f7.z],
+            moment: [
+                zero,
+                zero,
+                zero,
+                cross(&p4, &f4.z),
+                cross(&p5, &f5.z),
+                cross(&p5, &f6.z),
+                cross(&p7, &f7.z),
+            ],
+        }
+    }
+
+    /// Origin of the flange, from the shoulder.
+    #[inline(always)]
+    pub(crate) fn flange(&self) -> Vector3<f64> {
+        self.origin[6] + self.axis[6] * FLANGE
+    }
+}

@@ -1,0 +1,120 @@
+//! Poses and Jacobians of the frames.
+
+use nalgebra::{Cholesky, Matrix3, Matrix4, Vector3};
+
+use crate::Jacobian;
+use crate::chain::{Chain, SHOULDER};
+use crate::frame::{EndEffector, Frame};
+use crate::inertia::cross;
+use crate::scalar::sqrt;
+
+/// Rotation block and origin of a frame, in base axes and from the shoulder.
+pub(crate) struct Placement {
+    pub(crate) rotation: Matrix3<f64>,
+    pub(crate) origin: Vector3<f64>,
+}
+
+impl Placement {
+    #[inline(always)]
+    pub(crate) fn of(chain: &Chain, frame: Frame, ee: &EndEffector) -> Self {
+        let flange = || Self {
+            rotation: chain.rotation[6],
+            origin: chain.flange(),
+        };
+        match frame {
+            Frame::Flange => flange(),
+            Frame::EndEffector => flange().times(&ee.f_t_ee),
+            Frame::Stiffness => flange().times(&ee.f_t_ee).times(&ee.ee_t_k),
+            joint => {
+                let index = joint.joints() - 1;
+                Self {
+                    rotation: chain.rotation[index],
+                    origin: chain.origin[index],
+                }
+            }
+        }
+    }
+
+    /// The homogeneous matrix from the base.
+    #[inline(always)]
+    pub(crate) fn pose(&self) -> Matrix4<f64> {
+        let (r, p) = (&self.rotation, &self.origin);
+        Matrix4::new(
+            r.m11,
+            r.m12,
+            r.m13,
+            p.x, //
+            r.m21,
+            r.m22,
+            r.m23,
+            p.y, //
+            r.m31,
+            r.m32,
+            r.m33,
+            p.z + SHOULDER, //
+            0.0,
+            0.0,
+            0.0,
+            1.0,
+        )
+    }
+
+    #[inline(always)]
+    fn times(&self, transform: &Matrix4<f64>) -> Self {
+        let t = transform;
+        let r = &self.rotation;
+        let column =
+            |j: usize| r.column(0) * t[(0, j)] + r.column(1) * t[(1, j)] + r.column(2) * t[(2, j)];
+        Self {
+            rotation: Matrix3::from_columns(&[column(0), column(1), column(2)]),
+            origin: self.origin + column(3),
+        }
+    }
+}
+
+/// Jacobian of a point that moves with the first `joints` joints, in base axes.
+#[inline(always)]
+pub(crate) fn zero_jacobian(chain: &Chain, joints: usize, point: &Vector3<f64>) -> Jacobian {
+    let mut jacobian = Jacobian::zeros();
+    for i in 0..joints {
+        let axis = &chain.axis[i];
+        let linear = cross(axis, point) + chain.moment[i];
+        let mut column = jacobian.column_mut(i);
+        column[0] = linear.x;
+        column[1] = linear.y;
+        column[2] = linear.z;
+        column[3] = axis.x;
+        column[4] = axis.y;
+        column[5] = axis.z;
+    }
+    jacobian
+}
+
+/// The same twist in the frame's own axes.
+pub(crate) fn body_jacobian(zero: &Jacobian, rotation: &Matrix3<f64>) -> Jacobian {
+    let mut body = *zero;
+    for mut column in body.column_iter_mut() {
+        let linear = rotation.tr_mul(&column.fixed_rows::<3>(0));
+        let angular = rotation.tr_mul(&column.fixed_rows::<3>(3));
+        column.fixed_rows_mut::<3>(0).copy_from(&linear);
+        column.fixed_rows_mut::<3>(3).copy_from(&angular);
+    }
+    body
+}
+
+/// Yoshikawa's manipulability `sqrt(det(J Jᵀ))`: zero in a singularity, the same for every point
+/// of the last link.
+///
+/// Units follow the Jacobian (metres and radians mixed); 0.080 at the ready pose.
+pub fn manipulability(jacobian: &Jacobian) -> f64 {
+    sqrt(squared_manipulability(jacobian))
+}
+
+/// `det(J Jᵀ)`, zero where rounding leaves no positive definite matrix.
+pub(crate) fn squared_manipulability(jacobian: &Jacobian) -> f64 {
+    let gram = jacobian * jacobian.transpose();
+    match Cholesky::new(gram) {
+        Some(factor) => factor.determinant(),
+        None => 0.0,
+    }
+}

@@ -1,0 +1,196 @@
+//! What the robot allows: joints, end effector and elbow.
+//!
+//! All values are nominal, the ones that the robot checks against. A client stays below them by
+//! [`CLIENT_MARGIN`] (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
+
+use crate::scalar::sqrt;
+use crate::{JointVector, RobotKind, joint_vector};
+
+/// What libfranka keeps off every limit: the same number in every unit
+/// (libfranka 0.21, `rate_limiting.h`).
+pub const CLIENT_MARGIN: f64 = 1e-3;
+
+/// Limits of the seven joints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointLimits {
+    /// Least position to command, `[rad]`, a little inside [`hard_lower`](Self::hard_lower).
+    pub lower: JointVector,
+    /// Greatest position to command, `[rad]`, a little inside [`hard_upper`](Self::hard_upper).
+    pub upper: JointVector,
+    /// Position, `[rad]`, where the velocity envelope towards it ends.
+    pub hard_lower: JointVector,
+    /// Position, `[rad]`, where the velocity envelope towards it ends.
+    pub hard_upper: JointVector,
+    /// Greatest speed anywhere, `[rad/s]`; near the position limits see
+    /// [`velocity_envelope`](Self::velocity_envelope).
+    pub velocity: JointVector,
+    /// Speed, `[rad/s]`, that the envelope takes off the braking parabola.
+    pub velocity_offset: JointVector,
+    /// Deceleration, `[rad/s²]`, of the envelope's braking parabola.
+    pub envelope_deceleration: JointVector,
+    /// Greatest acceleration of a commanded motion, `[rad/s²]`.
+    pub acceleration: JointVector,
+    /// Greatest jerk of a commanded motion, `[rad/s³]`.
+    pub jerk: JointVector,
+    /// Greatest torque, `[N·m]`.
+    pub torque: JointVector,
+    /// Greatest rate of a commanded torque, `[N·m/s]`.
+    pub torque_rate: JointVector,
+}
+
+impl JointLimits {
+    /// The limits of a kind of robot.
+    pub const fn of(kind: RobotKind) -> &'static Self {
+        match kind {
+            RobotKind::Fr3 => &FR3_JOINTS,
+        }
+    }
+
+    /// Velocities allowed at the positions `q`: `(lower, upper)`, `[rad/s]`.
+    ///
+    /// Towards a position limit the speed is bounded by what `envelope_deceleration` stops before
+    /// the hard limit, less `velocity_offset`. `margin` `[rad/s]` then comes off both sides: the
+    /// robot checks with 0, libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position limit
+    /// the bound towards it is `-margin` inwards: it asks for a way back.
+    ///
+    /// Formula and operation order of libfranka 0.21, whose results it meets to the last digit.
+    pub fn velocity_envelope(&self, q: &JointVector, margin: f64) -> (JointVector, JointVector) {
+        let speed = |i: usize, distance: f64| {
+            let parabola = sqrt((2.0 * self.envelope_deceleration[i] * distance).max(0.0));
+            (parabola - self.velocity_offset[i])
+                .max(0.0)
+                .min(self.velocity[i])
+                - margin
+        };
+        (
+            JointVector::from_fn(|i, _| -speed(i, q[i] - self.hard_lower[i])),
+            JointVector::from_fn(|i, _| speed(i, self.hard_upper[i] - q[i])),
+        )
+    }
+
+    /// Whether every position is within `lower` and `upper`; false for what is not a number.
+    pub fn contains(&self, q: &JointVector) -> bool {
+        (0..7).all(|i| self.lower[i] <= q[i] && q[i] <= self.upper[i])
+    }
+}
+
+/// Bounds on a motion along one coordinate, or on the norm of a vector of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionLimits {
+    /// Per second: `[m/s]` or `[rad/s]`.
+    pub velocity: f64,
+    /// `[m/s²]` or `[rad/s²]`.
+    pub acceleration: f64,
+    /// `[m/s³]` or `[rad/s³]`.
+    pub jerk: f64,
+}
+
+/// Limits of Cartesian motion commands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CartesianLimits {
+    /// Of the end effector's position: bounds on the norm.
+    pub translation: MotionLimits,
+    /// Of the end effector's orientation: bounds on the norm.
+    pub rotation: MotionLimits,
+    /// Of the elbow angle (joint 3).
+    pub elbow: MotionLimits,
+}
+
+impl CartesianLimits {
+    /// The limits of a kind of robot.
+    pub const fn of(kind: RobotKind) -> &'static Self {
+        match kind {
+            RobotKind::Fr3 => &FR3_CARTESIAN,
+        }
+    }
+}
+
+/// `lower` and `upper`: limits table of the FCI documentation (`franka_description` 1.0.1,
+/// `robots/fr3/joint_limits.yaml`). `hard_*`, `velocity*`, `envelope_deceleration`, `torque`: the
+/// URDF that the robot serves (libfranka 0.21, `test/fr3.urdf`). The others: libfranka 0.21,
+/// `rate_limiting.h`.
+static FR3_JOINTS: JointLimits = JointLimits {
+    lower: joint_vector([-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159]),
+    upper: joint_vector([2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159]),
+    hard_lower: joint_vector([
+        -2.7501, -1.7918, -2.9065, -3.0481, -2.8101, 0.54092, -3.0196,
+    ]),
+    hard_upper: joint_vector([2.7501, 1.7918, 2.9065, -0.1458, 2.8101, 4.5205, 3.0196]),
+    velocity: joint_vector([2.62, 2.62, 2.62, 2.62, 5.26, 4.18, 5.26]),
+    velocity_offset: joint_vector([0.3, 0.2, 0.2, 0.3, 0.35, 0.35, 0.35]),
+    envelope_deceleration: joint_vector([6.0, 2.585, 3.5, 4.0, 17.0, 5.5, 17.0]),
+    acceleration: joint_vector([10.0; 7]),
+    jerk: joint_vector([5000.0; 7]),
+    torque: joint_vector([87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0]),
+    torque_rate: joint_vector([1000.0; 7]),
+};
+
+/// libfranka 0.21, `rate_limiting.h`.
+static FR3_CARTESIAN: CartesianLimits = CartesianLimits {
+    translation: MotionLimits {
+        velocity: 3.0,
+        acceleration: 9.0,
+        jerk: 4500.0,
+    },
+    rotation: MotionLimits {
+        velocity: 2.5,
+        acceleration: 17.0,
+        jerk: 8500.0,
+    },
+    elbow: MotionLimits {
+        velocity: 1.5,
+        acceleration: 10.0,
+        jerk: 5000.0,
+    },
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::READY;
+
+    #[test]
+    fn the_envelope_is_the_nominal_speed_far_from_the_limits() {
+        let limits = JointLimits::of(RobotKind::Fr3);
+        let (lower, upper) = limits.velocity_envelope(&READY, 0.0);
+        for i in [0, 2, 4, 6] {
+            assert_eq!(
+                (lower[i], upper[i]),
+                (-limits.velocity[i], limits.velocity[i])
+            );
+        }
+    }
+
+    #[test]
+    fn at_a_limit_the_envelope_asks_for_the_margin_inwards() {
+        let limits = JointLimits::of(RobotKind::Fr3);
+        for beyond in [0.0, 0.1] {
+            let q = limits.hard_upper.add_scalar(beyond);
+            let (_, upper) = limits.velocity_envelope(&q, CLIENT_MARGIN);
+            assert_eq!(upper, JointVector::from_element(-CLIENT_MARGIN));
+            let q = limits.hard_lower.add_scalar(-beyond);
+            let (lower, _) = limits.velocity_envelope(&q, CLIENT_MARGIN);
+            assert_eq!(lower, JointVector::from_element(CLIENT_MARGIN));
+        }
+    }
+
+    #[test]
+    fn one_value_of_the_vendors_library_is_met_exactly() {
+        // libfranka 0.21.3 on its FR3 description, joint 3 near its upper limit.
+        let mut q = READY;
+        q[2] = 2.8408030722477107;
+        let limits = JointLimits::of(RobotKind::Fr3);
+        let (_, upper) = limits.velocity_envelope(&q, CLIENT_MARGIN);
+        assert_eq!(upper[2], 0.47714341718107406);
+    }
+
+    #[test]
+    fn positions_to_command_are_inside_the_hard_limits() {
+        let limits = JointLimits::of(RobotKind::Fr3);
+        assert!((limits.upper - limits.hard_upper).max() < 0.0);
+        assert!((limits.lower - limits.hard_lower).min() > 0.0);
+        assert!(limits.contains(&READY));
+        assert!(!limits.contains(&limits.hard_upper));
+        assert!(!limits.contains(&JointVector::from_element(f64::NAN)));
+    }
+}

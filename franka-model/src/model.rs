@@ -1,0 +1,170 @@
+//! The constant description of one kind of robot, and the questions it answers.
+
+use nalgebra::{Matrix4, Vector3};
+
+use crate::chain::Chain;
+use crate::dynamics::{self, Dynamics};
+use crate::frame::{EndEffector, Frame};
+use crate::inertia::RigidBody;
+use crate::jacobian::{self, Placement};
+use crate::limits::{CartesianLimits, JointLimits};
+use crate::load::Load;
+use crate::{Jacobian, JointVector, MassMatrix, fr3};
+
+/// The kinds of robot that the crate describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum RobotKind {
+    /// Franka Research 3.
+    Fr3,
+}
+
+/// A robot's constants. There is one value per kind: take it by reference.
+///
+/// Throughout, `q` are joint positions `[rad]`, `dq` velocities `[rad/s]`, `ddq` accelerations
+/// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in
+/// the base frame `[m/s²]` ([`GRAVITY_EARTH`](crate::GRAVITY_EARTH) for an upright robot). Numbers
+/// that are not finite give results that are not finite.
+#[derive(Debug)]
+pub struct Model {
+    kind: RobotKind,
+    links: [RigidBody; 7],
+}
+
+static FR3: Model = Model {
+    kind: RobotKind::Fr3,
+    links: fr3::LINKS,
+};
+
+impl Model {
+    /// The Franka Research 3.
+    pub fn fr3() -> &'static Self {
+        &FR3
+    }
+
+    /// The model of a kind.
+    pub fn of(kind: RobotKind) -> &'static Self {
+        match kind {
+            RobotKind::Fr3 => &FR3,
+        }
+    }
+
+    /// Which robot this is.
+    pub fn kind(&self) -> RobotKind {
+        self.kind
+    }
+
+    /// What its joints may do.
+    pub fn joint_limits(&self) -> &'static JointLimits {
+        JointLimits::of(self.kind)
+    }
+
+    /// What its end effector and elbow may do.
+    pub fn cartesian_limits(&self) -> &'static CartesianLimits {
+        CartesianLimits::of(self.kind)
+    }
+
+    /// Pose of `frame` in the base frame.
+    pub fn pose(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Matrix4<f64> {
+        Placement::of(&Chain::at(q), frame, ee).pose()
+    }
+
+    /// Velocity of the frame's origin and angular velocity of the frame per joint velocity, both
+    /// in base axes. Columns of joints beyond the frame are zero.
+    pub fn zero_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
+        let chain = Chain::at(q);
+        let placement = Placement::of(&chain, frame, ee);
+        jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin)
+    }
+
+    /// [`zero_jacobian`](Self::zero_jacobian) in the frame's own axes.
+    pub fn body_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
+        let chain = Chain::at(q);
+        let placement = Placement::of(&chain, frame, ee);
+        let zero = jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin);
+        jacobian::body_jacobian(&zero, &placement.rotation)
+    }
+
+    /// Joint-space inertia, without rotors, `[kg·m²]`.
+    pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
+        dynamics::mass(&Chain::at(q), &self.links_with(load))
+    }
+
+    /// Torques of Coriolis and centrifugal forces, `C(q, dq) dq`.
+    pub fn coriolis(&self, q: &JointVector, dq: &JointVector, load: &Load) -> JointVector {
+        dynamics::coriolis(&Chain::at(q), &self.links_with(load), dq)
+    }
+
+    /// Torques that hold the arm still against gravity.
+    pub fn gravity(
+        &self,
+        q: &JointVector,
+        load: &Load,
+        gravity_earth: &Vector3<f64>,
+    ) -> JointVector {
+        dynamics::gravity(&Chain::at(q), &self.links_with(load), gravity_earth)
+    }
+
+    /// Torques for the acceleration `ddq`: `M ddq + C dq + g`, by recursive Newton-Euler.
+    pub fn inverse_dynamics(
+        &self,
+        q: &JointVector,
+        dq: &JointVector,
+        ddq: &JointVector,
+        load: &Load,
+        gravity_earth: &Vector3<f64>,
+    ) -> JointVector {
+        dynamics::inverse_dynamics(
+            &Chain::at(q),
+            &self.links_with(load),
+            dq,
+            ddq,
+            gravity_earth,
+        )
+    }
+
+    /// Accelerations under the torques `tau`: solves `(M + diag(armature)) ddq = tau − C dq − g`.
+    ///
+    /// `armature` is the rotor inertia felt at each joint `[kg·m²]`. `None` if the matrix is not
+    /// positive definite, which takes a number that is not finite, a negative armature, or a load
+    /// that no rigid body has.
+    #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
+    pub fn forward_dynamics(
+        &self,
+        q: &JointVector,
+        dq: &JointVector,
+        tau: &JointVector,
+        load: &Load,
+        gravity_earth: &Vector3<f64>,
+        armature: &JointVector,
+    ) -> Option<JointVector> {
+        dynamics::forward_dynamics(
+            &Chain::at(q),
+            &self.links_with(load),
+            dq,
+            tau,
+            gravity_earth,
+            armature,
+        )
+    }
+
+    /// Everything that a control law needs in one cycle, each part computed once.
+    pub fn dynamics(
+        &self,
+        q: &JointVector,
+        dq: &JointVector,
+        ee: &EndEffector,
+        load: &Load,
+        gravity_earth: &Vector3<f64>,
+    ) -> Dynamics {
+        Dynamics::of(&Chain::at(q), &self.links_with(load), dq, ee, gravity_earth)
+    }
+
+    fn links_with(&self, load: &Load) -> [RigidBody; 7] {
+        let mut links = self.links;
+        if let Some(load) = load.on_link_7() {
+            links[6] = links[6].joined(&load);
+        }
+        links
+    }
+}

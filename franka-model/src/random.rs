@@ -1,0 +1,59 @@
+//! Seeded numbers for tests, so that a failure repeats.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::limits::JointLimits;
+use crate::{JointVector, Load, RobotKind};
+
+/// SplitMix64: Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators, 2014.
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub(crate) fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub(crate) fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub(crate) fn vector3(&mut self, bound: f64) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| self.uniform(-bound, bound))
+    }
+
+    pub(crate) fn joints(&mut self, bound: f64) -> JointVector {
+        JointVector::from_fn(|_, _| self.uniform(-bound, bound))
+    }
+
+    /// Positions within the limits.
+    pub(crate) fn posture(&mut self) -> JointVector {
+        let limits = JointLimits::of(RobotKind::Fr3);
+        JointVector::from_fn(|i, _| self.uniform(limits.lower[i], limits.upper[i]))
+    }
+
+    /// A box of some density off the flange, as a physical load is.
+    pub(crate) fn load(&mut self) -> Load {
+        let mass = self.uniform(0.1, 3.0);
+        let side = self.vector3(0.2);
+        let squares = side.component_mul(&side);
+        Load {
+            mass,
+            com: self.vector3(0.1),
+            inertia: Matrix3::from_diagonal(
+                &(Vector3::new(
+                    squares.y + squares.z,
+                    squares.x + squares.z,
+                    squares.x + squares.y,
+                ) * (mass / 12.0)),
+            ),
+        }
+    }
+}

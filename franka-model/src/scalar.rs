@@ -1,0 +1,17 @@
+//! Elementary functions, from the platform's library with `std` and from `libm` without.
+//!
+//! `core` has none of them; nalgebra's traits dispatch to whichever is there.
+
+use nalgebra::{ComplexField, RealField};
+
+pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
+    ComplexField::sin_cos(angle)
+}
+
+pub(crate) fn sqrt(x: f64) -> f64 {
+    ComplexField::sqrt(x)
+}
+
+pub(crate) fn atan2(y: f64, x: f64) -> f64 {
+    RealField::atan2(y, x)
+}

@@ -1,0 +1,143 @@
+//! Homogeneous matrices to isometries and back.
+//!
+//! The robot's matrices are column-major, may come from `f32` fields, and need not be exactly
+//! rigid: a pose with the vendor's 0.7071 for sqrt(1/2) is 1e-5 off. The nearest rotation in the
+//! least-squares sense (the polar factor) is what stands in for the rotation block.
+
+use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion};
+
+/// How far an element of a rotation block may be from the nearest rotation to count as a pose.
+///
+/// A hundred times what the vendor's rounded constants need; a transposed or sheared matrix is far
+/// beyond.
+pub const DISTORTION_MAX: f64 = 1e-3;
+
+/// The rigid transform nearest to `matrix`.
+///
+/// `None` if an element is not finite, the last row is not `0 0 0 1`, or the rotation block is
+/// further than [`DISTORTION_MAX`] from every rotation (mirrored, scaled, sheared).
+pub fn isometry(matrix: &Matrix4<f64>) -> Option<Isometry3<f64>> {
+    let last_row = [matrix.m41, matrix.m42, matrix.m43, matrix.m44];
+    if last_row != [0.0, 0.0, 0.0, 1.0] {
+        return None;
+    }
+    let block = matrix.fixed_view::<3, 3>(0, 0).into_owned();
+    let translation = Translation3::new(matrix.m14, matrix.m24, matrix.m34);
+    let rotation = nearest_rotation(&block)?;
+    let rigid = (rotation.matrix() - block).amax() <= DISTORTION_MAX;
+    let finite = translation.vector.iter().all(|x| x.is_finite());
+    (rigid && finite).then(|| {
+        Isometry3::from_parts(translation, UnitQuaternion::from_rotation_matrix(&rotation))
+    })
+}
+
+/// [`isometry`] of 16 numbers, column-major, as in `O_T_EE`.
+pub fn isometry_from_array(column_major: &[f64; 16]) -> Option<Isometry3<f64>> {
+    isometry(&Matrix4::from_column_slice(column_major))
+}
+
+/// The homogeneous matrix of a rigid transform.
+pub fn matrix(isometry: &Isometry3<f64>) -> Matrix4<f64> {
+    isometry.to_homogeneous()
+}
+
+/// 16 numbers, column-major, as in `O_T_EE_c`.
+pub fn array(isometry: &Isometry3<f64>) -> [f64; 16] {
+    let mut column_major = [0.0; 16];
+    column_major.copy_from_slice(matrix(isometry).as_slice());
+    column_major
+}
+
+/// Rotation part of the polar decomposition, by Newton's iteration `X <- (X + X⁻ᵀ) / 2`.
+///
+/// It converges for every matrix of positive determinant, quadratically near a rotation (Higham,
+/// Functions of Matrices, 2008, section 8.3). `None` for others, and where [`NEWTON_STEPS_MAX`]
+/// steps are not enough, which takes a matrix close to singular.
+pub fn nearest_rotation(block: &Matrix3<f64>) -> Option<Rotation3<f64>> {
+    let determinant = block.determinant();
+    if determinant.is_nan() || determinant <= 0.0 {
+        return None;
+    }
+    let mut x = *block;
+    for _ in 0..NEWTON_STEPS_MAX {
+        let next = (x + x.try_inverse()?.transpose()) * 0.5;
+        let change = (next - x).amax();
+        x = next;
+        if change < 1e-9 {
+            // Quadratic: one more step would change less than a unit in the last place.
+            return Some(Rotation3::from_matrix_unchecked(x));
+        }
+    }
+    None
+}
+
+const NEWTON_STEPS_MAX: usize = 20;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::rotation;
+    use nalgebra::Vector3;
+
+    fn pose(random: &mut Random) -> Isometry3<f64> {
+        let translation = Translation3::from(random.vector3(1.0));
+        Isometry3::from_parts(translation, rotation::exp(&random.vector3(3.0)))
+    }
+
+    #[test]
+    fn arrays_and_isometries_convert_both_ways() {
+        let mut random = Random::new(1);
+        for _ in 0..1000 {
+            let original = pose(&mut random);
+            let back = isometry_from_array(&array(&original)).expect("a pose");
+            assert!((matrix(&back) - matrix(&original)).amax() < 2e-15);
+        }
+    }
+
+    #[test]
+    fn the_vendors_rounded_hand_frame_gives_an_eighth_of_a_turn() {
+        let r = (core::f64::consts::FRAC_1_SQRT_2 * 1e4).floor() / 1e4;
+        let mut m = Matrix4::identity();
+        (m.m11, m.m12, m.m21, m.m22) = (r, r, -r, r);
+        let angle = rotation::log(&isometry(&m).expect("a pose").rotation);
+        let expected = Vector3::new(0.0, 0.0, -core::f64::consts::FRAC_PI_4);
+        assert!((angle - expected).amax() < 1e-15);
+    }
+
+    #[test]
+    fn the_nearest_rotation_is_the_orthogonal_factor_of_the_singular_value_decomposition() {
+        let mut random = Random::new(2);
+        for _ in 0..1000 {
+            let noise = Matrix3::from_fn(|_, _| random.uniform(-0.3, 0.3));
+            let block = pose(&mut random).rotation.to_rotation_matrix().matrix() + noise;
+            let svd = block.svd(true, true);
+            let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else {
+                panic!("both factors were asked for")
+            };
+            match nearest_rotation(&block) {
+                Some(rotation) => assert!((rotation.matrix() - u * v_t).amax() < 1e-12),
+                None => assert!(block.determinant() <= 0.0),
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_pose_is_refused() {
+        let good = pose(&mut Random::new(3));
+        assert!(isometry(&matrix(&good)).is_some());
+        assert!(isometry(&matrix(&good).transpose()).is_none());
+        assert!(isometry(&Matrix4::zeros()).is_none());
+        let mirrored = Matrix4::new_nonuniform_scaling(&Vector3::new(1.0, 1.0, -1.0));
+        assert!(isometry(&mirrored).is_none());
+        let scaled = Matrix4::new_nonuniform_scaling(&Vector3::new(1.0, 1.0, 1.01));
+        assert!(isometry(&scaled).is_none());
+        for index in 0..16 {
+            for bad in [f64::NAN, f64::INFINITY] {
+                let mut numbers = array(&good);
+                numbers[index] = bad;
+                assert!(isometry_from_array(&numbers).is_none(), "element {index}");
+            }
+        }
+    }
+}
