@@ -23,6 +23,7 @@
 //! # assert_eq!(check(&Node::root(&value)).unwrap().passed(), 1);
 //! ```
 
+mod model;
 mod node;
 mod report;
 mod run;
@@ -32,4 +33,13 @@ pub use report::{Case, Failure, Report, Worst};
 pub use run::{Outcome, Suite, Verdict, failed, run};
 
 /// Every file of vectors that the project checks, in the order of the crates.
-pub const SUITES: &[Suite] = &[];
+pub const SUITES: &[Suite] = &[
+    Suite {
+        file: "model/model_vectors_fr3.json",
+        check: model::rigid_body,
+    },
+    Suite {
+        file: "model/velocity_limit_vectors_fr3.json",
+        check: model::velocity_envelope,
+    },
+];
