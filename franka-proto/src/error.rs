@@ -1,0 +1,247 @@
+//! What can be wrong with bytes, requests, replies and peers: got and expected.
+
+use crate::framing::Message;
+use crate::service::{Command, CommandId};
+use crate::version::Version;
+
+/// Bytes that have no meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DecodeError {
+    /// A datagram is shorter than its struct.
+    #[error("libfranka: incorrect object size")]
+    DatagramSize {
+        /// Bytes there are.
+        got: usize,
+        /// Bytes there should be, at least.
+        expected: usize,
+    },
+    /// A message is shorter than its header and struct.
+    #[error("libfranka: Incorrect TCP message size.")]
+    MessageSize {
+        /// Bytes there are, with the header.
+        got: usize,
+        /// Bytes there should be, at least.
+        expected: usize,
+    },
+    /// The version has no command of this number.
+    #[error("protocol {version} has no command {number}")]
+    UnknownCommand {
+        /// The number in the header.
+        number: u32,
+        /// The version of the session.
+        version: Version,
+    },
+    /// The version has the command, and this crate does not read it yet.
+    #[error("{command} is not implemented")]
+    NotImplemented {
+        /// The command.
+        command: Command,
+    },
+    /// An enumerator in a request is none of the version's.
+    #[error("{field} {value} has no meaning")]
+    UnknownValue {
+        /// The vendor's name of the field.
+        field: &'static str,
+        /// Its value.
+        value: u32,
+    },
+    /// A status byte in a reply is none of the version's.
+    #[error("libfranka: Unexpected response while handling {command} command!")]
+    UnknownStatus {
+        /// The command that is answered.
+        command: Command,
+        /// The status byte.
+        status: u8,
+    },
+}
+
+impl DecodeError {
+    pub(crate) fn datagram<T>(bytes: &[u8]) -> Self {
+        Self::DatagramSize {
+            got: bytes.len(),
+            expected: size_of::<T>(),
+        }
+    }
+
+    pub(crate) fn message<T>(message: &Message<'_>) -> Self {
+        Self::MessageSize {
+            got: message.size(),
+            expected: crate::framing::Header::SIZE + size_of::<T>(),
+        }
+    }
+}
+
+/// A datagram that cannot be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EncodeError {
+    /// The caller's buffer is too short.
+    #[error("the buffer has {got} bytes, and the datagram needs {needed}")]
+    Buffer {
+        /// Bytes there are.
+        got: usize,
+        /// Bytes that the datagram has.
+        needed: usize,
+    },
+    /// The version has no way to say it.
+    #[error("this protocol version cannot carry {what}")]
+    Unsupported {
+        /// The vendor's name of the field.
+        what: &'static str,
+    },
+}
+
+/// A request that the client session does not send. Nothing of it has been encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RequestError {
+    /// The version has no such command, or none with these parameters.
+    #[error("protocol {version} has no {what}")]
+    Unsupported {
+        /// What was asked for.
+        what: &'static str,
+        /// The version of the session.
+        version: Version,
+    },
+    /// The handshake is not done.
+    #[error("the session is not connected")]
+    NotConnected,
+    /// `Connect` is sent by [`client::Session::connect`](crate::client::Session::connect).
+    #[error("a handshake is not a request of a session")]
+    Handshake,
+    /// As many requests as the session can remember wait for their replies.
+    #[error("{limit} requests wait for replies already")]
+    TooManyPending {
+        /// How many that are.
+        limit: usize,
+    },
+}
+
+/// A reply that the server session does not send. Nothing of it has been encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReplyError {
+    /// No request of this id waits for a reply.
+    #[error("no request {id} waits for a reply")]
+    NotPending {
+        /// The id.
+        id: CommandId,
+    },
+    /// The request is answered with another kind of reply.
+    #[error("request {id} is {command}, which has another kind of reply")]
+    Mismatch {
+        /// The id.
+        id: CommandId,
+        /// What was asked for.
+        command: Command,
+    },
+    /// A `Move` has got its first answer already.
+    #[error("the motion of request {id} has been reported as started")]
+    AlreadyStarted {
+        /// The id.
+        id: CommandId,
+    },
+    /// The version has no such status.
+    #[error("protocol {version} has no such status")]
+    Unsupported {
+        /// The version of the session.
+        version: Version,
+    },
+    /// A model is sent with
+    /// [`server::Session::model_header`](crate::server::Session::model_header), which also bounds
+    /// its text.
+    #[error("a model text of {len} bytes does not fit")]
+    TextLength {
+        /// Length of the text in bytes.
+        len: usize,
+    },
+}
+
+/// A peer that left the protocol. No caller can cause it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Violation {
+    /// The handshake's answer is neither yes nor no.
+    #[error("libfranka: Protocol error during connection attempt")]
+    ConnectStatus {
+        /// The status byte.
+        status: u8,
+    },
+    /// The robot agreed to our version and reports another one as its own.
+    #[error("the robot accepts protocol {announced} and reports {reported} as its own")]
+    ForeignVersion {
+        /// The version that the client announced.
+        announced: u16,
+        /// The version that the robot reports.
+        reported: u16,
+    },
+    /// The answer to a request cannot be read. The request has ended with this.
+    #[error("{error}")]
+    Reply {
+        /// The request.
+        id: CommandId,
+        /// What is wrong with the answer.
+        error: DecodeError,
+    },
+    /// A motion is reported as started for the second time. It is still on.
+    #[error("libfranka: Move received unexpected motion started message.")]
+    SecondMotionStarted {
+        /// The request.
+        id: CommandId,
+    },
+    /// A client's message cannot be read.
+    #[error("{error}")]
+    Request {
+        /// The id in the message.
+        id: CommandId,
+        /// What is wrong with it.
+        error: DecodeError,
+    },
+    /// A client's first message is not `Connect`.
+    #[error("the first message is {got}, expected Connect")]
+    NotConnect {
+        /// What it is.
+        got: Command,
+    },
+    /// A client sends `Connect` in an open session.
+    #[error("a second Connect in one session")]
+    SecondConnect,
+    /// A client uses the id of a request that is not answered yet.
+    #[error("request {id} is not answered yet, and its id is used again")]
+    RepeatedId {
+        /// The id.
+        id: CommandId,
+    },
+    /// A client has more requests open than a server remembers.
+    #[error("more than {limit} requests wait for replies")]
+    TooManyPending {
+        /// How many a server remembers.
+        limit: usize,
+    },
+}
+
+impl Violation {
+    /// The request that has ended, or in one case goes on, with this violation.
+    #[must_use]
+    pub fn id(&self) -> Option<CommandId> {
+        match *self {
+            Self::Reply { id, .. }
+            | Self::SecondMotionStarted { id }
+            | Self::Request { id, .. }
+            | Self::RepeatedId { id } => Some(id),
+            Self::ConnectStatus { .. }
+            | Self::ForeignVersion { .. }
+            | Self::NotConnect { .. }
+            | Self::SecondConnect
+            | Self::TooManyPending { .. } => None,
+        }
+    }
+
+    /// Whether the session is of no more use. What concerns a single reply leaves the others
+    /// intact.
+    #[must_use]
+    pub fn is_fatal(&self) -> bool {
+        !matches!(self, Self::Reply { .. } | Self::SecondMotionStarted { .. })
+    }
+}

@@ -1,0 +1,202 @@
+//! Stream bytes in, whole messages out.
+//!
+//! Every message on the robot's TCP stream is a 12-byte [`Header`] and a payload; the header's
+//! `size` counts both.
+//!
+//! ```
+//! use franka_proto::framing::{Header, next_message};
+//!
+//! let header = Header { command: 2, command_id: 7, size: 13 };
+//! let mut received = header.to_bytes().to_vec();
+//! assert_eq!(next_message(&received), Ok(None)); // the payload is still on its way
+//! received.push(0);
+//! let message = next_message(&received)?.expect("complete now");
+//! assert_eq!((message.header.command_id, message.payload), (7, &[0][..]));
+//! # Ok::<(), franka_proto::framing::FrameError>(())
+//! ```
+
+use zerocopy::byteorder::little_endian::U32;
+use zerocopy::{FromBytes, IntoBytes};
+
+use crate::service::CommandId;
+use crate::wire;
+
+/// The longest message that [`next_message`] waits for, in bytes: 8 MiB.
+///
+/// The long messages are the URDF text of protocol 10 (tens of KiB) and the shared library of
+/// protocol 5 (below a few MiB). Without a bound, four bytes of garbage could make a reader
+/// collect 4 GiB before it notices.
+pub const MAX_MESSAGE_SIZE: usize = 8 << 20;
+
+/// The longest request that a robot waits for, in bytes.
+///
+/// The longest defined request, `SetCollisionBehavior`, has 428 bytes. The rest is room for a
+/// client that pads.
+pub const MAX_REQUEST_SIZE: usize = 1024;
+
+/// What precedes every message on the stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Header {
+    /// The version's number of the command; repeated in replies, where nobody checks it.
+    pub command: u32,
+    /// Counter of the client's requests; a reply repeats it.
+    pub command_id: u32,
+    /// Length of the whole message in bytes, this header included.
+    pub size: u32,
+}
+
+impl Header {
+    /// Length of a header in bytes.
+    pub const SIZE: usize = size_of::<wire::CommandHeader>();
+
+    /// The request that the message is or answers.
+    #[must_use]
+    pub fn id(&self) -> CommandId {
+        CommandId(self.command_id)
+    }
+
+    /// Bytes for the stream.
+    #[must_use]
+    pub fn to_bytes(self) -> [u8; Self::SIZE] {
+        let mut bytes = [0; Self::SIZE];
+        let wire = wire::CommandHeader {
+            command: U32::new(self.command),
+            command_id: U32::new(self.command_id),
+            size: U32::new(self.size),
+        };
+        bytes.copy_from_slice(wire.as_bytes());
+        bytes
+    }
+}
+
+/// A whole message, borrowed from the bytes received.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Message<'a> {
+    /// The header, with a `size` that is checked.
+    pub header: Header,
+    /// Everything behind the header.
+    pub payload: &'a [u8],
+}
+
+impl Message<'_> {
+    /// Length of the whole message in bytes: how far to advance in the stream.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        Header::SIZE + self.payload.len()
+    }
+}
+
+/// Why the bytes of a stream cannot be cut into messages. The stream is of no more use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// The size is smaller than the header that carries it.
+    #[error("libfranka: Incorrect TCP message size.")]
+    TooShort {
+        /// The size that the header claims, in bytes.
+        got: u32,
+    },
+    /// The size is beyond what any message needs.
+    #[error("a message of {got} bytes is announced, and the longest allowed has {limit}")]
+    TooLong {
+        /// The size that the header claims, in bytes.
+        got: u32,
+        /// The longest message allowed, in bytes.
+        limit: usize,
+    },
+}
+
+/// The first message in `received`, or `None` while it is incomplete.
+///
+/// # Errors
+/// [`FrameError`] if its size is below the header's or above [`MAX_MESSAGE_SIZE`]. That shows as
+/// soon as the header is there.
+pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
+    next_message_within(received, MAX_MESSAGE_SIZE)
+}
+
+/// [`next_message`] with a bound of the caller's, such as [`MAX_REQUEST_SIZE`].
+///
+/// # Errors
+/// [`FrameError`] if the size is below the header's or above `limit`.
+pub fn next_message_within(
+    received: &[u8],
+    limit: usize,
+) -> Result<Option<Message<'_>>, FrameError> {
+    let Ok((wire, rest)) = wire::CommandHeader::read_from_prefix(received) else {
+        return Ok(None);
+    };
+    let header = Header {
+        command: wire.command.get(),
+        command_id: wire.command_id.get(),
+        size: wire.size.get(),
+    };
+    let size = header.size as usize;
+    let Some(length) = size.checked_sub(Header::SIZE) else {
+        return Err(FrameError::TooShort { got: header.size });
+    };
+    if size > limit {
+        return Err(FrameError::TooLong {
+            got: header.size,
+            limit,
+        });
+    }
+    Ok(rest
+        .get(..length)
+        .map(|payload| Message { header, payload }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    fn header(size: u32) -> Vec<u8> {
+        Header {
+            command: 1,
+            command_id: 2,
+            size,
+        }
+        .to_bytes()
+        .to_vec()
+    }
+
+    #[test]
+    fn a_message_shows_only_when_its_last_byte_is_there() {
+        let mut bytes = header(16);
+        bytes.extend([1, 2, 3, 4, 5]);
+        for length in 0..16 {
+            assert_eq!(next_message(&bytes[..length]), Ok(None), "{length}");
+        }
+        let message = next_message(&bytes).unwrap().unwrap();
+        assert_eq!(message.payload, [1, 2, 3, 4]);
+        assert_eq!(message.size(), 16);
+        assert_eq!(message.header.id(), CommandId(2));
+    }
+
+    #[test]
+    fn a_size_below_the_header_is_an_error() {
+        for size in 0..12 {
+            let error = next_message(&header(size)).unwrap_err();
+            assert_eq!(error, FrameError::TooShort { got: size });
+            assert_eq!(
+                std::format!("{error}"),
+                "libfranka: Incorrect TCP message size."
+            );
+        }
+        assert!(next_message(&header(12)).unwrap().is_some());
+    }
+
+    #[test]
+    fn a_size_above_the_bound_is_an_error_before_the_payload_comes() {
+        assert_eq!(next_message(&header(MAX_MESSAGE_SIZE as u32)), Ok(None));
+        assert_eq!(
+            next_message(&header(u32::MAX)),
+            Err(FrameError::TooLong {
+                got: u32::MAX,
+                limit: MAX_MESSAGE_SIZE
+            })
+        );
+        assert!(next_message_within(&header(1025), MAX_REQUEST_SIZE).is_err());
+    }
+}

@@ -1,0 +1,183 @@
+//! The three modes that a robot state reports.
+
+use core::fmt;
+
+/// What the robot as a whole is doing.
+///
+/// Numbers 0 to 6 on the wire, in this order; other numbers read as [`RobotMode::Other`], as in
+/// libfranka 0.21.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum RobotMode {
+    /// None of the others: in practice the brakes are closed or the robot is not ready.
+    #[default]
+    Other,
+    /// Ready for a motion.
+    Idle,
+    /// A motion runs.
+    Move,
+    /// Guided by hand.
+    Guiding,
+    /// Stopped by a reflex; only a recovery leads out.
+    Reflex,
+    /// The user stop or a safety function holds the robot.
+    UserStopped,
+    /// An automatic error recovery runs.
+    AutomaticErrorRecovery,
+}
+
+impl RobotMode {
+    const ALL: [Self; 7] = [
+        Self::Other,
+        Self::Idle,
+        Self::Move,
+        Self::Guiding,
+        Self::Reflex,
+        Self::UserStopped,
+        Self::AutomaticErrorRecovery,
+    ];
+
+    /// The mode of a wire byte; bytes without a meaning read as [`RobotMode::Other`].
+    #[must_use]
+    pub fn from_byte(byte: u8) -> Self {
+        Self::ALL
+            .get(usize::from(byte))
+            .copied()
+            .unwrap_or(Self::Other)
+    }
+
+    /// The wire byte of this mode.
+    #[must_use]
+    pub fn byte(self) -> u8 {
+        self as u8
+    }
+}
+
+impl fmt::Display for RobotMode {
+    /// libfranka's text, without the double quotes that its messages put around it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Other => "Other",
+            Self::Idle => "Idle",
+            Self::Move => "Move",
+            Self::Guiding => "Guiding",
+            Self::Reflex => "Reflex",
+            Self::UserStopped => "User stopped",
+            Self::AutomaticErrorRecovery => "Automatic error recovery",
+        })
+    }
+}
+
+/// The motion generator that a state reports, in the numbering of states.
+///
+/// A `Move` request numbers the same generators differently: see
+/// [`MoveGeneratorMode`](crate::MoveGeneratorMode), whose
+/// [`in_state`](crate::MoveGeneratorMode::in_state) gives the value to wait for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum MotionGeneratorMode {
+    /// No motion.
+    #[default]
+    Idle,
+    /// Joint positions `q_c`.
+    JointPosition,
+    /// Joint velocities `dq_c`.
+    JointVelocity,
+    /// End-effector poses `O_T_EE_c`.
+    CartesianPosition,
+    /// End-effector twists `O_dP_EE_c`.
+    CartesianVelocity,
+    /// A torque motion without a generator; protocol 10 only.
+    None,
+    /// A byte that the protocol version gives no meaning.
+    Unknown(u8),
+}
+
+impl MotionGeneratorMode {
+    /// Whether the client has to feed a generator: any mode but `Idle` and `None`.
+    ///
+    /// Protocol 5 has no `None`, and its byte 5 decodes as `Unknown`, so one rule is right for
+    /// both versions.
+    #[must_use]
+    pub fn is_running(self) -> bool {
+        !matches!(self, Self::Idle | Self::None)
+    }
+}
+
+/// The controller that a state reports, in the numbering of states.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ControllerMode {
+    /// The robot's joint impedance controller.
+    JointImpedance,
+    /// The robot's Cartesian impedance controller.
+    CartesianImpedance,
+    /// The client's torques.
+    ExternalController,
+    /// None of the above: what an idle robot reports.
+    #[default]
+    Other,
+    /// A byte that the protocol gives no meaning.
+    Unknown(u8),
+}
+
+impl ControllerMode {
+    /// Whether the client has to feed a controller. The robot's own controllers never count.
+    #[must_use]
+    pub fn is_running(self) -> bool {
+        self == Self::ExternalController
+    }
+
+    /// The mode of a wire byte; the same in both versions.
+    #[must_use]
+    pub fn from_byte(byte: u8) -> Self {
+        match byte {
+            0 => Self::JointImpedance,
+            1 => Self::CartesianImpedance,
+            2 => Self::ExternalController,
+            3 => Self::Other,
+            unknown => Self::Unknown(unknown),
+        }
+    }
+
+    /// The wire byte of this mode.
+    #[must_use]
+    pub fn byte(self) -> u8 {
+        match self {
+            Self::JointImpedance => 0,
+            Self::CartesianImpedance => 1,
+            Self::ExternalController => 2,
+            Self::Other => 3,
+            Self::Unknown(byte) => byte,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::string::ToString;
+
+    #[test]
+    fn every_robot_mode_keeps_its_byte_and_the_rest_read_as_other() {
+        for (byte, mode) in RobotMode::ALL.into_iter().enumerate() {
+            assert_eq!(usize::from(mode.byte()), byte);
+            assert_eq!(RobotMode::from_byte(mode.byte()), mode);
+        }
+        assert_eq!(RobotMode::from_byte(7), RobotMode::Other);
+        assert_eq!(RobotMode::from_byte(255), RobotMode::Other);
+    }
+
+    #[test]
+    fn controller_bytes_survive_even_when_unknown() {
+        for byte in 0..=u8::MAX {
+            assert_eq!(ControllerMode::from_byte(byte).byte(), byte);
+        }
+    }
+
+    #[test]
+    fn the_text_of_a_mode_is_the_vendors() {
+        assert_eq!(RobotMode::UserStopped.to_string(), "User stopped");
+        assert_eq!(
+            RobotMode::AutomaticErrorRecovery.to_string(),
+            "Automatic error recovery"
+        );
+    }
+}

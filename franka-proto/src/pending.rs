@@ -1,0 +1,95 @@
+//! The requests that wait for a reply, by command id.
+
+use crate::service::{Command, CommandId};
+
+/// Requests of one session that may wait for replies at the same time.
+///
+/// A client that waits for each reply has one motion and one more; an asynchronous one has a few
+/// setters besides. The bound keeps the table inline and a lookup short.
+pub(crate) const LIMIT: usize = 32;
+
+/// A request that waits for a reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Entry {
+    pub(crate) id: CommandId,
+    pub(crate) command: Command,
+    /// Whether the first of two answers has been given.
+    pub(crate) started: bool,
+}
+
+/// The table: a bounded set of entries, in no order.
+#[derive(Clone, Debug)]
+pub(crate) struct Pending {
+    entries: [Option<Entry>; LIMIT],
+}
+
+impl Pending {
+    pub(crate) const fn new() -> Self {
+        Self {
+            entries: [None; LIMIT],
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.entries.iter().flatten().count()
+    }
+
+    pub(crate) fn is_full(&self) -> bool {
+        self.entries.iter().all(Option::is_some)
+    }
+
+    /// Adds a request; false, and no change, if the table is full.
+    pub(crate) fn insert(&mut self, id: CommandId, command: Command) -> bool {
+        let free = self.entries.iter_mut().find(|entry| entry.is_none());
+        let Some(free) = free else { return false };
+        *free = Some(Entry {
+            id,
+            command,
+            started: false,
+        });
+        true
+    }
+
+    pub(crate) fn get(&self, id: CommandId) -> Option<Entry> {
+        self.entries.iter().flatten().find(|e| e.id == id).copied()
+    }
+
+    /// Notes that the first of two answers has been given.
+    pub(crate) fn start(&mut self, id: CommandId) {
+        if let Some(entry) = self.entries.iter_mut().flatten().find(|e| e.id == id) {
+            entry.started = true;
+        }
+    }
+
+    /// Takes a request out; false if there is none of this id.
+    pub(crate) fn remove(&mut self, id: CommandId) -> bool {
+        let entry = self
+            .entries
+            .iter_mut()
+            .find(|entry| entry.is_some_and(|entry| entry.id == id));
+        entry.is_some_and(|entry| entry.take().is_some())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_bounded_and_places_are_used_again() {
+        let mut pending = Pending::new();
+        for id in 0..LIMIT as u32 {
+            assert!(pending.insert(CommandId(id), Command::Move));
+        }
+        assert!(pending.is_full());
+        assert!(!pending.insert(CommandId(99), Command::Move));
+        assert!(pending.remove(CommandId(7)));
+        assert!(!pending.remove(CommandId(7)));
+        assert!(pending.insert(CommandId(99), Command::StopMove));
+        assert_eq!(
+            pending.get(CommandId(99)).unwrap().command,
+            Command::StopMove
+        );
+        assert_eq!(pending.len(), LIMIT);
+    }
+}

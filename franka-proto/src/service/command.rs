@@ -1,0 +1,100 @@
+//! What can be asked of a robot.
+
+use core::fmt;
+
+/// Counter of a client's requests on one connection: 0 for `Connect`, then one more for each.
+/// Replies are matched by it and by nothing else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CommandId(pub u32);
+
+impl fmt::Display for CommandId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}
+
+/// The commands of all versions. Which number one has, and whether a version has it at all, is in
+/// the version table: see [`Version::command_number`](crate::Version::command_number).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Command {
+    /// Opens a session.
+    Connect,
+    /// Starts a motion; replied to twice.
+    Move,
+    /// Stops the motion.
+    StopMove,
+    /// Reads a virtual wall; protocol 5 only.
+    GetCartesianLimit,
+    /// Sets the thresholds of contact and collision.
+    SetCollisionBehavior,
+    /// Sets the stiffness of the robot's joint controller.
+    SetJointImpedance,
+    /// Sets the stiffness of the robot's Cartesian controller.
+    SetCartesianImpedance,
+    /// Sets which axes a hand may guide.
+    SetGuidingMode,
+    /// Sets the stiffness frame.
+    SetEEToK,
+    /// Sets the end-effector frame.
+    SetNEToEE,
+    /// Sets the load.
+    SetLoad,
+    /// Sets the filters of the robot's interfaces; protocol 5 only.
+    SetFilters,
+    /// Clears errors after a reflex.
+    AutomaticErrorRecovery,
+    /// Fetches the robot's description; protocol 10 only.
+    GetRobotModel,
+    /// Fetches the robot's model as a shared library; protocol 5 only.
+    LoadModelLibrary,
+}
+
+impl Command {
+    /// All commands of all versions.
+    pub const ALL: [Self; 15] = [
+        Self::Connect,
+        Self::Move,
+        Self::StopMove,
+        Self::GetCartesianLimit,
+        Self::SetCollisionBehavior,
+        Self::SetJointImpedance,
+        Self::SetCartesianImpedance,
+        Self::SetGuidingMode,
+        Self::SetEEToK,
+        Self::SetNEToEE,
+        Self::SetLoad,
+        Self::SetFilters,
+        Self::AutomaticErrorRecovery,
+        Self::GetRobotModel,
+        Self::LoadModelLibrary,
+    ];
+
+    /// libfranka's name in its messages. `Connect` and `LoadModelLibrary` have none there; their
+    /// own texts never use it.
+    #[must_use]
+    pub fn display_name(self) -> &'static str {
+        match self {
+            Self::Connect => "Connect",
+            Self::Move => "Move",
+            Self::StopMove => "Stop Move",
+            Self::GetCartesianLimit => "Get Cartesian Limit",
+            Self::SetCollisionBehavior => "Set Collision Behavior",
+            Self::SetJointImpedance => "Set Joint Impedance",
+            Self::SetCartesianImpedance => "Set Cartesian Impedance",
+            Self::SetGuidingMode => "Set Guiding Mode",
+            Self::SetEEToK => "Set EE to K",
+            Self::SetNEToEE => "Set NE to EE",
+            Self::SetLoad => "Set Load",
+            Self::SetFilters => "Set Filters",
+            Self::AutomaticErrorRecovery => "Automatic Error Recovery",
+            Self::GetRobotModel => "Get Robot Model",
+            Self::LoadModelLibrary => "Load Model Library",
+        }
+    }
+}
+
+impl fmt::Display for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.display_name())
+    }
+}

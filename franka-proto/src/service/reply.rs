@@ -1,0 +1,169 @@
+//! What the robot answers.
+
+use super::{
+    Command, CommandId, ConnectStatus, ModelStatus, MoveStatus, RecoveryStatus, SetterStatus,
+    Status, StopStatus, payload,
+};
+use crate::error::{DecodeError, ReplyError};
+use crate::framing::Message;
+use crate::outgoing::Outgoing;
+use crate::version::Version;
+use crate::wire;
+
+/// What the robot answers to one request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reply<'a> {
+    /// To `Connect`.
+    Connect {
+        /// Whether the version suits.
+        status: ConnectStatus,
+        /// Protocol version of the robot.
+        version: u16,
+    },
+    /// To `Move`: twice, unless the first answer is a refusal.
+    Move(MoveStatus),
+    /// To `StopMove`.
+    StopMove(StopStatus),
+    /// To a setter.
+    Setter(SetterStatus),
+    /// To `AutomaticErrorRecovery`.
+    Recovery(RecoveryStatus),
+    /// To `GetRobotModel`.
+    Model {
+        /// Whether the text is there.
+        status: ModelStatus,
+        /// URDF, in general UTF-8; empty after a refusal.
+        text: &'a [u8],
+    },
+}
+
+impl<'a> Reply<'a> {
+    /// The status; `None` for `Connect`, whose refusal has a text of its own:
+    /// [`IncompatibleVersion`](crate::IncompatibleVersion).
+    #[must_use]
+    pub fn status(&self) -> Option<Status> {
+        match *self {
+            Self::Connect { .. } => None,
+            Self::Move(status) => Some(Status::Move(status)),
+            Self::StopMove(status) => Some(Status::StopMove(status)),
+            Self::Setter(status) => Some(Status::Setter(status)),
+            Self::Recovery(status) => Some(Status::Recovery(status)),
+            Self::Model { status, .. } => Some(Status::Model(status)),
+        }
+    }
+
+    /// Whether `command` is answered with this kind of reply.
+    #[must_use]
+    pub fn suits(&self, command: Command) -> bool {
+        match self {
+            Self::Connect { .. } => command == Command::Connect,
+            Self::Move(_) => command == Command::Move,
+            Self::StopMove(_) => command == Command::StopMove,
+            Self::Recovery(_) => command == Command::AutomaticErrorRecovery,
+            Self::Model { .. } => command == Command::GetRobotModel,
+            Self::Setter(_) => matches!(
+                command,
+                Command::SetCollisionBehavior
+                    | Command::SetJointImpedance
+                    | Command::SetCartesianImpedance
+                    | Command::SetGuidingMode
+                    | Command::SetEEToK
+                    | Command::SetNEToEE
+                    | Command::SetLoad
+                    | Command::SetFilters
+            ),
+        }
+    }
+
+    /// The message that carries this reply to the request `id` for `command`; `extra` bytes of a
+    /// model's text are sent behind it and count in the header's size.
+    pub(crate) fn encode(
+        &self,
+        version: Version,
+        command: Command,
+        id: CommandId,
+        extra: usize,
+    ) -> Result<Outgoing, ReplyError> {
+        let number = version
+            .command_number(command)
+            .filter(|_| self.suits(command));
+        let number = number.ok_or(ReplyError::Mismatch { id, command })?;
+        let table = version.table();
+        let status = match *self {
+            Self::Connect { status, .. } => byte(table.connect, status),
+            Self::Move(status) => byte(table.moves, status),
+            Self::StopMove(status) => byte(table.stop, status),
+            Self::Setter(status) => byte(table.setter, status),
+            Self::Recovery(status) => byte(table.recovery, status),
+            Self::Model { status, .. } => byte(table.model, status),
+        };
+        let status = status.ok_or(ReplyError::Unsupported { version })?;
+        Ok(match *self {
+            Self::Connect { version, .. } => {
+                let payload = wire::service::ConnectResponse {
+                    status,
+                    version: version.into(),
+                };
+                Outgoing::new(number, id, &payload, 0)
+            }
+            _ => Outgoing::new(number, id, &status, extra),
+        })
+    }
+
+    /// The reply to `command` in a message of the robot; bytes behind a fixed reply are ignored.
+    ///
+    /// # Errors
+    /// [`DecodeError::MessageSize`] if the payload is too short, [`DecodeError::UnknownStatus`] if
+    /// the version gives the status byte no meaning, and [`DecodeError::NotImplemented`] for the
+    /// commands that only protocol 5 has.
+    pub fn decode(
+        version: Version,
+        command: Command,
+        message: &Message<'a>,
+    ) -> Result<Self, DecodeError> {
+        let table = version.table();
+        let &status = payload::<u8>(message)?;
+        let unknown = DecodeError::UnknownStatus { command, status };
+        Ok(match command {
+            Command::Connect => {
+                let payload: &wire::service::ConnectResponse = payload(message)?;
+                Self::Connect {
+                    status: meaning(table.connect, status).ok_or(unknown)?,
+                    version: payload.version.get(),
+                }
+            }
+            Command::Move => Self::Move(meaning(table.moves, status).ok_or(unknown)?),
+            Command::StopMove => Self::StopMove(meaning(table.stop, status).ok_or(unknown)?),
+            Command::AutomaticErrorRecovery => {
+                Self::Recovery(meaning(table.recovery, status).ok_or(unknown)?)
+            }
+            Command::GetRobotModel => Self::Model {
+                status: meaning(table.model, status).ok_or(unknown)?,
+                text: &message.payload[1..],
+            },
+            Command::GetCartesianLimit | Command::LoadModelLibrary => {
+                return Err(DecodeError::NotImplemented { command });
+            }
+            Command::SetCollisionBehavior
+            | Command::SetJointImpedance
+            | Command::SetCartesianImpedance
+            | Command::SetGuidingMode
+            | Command::SetEEToK
+            | Command::SetNEToEE
+            | Command::SetLoad
+            | Command::SetFilters => Self::Setter(meaning(table.setter, status).ok_or(unknown)?),
+        })
+    }
+}
+
+/// The byte of a status: its position among the version's statuses.
+fn byte<T: PartialEq>(statuses: &[T], status: T) -> Option<u8> {
+    let position = statuses.iter().position(|known| *known == status)?;
+    u8::try_from(position).ok()
+}
+
+/// The status of a byte.
+fn meaning<T: Copy>(statuses: &[T], byte: u8) -> Option<T> {
+    statuses.get(usize::from(byte)).copied()
+}

@@ -1,0 +1,65 @@
+//! Numbers of the wire.
+
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
+
+/// A little-endian `f32`, the state's number in protocol 10.
+pub type F32 = zerocopy::byteorder::little_endian::F32;
+
+/// A little-endian `f64`: the state's number in protocol 5, and that of commands and requests in
+/// both versions.
+pub type F64 = zerocopy::byteorder::little_endian::F64;
+
+/// A floating-point number of the wire, as wide as the version has it.
+pub trait Real:
+    Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
+{
+    /// The value, exactly.
+    fn widen(self) -> f64;
+
+    /// The nearest value of the wire's width.
+    fn narrow(value: f64) -> Self;
+}
+
+impl Real for F32 {
+    #[inline]
+    fn widen(self) -> f64 {
+        f64::from(self.get())
+    }
+
+    #[inline]
+    fn narrow(value: f64) -> Self {
+        Self::new(value as f32)
+    }
+}
+
+impl Real for F64 {
+    #[inline]
+    fn widen(self) -> f64 {
+        self.get()
+    }
+
+    #[inline]
+    fn narrow(value: f64) -> Self {
+        Self::new(value)
+    }
+}
+
+/// An array of the wire as numbers.
+#[inline]
+#[must_use]
+pub fn from_wire<R: Real, const N: usize>(array: &[R; N]) -> [f64; N] {
+    array.map(R::widen)
+}
+
+/// Numbers as an array of the wire.
+#[inline]
+#[must_use]
+pub fn to_wire<R: Real, const N: usize>(array: &[f64; N]) -> [R; N] {
+    array.map(R::narrow)
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::F32 {}
+    impl Sealed for super::F64 {}
+}

@@ -1,0 +1,27 @@
+//! The handshake.
+
+use zerocopy::byteorder::little_endian::U16;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
+
+/// `Connect::Request`, the first message of a client.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct ConnectRequest {
+    /// Protocol version of the client.
+    pub version: U16,
+    /// UDP port on which the client expects states.
+    pub udp_port: U16,
+}
+
+/// `Connect::Response`.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct ConnectResponse {
+    /// Whether the version suits.
+    pub status: u8,
+    /// Protocol version of the robot.
+    pub version: U16,
+}
+
+assert_layout!(ConnectRequest, size: 4, { version: 0, udp_port: 2 });
+assert_layout!(ConnectResponse, size: 3, { status: 0, version: 1 });

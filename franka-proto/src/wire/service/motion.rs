@@ -1,0 +1,59 @@
+//! The start of a motion. Its replies and those of `StopMove` are a status alone.
+
+use zerocopy::byteorder::little_endian::U32;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
+
+use crate::wire::F64;
+
+/// `Move::Deviation`: how far the robot may be from where it should be.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct Deviation {
+    /// Of the position `[m]`.
+    pub translation: F64,
+    /// Of the orientation `[rad]`.
+    pub rotation: F64,
+    /// Of the elbow `[rad]`.
+    pub elbow: F64,
+}
+
+/// What protocol 10 appended to a `Move`: the robot plans between sparse joint targets.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct AsynchronousMotion {
+    /// Whether the robot plans.
+    pub use_async_motion_generator: u8,
+    /// Joint velocities that the plan keeps `[rad/s]`; zero without a plan.
+    pub maximum_velocity: [F64; 7],
+}
+
+/// `Move::Request`. `A` is [`AsynchronousMotion`] in protocol 10 and `()` in protocol 5.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct MoveRequest<A> {
+    /// Controller, in the numbering of requests.
+    pub controller_mode: U32,
+    /// Motion generator, in the numbering of requests.
+    pub motion_generator_mode: U32,
+    /// Allowed on the way.
+    pub maximum_path_deviation: Deviation,
+    /// Allowed at the goal.
+    pub maximum_goal_pose_deviation: Deviation,
+    /// The robot's planning, where the version has it.
+    pub asynchronous: A,
+}
+
+assert_layout!(Deviation, size: 24, { translation: 0, rotation: 8, elbow: 16 });
+assert_layout!(MoveRequest<AsynchronousMotion>, size: 113, {
+    controller_mode: 0, motion_generator_mode: 4,
+    maximum_path_deviation.translation: 8, maximum_path_deviation.rotation: 16,
+    maximum_path_deviation.elbow: 24, maximum_goal_pose_deviation.translation: 32,
+    maximum_goal_pose_deviation.rotation: 40, maximum_goal_pose_deviation.elbow: 48,
+    asynchronous.use_async_motion_generator: 56, asynchronous.maximum_velocity: 57,
+});
+assert_layout!(MoveRequest<()>, size: 56, {
+    controller_mode: 0, motion_generator_mode: 4,
+    maximum_path_deviation.translation: 8, maximum_path_deviation.rotation: 16,
+    maximum_path_deviation.elbow: 24, maximum_goal_pose_deviation.translation: 32,
+    maximum_goal_pose_deviation.rotation: 40, maximum_goal_pose_deviation.elbow: 48,
+});

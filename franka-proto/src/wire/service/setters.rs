@@ -1,0 +1,86 @@
+//! Parameters that the robot keeps until they are set again. All replies are a status alone.
+#![allow(non_snake_case)]
+
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
+
+use crate::wire::F64;
+
+/// `SetCollisionBehavior::Request`: thresholds of contact (lower) and collision (upper).
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct SetCollisionBehavior {
+    /// Contact, joint torques while accelerating `[N m]`.
+    pub lower_torque_thresholds_acceleration: [F64; 7],
+    /// Collision, joint torques while accelerating `[N m]`.
+    pub upper_torque_thresholds_acceleration: [F64; 7],
+    /// Contact, joint torques at constant velocity `[N m]`.
+    pub lower_torque_thresholds_nominal: [F64; 7],
+    /// Collision, joint torques at constant velocity `[N m]`.
+    pub upper_torque_thresholds_nominal: [F64; 7],
+    /// Contact, wrench while accelerating `[N, N m]`.
+    pub lower_force_thresholds_acceleration: [F64; 6],
+    /// Collision, wrench while accelerating `[N, N m]`.
+    pub upper_force_thresholds_acceleration: [F64; 6],
+    /// Contact, wrench at constant velocity `[N, N m]`.
+    pub lower_force_thresholds_nominal: [F64; 6],
+    /// Collision, wrench at constant velocity `[N, N m]`.
+    pub upper_force_thresholds_nominal: [F64; 6],
+}
+
+/// `SetJointImpedance::Request`.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct SetJointImpedance {
+    /// Joint stiffnesses `[N m/rad]`.
+    pub K_theta: [F64; 7],
+}
+
+/// `SetCartesianImpedance::Request`.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct SetCartesianImpedance {
+    /// Stiffnesses in the stiffness frame `[N/m, N m/rad]`.
+    pub K_x: [F64; 6],
+}
+
+/// `SetGuidingMode::Request`.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct SetGuidingMode {
+    /// Which axes are free: x, y, z, roll, pitch, yaw.
+    pub guiding_mode: [u8; 6],
+    /// Whether the elbow is free.
+    pub nullspace: u8,
+}
+
+/// `SetEEToK::Request` and `SetNEToEE::Request`: a pose.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct SetFrame {
+    /// `EE_T_K` or `NE_T_EE`, column-major `[m]`.
+    pub transform: [F64; 16],
+}
+
+/// `SetLoad::Request`.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct SetLoad {
+    /// Mass `[kg]`.
+    pub m_load: F64,
+    /// Centre of mass in the flange frame `[m]`.
+    pub F_x_Cload: [F64; 3],
+    /// Inertia about the centre of mass, column-major `[kg m^2]`.
+    pub I_load: [F64; 9],
+}
+
+assert_layout!(SetCollisionBehavior, size: 416, {
+    lower_torque_thresholds_acceleration: 0, upper_torque_thresholds_acceleration: 56,
+    lower_torque_thresholds_nominal: 112, upper_torque_thresholds_nominal: 168,
+    lower_force_thresholds_acceleration: 224, upper_force_thresholds_acceleration: 272,
+    lower_force_thresholds_nominal: 320, upper_force_thresholds_nominal: 368,
+});
+assert_layout!(SetJointImpedance, size: 56, { K_theta: 0 });
+assert_layout!(SetCartesianImpedance, size: 48, { K_x: 0 });
+assert_layout!(SetGuidingMode, size: 7, { guiding_mode: 0, nullspace: 6 });
+assert_layout!(SetFrame, size: 128, { transform: 0 });
+assert_layout!(SetLoad, size: 104, { m_load: 0, F_x_Cload: 8, I_load: 32 });
