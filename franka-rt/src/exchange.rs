@@ -52,8 +52,10 @@ pub struct Reception {
     pub stale: u64,
     /// Datagrams from elsewhere than the robot.
     pub foreign: u64,
-    /// Length in bytes of the last datagram of the robot that was too short for a state.
-    pub short: Option<usize>,
+    /// Datagrams of the robot too short for a state.
+    pub short: u64,
+    /// Length in bytes of the last of these; 0 without one.
+    pub short_length: usize,
     /// errno value of a receive that failed otherwise than by finding nothing.
     pub error: Option<i32>,
 }
@@ -125,7 +127,8 @@ impl Exchange {
             return;
         };
         if length < self.incoming.len() {
-            reception.short = Some(length);
+            reception.short += 1;
+            reception.short_length = length;
             return;
         }
         let message_id = message_id(&self.incoming);
@@ -312,17 +315,17 @@ mod tests {
     #[test]
     fn a_short_datagram_is_told_and_a_long_one_cut() {
         let mut bench = Bench::new();
+        bench.robot.send(&[]).expect("loopback");
         bench.states(&[3]);
         bench.robot.send(&state(4)[..SIZE - 1]).expect("loopback");
-        bench.robot.send(&[]).expect("loopback");
-        assert_eq!(
-            bench.exchange.receive(),
-            Reception {
-                fresh: true,
-                short: Some(0),
-                ..Reception::default()
-            }
-        );
+        let reception = bench.exchange.receive();
+        let told = Reception {
+            fresh: true,
+            short: 2,
+            short_length: SIZE - 1,
+            ..Reception::default()
+        };
+        assert_eq!(reception, told);
         assert_eq!(bench.exchange.message_id(), Some(3));
 
         let mut long = state(5);

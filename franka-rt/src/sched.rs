@@ -120,12 +120,14 @@ impl Scheduling {
         };
         let probe = std::thread::Builder::new()
             .name("franka-probe".into())
-            .spawn(move || asked.enter());
-        match probe.map(std::thread::JoinHandle::join) {
-            Ok(Ok(answer)) => answer,
-            Ok(Err(_)) => Err(SchedError::SetScheduling(0)),
-            Err(error) => Err(SchedError::SetScheduling(error.raw_os_error().unwrap_or(0))),
-        }
+            .stack_size(STACK)
+            .spawn(move || asked.enter())
+            .map_err(|error| {
+                SchedError::SetScheduling(error.raw_os_error().unwrap_or(libc::EAGAIN))
+            })?;
+        probe
+            .join()
+            .expect("asking the operating system does not panic")
     }
 
     fn set_fifo(&self) -> Result<i32, SchedError> {
