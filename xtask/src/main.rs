@@ -1,2 +1,81 @@
-//! One-command tasks of this workspace
-fn main() {}
+//! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`, `cargo xtask bench`.
+//!
+//! | module | task |
+//! |---|---|
+//! | [`checks`] | the steps of `cargo xtask test` |
+//! | [`peers`] | the step that drives the simulator with other clients |
+//! | [`python`] | the virtual environment of that step |
+//! | [`step`] | steps with headers, times and a summary |
+//! | [`workspace`] | where things are, and running a program |
+
+mod checks;
+mod peers;
+mod python;
+mod step;
+mod workspace;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::checks::Check;
+use crate::workspace::Workspace;
+
+/// One-command tasks of this workspace.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Run everything that a change has to pass, and stop at the first failure.
+    Test {
+        /// Run these steps only (may be repeated or separated by commas).
+        #[arg(long, value_enum, value_delimiter = ',')]
+        only: Vec<Check>,
+    },
+    /// Check the crates against golden vectors and print a line per file.
+    Vectors {
+        /// Directory of the vectors; without it the project's own.
+        dir: Option<PathBuf>,
+    },
+    /// Measure the work of one control cycle and write `target/bench.json`.
+    Bench {
+        /// Rounds; each runs every benchmark once.
+        #[arg(long, default_value_t = 15)]
+        rounds: usize,
+    },
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(arguments.task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("\nerror: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(task: Task) -> anyhow::Result<()> {
+    let workspace = Workspace::find()?;
+    match task {
+        Task::Test { only } => checks::run(&workspace, &only),
+        Task::Vectors { dir } => {
+            // The program runs in the root of the workspace, the argument was written somewhere else.
+            let dir = dir.map(std::path::absolute).transpose()?;
+            workspace.run(workspace.cargo_release_binary("vectors").args(dir))
+        }
+        Task::Bench { rounds } => {
+            let output = workspace.target().join("bench.json");
+            let mut command = workspace.cargo_release_binary("bench");
+            command.arg(&output).arg(rounds.to_string());
+            workspace.run(&mut command)
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Builds only if neither `franka-proto` nor `franka-model`, nor anything they depend on, uses the standard library.
+//!
+//! The standard library defines a panic handler, and a program may have one: whoever brings it in collides with the
+//! one below, on every target. A bare target proves the same by not having a standard library at all.
+
+#![no_std]
+
+use franka_model as _;
+use franka_proto as _;
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
+}

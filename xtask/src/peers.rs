@@ -1,0 +1,167 @@
+//! Other clients against the simulator: starts its binary, runs a script against it, ends it.
+
+use std::env;
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, anyhow, bail};
+
+use crate::python::Python;
+use crate::step::Outcome;
+use crate::workspace::Workspace;
+
+/// Runs every script of `tests/peers` against a simulator of its own.
+pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let python = match supported().and_then(|()| Python::find()) {
+        Ok(python) => python,
+        Err(why) if required() => bail!("{why}; with CI=true this step has to run"),
+        Err(why) => return Ok(Outcome::Skipped(why)),
+    };
+    let peers = workspace.root().join("tests").join("peers");
+    let interpreter = python.environment(workspace, &peers.join("requirements.txt"))?;
+    let mut build = workspace.cargo();
+    build.args(["build", "--workspace", "--bin", "franka-sim"]);
+    workspace.run(&mut build)?;
+
+    let address = loopback_address(std::process::id());
+    let simulator = workspace.target().join("debug").join("franka-sim");
+    let mut simulator = Command::new(simulator);
+    simulator.args(["--bind", &address, "--port", PORT]);
+    let _simulator = Running::start(simulator)?;
+
+    let mut script = workspace.program(&interpreter);
+    script.arg(peers.join("pylibfranka_basic.py")).arg(&address);
+    println!("$ python tests/peers/pylibfranka_basic.py {address}");
+    finish(script, SCRIPT_TIME_MAX)?;
+    Ok(Outcome::Passed)
+}
+
+/// Whether the vendor's wheels exist for this machine at all.
+fn supported() -> Result<(), String> {
+    match (env::consts::OS, env::consts::ARCH) {
+        ("linux", "x86_64") => Ok(()),
+        (system, machine) => Err(format!(
+            "pylibfranka has wheels for Linux on x86-64 only, this is {system} on {machine}"
+        )),
+    }
+}
+
+fn required() -> bool {
+    env::var("CI").is_ok_and(|value| value == "true" || value == "1")
+}
+
+/// The vendor's client knows one port only, so that simulators side by side need addresses of their own.
+fn loopback_address(process: u32) -> String {
+    // 127.1.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or 255.
+    let (high, low) = ((process / 254) % 256, process % 254 + 1);
+    format!("127.1.{high}.{low}")
+}
+
+/// A simulator that is ready to serve; it ends with this value.
+struct Running(Child);
+
+impl Running {
+    /// Starts the simulator and waits for the line in which it says that it listens.
+    fn start(mut command: Command) -> anyhow::Result<Self> {
+        let mut child = command
+            .stdout(Stdio::piped())
+            .spawn()
+            .context("cannot start the simulator")?;
+        let output = child.stdout.take();
+        let running = Self(child);
+        let (sender, lines) = mpsc::channel();
+        // Reads to the end, so that a simulator that prints more never waits for a reader.
+        thread::spawn(move || {
+            for line in output
+                .into_iter()
+                .flat_map(|output| BufReader::new(output).lines())
+            {
+                let Ok(line) = line else { return };
+                println!("[franka-sim] {line}");
+                // After the first line nobody listens any more.
+                let _ = sender.send(line);
+            }
+        });
+        match lines.recv_timeout(READY_TIME_MAX) {
+            Ok(_) => Ok(running),
+            Err(mpsc::RecvTimeoutError::Timeout) => Err(anyhow!(
+                "the simulator printed nothing for {READY_TIME_MAX:?}"
+            )),
+            Err(mpsc::RecvTimeoutError::Disconnected) => {
+                Err(anyhow!("the simulator ended at once"))
+            }
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        kill(&mut self.0);
+    }
+}
+
+/// Runs a program to its end; one that takes longer than `time_max` is killed and counts as failed.
+fn finish(mut command: Command, time_max: Duration) -> anyhow::Result<()> {
+    let mut child = command.spawn().context("cannot start the script")?;
+    let deadline = Instant::now() + time_max;
+    loop {
+        match child.try_wait()? {
+            Some(status) if status.success() => return Ok(()),
+            Some(status) => bail!("the script failed: {status}"),
+            None if Instant::now() >= deadline => {
+                kill(&mut child);
+                bail!("the script took longer than {time_max:?}");
+            }
+            None => thread::sleep(POLL),
+        }
+    }
+}
+
+/// Ends a child; it may have ended by itself, which is as good.
+fn kill(child: &mut Child) {
+    if child.kill().is_err() || child.wait().is_err() {
+        eprintln!("could not end process {}", child.id());
+    }
+}
+
+/// The port of every FCI server; the vendor's client takes no other.
+const PORT: &str = "1337";
+
+/// A simulator listens within milliseconds; on a machine that is busy building it may take seconds.
+const READY_TIME_MAX: Duration = Duration::from_secs(20);
+
+/// The script takes some 30 s; three of its motions may be repeated twice.
+const SCRIPT_TIME_MAX: Duration = Duration::from_secs(180);
+
+const POLL: Duration = Duration::from_millis(50);
+
+#[cfg(test)]
+mod tests {
+    use std::net::Ipv4Addr;
+
+    use super::*;
+
+    #[test]
+    fn neighbours_get_addresses_of_their_own() {
+        for process in [1, 253, 254, 255, 65_535, u32::MAX] {
+            let address: Ipv4Addr = loopback_address(process).parse().unwrap();
+            assert!(address.is_loopback());
+            assert!((1..255).contains(&address.octets()[3]), "{address}");
+            let next = loopback_address(process.wrapping_add(1));
+            assert_ne!(address.to_string(), next);
+        }
+    }
+
+    #[test]
+    fn a_program_without_end_is_killed() {
+        let mut command = Command::new("sleep");
+        command.arg("60");
+        let start = Instant::now();
+        let error = finish(command, Duration::from_millis(100)).unwrap_err();
+        assert!(error.to_string().contains("took longer"), "{error}");
+        assert!(start.elapsed() < Duration::from_secs(30));
+    }
+}
