@@ -1,0 +1,234 @@
+//! A motion of all axes over time.
+
+use super::axis::{Axis, lay_out_stop};
+use super::error::PlanError;
+use super::limits::Limits;
+use super::line::Line;
+use super::profile::Profile;
+use super::state::{AxisState, State};
+use super::turn::lay_out_lead;
+
+/// How the axes of a motion to a target move together. All arrive at the same instant in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Synchronisation {
+    /// In phase, on a straight line, wherever the motion so far allows it, which it does from rest; else in time only.
+    #[default]
+    Straight,
+    /// In time only: as early as the slowest axis can arrive, on a curved path.
+    Time,
+}
+
+/// A motion that is being followed, as a function of the time since it was planned.
+#[derive(Debug, Clone)]
+pub(super) struct Plan<const N: usize> {
+    course: Course<N>,
+    /// Motion along the line of the course.
+    along: Profile,
+    /// Motion of each axis on its own.
+    axes: [Profile; N],
+    end: [f64; N],
+    duration: f64,
+}
+
+#[derive(Debug, Clone)]
+enum Course<const N: usize> {
+    /// Each axis on its own.
+    Axes,
+    /// On a straight line.
+    Line(Line<N>),
+    /// On a straight line up to a time in seconds, then each axis on its own.
+    Turn(Line<N>, f64),
+}
+
+/// What a plan starts from.
+pub(super) struct Start<'a, const N: usize> {
+    pub(super) state: State<N>,
+    /// The straight line that the state is on, and the state along it.
+    pub(super) line: Option<(Line<N>, AxisState)>,
+    pub(super) limits: &'a Limits<N>,
+}
+
+impl<const N: usize> Plan<N> {
+    /// Staying at `position`.
+    pub(super) fn at_rest(position: [f64; N]) -> Self {
+        Self {
+            course: Course::Axes,
+            along: Profile::at_rest(0.0),
+            axes: position.map(Profile::at_rest),
+            end: position,
+            duration: 0.0,
+        }
+    }
+
+    /// Replaces the plan by the motion to rest at `target`.
+    ///
+    /// # Errors
+    /// [`PlanError::OutOfRange`]; the plan is then unchanged.
+    pub(super) fn go_to(
+        &mut self,
+        target: &[f64; N],
+        start: &Start<'_, N>,
+        synchronisation: Synchronisation,
+    ) -> Result<(), PlanError> {
+        // A single axis is its own line.
+        if synchronisation == Synchronisation::Straight && N > 1 {
+            let kept = start.line.as_ref().and_then(|(line, along)| {
+                let s = line.parameter_of(target)?;
+                Some((*line, *along, s))
+            });
+            let straight = kept.or_else(|| {
+                let (line, along) = Line::through(&start.state, target)?;
+                let s = line.parameter_of(target)?;
+                Some((line, along, s))
+            });
+            if let Some((line, along, s)) = straight {
+                return self.follow_line(line, along, s, target, start.limits);
+            }
+        }
+        match &start.line {
+            Some((line, along)) if start.limits.has_norms() => {
+                self.turn_off(line, *along, target, start.limits)
+            }
+            _ => {
+                self.move_axes(&start.state, target, start.limits, 0.0)?;
+                self.course = Course::Axes;
+                Ok(())
+            }
+        }
+    }
+
+    fn follow_line(
+        &mut self,
+        line: Line<N>,
+        along: AxisState,
+        s: f64,
+        target: &[f64; N],
+        limits: &Limits<N>,
+    ) -> Result<(), PlanError> {
+        let axis = Axis::new(along, s, limits.along(line.direction()))
+            .ok_or(PlanError::OutOfRange { axis: 0 })?;
+        axis.lay_out(axis.least_duration(), &mut self.along);
+        self.duration = self.along.duration();
+        self.end = *target;
+        self.course = Course::Line(line);
+        Ok(())
+    }
+
+    fn turn_off(
+        &mut self,
+        line: &Line<N>,
+        along: AxisState,
+        target: &[f64; N],
+        limits: &Limits<N>,
+    ) -> Result<(), PlanError> {
+        let (full, shares) = (
+            limits.along(line.direction()),
+            limits.shares_along(line.direction()),
+        );
+        let mut lead = Profile::at_rest(0.0);
+        lay_out_lead(along, full, shares, &mut lead);
+        let until = lead.duration();
+        let state = line.state(lead.front());
+        self.move_axes(&state, target, limits, until)?;
+        self.along = lead;
+        self.course = Course::Turn(*line, until);
+        Ok(())
+    }
+
+    /// Lays out the axes so that all arrive when the slowest does, `until` seconds after the plan's start or later.
+    fn move_axes(
+        &mut self,
+        state: &State<N>,
+        target: &[f64; N],
+        limits: &Limits<N>,
+        until: f64,
+    ) -> Result<(), PlanError> {
+        let mut axes = [None; N];
+        let mut duration = 0.0_f64;
+        for (i, axis) in axes.iter_mut().enumerate() {
+            let solved = Axis::new(state.axis(i), target[i], limits.axis(i))
+                .ok_or(PlanError::OutOfRange { axis: i })?;
+            duration = duration.max(solved.least_duration());
+            *axis = Some(solved);
+        }
+        for (axis, profile) in axes.iter().flatten().zip(&mut self.axes) {
+            axis.lay_out(duration, profile);
+        }
+        self.duration = until + duration;
+        self.end = *target;
+        Ok(())
+    }
+
+    /// Replaces the plan by the least-time stop: along the line that the state is on, else of each axis on its own.
+    pub(super) fn stop(&mut self, start: &Start<'_, N>) {
+        if let Some((line, along)) = &start.line {
+            lay_out_stop(
+                *along,
+                start.limits.along(line.direction()),
+                &mut self.along,
+            );
+            self.duration = self.along.duration();
+            self.end = line.state(AxisState::at_rest(self.along.end())).position;
+            self.course = Course::Line(*line);
+            return;
+        }
+        self.duration = 0.0;
+        for (i, profile) in self.axes.iter_mut().enumerate() {
+            lay_out_stop(start.state.axis(i), start.limits.axis(i), profile);
+            self.duration = self.duration.max(profile.duration());
+            self.end[i] = profile.end();
+        }
+        self.course = Course::Axes;
+    }
+
+    /// Where it comes to rest.
+    pub(super) const fn end(&self) -> &[f64; N] {
+        &self.end
+    }
+
+    /// When all axes rest, in seconds from its start.
+    pub(super) const fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The state `t >= 0` seconds after its start; exactly at rest at the end from the duration on.
+    pub(super) fn sample(&self, t: f64) -> State<N> {
+        if t >= self.duration - SLACK {
+            return State::at_rest(self.end);
+        }
+        match &self.course {
+            Course::Axes => self.sample_axes(t),
+            Course::Line(line) => line.state(self.along.sample(t)),
+            Course::Turn(line, until) if t < *until => line.state(self.along.sample(t)),
+            Course::Turn(_, until) => self.sample_axes(t - until),
+        }
+    }
+
+    fn sample_axes(&self, t: f64) -> State<N> {
+        let mut state = State::at_rest(self.end);
+        for (i, profile) in self.axes.iter().enumerate() {
+            state.set_axis(i, profile.sample(t));
+        }
+        state
+    }
+
+    /// The straight line that the motion is on at `t`, and the state along it; `None` at rest.
+    pub(super) fn line_at(&self, t: f64) -> Option<(Line<N>, AxisState)> {
+        let until = match &self.course {
+            Course::Axes => return None,
+            Course::Line(_) => self.duration - SLACK,
+            Course::Turn(_, until) => *until,
+        };
+        match &self.course {
+            Course::Line(line) | Course::Turn(line, _) if t < until => {
+                Some((*line, self.along.sample(t)))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a duration costs no cycle.
+///
+/// A millionth of a cycle: what is left there is the third power of it, times a sixth of the jerk limit.
+const SLACK: f64 = 1e-9;

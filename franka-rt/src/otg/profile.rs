@@ -1,0 +1,170 @@
+//! One axis over time: segments of constant jerk.
+
+use super::brake::Pieces;
+use super::state::AxisState;
+
+/// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
+///
+/// Positions are kept relative to the start, so that a large offset rounds the result once and not in each segment. The last
+/// three segments of a motion to a target are laid out backwards from the target: the end is exact, and what rounding there
+/// is lies at full speed, where it is relatively smallest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Profile {
+    origin: f64,
+    end: f64,
+    segments: [Segment; MAX_SEGMENTS],
+    len: usize,
+    duration: f64,
+    /// State after the last segment laid out forwards, relative to the origin.
+    front: AxisState,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    start: f64,
+    jerk: f64,
+    /// State at the start, relative to the origin.
+    state: AxisState,
+}
+
+impl Profile {
+    /// No motion, at `position`.
+    pub(super) const fn at_rest(position: f64) -> Self {
+        Self {
+            origin: position,
+            end: position,
+            segments: [Segment {
+                start: 0.0,
+                jerk: 0.0,
+                state: AxisState::at_rest(0.0),
+            }; MAX_SEGMENTS],
+            len: 0,
+            duration: 0.0,
+            front: AxisState::at_rest(0.0),
+        }
+    }
+
+    /// Forgets all segments and begins at `state`.
+    pub(super) fn begin(&mut self, state: AxisState) {
+        self.origin = state.position;
+        self.end = state.position;
+        self.len = 0;
+        self.duration = 0.0;
+        self.front = AxisState {
+            position: 0.0,
+            ..state
+        };
+    }
+
+    /// Appends a segment of `jerk` for `t` seconds.
+    pub(super) fn push(&mut self, jerk: f64, t: f64) {
+        if t > 0.0 {
+            self.place(jerk, t, self.front);
+            self.front = self.front.after(jerk, t);
+        }
+    }
+
+    /// Appends pieces in units of the axis: `jerk` in the unit of jerk, times in `unit` of time.
+    pub(super) fn push_pieces(&mut self, pieces: &Pieces, jerk: f64, unit: f64) {
+        for (sign, t) in pieces.iter() {
+            self.push(sign * jerk, t * unit);
+        }
+    }
+
+    /// Appends jerks `jerk, 0, -jerk` for the times `t` that end at rest at `target`.
+    pub(super) fn finish(&mut self, jerk: f64, t: [f64; 3], target: f64) {
+        self.end = target;
+        let mut states = [AxisState::at_rest(target - self.origin); 4];
+        let jerks = [jerk, 0.0, -jerk];
+        for i in (0..3).rev() {
+            states[i] = states[i + 1].after(jerks[i], -t[i]);
+        }
+        for i in 0..3 {
+            if t[i] > 0.0 {
+                self.place(jerks[i], t[i], states[i]);
+            }
+        }
+    }
+
+    /// Takes where the segments lead, made exactly at rest, for the end.
+    pub(super) fn finish_here(&mut self) {
+        self.end = self.origin + self.front.position;
+    }
+
+    fn place(&mut self, jerk: f64, t: f64, state: AxisState) {
+        if let Some(segment) = self.segments.get_mut(self.len) {
+            *segment = Segment {
+                start: self.duration,
+                jerk,
+                state,
+            };
+            self.len += 1;
+            self.duration += t;
+        }
+    }
+
+    /// The state after what is laid out forwards, relative to the origin.
+    pub(super) const fn front(&self) -> AxisState {
+        self.front
+    }
+
+    /// Position at which it ends.
+    pub(super) const fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// When it ends, in seconds from its start.
+    pub(super) const fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The state `t >= 0` seconds after the start; exactly the end from the duration on.
+    pub(super) fn sample(&self, t: f64) -> AxisState {
+        if t >= self.duration {
+            return AxisState::at_rest(self.end);
+        }
+        let later = self.segments[..self.len]
+            .iter()
+            .skip(1)
+            .take_while(|segment| segment.start <= t)
+            .count();
+        let segment = &self.segments[later.min(MAX_SEGMENTS - 1)];
+        let relative = segment.state.after(segment.jerk, t - segment.start);
+        AxisState {
+            position: self.origin + relative.position,
+            ..relative
+        }
+    }
+}
+
+/// Three to brake into the limits, one to ramp down to an acceleration cap, seven of the shape.
+const MAX_SEGMENTS: usize = 11;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_profile_stays_where_it_is() {
+        let profile = Profile::at_rest(0.1);
+        for t in [0.0, 1.0, f64::INFINITY] {
+            assert_eq!(profile.sample(t), AxisState::at_rest(0.1));
+        }
+    }
+
+    #[test]
+    fn segments_join_and_the_end_is_exact() {
+        let mut profile = Profile::at_rest(0.0);
+        profile.begin(AxisState::at_rest(0.3));
+        profile.push(2.0, 1.0);
+        profile.push(-2.0, 1.0);
+        profile.finish(-2.0, [1.0, 0.0, 1.0], 4.3);
+        assert_eq!(profile.duration(), 4.0);
+        for (t, p) in [(1.0, 0.3 + 1.0 / 3.0), (2.0, 2.3), (3.0, 4.3 - 1.0 / 3.0)] {
+            for t in [t - 1e-12, t, t + 1e-12] {
+                assert!((profile.sample(t).position - p).abs() < 1e-11, "{t}");
+            }
+        }
+        assert_eq!(profile.sample(4.0), AxisState::at_rest(4.3));
+    }
+}
