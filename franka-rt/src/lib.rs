@@ -1,1 +1,30 @@
-//! The 1 kHz thread: exchange, trajectory generator, control laws and guards
+//! The real-time half of the driver: one thread per robot, and the pure cores that it drives.
+//!
+//! ```text
+//! UDP state -> exchange -> Driver::on_state -> [session: goal -> generator -> IK -> law -> guards] -> UDP command
+//!                             ^        |
+//!         orders, goal slot --+        +--> newest state, records, events -> eventfd
+//! ```
+//!
+//! * [`driver`]: what one robot state calls for; phases from watching to finishing. No clock, no socket.
+//! * [`session`]: target control: goals in, one continuous joint-space reference out.
+//! * [`law`]: joint torques from a reference and a state.
+//! * [`otg`]: jerk-limited trajectories to rest.
+//! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP. Pure.
+//! * [`thread`]: the only loop; the only place with a socket and a clock.
+//! * [`slot`], [`wake`], [`exchange`], [`sched`], [`stats`]: what the loop is built of.
+//!
+//! This crate knows no async runtime, opens no TCP connection and reads no file but the kernel's real-time flag.
+
+pub mod driver;
+pub mod exchange;
+pub mod law;
+pub mod lifecycle;
+pub mod otg;
+pub mod sched;
+pub mod session;
+pub mod slot;
+pub mod stats;
+mod sys;
+pub mod thread;
+pub mod wake;

@@ -1,0 +1,173 @@
+//! What the driver tells the world outside.
+
+use core::time::Duration;
+
+use franka_proto::{Errors, RobotMode, RobotState, SuccessRate};
+
+use crate::driver::{MotionId, Program};
+use crate::session::SessionEvent;
+
+/// Something that happened in the thread. Events cross in order and none is dropped.
+#[derive(Debug)]
+pub enum Event {
+    /// The robot shows the modes of the motion; the first command answers that state.
+    Started {
+        /// The motion.
+        motion: MotionId,
+        /// `message_id` of that state, `[ms]` of the robot's clock.
+        time: u64,
+    },
+    /// The motion's program reports.
+    Program {
+        /// The motion.
+        motion: MotionId,
+        /// What it reports.
+        event: SessionEvent,
+        /// Counts so far.
+        statistics: MotionStatistics,
+    },
+    /// The motion is over for the thread. Its program comes along to be freed.
+    Ended(Ended),
+    /// No state has come for so long that the link counts as lost. A later state revives it.
+    LinkLost {
+        /// The silence so far.
+        silence: Duration,
+    },
+}
+
+/// How a motion ended, with what the state of that moment said.
+#[derive(Debug)]
+pub struct Ended {
+    /// The motion.
+    pub motion: MotionId,
+    /// How it ended.
+    pub ending: Ending,
+    /// `robot_mode` of the newest state.
+    pub robot_mode: RobotMode,
+    /// Errors that hold now.
+    pub errors: Errors,
+    /// What aborted the motion, if the robot did.
+    pub reflex_reason: Errors,
+    /// Counts over the motion.
+    pub statistics: MotionStatistics,
+    /// The program, with whatever it learned.
+    pub program: Program,
+}
+
+/// How a motion ended, as the thread saw it. The robot's own word on it is its last reply to the `Move`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The finishing command was sent and the robot left the motion's modes.
+    Finished,
+    /// The robot left the motion's modes by itself: a reflex, a stop, a preemption.
+    Aborted,
+    /// Disarmed before it ran.
+    Disarmed,
+    /// Another motion was armed or running; this one never was.
+    Refused,
+    /// The robot fell silent.
+    LinkLost {
+        /// The silence when it was given up.
+        silence: Duration,
+    },
+}
+
+/// Counts over the running time of one motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionStatistics {
+    /// States answered.
+    pub cycles: u64,
+    /// States that never arrived or were skipped for a newer one.
+    pub lost_states: u64,
+    /// Lowest `control_command_success_rate` seen while running, in `[0, 1]`.
+    pub success_rate_min: f64,
+    success_rate_sum: f64,
+    success_rate_count: u64,
+    /// Time and success rate of the last two states, the older one first.
+    last: [(u64, f64); 2],
+    /// Longest time from the receipt of a state to the departure of its command.
+    pub worst_turnaround: Duration,
+    /// Whether the finishing command has been sent.
+    pub finish_sent: bool,
+}
+
+impl Default for MotionStatistics {
+    fn default() -> Self {
+        Self {
+            cycles: 0,
+            lost_states: 0,
+            success_rate_min: 1.0,
+            success_rate_sum: 0.0,
+            success_rate_count: 0,
+            last: [(0, 0.0); 2],
+            worst_turnaround: Duration::ZERO,
+            finish_sent: false,
+        }
+    }
+}
+
+impl MotionStatistics {
+    /// Mean `control_command_success_rate`, in `[0, 1]`; 1 for a motion too short to show one.
+    pub fn success_rate_avg(&self) -> f64 {
+        if self.success_rate_count == 0 {
+            1.0
+        } else {
+            self.success_rate_sum / self.success_rate_count as f64
+        }
+    }
+
+    /// The success rate at the end of an aborted motion, as libfranka reports it: the last state always shows 0, so it
+    /// is that of the state before. `None` for a motion of a single state.
+    pub fn success_rate_at_the_end(&self) -> Option<SuccessRate> {
+        let [(time, rate), (last_time, _)] = self.last;
+        (self.cycles >= 2).then(|| SuccessRate::of_log(rate, time, last_time))
+    }
+
+    /// Counts one state of the running motion. The first and the final state of a motion report a success rate of 0
+    /// whatever happened, so zeros do not count.
+    pub(super) fn note(&mut self, state: &RobotState, skipped: u64) {
+        self.cycles += 1;
+        self.lost_states += skipped;
+        let rate = state.control_command_success_rate;
+        self.last = [self.last[1], (state.message_id, rate)];
+        if rate > 0.0 {
+            self.success_rate_min = self.success_rate_min.min(rate);
+            self.success_rate_sum += rate;
+            self.success_rate_count += 1;
+        }
+    }
+}
+
+/// Events that wait for the thread to carry them out.
+///
+/// A motion causes at most `Started`, two reports in one cycle, `Ended` and `LinkLost`; the thread empties the queue
+/// every cycle unless the world outside has stopped listening altogether.
+#[derive(Debug, Default)]
+pub(super) struct EventQueue {
+    slots: [Option<Event>; EventQueue::CAPACITY],
+    first: usize,
+    count: usize,
+}
+
+impl EventQueue {
+    const CAPACITY: usize = 16;
+
+    /// Appends. A full queue leaks the event: what it carries must not be freed on the thread, and no motion can
+    /// start without somebody outside who listens.
+    pub(super) fn push(&mut self, event: Event) {
+        if self.count == Self::CAPACITY {
+            debug_assert!(false, "nobody takes the driver's events");
+            core::mem::forget(event);
+            return;
+        }
+        self.slots[(self.first + self.count) % Self::CAPACITY] = Some(event);
+        self.count += 1;
+    }
+
+    pub(super) fn pop(&mut self) -> Option<Event> {
+        let event = self.slots[self.first].take()?;
+        self.first = (self.first + 1) % Self::CAPACITY;
+        self.count -= 1;
+        Some(event)
+    }
+}

@@ -1,0 +1,74 @@
+//! What one cycle saw and did, as plain numbers for recording and telemetry.
+
+use core::time::Duration;
+
+use franka_proto::{Errors, RobotMode, RobotState};
+
+use crate::session::Bindings;
+
+/// One cycle of the driver. All joint quantities are in joint order, SI units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Record {
+    /// `message_id` of the state, `[ms]` of the robot's clock.
+    pub time: u64,
+    /// States lost or skipped just before it.
+    pub skipped: u64,
+    /// What the driver was doing.
+    pub activity: Activity,
+    /// The robot's mode.
+    pub robot_mode: RobotMode,
+    /// Errors that hold.
+    pub errors: Errors,
+    /// What aborted the previous motion.
+    pub reflex_reason: Errors,
+    /// The robot's success rate.
+    pub success_rate: f64,
+    /// Number of the goal that is being followed; 0 without one.
+    pub goal: u64,
+    /// Measured joint positions, `[rad]`.
+    pub q: [f64; 7],
+    /// Measured joint velocities, `[rad/s]`.
+    pub dq: [f64; 7],
+    /// Reference joint positions, `[rad]`; zero outside target control, as are the next two.
+    pub q_ref: [f64; 7],
+    /// Reference joint velocities, `[rad/s]`.
+    pub dq_ref: [f64; 7],
+    /// Reference joint accelerations, `[rad/s^2]`.
+    pub ddq_ref: [f64; 7],
+    /// Commanded joint torques without gravity and friction, `[N m]`.
+    pub tau_c: [f64; 7],
+    /// Which guards bound the command.
+    pub bindings: Bindings,
+    /// Time from the receipt of the state to the departure of its command; zero where none left.
+    pub turnaround: Duration,
+}
+
+/// What the driver was doing in a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Activity {
+    /// No motion.
+    #[default]
+    Watching,
+    /// A motion is armed; the robot does not show its modes yet.
+    Armed,
+    /// A motion runs.
+    Running,
+    /// The finishing command is being repeated.
+    Finishing,
+}
+
+impl Record {
+    pub(super) fn watching(state: &RobotState, skipped: u64) -> Self {
+        Self {
+            time: state.message_id,
+            skipped,
+            robot_mode: state.robot_mode,
+            errors: state.errors,
+            reflex_reason: state.reflex_reason,
+            success_rate: state.control_command_success_rate,
+            q: state.q,
+            dq: state.dq,
+            ..Self::default()
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Which guards bound a command: never hidden, a field of every record.
+
+/// A guard that can hold a command back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Guard {
+    /// The reference ran ahead of the measured arm by the length of the leash and was held there.
+    Leash,
+    /// A joint reached the velocity or acceleration bound of the inverse kinematics.
+    InverseKinematics,
+    /// A spring and damper torque reached its clamp.
+    TorqueClamp,
+    /// The torque changed faster than the robot accepts and was slowed.
+    TorqueRate,
+}
+
+/// A set of guards.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Bindings(u8);
+
+impl Bindings {
+    /// Adds `guard` where `binds`.
+    pub(crate) fn set(&mut self, guard: Guard, binds: bool) {
+        self.0 |= u8::from(binds) << guard as u8;
+    }
+
+    /// Whether `guard` bound the command.
+    pub fn contains(self, guard: Guard) -> bool {
+        self.0 & (1 << guard as u8) != 0
+    }
+
+    /// Whether no guard did.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}

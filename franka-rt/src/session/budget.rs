@@ -1,0 +1,174 @@
+//! How fast a goal may be approached: limits per joint, and limits for the norm of translation and rotation.
+
+use franka_model::limits::JointLimits;
+use nalgebra::Vector3;
+
+use crate::otg::AxisLimits;
+
+/// Limits of the reference: how fast the goal is approached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Per joint, `[rad/s, rad/s^2, rad/s^3]`.
+    pub joints: [AxisLimits; 7],
+    /// For the norm of the end effector's translation, `[m/s, m/s^2, m/s^3]`.
+    pub translation: AxisLimits,
+    /// For the norm of the end effector's rotation, `[rad/s, rad/s^2, rad/s^3]`.
+    pub rotation: AxisLimits,
+}
+
+impl Budget {
+    /// Share of the robot's joint limits that the default budget uses.
+    pub const JOINT_SHARE: f64 = 0.2;
+
+    /// The default budget: a fifth of the robot's joint limits, 0.3 m/s, 0.5 m/s^2, 20 m/s^3 and 0.5 rad/s, 1 rad/s^2,
+    /// 20 rad/s^3. A person beside the arm can follow and stop a motion of this pace.
+    pub fn of(limits: &JointLimits) -> Self {
+        Self {
+            joints: core::array::from_fn(|i| AxisLimits {
+                velocity: Self::JOINT_SHARE * limits.velocity[i],
+                acceleration: Self::JOINT_SHARE * limits.acceleration[i],
+                jerk: Self::JOINT_SHARE * limits.jerk[i],
+            }),
+            translation: AxisLimits {
+                velocity: 0.3,
+                acceleration: 0.5,
+                jerk: 20.0,
+            },
+            rotation: AxisLimits {
+                velocity: 0.5,
+                acceleration: 1.0,
+                jerk: 20.0,
+            },
+        }
+    }
+
+    /// The same paths, walked `factor` times as fast: velocities times `factor`, accelerations times its square, jerks
+    /// times its cube.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        let scale = |l: AxisLimits| AxisLimits {
+            velocity: l.velocity * factor,
+            acceleration: l.acceleration * factor * factor,
+            jerk: l.jerk * factor * factor * factor,
+        };
+        Self {
+            joints: self.joints.map(scale),
+            translation: scale(self.translation),
+            rotation: scale(self.rotation),
+        }
+    }
+
+    /// Limits of the three axes of translation and the three of rotation for a plan from `velocity` along `way`, such
+    /// that even all axes at their limits at once stay inside the budgets of the norms.
+    pub(crate) fn axes(&self, translation: &Leg, rotation: &Leg) -> [AxisLimits; 6] {
+        let (t, r) = (translation.shares(), rotation.shares());
+        core::array::from_fn(|i| {
+            let (limits, share) = if i < 3 {
+                (self.translation, t[i])
+            } else {
+                (self.rotation, r[i - 3])
+            };
+            AxisLimits {
+                velocity: limits.velocity * share,
+                acceleration: limits.acceleration * share,
+                jerk: limits.jerk * share,
+            }
+        })
+    }
+}
+
+/// The way that three axes have to go, and how they move where they begin it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Leg {
+    pub(crate) way: Vector3<f64>,
+    pub(crate) velocity: Vector3<f64>,
+    pub(crate) acceleration: Vector3<f64>,
+}
+
+impl Leg {
+    /// The share of a norm budget that each axis gets. The squares sum to 1.
+    ///
+    /// A third each would keep the norm, but a motion along one axis would then use 58 % of the budget. So the shares
+    /// follow the way to go: on a straight line each axis gets its part of the line and the line gets the whole
+    /// budget. While the axes move elsewhere, part of it follows the velocity, and part is spread evenly, so that a
+    /// sideways motion can be braked.
+    fn shares(&self) -> Vector3<f64> {
+        let (along_way, along_velocity) = if self.is_straight() {
+            (0.99, 0.0)
+        } else {
+            (0.6, 0.3)
+        };
+        let even = 1.0 / 3.0;
+        let part = |v: &Vector3<f64>, weight: f64| {
+            let square = v.norm_squared();
+            if square > f64::MIN_POSITIVE {
+                v.component_mul(v) * (weight / square)
+            } else {
+                Vector3::repeat(weight * even)
+            }
+        };
+        let squares = part(&self.way, along_way)
+            + part(&self.velocity, along_velocity)
+            + Vector3::repeat((1.0 - along_way - along_velocity) * even);
+        squares.map(f64::sqrt)
+    }
+
+    /// Whether velocity and acceleration lie on the line of the way, to a millionth of their size.
+    fn is_straight(&self) -> bool {
+        let on_line =
+            |v: &Vector3<f64>| self.way.cross(v).norm() <= 1e-6 * self.way.norm() * v.norm();
+        on_line(&self.velocity) && on_line(&self.acceleration)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_model::Model;
+
+    fn leg(way: [f64; 3], velocity: [f64; 3]) -> Leg {
+        Leg {
+            way: way.into(),
+            velocity: velocity.into(),
+            acceleration: Vector3::zeros(),
+        }
+    }
+
+    #[test]
+    fn all_axes_at_their_limits_stay_inside_the_norm() {
+        for (way, velocity) in [
+            ([0.0, 0.0, 0.1], [0.0; 3]),
+            ([0.1, -0.2, 0.3], [0.0; 3]),
+            ([0.0; 3], [0.0; 3]),
+            ([0.1, 0.0, 0.0], [0.0, 0.3, 0.0]),
+            ([0.1, 0.0, 0.0], [-0.1, 0.2, 0.05]),
+        ] {
+            let shares = leg(way, velocity).shares();
+            assert!((shares.norm() - 1.0).abs() < 1e-12, "{shares}");
+            assert!(shares.min() > 0.05, "{shares}");
+        }
+    }
+
+    #[test]
+    fn a_straight_line_gets_nearly_the_whole_budget() {
+        let along_z = leg([0.0, 0.0, 0.05], [0.0, 0.0, 0.1]).shares();
+        assert!(along_z.z > 0.99);
+        let across = leg([0.0, 0.0, 0.05], [0.3, 0.0, 0.0]).shares();
+        assert!(across.x > 0.5 && across.z > 0.7);
+    }
+
+    #[test]
+    fn scaling_by_a_factor_keeps_paths() {
+        let budget = Budget::of(Model::fr3().joint_limits());
+        let slow = budget.scaled(0.5);
+        assert_eq!(
+            slow.translation,
+            AxisLimits {
+                velocity: 0.15,
+                acceleration: 0.125,
+                jerk: 2.5
+            }
+        );
+        assert!((slow.joints[0].velocity - 0.1 * 2.62).abs() < 1e-15);
+    }
+}

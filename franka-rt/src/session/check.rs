@@ -1,0 +1,175 @@
+//! Checks of a goal where it is accepted, outside the thread: what passes here cannot fail in the cycle.
+
+use franka_model::{EndEffector, JointVector, Model, inverse_kinematics};
+use franka_proto::RobotState;
+
+use crate::law::GainError;
+use crate::otg::AxisLimits;
+use crate::session::{Budget, Goal, Target};
+
+/// Why a goal is not accepted. Nothing has moved.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GoalError {
+    /// A number of the target is not finite.
+    #[error("the target holds a number that is not finite")]
+    NotFinite,
+    /// A joint position lies outside the joint's range.
+    #[error("joint {joint}: {got} rad, expected between {lower} and {upper}")]
+    OutOfRange {
+        /// The joint, from 1.
+        joint: usize,
+        /// The position asked for, `[rad]`.
+        got: f64,
+        /// Lower end of the range, `[rad]`.
+        lower: f64,
+        /// Upper end of the range, `[rad]`.
+        upper: f64,
+    },
+    /// No joint positions inside their ranges put the end effector there.
+    #[error(
+        "no joint positions inside their ranges reach ({x:.4}, {y:.4}, {z:.4}) m with that orientation"
+    )]
+    Unreachable {
+        /// Position asked for, base frame, `[m]`.
+        x: f64,
+        /// See `x`.
+        y: f64,
+        /// See `x`.
+        z: f64,
+    },
+    /// A limit of the budget is not positive or exceeds the robot's.
+    #[error("{what} limit {got}, expected above 0 and at most {most}")]
+    Budget {
+        /// Which limit.
+        what: &'static str,
+        /// The value given.
+        got: f64,
+        /// What the robot accepts.
+        most: f64,
+    },
+    /// A stiffness or damping is out of bounds.
+    #[error(transparent)]
+    Gains(#[from] GainError),
+    /// A tolerance is not positive.
+    #[error("tolerance {got}, expected above 0")]
+    Tolerance {
+        /// The value given.
+        got: f64,
+    },
+    /// The robot's state names an end effector that is not a rigid transformation.
+    #[error("F_T_EE of the robot's state is not a rigid transformation")]
+    EndEffector,
+}
+
+impl Goal {
+    /// Checks the goal for a robot in `state`.
+    ///
+    /// # Errors
+    /// [`GoalError`] names the first thing that is wrong, what was got and what was expected.
+    pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
+        check_budget(&self.budget, model)?;
+        self.gains.check()?;
+        for got in [self.tolerance.translation, self.tolerance.rotation] {
+            if !(got > 0.0) {
+                return Err(GoalError::Tolerance { got });
+            }
+        }
+        let ee = super::end_effector_of(state).ok_or(GoalError::EndEffector)?;
+        match self.target {
+            Target::Rest => Ok(()),
+            Target::Joints(q) => check_joints(&q, model),
+            Target::Pose(pose) => {
+                let p = pose.translation.vector;
+                if !(p
+                    .iter()
+                    .chain(pose.rotation.coords.iter())
+                    .all(|x| x.is_finite()))
+                {
+                    return Err(GoalError::NotFinite);
+                }
+                check_reach(&pose, &ee, model, &state.q.into()).map_err(|()| {
+                    GoalError::Unreachable {
+                        x: p.x,
+                        y: p.y,
+                        z: p.z,
+                    }
+                })
+            }
+        }
+    }
+}
+
+fn check_joints(q: &[f64; 7], model: &Model) -> Result<(), GoalError> {
+    let limits = model.joint_limits();
+    for (i, &got) in q.iter().enumerate() {
+        if !got.is_finite() {
+            return Err(GoalError::NotFinite);
+        }
+        let (lower, upper) = (limits.lower[i], limits.upper[i]);
+        if !(lower..=upper).contains(&got) {
+            return Err(GoalError::OutOfRange {
+                joint: i + 1,
+                got,
+                lower,
+                upper,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn check_reach(
+    pose: &nalgebra::Isometry3<f64>,
+    ee: &EndEffector,
+    model: &Model,
+    seed: &JointVector,
+) -> Result<(), ()> {
+    inverse_kinematics::solve(model, pose, ee, seed)
+        .map(|_| ())
+        .map_err(|_| ())
+}
+
+fn check_budget(budget: &Budget, model: &Model) -> Result<(), GoalError> {
+    let joints = model.joint_limits();
+    let cartesian = model.cartesian_limits();
+    let check = |what, got: f64, most: f64| {
+        if got > 0.0 && got <= most {
+            Ok(())
+        } else {
+            Err(GoalError::Budget { what, got, most })
+        }
+    };
+    let axis = |what: [&'static str; 3], l: &AxisLimits, most: [f64; 3]| {
+        check(what[0], l.velocity, most[0])?;
+        check(what[1], l.acceleration, most[1])?;
+        check(what[2], l.jerk, most[2])
+    };
+    for (i, l) in budget.joints.iter().enumerate() {
+        let most = [joints.velocity[i], joints.acceleration[i], joints.jerk[i]];
+        axis(
+            ["joint velocity", "joint acceleration", "joint jerk"],
+            l,
+            most,
+        )?;
+    }
+    let (t, r) = (cartesian.translation, cartesian.rotation);
+    axis(
+        [
+            "translational velocity",
+            "translational acceleration",
+            "translational jerk",
+        ],
+        &budget.translation,
+        [t.velocity, t.acceleration, t.jerk],
+    )?;
+    axis(
+        [
+            "rotational velocity",
+            "rotational acceleration",
+            "rotational jerk",
+        ],
+        &budget.rotation,
+        [r.velocity, r.acceleration, r.jerk],
+    )
+}

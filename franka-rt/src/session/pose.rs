@@ -1,0 +1,162 @@
+//! The generator of end-effector poses: three axes of translation, three of rotation, one synchronised plan.
+//!
+//! The orientation is generated in a chart around the orientation where the plan began, `R = exp(phi) R_anchor`, so
+//! that a rotation from rest turns about one fixed axis. Rotation vector and angular velocity are related by the left
+//! Jacobian of the rotation group, `omega = J(phi) phi'`; at `phi = 0` it is the identity and has no influence on the
+//! acceleration either. So a plan that begins in motion is seeded exactly by re-anchoring the chart where it begins.
+
+use franka_model::Twist;
+use franka_model::rotation;
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+use crate::otg::{Generator, Limits, PlanError, State};
+use crate::session::Budget;
+use crate::session::budget::Leg;
+
+/// A moving pose of the end effector in the base frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PoseState {
+    /// `O_T_EE`, `[m]`.
+    pub(crate) pose: Isometry3<f64>,
+    /// Velocity of the frame's origin and angular velocity, base axes.
+    pub(crate) twist: Twist,
+    /// Their derivatives.
+    pub(crate) acceleration: Twist,
+}
+
+/// Walks the pose to its target, one nominal millisecond a step.
+#[derive(Debug)]
+pub(crate) struct PoseGenerator {
+    axes: Generator<6>,
+    anchor: UnitQuaternion<f64>,
+    target: Isometry3<f64>,
+    budget: Budget,
+}
+
+impl PoseGenerator {
+    /// Begins at `start` and heads for `target`.
+    ///
+    /// # Errors
+    /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause one.
+    pub(crate) fn new(
+        start: &PoseState,
+        target: Isometry3<f64>,
+        budget: Budget,
+    ) -> Result<Self, PlanError> {
+        let axes = plan(start, &target, &budget)?;
+        Ok(Self {
+            axes,
+            anchor: start.pose.rotation,
+            target,
+            budget,
+        })
+    }
+
+    /// Heads for another target, at another pace. The same target and pace leave the plan as it is.
+    ///
+    /// # Errors
+    /// See [`Self::new`]; the motion in progress goes on.
+    pub(crate) fn retarget(
+        &mut self,
+        target: Isometry3<f64>,
+        budget: Budget,
+    ) -> Result<(), PlanError> {
+        if target != self.target || budget != self.budget {
+            *self = Self::new(&self.state(), target, budget)?;
+        }
+        Ok(())
+    }
+
+    /// Moves the pose to `pose` with its velocity kept, and plans anew from there.
+    ///
+    /// # Errors
+    /// See [`Self::new`]; the motion in progress goes on.
+    pub(crate) fn reanchor(&mut self, pose: Isometry3<f64>) -> Result<(), PlanError> {
+        *self = Self::new(
+            &PoseState {
+                pose,
+                ..self.state()
+            },
+            self.target,
+            self.budget,
+        )?;
+        Ok(())
+    }
+
+    /// Advances by one nominal millisecond.
+    pub(crate) fn step(&mut self) -> PoseState {
+        self.axes.step();
+        self.state()
+    }
+
+    /// The pose now.
+    pub(crate) fn pose(&self) -> Isometry3<f64> {
+        self.state().pose
+    }
+
+    /// Whether the pose rests at the target.
+    pub(crate) fn is_done(&self) -> bool {
+        self.axes.is_done()
+    }
+
+    fn state(&self) -> PoseState {
+        let State {
+            position,
+            velocity,
+            acceleration,
+        } = *self.axes.state();
+        let [phi, phi_dot, phi_ddot] =
+            [position, velocity, acceleration].map(|axes| rotational(&axes));
+        let omega = rotation::angular_velocity(&phi, &phi_dot);
+        let alpha = rotation::angular_acceleration(&phi, &phi_dot, &phi_ddot);
+        let (v, a) = (translational(&velocity), translational(&acceleration));
+        PoseState {
+            pose: Isometry3::from_parts(
+                Translation3::from(translational(&position)),
+                rotation::exp(&phi) * self.anchor,
+            ),
+            twist: Twist::new(v.x, v.y, v.z, omega.x, omega.y, omega.z),
+            acceleration: Twist::new(a.x, a.y, a.z, alpha.x, alpha.y, alpha.z),
+        }
+    }
+}
+
+/// A plan for the six axes, with the chart anchored at the orientation of `start`.
+fn plan(
+    start: &PoseState,
+    target: &Isometry3<f64>,
+    budget: &Budget,
+) -> Result<Generator<6>, PlanError> {
+    let from = start.pose.translation.vector;
+    let way = target.translation.vector - from;
+    let turn = rotation::error(&target.rotation, &start.pose.rotation);
+    let state = State {
+        position: [from.x, from.y, from.z, 0.0, 0.0, 0.0],
+        velocity: start.twist.into(),
+        acceleration: start.acceleration.into(),
+    };
+    let limits = budget.axes(
+        &Leg {
+            way,
+            velocity: translational(&state.velocity),
+            acceleration: translational(&state.acceleration),
+        },
+        &Leg {
+            way: turn,
+            velocity: rotational(&state.velocity),
+            acceleration: rotational(&state.acceleration),
+        },
+    );
+    let to = target.translation.vector;
+    let mut axes = Generator::new(state, Limits::per_axis(limits)?)?;
+    axes.set_target(&[to.x, to.y, to.z, turn.x, turn.y, turn.z])?;
+    Ok(axes)
+}
+
+fn translational(axes: &[f64; 6]) -> Vector3<f64> {
+    Vector3::new(axes[0], axes[1], axes[2])
+}
+
+fn rotational(axes: &[f64; 6]) -> Vector3<f64> {
+    Vector3::new(axes[3], axes[4], axes[5])
+}
