@@ -1,0 +1,206 @@
+//! The thread as seen from outside.
+
+use std::any::Any;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+
+use franka_proto::{RobotState, Version};
+
+use crate::driver::Driver;
+use crate::sched::Granted;
+use crate::slot::{Read, SlotReader, Words};
+use crate::stats::Stats;
+use crate::thread::{Core, LinkFault};
+use crate::wake::Wake;
+
+/// Everything that connects the world outside to one running thread. Take it apart: each field has its own user.
+#[derive(Debug)]
+pub struct Handle<C: Core = Driver> {
+    /// Orders for the core. The thread takes them with the next state, or within [`crate::exchange::TICK`] while the
+    /// robot is silent.
+    pub orders: rtrb::Producer<C::Order>,
+    /// What the core and the loop report, oldest first.
+    pub notices: rtrb::Consumer<Notice<C::Event>>,
+    /// One record per state, oldest first. Those that find the ring full are lost, and counted in
+    /// [`Stats::records_lost`].
+    pub records: rtrb::Consumer<C::Record>,
+    /// The newest state.
+    pub states: StateReader,
+    /// Rings after every cycle that left something in the fields above, and when the thread ends.
+    pub wake: Wake,
+    /// Counts and times of the loop.
+    pub stats: Arc<Stats>,
+    /// What the operating system granted the thread.
+    pub granted: Granted,
+    /// Stops the thread, on drop at the latest.
+    pub thread: Thread<C>,
+}
+
+/// What the thread reports.
+#[derive(Debug)]
+pub enum Notice<E> {
+    /// An event of the core. None is lost: they wait in the core while the queue is full.
+    Core(E),
+    /// Something went wrong with a datagram. Told when it begins, not every cycle that it lasts.
+    Link(LinkFault),
+}
+
+/// The running thread. Dropping it asks the thread to stop and does not wait.
+#[derive(Debug)]
+pub struct Thread<C> {
+    pub(super) shared: Arc<Lifetime>,
+    pub(super) joiner: Option<JoinHandle<Result<C, Panicked>>>,
+}
+
+/// The two flags between the thread and its owner.
+#[derive(Debug, Default)]
+pub(super) struct Lifetime {
+    stop: AtomicBool,
+    ended: AtomicBool,
+}
+
+impl Lifetime {
+    /// Relaxed here and below: nothing else is read on the strength of this flag.
+    pub(super) fn stop_wanted(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Release, pairs with the Acquire in [`Thread::has_ended`]: who sees the end sees what the thread left.
+    pub(super) fn note_end(&self) {
+        self.ended.store(true, Ordering::Release);
+    }
+}
+
+impl<C> Thread<C> {
+    /// Asks the thread to stop. It does so before its next cycle, within [`crate::exchange::TICK`] if the robot is
+    /// silent. A motion that runs is not finished first: the robot will miss its commands.
+    pub fn stop(&self) {
+        self.shared.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the loop has ended, because it was stopped or because the core panicked. The bell rings after this has
+    /// become true.
+    pub fn has_ended(&self) -> bool {
+        self.shared.ended.load(Ordering::Acquire)
+    }
+
+    /// Stops the thread, waits for it and returns the core. Blocks for a cycle or a tick; from async code, call it
+    /// where blocking is allowed.
+    ///
+    /// # Errors
+    /// [`Panicked`] if the core did.
+    pub fn join(mut self) -> Result<C, Panicked> {
+        self.stop();
+        let joiner = self
+            .joiner
+            .take()
+            .expect("only this method takes it, and it consumes the thread");
+        match joiner.join() {
+            Ok(ended) => ended,
+            Err(payload) => Err(Panicked::new(&*payload)),
+        }
+    }
+}
+
+impl<C> Drop for Thread<C> {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// The core panicked, which ended the thread: no command is sent any more. A defect; the process goes on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the control thread panicked: {message}")]
+pub struct Panicked {
+    /// What the panic said.
+    pub message: String,
+}
+
+impl Panicked {
+    pub(super) fn new(payload: &(dyn Any + Send)) -> Self {
+        let text = payload.downcast_ref::<&str>().copied();
+        let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+        Self {
+            message: text.unwrap_or("without a message").to_owned(),
+        }
+    }
+}
+
+/// Reads the newest state that the thread has received. Clones read independently of each other.
+#[derive(Clone, Debug)]
+pub struct StateReader {
+    pub(super) slot: SlotReader<Datagram>,
+    pub(super) version: Version,
+    pub(super) size: usize,
+}
+
+impl StateReader {
+    /// The newest state, if this reader has not returned it yet. Never waits.
+    ///
+    /// The thread may be writing at this very moment: after a few attempts the answer is `None`. The bell rings after
+    /// each write, so a listener comes back in any case.
+    pub fn newest(&mut self) -> Option<RobotState> {
+        match self.slot.read_retry(ATTEMPTS) {
+            // The thread publishes only what it has decoded itself.
+            Read::Newer(datagram) => {
+                RobotState::decode(self.version, &datagram.0[..self.size]).ok()
+            }
+            Read::Same | Read::Torn => None,
+        }
+    }
+}
+
+/// Attempts to read a state that is being replaced. A write takes well under a microsecond, once per millisecond.
+const ATTEMPTS: usize = 16;
+
+/// A state as it came, in the front of the array. Decoded by each reader, which spares the thread a second conversion.
+#[derive(Debug)]
+pub(super) struct Datagram(pub(super) [u8; RobotState::MAX_SIZE]);
+
+impl Words for Datagram {
+    const WORDS: usize = RobotState::MAX_SIZE.div_ceil(WORD);
+
+    fn store(&self, words: &mut [u64]) {
+        for (word, bytes) in words.iter_mut().zip(self.0.chunks(WORD)) {
+            let mut padded = [0; WORD];
+            padded[..bytes.len()].copy_from_slice(bytes);
+            *word = u64::from_ne_bytes(padded);
+        }
+    }
+
+    fn load(words: &[u64]) -> Self {
+        let mut bytes = [0; RobotState::MAX_SIZE];
+        for (bytes, word) in bytes.chunks_mut(WORD).zip(words) {
+            bytes.copy_from_slice(&word.to_ne_bytes()[..bytes.len()]);
+        }
+        Self(bytes)
+    }
+}
+
+/// Bytes in a word.
+const WORD: usize = size_of::<u64>();
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_datagram_survives_its_words() {
+        let datagram = Datagram(core::array::from_fn(|i| (i * 7 + 1) as u8));
+        let mut words = [0; Datagram::WORDS];
+        datagram.store(&mut words);
+        assert!(Datagram::load(&words).0 == datagram.0);
+    }
+
+    #[test]
+    fn a_panic_keeps_its_message() {
+        for (payload, message) in [
+            (Box::new("static") as Box<dyn Any + Send>, "static"),
+            (Box::new(String::from("formatted")), "formatted"),
+            (Box::new(5), "without a message"),
+        ] {
+            assert_eq!(Panicked::new(&*payload).message, message);
+        }
+    }
+}
