@@ -18,7 +18,7 @@ const TOTALS: f64 = 1e-15;
 /// Checks `model_vectors_fr3.json`: libfranka 0.20.4 with the FR3 URDF.
 ///
 /// A case is one configuration with one load; the frames that no load moves are checked with each.
-pub fn rigid_body(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn rigid_body(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     let meta = root.get("meta")?;
     let gravities = [meta.get("gravity")?, meta.get("gravity_alt")?];
@@ -57,7 +57,7 @@ pub fn rigid_body(root: &Node<'_>) -> Result<Report, Malformed> {
 }
 
 /// Checks `velocity_limit_vectors_fr3.json`, libfranka 0.21.3: equal to the last bit.
-pub fn velocity_envelope(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn velocity_envelope(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     for vector in root.get("vectors")?.list()? {
         let q = joint_vector(vector.get("q")?.numbers()?);
