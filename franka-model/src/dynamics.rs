@@ -47,7 +47,7 @@ impl Dynamics {
         let motion = Motion::of(chain, dq, None, &Vector3::zeros());
         let tip =
             motion.accelerations[6] + motion.spin[6].times(&(placement.origin - chain.origin[6]));
-        let turn = motion.angular_accelerations[6];
+        let turn = motion.spin[6].angular_acceleration;
         Self {
             pose: placement.pose(),
             jacobian: zero_jacobian(chain, 7, &placement.origin),
@@ -140,7 +140,7 @@ pub(crate) fn forward_dynamics(
     Some(factor.solve(&(tau - coriolis - gravity)))
 }
 
-/// `[α]× + [ω]×[ω]×`: maps a vector fixed in a body to its acceleration.
+/// How a body turns: maps a vector fixed in it to the acceleration of the vector's tip.
 #[derive(Clone, Copy)]
 struct Spin {
     angular_acceleration: Vector3<f64>,
@@ -148,6 +148,7 @@ struct Spin {
 }
 
 impl Spin {
+    /// `α × r + ω × (ω × r)`.
     #[inline(always)]
     fn times(&self, r: &Vector3<f64>) -> Vector3<f64> {
         let w = &self.angular_velocity;
@@ -157,9 +158,8 @@ impl Spin {
 
 /// Velocities and accelerations of the seven link frames, in base axes.
 struct Motion {
-    /// Acceleration of each frame's origin, in free fall with the base's gravity taken off.
+    /// Acceleration of each frame's origin, less that of gravity.
     accelerations: [Vector3<f64>; 7],
-    angular_accelerations: [Vector3<f64>; 7],
     spin: [Spin; 7],
 }
 
@@ -181,7 +181,6 @@ impl Motion {
         let mut origin = zero;
         let mut motion = Self {
             accelerations: [zero; 7],
-            angular_accelerations: [zero; 7],
             spin: [spin; 7],
         };
         for i in 0..7 {
@@ -194,7 +193,6 @@ impl Motion {
             }
             spin.angular_velocity += rate;
             motion.accelerations[i] = acceleration;
-            motion.angular_accelerations[i] = spin.angular_acceleration;
             motion.spin[i] = spin;
         }
         motion

@@ -76,6 +76,10 @@ pub mod rotation;
 pub mod transform;
 
 #[cfg(test)]
+mod identities;
+#[cfg(test)]
+mod known_numbers;
+#[cfg(test)]
 mod random;
 
 pub use dynamics::Dynamics;
