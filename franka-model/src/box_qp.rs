@@ -93,7 +93,7 @@ pub enum Outcome {
 
 /// Passes after which a search gives up.
 ///
-/// Each costs one factorisation.
+/// Each costs one factorisation. Random problems of all kinds take at most half as many.
 pub const PASSES_MAX: usize = 40;
 
 /// Where a search ended.
@@ -104,25 +104,32 @@ pub(crate) struct Minimum {
     pub(crate) passes: usize,
 }
 
-/// Searches from the point of the box nearest to `near`, with the variables that `active` names on
-/// their bounds.
+/// Where a search begins, and how long it may take.
+pub(crate) struct Start<'a> {
+    /// The first point is the one of the box nearest to this,
+    pub(crate) near: &'a JointVector,
+    /// with these variables on their bounds.
+    pub(crate) active: [Side; 7],
+    pub(crate) passes_max: usize,
+}
+
+/// Searches for the minimum.
 pub(crate) fn minimise(
     hessian: &SMatrix<f64, 7, 7>,
     linear: &JointVector,
     bounds: &JointBox,
-    near: &JointVector,
-    active: [Side; 7],
+    start: &Start<'_>,
 ) -> Minimum {
     let mut at = Minimum {
-        x: bounds.clamp(near),
-        active,
+        x: bounds.clamp(start.near),
+        active: start.active,
         outcome: Outcome::PassLimit,
         passes: 0,
     };
-    for (i, side) in active.into_iter().enumerate() {
+    for (i, side) in start.active.into_iter().enumerate() {
         at.hold(bounds, i, side);
     }
-    while at.passes < PASSES_MAX {
+    while at.passes < start.passes_max {
         at.passes += 1;
         let Some(goal) = at.minimum_of_free(hessian, linear) else {
             at.outcome = Outcome::Degenerate;
@@ -262,3 +269,6 @@ impl Minimum {
 
 /// Relative to its terms, a gradient below this is rounding.
 const ROUNDING: f64 = 1e-14;
+
+#[cfg(test)]
+mod tests;

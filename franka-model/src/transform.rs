@@ -51,8 +51,8 @@ pub fn array(isometry: &Isometry3<f64>) -> [f64; 16] {
 /// Rotation part of the polar decomposition, by Newton's iteration `X <- (X + X⁻ᵀ) / 2`.
 ///
 /// It converges for every matrix of positive determinant, quadratically near a rotation (Higham,
-/// Functions of Matrices, 2008, section 8.3). `None` for others, and where [`NEWTON_STEPS_MAX`]
-/// steps are not enough, which takes a matrix close to singular.
+/// Functions of Matrices, 2008, section 8.3). `None` for others, and where 20 steps are
+/// not enough, which takes a matrix close to singular.
 pub fn nearest_rotation(block: &Matrix3<f64>) -> Option<Rotation3<f64>> {
     let determinant = block.determinant();
     if determinant.is_nan() || determinant <= 0.0 {
