@@ -1,6 +1,6 @@
 //! Every interleaving of a slot's writer and reader, and every value that the memory model lets a load return.
 //!
-//! Run with `RUSTFLAGS="--cfg loom" cargo test -p franka-rt --release --test loom`.
+//! Run with `RUSTFLAGS="--cfg loom" cargo test -p franka-rt --test loom`.
 #![cfg(loom)]
 
 use franka_rt::slot::{Read, SlotReader, slot};
