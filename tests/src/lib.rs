@@ -2,6 +2,8 @@
 //!
 //! | module | what it is |
 //! |---|---|
+//! | [`bench`] | what the work of one control cycle costs |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
+pub mod bench;
 pub mod golden;

@@ -1,0 +1,30 @@
+//! Runs every benchmark: `bench OUTPUT.json [ROUNDS]`. Prints the values and writes them as one flat JSON object.
+
+use std::env;
+use std::fs;
+use std::process::ExitCode;
+
+use franka_tests::bench;
+
+fn main() -> ExitCode {
+    let mut arguments = env::args().skip(1);
+    let rounds = |text: Option<String>| text.map_or(Ok(ROUNDS), |text| text.parse());
+    let (Some(output), Ok(rounds)) = (arguments.next(), rounds(arguments.next())) else {
+        eprintln!("usage: bench OUTPUT.json [ROUNDS]");
+        return ExitCode::from(2);
+    };
+    let values = bench::measure(&mut bench::all(), rounds);
+    for (key, value) in &values {
+        println!("{key:<28} {value:>9}");
+    }
+    let json = serde_json::json!(values);
+    if let Err(error) = fs::write(&output, format!("{json:#}\n")) {
+        eprintln!("cannot write {output}: {error}");
+        return ExitCode::FAILURE;
+    }
+    println!("medians over {rounds} rounds, written to {output}");
+    ExitCode::SUCCESS
+}
+
+/// Enough for a median that two disturbed rounds do not move.
+const ROUNDS: usize = 15;
