@@ -1,1 +1,66 @@
-//! Async driver for Franka robots
+//! Async driver for Franka robots: motions are futures, states are a `watch`, control stays on a real-time thread.
+//!
+//! ```text
+//!  Robot (Clone) --goals, stop--> bridge task --orders, goal slot--> real-time thread --UDP 1 kHz--> robot
+//!      |  ^                         |   ^  ^                              |
+//!      |  +------ watch: states ----+   |  +--- newest state, events -----+   (eventfd)
+//!      +--- setters, recovery ----> channel task <------- TCP, replies matched by id ------> robot
+//! ```
+//!
+//! * [`Robot`]: a cheap, cloneable handle, fit for the state of a web service. [`Builder`] connects it.
+//! * [`Motion`]: `move_to`, `move_joints`: built, then awaited. [`Follow`]: targets from a `watch` at their own rate.
+//! * [`error`]: what can go wrong, grouped by who can act on it.
+//!
+//! ```no_run
+//! use franka_async::{Pose, Robot};
+//!
+//! # async fn run() -> Result<(), Box<dyn std::error::Error>> {
+//! let robot = Robot::connect("172.16.0.2").await?;
+//! let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
+//! let report = robot.move_to(up).speed(0.5).await?;
+//! println!("arrived after {:?}", report.duration);
+//! robot.shutdown().await;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Cancel safety
+//!
+//! Every future of this crate may be dropped at any point. A request that was sent is carried out by the robot all the
+//! same; its answer is then discarded. **Dropping a motion brakes it** within its budget: the arm is still moving when
+//! `drop` returns, and rests soon after. What else a method has to say stands in its own section.
+//!
+//! # What it does not do
+//!
+//! It holds no control loop: no task of the runtime is on the path from a state to its command, so a blocked worker
+//! delays new goals and nothing else. It does not reconnect by itself. It has not been run against a real arm yet.
+
+mod bridge;
+mod builder;
+mod channel;
+mod codec;
+mod connect;
+pub mod error;
+mod follow;
+mod motion;
+mod parameters;
+mod robot;
+
+pub use builder::{Builder, Endpoint, VersionPolicy};
+pub use error::{CommandError, ConnectError, MotionError};
+pub use follow::Follow;
+pub use motion::{Canceller, Motion, Moving};
+pub use robot::Robot;
+
+pub use franka_model::{JointVector, Model};
+pub use franka_proto::{CollisionBehavior, Errors, Load, RobotMode, RobotState, Version};
+pub use franka_rt::driver::Record;
+pub use franka_rt::law::Gains;
+pub use franka_rt::lifecycle::{MotionReport, Reflex};
+pub use franka_rt::otg::AxisLimits;
+pub use franka_rt::sched::Realtime;
+pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};
+pub use franka_rt::stats::Stats;
+
+/// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame, `O_T_EE`.
+pub type Pose = nalgebra::Isometry3<f64>;

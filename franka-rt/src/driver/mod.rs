@@ -50,6 +50,10 @@ pub struct Driver {
 }
 
 #[derive(Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one per driver, and a box would allocate on the thread"
+)]
 enum Phase {
     Watching,
     Armed(Motion),

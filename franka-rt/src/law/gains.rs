@@ -50,6 +50,26 @@ impl Gains {
         }
     }
 
+    /// The same gains with another stiffness at the end effector, base axes. Its damping scales with the square root, which
+    /// keeps the damping ratio; an axis without stiffness takes its damping ratio from [`Gains::cartesian`].
+    #[must_use]
+    pub fn with_cartesian_stiffness(self, stiffness: [f64; 6]) -> Self {
+        let preset = Self::cartesian();
+        let damping = core::array::from_fn(|i| {
+            let from = if self.cartesian_stiffness[i] > 0.0 {
+                &self
+            } else {
+                &preset
+            };
+            from.cartesian_damping[i] * (stiffness[i] / from.cartesian_stiffness[i]).sqrt()
+        });
+        Self {
+            cartesian_stiffness: stiffness,
+            cartesian_damping: damping,
+            ..self
+        }
+    }
+
     /// Checks that every gain is finite, not negative and within what a 1 kHz torque loop holds stable on this arm.
     ///
     /// The upper bounds are those of the robot's own impedance commands (3000 N/m, 300 N m/rad) for the end effector,
@@ -58,27 +78,26 @@ impl Gains {
     /// # Errors
     /// [`GainError`] names the first gain that is not.
     pub fn check(&self) -> Result<(), GainError> {
-        let groups: [(&'static str, &[f64], &dyn Fn(usize) -> f64); 4] = [
-            ("end-effector stiffness", &self.cartesian_stiffness, &|i| {
-                if i < 3 { 3000.0 } else { 300.0 }
-            }),
-            ("end-effector damping", &self.cartesian_damping, &|i| {
-                if i < 3 { 500.0 } else { 50.0 }
-            }),
-            ("joint stiffness", &self.joint_stiffness, &|_| 6000.0),
-            ("joint damping", &self.joint_damping, &|_| 500.0),
-        ];
-        for (what, values, most) in groups {
-            for (axis, &got) in values.iter().enumerate() {
-                let most = most(axis);
-                if !(0.0..=most).contains(&got) {
-                    return Err(GainError {
-                        what,
-                        axis,
-                        got,
-                        most,
-                    });
-                }
+        let end_effector = |axis: usize, linear, angular| if axis < 3 { linear } else { angular };
+        let most_of = |i: usize| match i {
+            0..6 => ("end-effector stiffness", i, end_effector(i, 3000.0, 300.0)),
+            6..12 => (
+                "end-effector damping",
+                i - 6,
+                end_effector(i - 6, 500.0, 50.0),
+            ),
+            12..19 => ("joint stiffness", i - 12, 6000.0),
+            _ => ("joint damping", i - 19, 500.0),
+        };
+        for (i, got) in self.to_array().into_iter().enumerate() {
+            let (what, axis, most) = most_of(i);
+            if !(0.0..=most).contains(&got) {
+                return Err(GainError {
+                    what,
+                    axis,
+                    got,
+                    most,
+                });
             }
         }
         Ok(())
@@ -113,6 +132,15 @@ impl Gains {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn another_stiffness_keeps_the_damping_ratio() {
+        let soft =
+            Gains::cartesian().with_cartesian_stiffness([187.5, 750.0, 750.0, 15.0, 15.0, 60.0]);
+        assert_eq!(soft.cartesian_damping, [25.0, 50.0, 90.0, 2.0, 2.0, 4.0]);
+        let from_joints = Gains::joint().with_cartesian_stiffness([750.0; 6]);
+        assert_eq!(from_joints.cartesian_damping[0], 50.0);
+    }
 
     #[test]
     fn presets_pass_their_own_check_and_bad_gains_are_named() {

@@ -81,13 +81,13 @@ pub fn torques(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_model::{EndEffector, Frame, GRAVITY_EARTH, Load, Model, ready};
+    use franka_model::{EndEffector, Frame, GRAVITY_EARTH, Load, Model, READY};
 
     /// The stated matrices, formed in full: the oracle for the two-sided product above.
     #[test]
     fn equals_the_stiffness_and_damping_matrices_of_the_definition() {
         let model = Model::fr3();
-        let q = ready();
+        let q = READY;
         let dq = JointVector::from_fn(|i, _| 0.1 * i as f64 - 0.3);
         let reference = Reference {
             q: q + JointVector::from_fn(|i, _| 0.01 * (i as f64 - 2.0)),
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn is_silent_at_rest_on_the_reference() {
-        let q = ready();
+        let q = READY;
         let dynamics = Model::fr3().dynamics(
             &q,
             &JointVector::zeros(),

@@ -23,7 +23,7 @@ use std::collections::VecDeque;
 use franka_model::Model;
 use franka_proto::{
     Command, ControlFailure, MoveControllerMode, MoveRequest, MoveStatus, Refusal, Request,
-    RobotState, Status, Version,
+    RobotState, Status, Version, Violation,
 };
 
 use crate::driver::{Ended, Ending, Event, Modes, MotionId, MotionStatistics, Order, Program};
@@ -42,6 +42,10 @@ pub const END_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Something to carry out, in the order given.
 #[derive(Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a handful per motion, passed on at once"
+)]
 pub enum Output {
     /// Hand this to the thread.
     Order(Order),
@@ -275,6 +279,23 @@ impl Lifecycle {
             }
         }
         self.conclude(now);
+    }
+
+    /// Takes note that a reply to the `Move` of `motion` could not be read: nobody knows what the robot is doing, so it is
+    /// told to stop, and the goal resolves.
+    pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
+        let Some(active) = self.active(motion) else {
+            return;
+        };
+        if matches!(active.thread, ThreadSide::Armed) {
+            self.outputs
+                .push_back(Output::Order(Order::Disarm { motion }));
+        }
+        self.outputs.push_back(Output::Send {
+            motion,
+            request: Request::StopMove,
+        });
+        self.finish(now, Some(MotionError::Violation(violation)));
     }
 
     /// Takes an event of the thread.

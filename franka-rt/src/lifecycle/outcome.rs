@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use franka_proto::{ControlFailure, Errors, Refusal};
+use franka_proto::{ControlFailure, Errors, Refusal, Violation};
 
 use crate::driver::MotionStatistics;
 use crate::session::{GoalError, PoseError};
@@ -87,6 +87,9 @@ pub enum MotionError {
         /// What ended it, in the words of the reference client where it has any.
         reason: String,
     },
+    /// Peer: a reply of its cannot be read.
+    #[error(transparent)]
+    Violation(#[from] Violation),
     /// Peer: it left the protocol. Please report it.
     #[error("{what}")]
     Protocol {

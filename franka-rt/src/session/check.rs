@@ -71,7 +71,7 @@ impl Goal {
         check_budget(&self.budget, model)?;
         self.gains.check()?;
         for got in [self.tolerance.translation, self.tolerance.rotation] {
-            if !(got > 0.0) {
+            if got.is_nan() || got <= 0.0 {
                 return Err(GoalError::Tolerance { got });
             }
         }

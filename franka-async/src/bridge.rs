@@ -1,0 +1,328 @@
+//! The bridge: one task between the async world, the command channel and the real-time thread.
+//!
+//! It drives the lifecycle of motions and is the only one that touches the thread's queues and slots. Waking other tasks
+//! takes locks; that is why it happens here and never on the thread.
+
+use std::collections::HashMap;
+use std::io;
+use std::time::Duration;
+
+use franka_model::Model;
+use franka_proto::{RobotState, Version};
+use franka_rt::driver::{Driver, Event, Order, Record};
+use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output};
+use franka_rt::session::{Goal, GoalError, GoalId, Target};
+use franka_rt::thread::{Handle, Notice, Thread};
+use franka_rt::wake::Wake;
+use tokio::io::unix::AsyncFd;
+use tokio::sync::{broadcast, mpsc, oneshot, watch};
+use tokio::time::Instant;
+
+use crate::channel::{Channel, Report};
+
+/// Records that a slow listener may lag behind before it misses some: two seconds.
+const RECORDS: usize = 2048;
+
+/// Time that a motion gets to brake and finish when the last handle is dropped.
+const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
+
+/// How a motion ended, on its way to whoever awaits it.
+pub(crate) type Outcome = Result<MotionReport, MotionError>;
+
+/// What handles and motions ask of the bridge.
+#[derive(Debug)]
+pub(crate) enum Input {
+    Submit {
+        goal: Goal,
+        done: oneshot::Sender<Outcome>,
+    },
+    /// `taken` hears whether the goal is still the newest.
+    Update {
+        goal: GoalId,
+        target: Target,
+        taken: oneshot::Sender<Result<bool, GoalError>>,
+    },
+    Close {
+        goal: GoalId,
+    },
+    Cancel {
+        goal: GoalId,
+    },
+    Stop {
+        goal: GoalId,
+        done: oneshot::Sender<Outcome>,
+    },
+    /// Brake, finish, close; `done` hears when the thread has ended.
+    Shutdown {
+        done: oneshot::Sender<()>,
+    },
+}
+
+/// The ways into the bridge, and the one way out of it that others subscribe to.
+#[derive(Clone, Debug)]
+pub(crate) struct Inputs {
+    /// Unbounded, since dropping a motion must be able to send; what awaits an answer bounds itself.
+    pub(crate) queue: mpsc::UnboundedSender<Input>,
+    pub(crate) records: broadcast::Sender<Record>,
+}
+
+/// Waits until the bell rings and silences it.
+///
+/// # Cancel safety
+/// A ring is not lost: it is heard by the next call.
+pub(crate) async fn hear(bell: &AsyncFd<Wake>) -> io::Result<()> {
+    let mut guard = bell.readable().await?;
+    bell.get_ref().clear();
+    guard.clear_ready();
+    Ok(())
+}
+
+pub(crate) struct Bridge {
+    lifecycle: Lifecycle,
+    bell: AsyncFd<Wake>,
+    orders: rtrb::Producer<Order>,
+    notices: rtrb::Consumer<Notice<Event>>,
+    ring: rtrb::Consumer<Record>,
+    newest: franka_rt::thread::StateReader,
+    thread: Option<Thread<Driver>>,
+    channel: Channel,
+    states: watch::Sender<RobotState>,
+    records: broadcast::Sender<Record>,
+    waiting: HashMap<GoalId, oneshot::Sender<Outcome>>,
+    started: Instant,
+}
+
+impl Bridge {
+    pub(crate) fn new(
+        model: &'static Model,
+        version: Version,
+        handle: Handle,
+        bell: AsyncFd<Wake>,
+        channel: Channel,
+        states: watch::Sender<RobotState>,
+    ) -> Self {
+        Self {
+            lifecycle: Lifecycle::new(model, version),
+            bell,
+            orders: handle.orders,
+            notices: handle.notices,
+            ring: handle.records,
+            newest: handle.states,
+            thread: Some(handle.thread),
+            channel,
+            states,
+            records: broadcast::channel(RECORDS).0,
+            waiting: HashMap::new(),
+            started: Instant::now(),
+        }
+    }
+
+    /// Runs the bridge as a task until all ways into it are gone.
+    pub(crate) fn start(self, reports: mpsc::UnboundedReceiver<Report>) -> Inputs {
+        let (queue, inbox) = mpsc::unbounded_channel();
+        let inputs = Inputs {
+            queue,
+            records: self.records.clone(),
+        };
+        tokio::spawn(self.run(inbox, reports));
+        inputs
+    }
+
+    async fn run(
+        mut self,
+        mut inbox: mpsc::UnboundedReceiver<Input>,
+        mut reports: mpsc::UnboundedReceiver<Report>,
+    ) {
+        let mut closing = None;
+        let mut done = Vec::new();
+        loop {
+            self.carry_out().await;
+            if closing.is_some() && self.lifecycle.is_idle() {
+                break;
+            }
+            let deadline = [
+                self.lifecycle.deadline().map(|after| self.started + after),
+                closing,
+            ];
+            let deadline = deadline.into_iter().flatten().min();
+            tokio::select! {
+                heard = hear(&self.bell) => {
+                    if let Err(error) = heard {
+                        self.lifecycle.on_connection_closed(&format!("the control thread cannot be heard: {error}"));
+                    }
+                    self.listen();
+                }
+                input = inbox.recv(), if closing.is_none() => match input {
+                    Some(Input::Shutdown { done: reply }) => {
+                        done.push(reply);
+                        closing = Some(self.begin_closing());
+                    }
+                    Some(input) => self.on_input(input),
+                    None => closing = Some(self.begin_closing()),
+                },
+                Some(report) = reports.recv() => self.on_report(report),
+                () = sleep_until(deadline) => {
+                    if closing.is_some_and(|closing| closing <= Instant::now()) {
+                        tracing::error!("the motion did not end; closing all the same");
+                        break;
+                    }
+                    self.lifecycle.on_time(self.now());
+                }
+            }
+        }
+        self.end(inbox).await;
+        for done in done {
+            // A caller who no longer waits has been dropped.
+            let _ = done.send(());
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.started.elapsed()
+    }
+
+    /// Carries out what the lifecycle has decided, in its order.
+    async fn carry_out(&mut self) {
+        while let Some(output) = self.lifecycle.poll() {
+            match output {
+                Output::Order(order) => {
+                    if self.orders.push(order).is_err() {
+                        self.lifecycle
+                            .on_connection_closed("the control thread takes no orders");
+                    }
+                }
+                Output::Send { motion, request } => {
+                    // A closed channel has said so in a report of its own.
+                    if let Err(error) = self.channel.send(motion, request).await {
+                        tracing::debug!(%error, "a motion's request was not sent");
+                    }
+                }
+                Output::Resolve { goal, result } => {
+                    if let Err(error) = &result {
+                        tracing::info!(goal = goal.0, %error, "motion ended");
+                    }
+                    if let Some(done) = self.waiting.remove(&goal) {
+                        // Nobody listens to a motion that was dropped or detached.
+                        let _ = done.send(result);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes everything that the thread has left for us.
+    fn listen(&mut self) {
+        if let Some(state) = self.newest.newest() {
+            self.states.send_replace(state);
+        }
+        while let Ok(notice) = self.notices.pop() {
+            match notice {
+                Notice::Core(event) => {
+                    let now = self.now();
+                    self.lifecycle.on_event(event, now);
+                }
+                Notice::Link(fault) => tracing::warn!(%fault, "control link"),
+            }
+        }
+        while let Ok(record) = self.ring.pop() {
+            if self.records.receiver_count() > 0 {
+                // Fails only if the last listener has just gone.
+                let _ = self.records.send(record);
+            }
+        }
+        if self.thread.as_ref().is_some_and(Thread::has_ended) {
+            self.lifecycle
+                .on_connection_closed("the control thread has ended");
+        }
+    }
+
+    fn on_input(&mut self, input: Input) {
+        let now = self.now();
+        match input {
+            Input::Submit { goal, done } => {
+                let submitted = self.lifecycle.submit(goal, &self.states.borrow(), now);
+                match submitted {
+                    Ok(()) => {
+                        self.waiting.insert(goal.id, done);
+                    }
+                    Err(error) => {
+                        let _ = done.send(Err(error));
+                    }
+                }
+            }
+            Input::Update {
+                goal,
+                target,
+                taken,
+            } => {
+                let updated = self.lifecycle.update(goal, target, &self.states.borrow());
+                let _ = taken.send(updated);
+            }
+            Input::Close { goal } => self.lifecycle.close(goal),
+            Input::Cancel { goal } => self.lifecycle.cancel(goal),
+            Input::Stop { goal, done } => {
+                if self.lifecycle.stop(goal, now) {
+                    self.waiting.insert(goal, done);
+                }
+                // Otherwise nothing moves, and dropping `done` says so.
+            }
+            Input::Shutdown { .. } => unreachable!("taken where the loop decides to close"),
+        }
+    }
+
+    fn on_report(&mut self, report: Report) {
+        let now = self.now();
+        match report {
+            Report::Move { motion, status } => self.lifecycle.on_move_reply(motion, status, now),
+            Report::MoveViolation { motion, violation } => {
+                self.lifecycle.on_move_violation(motion, violation, now);
+            }
+            Report::Closed { reason } => self.lifecycle.on_connection_closed(&reason),
+        }
+    }
+
+    /// Brakes what moves. Returns when to give up on it.
+    fn begin_closing(&mut self) -> Instant {
+        // A name that no handle gives out: they count up from 1.
+        self.lifecycle.stop(GoalId(u64::MAX), self.now());
+        Instant::now() + CLOSING_TIMEOUT
+    }
+
+    /// Tells everybody who still waits, and ends the thread.
+    async fn end(mut self, mut inbox: mpsc::UnboundedReceiver<Input>) {
+        inbox.close();
+        self.lifecycle
+            .on_connection_closed("the robot's handles were closed");
+        self.carry_out().await;
+        while let Some(input) = inbox.recv().await {
+            match input {
+                Input::Submit { done, .. } => {
+                    let reason = "the robot's handles were closed".to_owned();
+                    let _ = done.send(Err(MotionError::ConnectionClosed { reason }));
+                }
+                Input::Shutdown { done } => {
+                    let _ = done.send(());
+                }
+                // Dropping the answer says that nothing moves any more.
+                Input::Update { .. }
+                | Input::Close { .. }
+                | Input::Cancel { .. }
+                | Input::Stop { .. } => {}
+            }
+        }
+        if let Some(thread) = self.thread.take() {
+            match tokio::task::spawn_blocking(move || thread.join()).await {
+                Ok(Ok(_)) => {}
+                Ok(Err(panicked)) => tracing::error!(%panicked, "control thread"),
+                Err(error) => tracing::error!(%error, "control thread"),
+            }
+        }
+    }
+}
+
+async fn sleep_until(deadline: Option<Instant>) {
+    match deadline {
+        Some(deadline) => tokio::time::sleep_until(deadline).await,
+        None => std::future::pending().await,
+    }
+}

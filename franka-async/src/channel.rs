@@ -1,0 +1,333 @@
+//! The command channel: one task that owns the TCP connection, sends requests and hands replies to whoever waits.
+//!
+//! Replies match by command id. Every request has a deadline but `Move`, whose two replies belong to the lifecycle of
+//! the motion. When the connection ends, everybody who waits is told why, and so is everybody who comes later.
+
+use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use franka_proto::client::{Event, Session};
+use franka_proto::{
+    Command, CommandId, MoveStatus, Refusal, Reply, Request, RobotState, Violation,
+};
+use franka_rt::driver::MotionId;
+use futures::{SinkExt, StreamExt};
+use tokio::net::TcpStream;
+use tokio::sync::{mpsc, oneshot, watch};
+use tokio::time::Instant;
+use tokio_util::codec::Framed;
+
+use crate::codec::{Frame, MessageCodec};
+use crate::error::CommandError;
+
+/// Time in which a request has to leave. Source: `SO_SNDTIMEO` of libfranka's command socket.
+const SEND_TIMEOUT: Duration = Duration::from_secs(1);
+
+/// Requests that may wait for the task. A caller beyond that waits for room.
+const CAPACITY: usize = 32;
+
+/// What libfranka says when it finds the connection closed.
+const CLOSED_BY_PEER: &str = "libfranka: server closed connection";
+
+/// The way to the task. Clones share it; the connection is closed when the last one is dropped.
+#[derive(Clone, Debug)]
+pub(crate) struct Channel {
+    calls: mpsc::Sender<Call>,
+    ended: Arc<OnceLock<String>>,
+}
+
+/// What the channel tells the bridge.
+#[derive(Debug)]
+pub(crate) enum Report {
+    /// A reply to the `Move` of a motion.
+    Move {
+        motion: MotionId,
+        status: MoveStatus,
+    },
+    /// The `Move` of a motion was not answered with anything readable.
+    MoveViolation {
+        motion: MotionId,
+        violation: Violation,
+    },
+    /// The connection is gone.
+    Closed { reason: String },
+}
+
+/// What a request that is not a motion is answered with, if it is not refused.
+#[derive(Debug)]
+pub(crate) enum Answer {
+    Done,
+    /// The robot's description, URDF.
+    Model(Vec<u8>),
+}
+
+#[derive(Debug)]
+struct Call {
+    request: Request,
+    waiter: Waiter,
+}
+
+#[derive(Debug)]
+enum Waiter {
+    /// The motion's lifecycle: its replies go to the bridge, without a deadline.
+    Motion(MotionId),
+    /// Nobody: the lifecycle sends `StopMove` and watches the states instead.
+    Nobody,
+    Caller {
+        answer: oneshot::Sender<Result<Answer, CommandError>>,
+        deadline: Duration,
+    },
+}
+
+impl Channel {
+    /// Starts the task on a connection whose handshake is done.
+    pub(crate) fn start(
+        stream: Framed<TcpStream, MessageCodec>,
+        session: Session,
+        states: watch::Receiver<RobotState>,
+    ) -> (Self, mpsc::UnboundedReceiver<Report>) {
+        let (calls, queue) = mpsc::channel(CAPACITY);
+        // Unbounded, and yet bounded: two replies per motion, and motions follow one another.
+        let (reports, inbox) = mpsc::unbounded_channel();
+        let ended = Arc::new(OnceLock::new());
+        let task = Task {
+            stream,
+            session,
+            states,
+            reports,
+            waiting: HashMap::new(),
+        };
+        tokio::spawn(task.run(queue, ended.clone()));
+        (Self { calls, ended }, inbox)
+    }
+
+    /// Sends a request and waits for its answer.
+    ///
+    /// # Cancel safety
+    /// The request may have been sent; its answer is then discarded.
+    pub(crate) async fn call(
+        &self,
+        request: Request,
+        deadline: Duration,
+    ) -> Result<Answer, CommandError> {
+        let (answer, answered) = oneshot::channel();
+        let call = Call {
+            request,
+            waiter: Waiter::Caller { answer, deadline },
+        };
+        if self.calls.send(call).await.is_err() {
+            return Err(self.closed());
+        }
+        answered.await.unwrap_or_else(|_| Err(self.closed()))
+    }
+
+    /// Sends a request on behalf of a motion. Replies to a `Move` come as [`Report`]s.
+    pub(crate) async fn send(
+        &self,
+        motion: MotionId,
+        request: Request,
+    ) -> Result<(), CommandError> {
+        let waiter = match request {
+            Request::Move(_) => Waiter::Motion(motion),
+            _ => Waiter::Nobody,
+        };
+        self.calls
+            .send(Call { request, waiter })
+            .await
+            .map_err(|_| self.closed())
+    }
+
+    fn closed(&self) -> CommandError {
+        let reason = self.ended.get().map_or(CLOSED_BY_PEER, String::as_str);
+        CommandError::ConnectionClosed {
+            reason: reason.to_owned(),
+        }
+    }
+}
+
+struct Task {
+    stream: Framed<TcpStream, MessageCodec>,
+    session: Session,
+    states: watch::Receiver<RobotState>,
+    reports: mpsc::UnboundedSender<Report>,
+    waiting: HashMap<CommandId, Waiting>,
+}
+
+struct Waiting {
+    command: Command,
+    waiter: Waiter,
+    until: Option<Instant>,
+}
+
+impl Task {
+    async fn run(mut self, mut calls: mpsc::Receiver<Call>, ended: Arc<OnceLock<String>>) {
+        let reason = self.serve(&mut calls).await;
+        // Told before the queue closes, so that nobody finds it closed without a reason.
+        let reason = ended.get_or_init(|| reason).clone();
+        drop(calls);
+        for (_, waiting) in self.waiting.drain() {
+            if let Waiter::Caller { answer, .. } = waiting.waiter {
+                // A caller who no longer listens has been dropped.
+                let _ = answer.send(Err(CommandError::ConnectionClosed {
+                    reason: reason.clone(),
+                }));
+            }
+        }
+        let _ = self.reports.send(Report::Closed { reason });
+    }
+
+    /// Serves until the connection ends and returns why it did.
+    async fn serve(&mut self, calls: &mut mpsc::Receiver<Call>) -> String {
+        loop {
+            let until = self
+                .waiting
+                .values()
+                .filter_map(|waiting| waiting.until)
+                .min();
+            let deadline = async {
+                match until {
+                    Some(until) => tokio::time::sleep_until(until).await,
+                    None => std::future::pending().await,
+                }
+            };
+            tokio::select! {
+                frame = self.stream.next() => match frame {
+                    Some(Ok(frame)) => {
+                        if let Err(violation) = self.on_frame(&frame) {
+                            return violation.to_string();
+                        }
+                    }
+                    Some(Err(error)) => return error.to_string(),
+                    None => return CLOSED_BY_PEER.to_owned(),
+                },
+                call = calls.recv() => match call {
+                    Some(call) => {
+                        if let Err(reason) = self.on_call(call).await {
+                            return reason;
+                        }
+                    }
+                    None => return "the robot's last handle was dropped".to_owned(),
+                },
+                () = deadline => self.on_deadline(Instant::now()),
+            }
+        }
+    }
+
+    async fn on_call(&mut self, Call { request, waiter }: Call) -> Result<(), String> {
+        let outgoing = match self.session.request(&request) {
+            Ok(outgoing) => outgoing,
+            Err(error) => {
+                match waiter {
+                    Waiter::Caller { answer, .. } => {
+                        let _ = answer.send(Err(error.into()));
+                    }
+                    Waiter::Motion(_) | Waiter::Nobody => {
+                        tracing::error!(%error, "a motion's request was not sent");
+                    }
+                }
+                return Ok(());
+            }
+        };
+        let until = match waiter {
+            Waiter::Caller { deadline, .. } => Some(Instant::now() + deadline),
+            Waiter::Motion(_) | Waiter::Nobody => None,
+        };
+        let command = request.command();
+        self.waiting.insert(
+            outgoing.id(),
+            Waiting {
+                command,
+                waiter,
+                until,
+            },
+        );
+        match tokio::time::timeout(SEND_TIMEOUT, self.stream.send(outgoing)).await {
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(error)) => Err(error.to_string().replace("TCP receive", "TCP send bytes")),
+            Err(_) => Err("libfranka: TCP send bytes: Timeout".to_owned()),
+        }
+    }
+
+    /// Routes one message. An error ends the connection.
+    fn on_frame(&mut self, frame: &Frame) -> Result<(), Violation> {
+        match self.session.on_message(frame.message()) {
+            Ok(Event::Reply { id, command, reply }) => self.on_reply(id, command, &reply),
+            Ok(Event::Unmatched { id }) => tracing::debug!(%id, "a reply that nobody waits for"),
+            Ok(other) => tracing::warn!(?other, "a message out of place"),
+            Err(violation) if violation.is_fatal() => return Err(violation),
+            Err(violation) => self.on_violation(violation),
+        }
+        Ok(())
+    }
+
+    fn on_reply(&mut self, id: CommandId, command: Command, reply: &Reply<'_>) {
+        if let Reply::Move(status) = *reply {
+            let is_last = status != MoveStatus::MotionStarted;
+            let waiting = if is_last {
+                self.waiting.remove(&id)
+            } else {
+                None
+            };
+            let motion = waiting.as_ref().or_else(|| self.waiting.get(&id));
+            if let Some(&Waiting {
+                waiter: Waiter::Motion(motion),
+                ..
+            }) = motion
+            {
+                // Fails only when the bridge is gone, and with it everybody who could care.
+                let _ = self.reports.send(Report::Move { motion, status });
+            }
+            return;
+        }
+        let Some(Waiting {
+            waiter: Waiter::Caller { answer, .. },
+            ..
+        }) = self.waiting.remove(&id)
+        else {
+            return;
+        };
+        let mode = self.states.borrow().robot_mode;
+        let outcome = match (Refusal::from_reply(command, reply, mode), reply) {
+            (Some(refusal), _) => Err(refusal.into()),
+            (None, Reply::Model { text, .. }) => Ok(Answer::Model(text.to_vec())),
+            (None, _) => Ok(Answer::Done),
+        };
+        let _ = answer.send(outcome);
+    }
+
+    fn on_violation(&mut self, violation: Violation) {
+        let id = match &violation {
+            Violation::Reply { id, .. } | Violation::SecondMotionStarted { id } => *id,
+            other => return tracing::warn!(%other, "the robot left the protocol"),
+        };
+        match self.waiting.remove(&id).map(|waiting| waiting.waiter) {
+            Some(Waiter::Motion(motion)) => {
+                let _ = self
+                    .reports
+                    .send(Report::MoveViolation { motion, violation });
+            }
+            Some(Waiter::Caller { answer, .. }) => {
+                let _ = answer.send(Err(violation.into()));
+            }
+            Some(Waiter::Nobody) | None => {
+                tracing::warn!(%violation, "the robot left the protocol")
+            }
+        }
+    }
+
+    fn on_deadline(&mut self, now: Instant) {
+        let late = self
+            .waiting
+            .extract_if(|_, waiting| waiting.until.is_some_and(|until| until <= now));
+        for (id, waiting) in late {
+            self.session.abandon(id);
+            if let Waiter::Caller { answer, deadline } = waiting.waiter {
+                let _ = answer.send(Err(CommandError::Timeout {
+                    command: waiting.command,
+                    deadline,
+                }));
+            }
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Messages on the command stream.
+
+use bytes::{Bytes, BytesMut};
+use franka_proto::Outgoing;
+use franka_proto::framing::{FrameError, Message, next_message};
+use tokio_util::codec::{Decoder, Encoder};
+
+/// Cuts the stream into messages, and writes requests to it.
+#[derive(Debug)]
+pub(crate) struct MessageCodec;
+
+/// One whole message.
+#[derive(Debug)]
+pub(crate) struct Frame(Bytes);
+
+impl Frame {
+    pub(crate) fn message(&self) -> Message<'_> {
+        match next_message(&self.0) {
+            Ok(Some(message)) => message,
+            _ => unreachable!("the decoder has cut exactly one message"),
+        }
+    }
+}
+
+/// Why the stream is of no more use.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum StreamError {
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    #[error("libfranka: TCP receive: {}", reason(.0))]
+    Io(#[from] std::io::Error),
+}
+
+impl Decoder for MessageCodec {
+    type Item = Frame;
+    type Error = StreamError;
+
+    fn decode(&mut self, received: &mut BytesMut) -> Result<Option<Frame>, StreamError> {
+        let Some(message) = next_message(received)? else {
+            return Ok(None);
+        };
+        let size = message.header.size as usize;
+        Ok(Some(Frame(received.split_to(size).freeze())))
+    }
+}
+
+impl Encoder<Outgoing> for MessageCodec {
+    type Error = StreamError;
+
+    fn encode(&mut self, message: Outgoing, stream: &mut BytesMut) -> Result<(), StreamError> {
+        stream.extend_from_slice(message.as_bytes());
+        Ok(())
+    }
+}
+
+/// The name by which the reference client's socket library calls the class of a failure.
+pub(crate) fn reason(error: &std::io::Error) -> String {
+    use std::io::ErrorKind;
+    match error.kind() {
+        ErrorKind::TimedOut | ErrorKind::WouldBlock => "Timeout".into(),
+        ErrorKind::ConnectionRefused => "Connection refused".into(),
+        ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => "Connection reset by peer".into(),
+        ErrorKind::ConnectionAborted => "Software caused connection abort".into(),
+        ErrorKind::HostUnreachable | ErrorKind::NetworkUnreachable => "Net Exception".into(),
+        _ => "I/O error".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_proto::framing::Header;
+
+    #[test]
+    fn cuts_messages_out_of_pieces_of_any_size() {
+        let mut stream = Vec::new();
+        for (command_id, payload) in [(1, &b"a"[..]), (2, b""), (3, b"robot")] {
+            let size = (Header::SIZE + payload.len()) as u32;
+            stream.extend(
+                Header {
+                    command: 9,
+                    command_id,
+                    size,
+                }
+                .to_bytes(),
+            );
+            stream.extend(payload);
+        }
+        for piece in 1..stream.len() {
+            let mut buffer = BytesMut::new();
+            let mut seen = Vec::new();
+            for bytes in stream.chunks(piece) {
+                buffer.extend_from_slice(bytes);
+                while let Some(frame) = MessageCodec.decode(&mut buffer).unwrap() {
+                    seen.push((
+                        frame.message().header.command_id,
+                        frame.message().payload.to_vec(),
+                    ));
+                }
+            }
+            assert_eq!(
+                seen,
+                [
+                    (1, b"a".to_vec()),
+                    (2, b"".to_vec()),
+                    (3, b"robot".to_vec())
+                ]
+            );
+        }
+    }
+
+    #[test]
+    fn garbage_is_an_error_and_not_a_wait() {
+        let mut buffer = BytesMut::from(&b"HTTP/1.1 400 Bad Request\r\n\r\n"[..]);
+        assert!(MessageCodec.decode(&mut buffer).is_err());
+        let mut buffer = BytesMut::from(&[0_u8; 64][..]);
+        let error = MessageCodec.decode(&mut buffer).unwrap_err();
+        assert_eq!(error.to_string(), "libfranka: Incorrect TCP message size.");
+    }
+}

@@ -1,0 +1,235 @@
+//! From an address to a running connection.
+
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use franka_model::Model;
+use franka_proto::client::{Event, Session};
+use franka_proto::{RobotState, Version};
+use franka_rt::driver::Driver;
+use franka_rt::exchange;
+use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
+use franka_rt::wake::Wake;
+use futures::{SinkExt, StreamExt};
+use socket2::{SockRef, TcpKeepalive};
+use tokio::io::unix::AsyncFd;
+use tokio::net::TcpStream;
+use tokio::sync::watch;
+use tokio::time::timeout;
+use tokio_util::codec::Framed;
+
+use crate::bridge::{self, Bridge};
+use crate::builder::{Builder, Endpoint, VersionPolicy};
+use crate::channel::Channel;
+use crate::codec::{MessageCodec, StreamError, reason};
+use crate::{ConnectError, Robot};
+
+/// Time for the TCP connection. Source: libfranka 0.21, `network.h`.
+pub(crate) const TCP_TIMEOUT: Duration = Duration::from_secs(1);
+
+/// Keepalive of the command connection: idle time, interval, count. Source: libfranka 0.21, `network.cpp`.
+const KEEPALIVE: (Duration, Duration, u32) = (Duration::from_secs(1), Duration::from_secs(1), 3);
+
+pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
+    // Refused before anything is sent, as the reference client does; the thread asks again for itself.
+    let scheduling = builder.scheduling.clone();
+    scheduling.probe()?;
+
+    let address = resolve(&builder.endpoint).await?;
+    let mut opened = open(address, &builder).await?;
+    let model = model_of(opened.version)?;
+    let (states, published) = watch::channel(opened.first);
+    let (channel, reports) = Channel::start(opened.stream, opened.session, published.clone());
+    opened
+        .handle
+        .records
+        .read_chunk(opened.handle.records.slots())
+        .map(|chunk| chunk.commit_all())
+        .ok();
+    let stats = opened.handle.stats.clone();
+    let bridge = Bridge::new(
+        model,
+        opened.version,
+        opened.handle,
+        opened.bell,
+        channel.clone(),
+        states,
+    );
+    let inputs = bridge.start(reports);
+    Ok(Robot::new(
+        model,
+        opened.version,
+        address,
+        inputs,
+        channel,
+        published,
+        stats,
+    ))
+}
+
+struct Opened {
+    version: Version,
+    stream: Framed<TcpStream, MessageCodec>,
+    session: Session,
+    handle: Handle,
+    bell: AsyncFd<Wake>,
+    first: RobotState,
+}
+
+/// Opens a session, with the version that the policy allows and the robot accepts.
+async fn open(address: SocketAddr, builder: &Builder) -> Result<Opened, ConnectError> {
+    let announced = match builder.versions {
+        VersionPolicy::Exact(version) => version,
+        VersionPolicy::Negotiate => Version::V10,
+    };
+    match open_with(announced, address, builder).await {
+        Err(ConnectError::IncompatibleVersion(refusal))
+            if builder.versions == VersionPolicy::Negotiate =>
+        {
+            match Version::from_number(refusal.server_version) {
+                Some(older) if older != announced => open_with(older, address, builder).await,
+                _ => Err(refusal.into()),
+            }
+        }
+        opened => opened,
+    }
+}
+
+async fn open_with(
+    version: Version,
+    address: SocketAddr,
+    builder: &Builder,
+) -> Result<Opened, ConnectError> {
+    let tcp = dial(address, builder.connect_timeout).await?;
+    let udp = exchange::bind()?;
+    let port = udp.local_addr()?.port();
+    let mut stream = Framed::new(tcp, MessageCodec);
+    let mut session = Session::new(version);
+    timeout(
+        builder.connect_timeout,
+        shake_hands(&mut stream, &mut session, port),
+    )
+    .await
+    .map_err(|_| ConnectError::HandshakeTimeout)??;
+
+    let config = ThreadConfig {
+        scheduling: builder.scheduling.clone(),
+        ..ThreadConfig::default()
+    };
+    let driver = Driver::new(version).with_link_timeout(builder.link_timeout);
+    let mut handle = thread::spawn(config, driver, udp, address.ip(), version)?;
+    let bell = AsyncFd::register(handle.wake.clone())?;
+    let first = timeout(builder.connect_timeout, first_state(&mut handle, &bell))
+        .await
+        .map_err(|_| ConnectError::NoState)??;
+    Ok(Opened {
+        version,
+        stream,
+        session,
+        handle,
+        bell,
+        first,
+    })
+}
+
+/// The model of the robot that speaks `version`.
+fn model_of(version: Version) -> Result<&'static Model, ConnectError> {
+    if version == Version::V10 {
+        Ok(Model::fr3())
+    } else {
+        Err(ConnectError::NoModel {
+            version: version.number(),
+        })
+    }
+}
+
+async fn resolve(endpoint: &Endpoint) -> Result<SocketAddr, ConnectError> {
+    let found = tokio::net::lookup_host((endpoint.host.as_str(), endpoint.port)).await;
+    // The robot's datagrams are IPv4.
+    let address = found
+        .ok()
+        .and_then(|mut addresses| addresses.find(SocketAddr::is_ipv4));
+    address.ok_or_else(|| ConnectError::Network {
+        reason: "Host not found".into(),
+    })
+}
+
+async fn dial(address: SocketAddr, limit: Duration) -> Result<TcpStream, ConnectError> {
+    let stream = match timeout(limit, TcpStream::connect(address)).await {
+        Ok(Ok(stream)) => stream,
+        Ok(Err(error)) => {
+            return Err(match error.kind() {
+                std::io::ErrorKind::ConnectionRefused => ConnectError::Refused,
+                std::io::ErrorKind::TimedOut => ConnectError::Timeout,
+                _ => ConnectError::Network {
+                    reason: reason(&error),
+                },
+            });
+        }
+        Err(_) => return Err(ConnectError::Timeout),
+    };
+    stream.set_nodelay(true)?;
+    let (idle, interval, count) = KEEPALIVE;
+    let keepalive = TcpKeepalive::new()
+        .with_time(idle)
+        .with_interval(interval)
+        .with_retries(count);
+    if let Err(error) = SockRef::from(&stream).set_tcp_keepalive(&keepalive) {
+        tracing::debug!(%error, "no keepalive on the command connection");
+    }
+    Ok(stream)
+}
+
+async fn shake_hands(
+    stream: &mut Framed<TcpStream, MessageCodec>,
+    session: &mut Session,
+    udp_port: u16,
+) -> Result<(), ConnectError> {
+    stream
+        .send(session.connect(udp_port))
+        .await
+        .map_err(broken)?;
+    loop {
+        let frame = match stream.next().await {
+            Some(frame) => frame.map_err(broken)?,
+            None => {
+                return Err(ConnectError::Link {
+                    reason: "libfranka: server closed connection".into(),
+                });
+            }
+        };
+        match session.on_message(frame.message())? {
+            Event::Connected { .. } => return Ok(()),
+            Event::Incompatible(refusal) => return Err(refusal.into()),
+            // Not for us; the answer may still come, until the time is up.
+            _ => {}
+        }
+    }
+}
+
+fn broken(error: StreamError) -> ConnectError {
+    match error {
+        StreamError::Frame(error) => error.into(),
+        StreamError::Io(_) => ConnectError::Link {
+            reason: error.to_string(),
+        },
+    }
+}
+
+/// Waits for the first state: without one there is nothing to control.
+async fn first_state(
+    handle: &mut Handle,
+    bell: &AsyncFd<Wake>,
+) -> Result<RobotState, ConnectError> {
+    loop {
+        bridge::hear(bell).await?;
+        if let Some(state) = handle.states.newest() {
+            return Ok(state);
+        }
+        while let Ok(notice) = handle.notices.pop() {
+            if let Notice::Link(fault) = notice {
+                return Err(fault.into());
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Motions: built, then awaited.
+
+use std::future::IntoFuture;
+use std::pin::Pin;
+use std::task::{Context, Poll};
+
+use franka_rt::law::Gains;
+use franka_rt::lifecycle::{MotionError, MotionReport};
+use franka_rt::session::{Budget, Goal, GoalId, Target, Then, Tolerance};
+use tokio::sync::oneshot;
+
+use crate::Robot;
+use crate::bridge::{Input, Outcome};
+
+/// A motion that has not begun: nothing is sent before it is awaited or detached.
+#[derive(Clone, Debug)]
+#[must_use = "a motion does nothing until it is awaited or detached"]
+pub struct Motion {
+    robot: Robot,
+    goal: Goal,
+}
+
+impl Motion {
+    pub(crate) fn new(robot: Robot, target: Target) -> Self {
+        let gains = match target {
+            Target::Joints(_) => Gains::joint(),
+            Target::Pose(_) | Target::Rest => Gains::cartesian(),
+        };
+        let goal = Goal {
+            id: robot.next_goal(),
+            target,
+            then: Then::Finish,
+            budget: Budget::of(robot.model().joint_limits()),
+            gains,
+            tolerance: Tolerance::default(),
+        };
+        Self { robot, goal }
+    }
+
+    /// Walks the same path `factor` times as fast as by default: velocities scale with it, accelerations with its square,
+    /// jerks with its cube. Limits beyond the robot's are refused when the motion begins.
+    pub fn speed(mut self, factor: f64) -> Self {
+        self.goal.budget = self.goal.budget.scaled(factor);
+        self
+    }
+
+    /// Replaces the limits of the motion; by default those of [`Budget::of`].
+    pub fn limits(mut self, budget: Budget) -> Self {
+        self.goal.budget = budget;
+        self
+    }
+
+    /// Sets the stiffness at the end effector, x y z `[N/m]` and about x y z `[N m/rad]`, base axes; dampings keep their
+    /// ratio.
+    pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
+        self.goal.gains = self.goal.gains.with_cartesian_stiffness(stiffness);
+        self
+    }
+
+    /// Replaces all gains; by default [`Gains::cartesian`] for poses and [`Gains::joint`] for joint positions.
+    pub fn gains(mut self, gains: Gains) -> Self {
+        self.goal.gains = gains;
+        self
+    }
+
+    /// How near to the target counts as arrived; 1 mm and 1 mrad by default.
+    pub fn tolerance(mut self, tolerance: Tolerance) -> Self {
+        self.goal.tolerance = tolerance;
+        self
+    }
+
+    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log.
+    pub fn detach(self) {
+        let (done, _) = oneshot::channel();
+        self.robot.send(Input::Submit {
+            goal: self.goal,
+            done,
+        });
+    }
+
+    /// A way to brake the motion from elsewhere.
+    pub fn canceller(&self) -> Canceller {
+        Canceller {
+            robot: self.robot.clone(),
+            goal: self.goal.id,
+        }
+    }
+}
+
+impl IntoFuture for Motion {
+    type Output = Result<MotionReport, MotionError>;
+    type IntoFuture = Moving;
+
+    fn into_future(self) -> Moving {
+        Moving::new(self.robot, self.goal)
+    }
+}
+
+/// Brakes a motion. Clones brake the same one.
+#[derive(Clone, Debug)]
+pub struct Canceller {
+    robot: Robot,
+    goal: GoalId,
+}
+
+impl Canceller {
+    /// Brakes the motion, which resolves as [`MotionError::Stopped`]. Without effect before it begins and after it has
+    /// ended or was superseded.
+    pub fn cancel(&self) {
+        self.robot.send(Input::Cancel { goal: self.goal });
+    }
+}
+
+/// A motion as a future. It begins with the first poll and resolves when the arm has arrived, rests, and is no longer
+/// controlled; or with the reason why not.
+///
+/// # Cancel safety
+/// Dropping it brakes the arm within the motion's budget, in the background.
+#[derive(Debug)]
+#[must_use = "futures do nothing unless polled"]
+pub struct Moving {
+    robot: Robot,
+    stage: Stage,
+    goal: GoalId,
+}
+
+#[derive(Debug)]
+enum Stage {
+    /// Boxed: a goal is larger than everything else here.
+    Ready(Box<Goal>),
+    Begun(oneshot::Receiver<Outcome>),
+    Over,
+}
+
+impl Moving {
+    pub(crate) fn new(robot: Robot, goal: Goal) -> Self {
+        Self {
+            robot,
+            goal: goal.id,
+            stage: Stage::Ready(Box::new(goal)),
+        }
+    }
+
+    pub(crate) fn id(&self) -> GoalId {
+        self.goal
+    }
+}
+
+impl Future for Moving {
+    type Output = Outcome;
+
+    fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Outcome> {
+        if let Stage::Ready(goal) = &self.stage {
+            let (done, outcome) = oneshot::channel();
+            self.robot.send(Input::Submit { goal: **goal, done });
+            self.stage = Stage::Begun(outcome);
+        }
+        let Stage::Begun(outcome) = &mut self.stage else {
+            panic!("a motion is not polled after it has resolved");
+        };
+        let Poll::Ready(outcome) = Pin::new(outcome).poll(context) else {
+            return Poll::Pending;
+        };
+        self.stage = Stage::Over;
+        Poll::Ready(outcome.unwrap_or_else(|_| Robot::closed()))
+    }
+}
+
+impl Drop for Moving {
+    fn drop(&mut self) {
+        if matches!(self.stage, Stage::Begun(_)) {
+            self.robot.send(Input::Cancel { goal: self.goal });
+        }
+    }
+}

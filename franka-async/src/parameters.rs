@@ -1,0 +1,139 @@
+//! Parameters of the robot, and recovery: requests with one answer.
+//!
+//! The robot takes parameters between motions and refuses them during one.
+
+use std::time::Duration;
+
+use franka_model::transform;
+use franka_proto::{CollisionBehavior, Load, Request};
+
+use crate::channel::Answer;
+use crate::{CommandError, Pose, Robot};
+
+/// Time for an answer that the robot gives at once.
+const ANSWER: Duration = Duration::from_secs(5);
+
+/// Time for a recovery, which moves brakes.
+const RECOVERY: Duration = Duration::from_secs(30);
+
+impl Robot {
+    /// Sets the torques and forces at which the robot reports contact (lower) and stops itself (upper).
+    ///
+    /// # Errors
+    /// [`CommandError`].
+    ///
+    /// # Cancel safety
+    /// Once polled the request may be carried out all the same.
+    pub async fn set_collision_behavior(
+        &self,
+        behavior: CollisionBehavior,
+    ) -> Result<(), CommandError> {
+        self.set(Request::SetCollisionBehavior(behavior)).await
+    }
+
+    /// Sets the stiffness of the robot's own joint impedance controller, `[N m/rad]`, each in [0, 14250].
+    ///
+    /// # Errors
+    /// [`CommandError`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::set_collision_behavior`].
+    pub async fn set_joint_impedance(&self, stiffness: [f64; 7]) -> Result<(), CommandError> {
+        self.set(Request::SetJointImpedance(stiffness)).await
+    }
+
+    /// Sets the stiffness of the robot's own Cartesian impedance controller in the stiffness frame: x y z in [10, 3000]
+    /// N/m, roll pitch yaw in [1, 300] N m/rad.
+    ///
+    /// # Errors
+    /// [`CommandError`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::set_collision_behavior`].
+    pub async fn set_cartesian_impedance(&self, stiffness: [f64; 6]) -> Result<(), CommandError> {
+        self.set(Request::SetCartesianImpedance(stiffness)).await
+    }
+
+    /// Sets which directions are free in hand guiding: x y z, roll pitch yaw, and the elbow.
+    ///
+    /// # Errors
+    /// [`CommandError`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::set_collision_behavior`].
+    pub async fn set_guiding_mode(&self, free: [bool; 6], elbow: bool) -> Result<(), CommandError> {
+        self.set(Request::SetGuidingMode {
+            guiding_mode: free,
+            nullspace: elbow,
+        })
+        .await
+    }
+
+    /// Sets the stiffness frame in the end effector's, `EE_T_K`.
+    ///
+    /// # Errors
+    /// [`CommandError`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::set_collision_behavior`].
+    pub async fn set_k(&self, ee_t_k: Pose) -> Result<(), CommandError> {
+        self.set(Request::SetEEToK(transform::array(&ee_t_k))).await
+    }
+
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`.
+    ///
+    /// # Errors
+    /// [`CommandError`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::set_collision_behavior`].
+    pub async fn set_ee(&self, ne_t_ee: Pose) -> Result<(), CommandError> {
+        self.set(Request::SetNEToEE(transform::array(&ne_t_ee)))
+            .await
+    }
+
+    /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame `[m]`, inertia about
+    /// it `[kg m^2]`, column-major.
+    ///
+    /// # Errors
+    /// [`CommandError`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::set_collision_behavior`].
+    pub async fn set_load(&self, load: Load) -> Result<(), CommandError> {
+        self.set(Request::SetLoad(load)).await
+    }
+
+    /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot takes motions again. Succeeds
+    /// without effect if there is nothing to recover from.
+    ///
+    /// # Errors
+    /// [`CommandError`]; a refusal that names manual recovery has to be solved at the robot.
+    ///
+    /// # Cancel safety
+    /// See [`Self::set_collision_behavior`].
+    pub async fn recover(&self) -> Result<(), CommandError> {
+        self.channel()
+            .call(Request::AutomaticErrorRecovery, RECOVERY)
+            .await
+            .map(|_| ())
+    }
+
+    /// The robot's description of itself, URDF. Protocol 10 only.
+    ///
+    /// # Errors
+    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
+    ///
+    /// # Cancel safety
+    /// Nothing is lost but the answer.
+    pub async fn urdf(&self) -> Result<String, CommandError> {
+        match self.channel().call(Request::GetRobotModel, ANSWER).await? {
+            Answer::Model(text) => Ok(String::from_utf8_lossy(&text).into_owned()),
+            Answer::Done => unreachable!("the session matches replies to the commands they answer"),
+        }
+    }
+
+    async fn set(&self, request: Request) -> Result<(), CommandError> {
+        self.channel().call(request, ANSWER).await.map(|_| ())
+    }
+}

@@ -1,0 +1,206 @@
+//! The handle that programs hold.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use franka_model::{Model, transform};
+use franka_proto::{RobotState, Version};
+use franka_rt::driver::Record;
+use franka_rt::session::{GoalId, Target};
+use franka_rt::stats::Stats;
+use tokio::sync::{broadcast, oneshot, watch};
+
+use crate::bridge::{Input, Inputs, Outcome};
+use crate::builder::{Builder, Endpoint};
+use crate::channel::Channel;
+use crate::{ConnectError, Follow, Motion, MotionError, Pose};
+
+/// A connected robot.
+///
+/// A cheap handle: clones share one connection, from any task or thread. A newer motion supersedes the one that runs.
+/// Dropping the last handle brakes the arm, ends the motion and closes the connection, in the background;
+/// [`Robot::shutdown`] does the same and can be awaited. Motions in progress are handles too.
+///
+/// If the runtime ends first, nobody is left to brake: the robot then misses its commands and stops by itself, with a
+/// reflex. Await [`Robot::shutdown`] before the program ends.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    model: &'static Model,
+    version: Version,
+    address: SocketAddr,
+    inputs: Inputs,
+    channel: Channel,
+    states: watch::Receiver<RobotState>,
+    stats: Arc<Stats>,
+    goals: AtomicU64,
+}
+
+impl Robot {
+    pub(crate) fn new(
+        model: &'static Model,
+        version: Version,
+        address: SocketAddr,
+        inputs: Inputs,
+        channel: Channel,
+        states: watch::Receiver<RobotState>,
+        stats: Arc<Stats>,
+    ) -> Self {
+        let goals = AtomicU64::new(0);
+        Self {
+            shared: Arc::new(Shared {
+                model,
+                version,
+                address,
+                inputs,
+                channel,
+                states,
+                stats,
+                goals,
+            }),
+        }
+    }
+
+    /// Connects with the options that [`Robot::builder`] begins with.
+    ///
+    /// # Errors
+    /// [`ConnectError`]. Without a real-time kernel this is [`ConnectError::Realtime`]: see [`Builder::realtime`].
+    ///
+    /// # Cancel safety
+    /// Dropping the future closes whatever was opened.
+    pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError> {
+        Self::builder(endpoint).connect().await
+    }
+
+    /// Options of a connection to the robot at `endpoint`.
+    pub fn builder(endpoint: impl Into<Endpoint>) -> Builder {
+        Builder::new(endpoint.into())
+    }
+
+    /// The newest state, at most a few milliseconds old while the link is alive.
+    pub fn state(&self) -> RobotState {
+        *self.shared.states.borrow()
+    }
+
+    /// The newest state as it changes, in motion or not. Closes when the connection does.
+    ///
+    /// Do not hold its borrow for long: the task that publishes states waits for it. Control does not.
+    pub fn states(&self) -> watch::Receiver<RobotState> {
+        self.shared.states.clone()
+    }
+
+    /// What every cycle of the control thread saw and did, one record per state. A listener that lags more than two
+    /// seconds behind is told how many it missed.
+    pub fn records(&self) -> broadcast::Receiver<Record> {
+        self.shared.inputs.records.subscribe()
+    }
+
+    /// The measured pose of the end effector, `O_T_EE` of the newest state.
+    pub fn pose(&self) -> Pose {
+        // A robot whose end effector is not set up as a rigid transformation shows its flange's pose instead.
+        let state = self.state();
+        transform::isometry_from_array(&state.O_T_EE).unwrap_or_else(|| {
+            let flange = franka_model::Frame::Flange;
+            let pose = self.shared.model.pose(
+                flange,
+                &state.q.into(),
+                &franka_model::EndEffector::default(),
+            );
+            transform::isometry(&pose).expect("poses of the model's own frames are rigid")
+        })
+    }
+
+    /// The model of the connected robot.
+    pub fn model(&self) -> &'static Model {
+        self.shared.model
+    }
+
+    /// The protocol version that the robot speaks.
+    pub fn version(&self) -> Version {
+        self.shared.version
+    }
+
+    /// Where the robot is.
+    pub fn address(&self) -> SocketAddr {
+        self.shared.address
+    }
+
+    /// Counters and histograms of the control thread, live.
+    pub fn stats(&self) -> &Stats {
+        &self.shared.stats
+    }
+
+    /// A motion of the end effector to `pose` in the base frame: a straight line and a rotation about one axis if it
+    /// begins at rest. The arm is compliant on the way, see [`Motion::stiffness`].
+    pub fn move_to(&self, pose: Pose) -> Motion {
+        Motion::new(self.clone(), Target::Pose(pose))
+    }
+
+    /// A motion of the joints to `q`, `[rad]`; all joints arrive together.
+    pub fn move_joints(&self, q: [f64; 7]) -> Motion {
+        Motion::new(self.clone(), Target::Joints(q))
+    }
+
+    /// Follows the newest of a stream of poses until the sender is dropped, and then comes to rest at the last one. The
+    /// sender sets its own pace, and may step as far as it likes: the arm moves within its budget.
+    pub fn follow(&self, targets: watch::Receiver<Pose>) -> Follow {
+        Follow::new(self.clone(), targets)
+    }
+
+    /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if nothing moves. The
+    /// motion itself resolves as [`MotionError::Stopped`].
+    ///
+    /// # Errors
+    /// [`MotionError`] if the motion ended otherwise, for instance by a reflex; or [`MotionError::Superseded`] by a goal
+    /// that came after the stop.
+    ///
+    /// # Cancel safety
+    /// Once polled, the arm is braked even if the future is dropped.
+    pub async fn stop(&self) -> Result<(), MotionError> {
+        let (done, outcome) = oneshot::channel();
+        let goal = self.next_goal();
+        self.send(Input::Stop { goal, done });
+        match outcome.await {
+            Ok(outcome) => outcome.map(|_| ()),
+            // Nothing moved.
+            Err(_) => Ok(()),
+        }
+    }
+
+    /// Brakes, ends the motion, ends the control thread and closes the connection. Every other handle is then closed.
+    ///
+    /// # Cancel safety
+    /// Once polled, it goes on in the background.
+    pub async fn shutdown(&self) {
+        let (done, ended) = oneshot::channel();
+        self.send(Input::Shutdown { done });
+        // An error means that the bridge has ended already.
+        let _ = ended.await;
+    }
+
+    pub(crate) fn channel(&self) -> &Channel {
+        &self.shared.channel
+    }
+
+    /// A name for a goal that was never used before.
+    pub(crate) fn next_goal(&self) -> GoalId {
+        GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
+    }
+
+    /// Sends to the bridge. One that has ended drops the input, and with it the sender of its answer, which is how
+    /// whoever waits hears of it.
+    pub(crate) fn send(&self, input: Input) {
+        let _ = self.shared.inputs.queue.send(input);
+    }
+
+    pub(crate) fn closed() -> Outcome {
+        Err(MotionError::ConnectionClosed {
+            reason: "the robot's handles were closed".to_owned(),
+        })
+    }
+}
