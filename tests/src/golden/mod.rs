@@ -27,6 +27,9 @@ mod model;
 mod node;
 mod report;
 mod run;
+mod wire;
+mod wire_datagrams;
+mod wire_table;
 
 pub use node::{Malformed, Node};
 pub use report::{Case, Failure, Report, Worst};
@@ -34,6 +37,18 @@ pub use run::{Outcome, Suite, Verdict, failed, run};
 
 /// Every file of vectors that the project checks, in the order of the crates.
 pub const SUITES: &[Suite] = &[
+    Suite {
+        file: "wire_v10.json",
+        check: wire_table::headers,
+    },
+    Suite {
+        file: "wire_v5.json",
+        check: wire_table::headers,
+    },
+    Suite {
+        file: "wire_golden.json",
+        check: wire::messages,
+    },
     Suite {
         file: "model/model_vectors_fr3.json",
         check: model::rigid_body,
