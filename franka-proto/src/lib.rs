@@ -1,4 +1,70 @@
-//! Wire protocol of Franka robots as values: bytes to meaning and back, for both sides.
+//! The wire protocol (FCI) of Franka robots as values: bytes to meaning and back, for both sides.
+//!
+//! Protocols 10 (Franka Research 3) and 5 (Franka Emika Robot) in one crate. There is no input or
+//! output in here, no clock, no thread and no allocation: bytes go in, values come out, and the
+//! other way round. The real-time thread, an asynchronous shell, a simulator and tests drive the
+//! same code.
+//!
+//! ```text
+//!            TCP stream                                    UDP datagrams
+//!  bytes -> framing::next_message -> Message     bytes <-> wire::RobotState<..>   <-> RobotState
+//!        -> client::Session -> Event             bytes <-> wire::RobotCommand<..> <-> RobotCommand
+//!  Request -> client::Session -> Outgoing
+//!        -> server::Session -> Event; Reply -> Outgoing
+//!                         \                          /
+//!                          Version, and its one table
+//! ```
+//!
+//! | part | what it holds |
+//! |---|---|
+//! | [`Version`] | the versions, and the table of what differs between them |
+//! | [`wire`] | the packed structs, declared once, with their offsets asserted |
+//! | [`RobotState`], [`RobotCommand`] | the datagrams as `f64`, whatever the version |
+//! | [`framing`] | stream bytes in, whole messages out, with a bound |
+//! | [`Request`], [`Reply`] | the messages as meaning |
+//! | [`client`], [`server`] | the two sides of a connection as state machines |
+//! | [`Refusal`], [`ControlFailure`], [`IncompatibleVersion`] | libfranka's texts, to the byte |
+//!
+//! # Example
+//!
+//! A client and a robot in one thread:
+//!
+//! ```
+//! use franka_proto::framing::next_message;
+//! use franka_proto::{Reply, Request, StopStatus, Version, client, server};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut client = client::Session::new(Version::V10);
+//! let mut robot = server::Session::new(Version::V10);
+//!
+//! let hello = client.connect(4711);
+//! let message = next_message(hello.as_bytes())?.expect("sent whole");
+//! if let server::Event::Connect { udp_port, reply, .. } = robot.on_message(message)? {
+//!     assert_eq!(udp_port, 4711); // states go there from now on
+//!     client.on_message(next_message(reply.as_bytes())?.expect("sent whole"))?;
+//! }
+//!
+//! let stop = client.request(&Request::StopMove)?;
+//! robot.on_message(next_message(stop.as_bytes())?.expect("sent whole"))?;
+//! let answer = robot.reply(stop.id(), Reply::StopMove(StopStatus::Success))?;
+//! let event = client.on_message(next_message(answer.as_bytes())?.expect("sent whole"))?;
+//! assert!(matches!(event, client::Event::Reply { id, .. } if id == stop.id()));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Panics and bad bytes
+//!
+//! Decoding never panics, whatever the bytes; what has no meaning is an error that tells what came
+//! and what was expected. Lengths are checked before anything is read, and a message that announces
+//! more than [`framing::MAX_MESSAGE_SIZE`] is refused before it is collected.
+//!
+//! # What is not here
+//!
+//! Sockets and deadlines; which state to accept and when to answer it (that is the cycle); limits
+//! and filters; the Franka Hand and the vacuum gripper; the three commands that only protocol 5 has
+//! (`GetCartesianLimit`, `SetFilters`, `LoadModelLibrary`), which the table knows by number and
+//! decoding names in its error.
 #![no_std]
 #![forbid(unsafe_code)]
 
