@@ -1,0 +1,113 @@
+//! What a simulated robot is like before a client connects.
+
+use franka_model::{JointVector, Load, READY, RobotKind};
+use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
+
+/// The make-up of one simulated robot. [`Default`] is a Franka Research 3 with a bare flange in the
+/// ready pose, as strict as a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Config {
+    /// Which arm.
+    pub kind: RobotKind,
+    /// Joint positions at the start, `[rad]`.
+    pub q: JointVector,
+    /// What is mounted on the flange and known to the robot, as set up in Desk.
+    pub tool: Tool,
+    /// What the flange carries on top and nobody has declared; a client does that with `SetLoad`.
+    pub payload: Load,
+    /// Sensor noise.
+    pub noise: Noise,
+    /// Seed of all randomness: the same seed and the same input give the same states.
+    pub seed: u64,
+    /// `message_id` of the last cycle before the first: milliseconds since the robot started.
+    pub clock: u64,
+    /// Whether commands and motion outside the limits end in a reflex. Without, the arm does what
+    /// it physically can.
+    pub enforce_limits: bool,
+    /// Whether 20 lost commands in a row end in a reflex. Without, a cycle that has no command is
+    /// no cycle for the motion generator: it keeps its setpoint until the next command, so that
+    /// a client may be slower than 1 kHz or stand in a debugger.
+    pub enforce_communication: bool,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            kind: RobotKind::Fr3,
+            q: READY,
+            tool: Tool::NONE,
+            payload: Load::NONE,
+            noise: Noise::NONE,
+            seed: 1,
+            clock: 100_000,
+            enforce_limits: true,
+            enforce_communication: true,
+        }
+    }
+}
+
+/// A tool on the flange: the nominal end effector of Desk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tool {
+    /// Pose of the nominal end effector in the flange frame, `F_T_NE`.
+    pub f_t_ne: Matrix4<f64>,
+    /// Its mass, centre of mass and inertia: `m_ee`, `F_x_Cee`, `I_ee`.
+    pub load: Load,
+}
+
+impl Tool {
+    /// The bare flange.
+    pub const NONE: Self = Self {
+        f_t_ne: Matrix4::new(
+            1.0, 0.0, 0.0, 0.0, //
+            0.0, 1.0, 0.0, 0.0, //
+            0.0, 0.0, 1.0, 0.0, //
+            0.0, 0.0, 0.0, 1.0,
+        ),
+        load: Load::NONE,
+    };
+
+    /// The Franka Hand: turned by -45 degrees about the flange axis, fingertips 0.1034 m out, and
+    /// the mass that Desk declares for it (0.73 kg; the description files say 0.7126 kg).
+    pub fn hand() -> Self {
+        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), -core::f64::consts::FRAC_PI_4);
+        let mut f_t_ne = turn.to_homogeneous();
+        f_t_ne[(2, 3)] = 0.1034;
+        Self {
+            f_t_ne,
+            load: Load {
+                mass: 0.73,
+                com: Vector3::new(-0.01, 0.0, 0.03),
+                inertia: Matrix3::from_diagonal(&Vector3::new(0.001, 0.0025, 0.0017)),
+            },
+        }
+    }
+}
+
+/// Standard deviations of the sensors' noise, white from one millisecond to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Of measured joint positions, `[rad]`.
+    pub position: f64,
+    /// Of measured joint velocities, `[rad/s]`.
+    pub velocity: f64,
+    /// Of measured joint torques, `[N·m]`.
+    pub torque: f64,
+}
+
+impl Noise {
+    /// Perfect sensors.
+    pub const NONE: Self = Self {
+        position: 0.0,
+        velocity: 0.0,
+        torque: 0.0,
+    };
+
+    /// Sensors with a noise that a controller has to cope with. The magnitudes are choices of this
+    /// simulator, not measurements.
+    pub const MODERATE: Self = Self {
+        position: 5e-6,
+        velocity: 2e-3,
+        torque: 0.05,
+    };
+}

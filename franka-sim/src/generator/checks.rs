@@ -1,0 +1,173 @@
+//! Bounds on commanded motion.
+
+use franka_model::JointVector;
+use franka_model::Twist;
+use franka_model::limits::MotionLimits;
+use franka_proto::{Errors, RobotError};
+
+use super::Arm;
+use crate::signal::{CartesianSignal, ElbowSignal, JointSignal, halves};
+
+/// Which derivatives of a command are too large.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Broken {
+    pub(super) velocity: bool,
+    pub(super) acceleration: bool,
+    pub(super) jerk: bool,
+}
+
+impl Broken {
+    /// Whether there is any.
+    pub(super) fn any(self) -> bool {
+        self.velocity || self.acceleration || self.jerk
+    }
+
+    /// What both find.
+    fn and(self, other: Self) -> Self {
+        Self {
+            velocity: self.velocity && other.velocity,
+            acceleration: self.acceleration && other.acceleration,
+            jerk: self.jerk && other.jerk,
+        }
+    }
+
+    /// What either finds.
+    fn or(self, other: Self) -> Self {
+        Self {
+            velocity: self.velocity || other.velocity,
+            acceleration: self.acceleration || other.acceleration,
+            jerk: self.jerk || other.jerk,
+        }
+    }
+
+    /// The errors that the derivatives stand for.
+    pub(super) fn named(
+        self,
+        velocity: RobotError,
+        acceleration: RobotError,
+        jerk: RobotError,
+    ) -> Errors {
+        [
+            (self.velocity, velocity),
+            (self.acceleration, acceleration),
+            (self.jerk, jerk),
+        ]
+        .into_iter()
+        .filter_map(|(broken, error)| broken.then_some(error))
+        .collect()
+    }
+}
+
+/// Judges a step from the exact history and, if that fails, from the published one.
+///
+/// The state carries the history in single precision. A client that limits its commands against
+/// the state is exact there and, at 3 rad, up to 240 rad/s³ off from the exact history; a client
+/// with a generator of its own is the other way round. Robots refuse neither, so a bound counts as
+/// broken only if it is broken from both.
+fn judge<S: Copy>(
+    exact: &S,
+    published: impl Fn(S) -> S,
+    step: impl Fn(&S) -> (S, Broken),
+) -> (S, Broken) {
+    let (next, broken) = step(exact);
+    if !broken.any() {
+        return (next, broken);
+    }
+    let (_, from_published) = step(&published(*exact));
+    (next, broken.and(from_published))
+}
+
+/// One cycle of a joint signal: where `step` leads, and what that breaks.
+pub(super) fn joints(
+    from: &JointSignal,
+    arm: &Arm<'_>,
+    step: impl Fn(JointSignal) -> (JointSignal, JointVector),
+) -> (JointSignal, Broken) {
+    judge(from, JointSignal::published, |from| {
+        let (next, jerk) = step(*from);
+        (next, joint_bounds(from, &next, &jerk, arm))
+    })
+}
+
+/// What a step of the joints breaks.
+///
+/// The velocity envelope is that of the position before the step: a client can know no other.
+pub(super) fn joint_bounds(
+    from: &JointSignal,
+    next: &JointSignal,
+    jerk: &JointVector,
+    arm: &Arm<'_>,
+) -> Broken {
+    let limits = arm.model.joint_limits();
+    let (lower, upper) = limits.velocity_envelope(&from.q, 0.0);
+    let mut broken = Broken::default();
+    for i in 0..7 {
+        broken.velocity |= next.dq[i] > upper[i] + ROUNDING || next.dq[i] < lower[i] - ROUNDING;
+        broken.acceleration |= next.ddq[i].abs() > limits.acceleration[i];
+        broken.jerk |= jerk[i].abs() > limits.jerk[i];
+    }
+    broken
+}
+
+/// One cycle of a Cartesian signal: where `step` leads, and what that breaks.
+pub(super) fn cartesian(
+    from: &CartesianSignal,
+    arm: &Arm<'_>,
+    step: impl Fn(CartesianSignal) -> (CartesianSignal, Twist),
+) -> (CartesianSignal, Broken) {
+    let limits = arm.model.cartesian_limits();
+    judge(from, CartesianSignal::published, |from| {
+        let (next, jerk) = step(*from);
+        let (v, w) = halves(&next.twist);
+        let (a, alpha) = halves(&next.acceleration);
+        let (j, zeta) = halves(&jerk);
+        let translation = bounds(&limits.translation, v.norm(), a.norm(), j.norm());
+        let rotation = bounds(&limits.rotation, w.norm(), alpha.norm(), zeta.norm());
+        (next, translation.or(rotation))
+    })
+}
+
+/// One cycle of the elbow: where `step` leads, and what that breaks.
+pub(super) fn elbow(
+    from: &ElbowSignal,
+    arm: &Arm<'_>,
+    step: impl Fn(ElbowSignal) -> (ElbowSignal, f64),
+) -> (ElbowSignal, Broken) {
+    let limits = &arm.model.cartesian_limits().elbow;
+    judge(from, ElbowSignal::published, |from| {
+        let (next, jerk) = step(*from);
+        let broken = bounds(
+            limits,
+            next.velocity.abs(),
+            next.acceleration.abs(),
+            jerk.abs(),
+        );
+        (next, broken)
+    })
+}
+
+/// Whether the elbow angle is in the range of joint 3.
+pub(super) fn elbow_in_range(elbow: &ElbowSignal, arm: &Arm<'_>) -> bool {
+    let limits = arm.model.joint_limits();
+    (limits.hard_lower[2]..=limits.hard_upper[2]).contains(&elbow.angle)
+}
+
+/// The error of desired joint positions outside their range. The FR3 reports it by one name
+/// whatever was commanded (FCI documentation, since system 5.7.2).
+pub(super) fn range(joints: &JointSignal, arm: &Arm<'_>) -> Option<RobotError> {
+    let limits = arm.model.joint_limits();
+    let outside =
+        (0..7).any(|i| joints.q[i] < limits.hard_lower[i] || joints.q[i] > limits.hard_upper[i]);
+    outside.then_some(RobotError::JointPositionLimitsViolation)
+}
+
+fn bounds(limits: &MotionLimits, velocity: f64, acceleration: f64, jerk: f64) -> Broken {
+    Broken {
+        velocity: velocity > limits.velocity,
+        acceleration: acceleration > limits.acceleration,
+        jerk: jerk > limits.jerk,
+    }
+}
+
+/// Where the envelope is zero, at a position limit, a motion of rounding errors is none, `[rad/s]`.
+const ROUNDING: f64 = 1e-9;

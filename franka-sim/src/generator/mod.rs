@@ -1,0 +1,349 @@
+//! What the robot makes of the motion commands of one cycle.
+//!
+//! ```text
+//! command | lost | finish ──> commanded signal ──> checks ──> [inverse kinematics ──> checks]
+//!                                                                   └──> Desired, Errors
+//! ```
+//!
+//! All violated bounds of a cycle are reported together, as robots report them. Thresholds are the
+//! nominal limits; which error a bound raises depends on how far its derivative is from what the
+//! client commands (FCI documentation, control parameters and error list).
+
+mod checks;
+mod ik;
+mod point_to_point;
+
+pub(crate) use point_to_point::PointToPoint;
+
+use franka_model::{EndEffector, Frame, JointVector, Model, Twist, elbow, rotation, transform};
+use franka_proto::{Errors, MoveGeneratorMode, RobotCommand, RobotError};
+
+use crate::signal::{CartesianSignal, ElbowSignal, JointSignal};
+
+/// What the controllers follow and the state publishes as desired and commanded.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Desired {
+    /// `q_d`, `dq_d`, `ddq_d`.
+    pub(crate) joints: JointSignal,
+    /// `O_T_EE_c`, `O_dP_EE_c`, `O_ddP_EE_c`.
+    pub(crate) cartesian: CartesianSignal,
+    /// `elbow_c[0]`, `delbow_c[0]`, `ddelbow_c[0]`.
+    pub(crate) elbow: ElbowSignal,
+}
+
+impl Desired {
+    /// At rest at `q`.
+    pub(crate) fn resting(arm: &Arm<'_>, q: JointVector) -> Self {
+        let mut desired = Self {
+            joints: JointSignal::resting(q),
+            cartesian: CartesianSignal::resting(nalgebra::Isometry3::identity()),
+            elbow: ElbowSignal::default(),
+        };
+        desired.follow_joints(arm);
+        desired
+    }
+
+    /// Takes pose and elbow from the joints, without motion of their own.
+    pub(crate) fn follow_joints(&mut self, arm: &Arm<'_>) {
+        self.cartesian = CartesianSignal::resting(arm.pose(&self.joints.q));
+        self.elbow = ElbowSignal::resting(self.joints.q[2]);
+    }
+}
+
+/// Kinematics and limits of the arm with the frames that the client has set.
+#[derive(Clone, Copy)]
+pub(crate) struct Arm<'a> {
+    pub(crate) model: &'static Model,
+    pub(crate) frames: &'a EndEffector,
+}
+
+impl Arm<'_> {
+    /// Pose of the end effector at `q`.
+    pub(crate) fn pose(&self, q: &JointVector) -> nalgebra::Isometry3<f64> {
+        let matrix = self.model.pose(Frame::EndEffector, q, self.frames);
+        // Frames are rigid transforms: setters refuse anything else.
+        transform::isometry(&matrix).unwrap_or_else(nalgebra::Isometry3::identity)
+    }
+}
+
+/// What arrived for a cycle.
+#[derive(Clone, Copy)]
+pub(crate) enum Input<'a> {
+    /// The client's first command of the motion.
+    First(&'a RobotCommand),
+    /// A later one.
+    Next(&'a RobotCommand),
+    /// Nothing in time.
+    Lost,
+    /// Nothing to come: the last command stands still from now on. It shows whether a motion may
+    /// finish.
+    Rest,
+}
+
+impl<'a> Input<'a> {
+    fn command(&self) -> Option<&'a RobotCommand> {
+        match *self {
+            Self::First(command) | Self::Next(command) => Some(command),
+            Self::Lost | Self::Rest => None,
+        }
+    }
+
+    fn is_first(&self) -> bool {
+        matches!(self, Self::First(_))
+    }
+}
+
+/// A command that is no command: a number in it is not finite, or its flags make no sense.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct InvalidInput;
+
+/// Advances `before` by one cycle of `generator`: what is desired then, and which bounds that
+/// breaks.
+pub(crate) fn advance(
+    generator: MoveGeneratorMode,
+    input: Input<'_>,
+    before: &Desired,
+    arm: &Arm<'_>,
+) -> Result<(Desired, Errors), InvalidInput> {
+    match generator {
+        MoveGeneratorMode::JointPosition => joint_position(input, before, arm),
+        MoveGeneratorMode::JointVelocity => joint_velocity(input, before, arm),
+        MoveGeneratorMode::CartesianPosition => cartesian_position(input, before, arm),
+        MoveGeneratorMode::CartesianVelocity => cartesian_velocity(input, before, arm),
+        MoveGeneratorMode::None => Ok((*before, Errors::NONE)),
+    }
+}
+
+fn joint_position(
+    input: Input<'_>,
+    before: &Desired,
+    arm: &Arm<'_>,
+) -> Result<(Desired, Errors), InvalidInput> {
+    use RobotError as E;
+    let target = input.command().map(|c| finite(&c.q_c)).transpose()?;
+    if let (true, Some(q_c)) = (input.is_first(), &target)
+        && (JointVector::from(*q_c) - before.joints.q).amax() > START_JOINT
+    {
+        return Ok((
+            *before,
+            E::JointPositionMotionGeneratorStartPoseInvalid.into(),
+        ));
+    }
+    let (joints, broken) = checks::joints(&before.joints, arm, |from| match (&target, input) {
+        (Some(q_c), _) => from.to_position(&JointVector::from(*q_c)),
+        (None, Input::Rest) => from.to_position(&before.joints.q),
+        (None, _) => (from.extrapolated(), JointVector::zeros()),
+    });
+    let mut errors = broken.named(
+        E::JointMotionGeneratorVelocityLimitsViolation,
+        E::JointMotionGeneratorVelocityDiscontinuity,
+        E::JointMotionGeneratorAccelerationDiscontinuity,
+    );
+    errors.extend(checks::range(&joints, arm));
+    Ok((following(joints, arm), errors))
+}
+
+fn joint_velocity(
+    input: Input<'_>,
+    before: &Desired,
+    arm: &Arm<'_>,
+) -> Result<(Desired, Errors), InvalidInput> {
+    use RobotError as E;
+    let target = input.command().map(|c| finite(&c.dq_c)).transpose()?;
+    let (joints, broken) = checks::joints(&before.joints, arm, |from| match (&target, input) {
+        (Some(dq_c), _) => from.to_velocity(&JointVector::from(*dq_c)),
+        (None, Input::Rest) => from.to_velocity(&JointVector::zeros()),
+        (None, _) => (from.extrapolated(), JointVector::zeros()),
+    });
+    // Positions are the integral of what was commanded, not what a rounded history says.
+    let joints = JointSignal {
+        q: before.joints.q + joints.dq * crate::signal::CYCLE,
+        ..joints
+    };
+    let mut errors = broken.named(
+        E::JointMotionGeneratorVelocityLimitsViolation,
+        E::JointMotionGeneratorAccelerationDiscontinuity,
+        E::JointMotionGeneratorAccelerationDiscontinuity,
+    );
+    errors.extend(checks::range(&joints, arm));
+    Ok((following(joints, arm), errors))
+}
+
+fn cartesian_position(
+    input: Input<'_>,
+    before: &Desired,
+    arm: &Arm<'_>,
+) -> Result<(Desired, Errors), InvalidInput> {
+    use RobotError as E;
+    let target = match input.command() {
+        Some(command) => match transform::isometry_from_array(&finite(&command.O_T_EE_c)?) {
+            Some(pose) => Some(pose),
+            None => {
+                let error = E::CartesianPositionMotionGeneratorInvalidFrameFlag;
+                return Ok((*before, error.into()));
+            }
+        },
+        None => None,
+    };
+    let start_error = target.filter(|_| input.is_first()).filter(|pose| {
+        let now = &before.cartesian.pose;
+        (pose.translation.vector - now.translation.vector).norm() > START_TRANSLATION
+            || rotation::error(&pose.rotation, &now.rotation).norm() > START_ROTATION
+    });
+    if start_error.is_some() {
+        return Ok((
+            *before,
+            E::CartesianPositionMotionGeneratorStartPoseInvalid.into(),
+        ));
+    }
+    let (cartesian, broken) =
+        checks::cartesian(&before.cartesian, arm, |from| match (&target, input) {
+            (Some(pose), _) => from.to_pose(pose),
+            (None, Input::Rest) => from.to_pose(&before.cartesian.pose),
+            (None, _) => (from.extrapolated(), Twist::zeros()),
+        });
+    let errors = broken.named(
+        E::CartesianMotionGeneratorVelocityLimitsViolation,
+        E::CartesianMotionGeneratorVelocityDiscontinuity,
+        E::CartesianMotionGeneratorAccelerationDiscontinuity,
+    );
+    complete(
+        input,
+        before,
+        cartesian,
+        errors,
+        E::CartesianMotionGeneratorJointVelocityDiscontinuity,
+        arm,
+    )
+}
+
+fn cartesian_velocity(
+    input: Input<'_>,
+    before: &Desired,
+    arm: &Arm<'_>,
+) -> Result<(Desired, Errors), InvalidInput> {
+    use RobotError as E;
+    let target = input.command().map(|c| finite(&c.O_dP_EE_c)).transpose()?;
+    let (cartesian, broken) =
+        checks::cartesian(&before.cartesian, arm, |from| match (&target, input) {
+            (Some(twist), _) => from.to_twist(&Twist::from(*twist)),
+            (None, Input::Rest) => from.to_twist(&Twist::zeros()),
+            (None, _) => (from.extrapolated(), Twist::zeros()),
+        });
+    // As for joint velocities: the pose is the integral of the exact history.
+    let (integrated, _) = before.cartesian.to_twist(&cartesian.twist);
+    let cartesian = CartesianSignal {
+        pose: integrated.pose,
+        ..cartesian
+    };
+    let errors = broken.named(
+        E::CartesianMotionGeneratorVelocityLimitsViolation,
+        E::CartesianMotionGeneratorAccelerationDiscontinuity,
+        E::CartesianMotionGeneratorAccelerationDiscontinuity,
+    );
+    complete(
+        input,
+        before,
+        cartesian,
+        errors,
+        E::CartesianMotionGeneratorJointAccelerationDiscontinuity,
+        arm,
+    )
+}
+
+/// Kinematics completion: elbow and joints of a Cartesian command, with their checks.
+fn complete(
+    input: Input<'_>,
+    before: &Desired,
+    cartesian: CartesianSignal,
+    mut errors: Errors,
+    joint_acceleration: RobotError,
+    arm: &Arm<'_>,
+) -> Result<(Desired, Errors), InvalidInput> {
+    use RobotError as E;
+    let commanded = match input.command().and_then(|c| c.elbow_c) {
+        Some(elbow_c) => Some(finite(&elbow_c)?),
+        None => None,
+    };
+    let side = elbow::elbow(&before.joints.q)[1];
+    let elbow = match commanded {
+        Some([angle, sign]) => {
+            if sign != side {
+                errors.insert(if input.is_first() {
+                    E::CartesianMotionGeneratorStartElbowInvalid
+                } else {
+                    E::CartesianMotionGeneratorElbowSignInconsistent
+                });
+            }
+            if input.is_first() && (angle - before.elbow.angle).abs() > START_ELBOW {
+                errors.insert(E::CartesianMotionGeneratorStartElbowInvalid);
+                return Ok((*before, errors));
+            }
+            let (elbow, broken) = checks::elbow(&before.elbow, arm, |from| from.to_angle(angle));
+            if broken.any() || !checks::elbow_in_range(&elbow, arm) {
+                errors.insert(E::CartesianMotionGeneratorElbowLimitViolation);
+            }
+            Some(elbow)
+        }
+        None if matches!(input, Input::Lost) && before.elbow.velocity != 0.0 => {
+            Some(before.elbow.extrapolated())
+        }
+        None => None,
+    };
+    let q = ik::solve(
+        arm,
+        &cartesian.pose,
+        elbow.map(|elbow| elbow.angle),
+        &before.joints.q,
+    );
+    let (joints, jerk) = before.joints.to_position(&q);
+    let broken = checks::joint_bounds(&before.joints, &joints, &jerk, arm);
+    errors.extend(
+        broken
+            .named(
+                E::CartesianMotionGeneratorJointVelocityLimitsViolation,
+                joint_acceleration,
+                E::CartesianMotionGeneratorJointAccelerationDiscontinuity,
+            )
+            .iter(),
+    );
+    errors.extend(checks::range(&joints, arm));
+    let desired = Desired {
+        joints,
+        cartesian,
+        elbow: elbow.unwrap_or_else(|| ElbowSignal::resting(joints.q[2])),
+    };
+    Ok((desired, errors))
+}
+
+/// Desired values of a motion that is commanded in joints.
+fn following(joints: JointSignal, arm: &Arm<'_>) -> Desired {
+    let mut desired = Desired {
+        joints,
+        cartesian: CartesianSignal::resting(nalgebra::Isometry3::identity()),
+        elbow: ElbowSignal::default(),
+    };
+    desired.follow_joints(arm);
+    desired
+}
+
+fn finite<const N: usize>(values: &[f64; N]) -> Result<[f64; N], InvalidInput> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(*values)
+    } else {
+        Err(InvalidInput)
+    }
+}
+
+// How far the first command may be from what the state publishes as commanded. The robot's own
+// tolerances are not published; these lie between what clients send that seed from measured
+// values and what is known to be refused (0.2 rad on joint 1, 0.5 rad of elbow).
+
+/// Per joint, `[rad]`.
+const START_JOINT: f64 = 0.1;
+/// `[m]`
+const START_TRANSLATION: f64 = 0.05;
+/// `[rad]`
+const START_ROTATION: f64 = 0.1;
+/// `[rad]`
+const START_ELBOW: f64 = 0.1;

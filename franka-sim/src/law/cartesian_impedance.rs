@@ -1,0 +1,104 @@
+//! Cartesian impedance control.
+
+use franka_model::{
+    Dynamics, EndEffector, Frame, Jacobian, JointVector, MassMatrix, Model, Twist, rotation,
+    transform,
+};
+use nalgebra::{Cholesky, Isometry3, SMatrix};
+
+use super::{Law, Spring};
+use crate::signal::{JointSignal, stack};
+
+/// A spring and critical damper between the stiffness frame and where the desired pose puts it,
+/// and a soft joint spring in what the end effector does not feel.
+///
+/// `stiffness` in stiffness-frame axes, `[N/m, N·m/rad]`; `pose` is the desired one of the end
+/// effector; `desired` the joints that belong to it; `q` where the joints are.
+#[allow(clippy::too_many_arguments)] // the two halves of the error and what they are made of
+pub(crate) fn cartesian_impedance(
+    stiffness: &Twist,
+    pose: &Isometry3<f64>,
+    desired: &JointSignal,
+    q: &JointVector,
+    model: &Model,
+    frames: &EndEffector,
+    dynamics: &Dynamics,
+    armature: &JointVector,
+) -> Law {
+    let jacobian = model.body_jacobian(Frame::Stiffness, q, frames);
+    let error = stiffness_frame_error(pose, q, model, frames);
+    let mut inertia = dynamics.mass;
+    for i in 0..7 {
+        inertia[(i, i)] += armature[i];
+    }
+
+    let task_stiffness = SMatrix::<f64, 6, 6>::from_diagonal(stiffness);
+    let damping = task_damping(stiffness, &jacobian, &inertia);
+    let task_damping = SMatrix::<f64, 6, 6>::from_diagonal(&damping);
+    let free = null_space(&jacobian);
+
+    let to_pose = jacobian.tr_mul(&(task_stiffness * error));
+    let to_posture = free * ((desired.q - q) * POSTURE_STIFFNESS);
+    Law {
+        feedforward: dynamics.coriolis + inertia * desired.ddq + to_pose + to_posture,
+        spring: Some(Spring {
+            stiffness: jacobian.tr_mul(&(task_stiffness * jacobian)) + free * POSTURE_STIFFNESS,
+            damping: jacobian.tr_mul(&(task_damping * jacobian)) + free * POSTURE_DAMPING,
+            q: *q,
+            dq: desired.dq,
+        }),
+    }
+}
+
+/// What the stiffness frame is off, in its own axes, `[m, rad]`.
+fn stiffness_frame_error(
+    pose: &Isometry3<f64>,
+    q: &JointVector,
+    model: &Model,
+    frames: &EndEffector,
+) -> Twist {
+    let actual = transform::isometry(&model.pose(Frame::Stiffness, q, frames));
+    let offset = transform::isometry(&frames.ee_t_k);
+    // Frames are rigid transforms: setters refuse anything else.
+    let (Some(actual), Some(offset)) = (actual, offset) else {
+        return Twist::zeros();
+    };
+    let target = pose * offset;
+    let back = actual.rotation.inverse();
+    stack(
+        &(back * (target.translation.vector - actual.translation.vector)),
+        &(back * rotation::error(&target.rotation, &actual.rotation)),
+    )
+}
+
+/// Critical damping of each axis for the inertia that it feels alone, `1 / (J M⁻¹ Jᵀ)_ii`.
+fn task_damping(stiffness: &Twist, jacobian: &Jacobian, inertia: &MassMatrix) -> Twist {
+    let Some(factor) = Cholesky::new(*inertia) else {
+        return Twist::zeros();
+    };
+    let mobility = (jacobian * factor.solve(&jacobian.transpose())).diagonal();
+    Twist::from_fn(|i, _| 2.0 * (stiffness[i] / mobility[i].max(MOBILITY_MIN)).sqrt())
+}
+
+/// The orthogonal projector onto joint motions that leave the end effector where it is.
+fn null_space(jacobian: &Jacobian) -> MassMatrix {
+    let mut gram = jacobian * jacobian.transpose();
+    for i in 0..6 {
+        gram[(i, i)] += GRAM_DAMPING;
+    }
+    match Cholesky::new(gram) {
+        Some(factor) => MassMatrix::identity() - jacobian.tr_mul(&factor.solve(jacobian)),
+        None => MassMatrix::zeros(),
+    }
+}
+
+/// Stiffness `[N·m/rad]` and damping `[N·m·s/rad]` of the posture: choices of this simulator, soft
+/// beside the joint impedance and overdamped for the arm's 1 to 2 kg·m².
+const POSTURE_STIFFNESS: f64 = 50.0;
+const POSTURE_DAMPING: f64 = 20.0;
+
+/// Least mobility, `[1/kg, 1/(kg·m²)]`: near a singularity the inertia felt grows without bound.
+const MOBILITY_MIN: f64 = 0.02;
+
+/// Keeps the projector finite in a singularity.
+const GRAM_DAMPING: f64 = 1e-8;

@@ -1,0 +1,56 @@
+//! The robot's own controllers.
+//!
+//! A controller computes a [`Law`] once per millisecond; between, its spring and damper follow the
+//! arm at the rate of the plant's steps, as a robot's joint loops do. That keeps stiffnesses up to
+//! the greatest one stable (14 250 N·m/rad on 0.074 kg·m² swings with 70 Hz).
+
+mod cartesian_impedance;
+mod joint_impedance;
+
+pub(crate) use cartesian_impedance::cartesian_impedance;
+pub(crate) use joint_impedance::joint_impedance;
+
+use franka_model::{JointVector, MassMatrix};
+
+/// Joint torques as a function of the arm's state, gravity excluded.
+#[derive(Debug, Clone)]
+pub(crate) struct Law {
+    /// `[N·m]`
+    pub(crate) feedforward: JointVector,
+    pub(crate) spring: Option<Spring>,
+}
+
+/// A spring and damper towards a moving point in joint space.
+#[derive(Debug, Clone)]
+pub(crate) struct Spring {
+    /// `[N·m/rad]`
+    pub(crate) stiffness: MassMatrix,
+    /// `[N·m·s/rad]`
+    pub(crate) damping: MassMatrix,
+    /// `[rad]`
+    pub(crate) q: JointVector,
+    /// `[rad/s]`
+    pub(crate) dq: JointVector,
+}
+
+impl Law {
+    /// The same torques whatever the arm does.
+    pub(crate) fn constant(torque: JointVector) -> Self {
+        Self {
+            feedforward: torque,
+            spring: None,
+        }
+    }
+
+    /// Torques at a state of the arm, `[N·m]`.
+    pub(crate) fn torque(&self, q: &JointVector, dq: &JointVector) -> JointVector {
+        match &self.spring {
+            None => self.feedforward,
+            Some(spring) => {
+                self.feedforward
+                    + spring.stiffness * (spring.q - q)
+                    + spring.damping * (spring.dq - dq)
+            }
+        }
+    }
+}

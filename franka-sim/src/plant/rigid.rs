@@ -1,0 +1,241 @@
+//! The rigid-body arm.
+
+use franka_model::{JointVector, Load, Model, joint_vector};
+use nalgebra::Vector3;
+
+use super::{EndStops, Friction, Plant};
+
+/// Rotor inertia of the joints of a Franka Research 3, felt at the joint, `[kg·m²]`.
+///
+/// Source: `mujoco_menagerie`, `franka_fr3`. Joint 7 needs it: its link alone has 1.2e-4 kg·m²,
+/// with which a torque client's damping above 0.24 N·m·s/rad is unstable at 1 kHz.
+const ARMATURE_FR3: JointVector = joint_vector([0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074]);
+
+/// What a [`RigidArm`] is made of besides the links of its [`Model`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct RigidParameters {
+    /// Rotor inertia felt at each joint, `[kg·m²]`.
+    pub armature: JointVector,
+    /// Joint friction.
+    pub friction: Friction,
+    /// Mechanical end stops.
+    pub stops: EndStops,
+    /// Gravitational acceleration in the base frame, `[m/s²]`.
+    pub gravity_earth: Vector3<f64>,
+}
+
+impl RigidParameters {
+    /// A Franka Research 3 standing upright.
+    pub fn fr3() -> Self {
+        let limits = Model::fr3().joint_limits();
+        Self {
+            armature: ARMATURE_FR3,
+            friction: Friction::FR3,
+            stops: EndStops::around(&limits.hard_lower, &limits.hard_upper),
+            gravity_earth: franka_model::GRAVITY_EARTH,
+        }
+    }
+}
+
+/// Rigid links of a [`Model`], with rotor inertia, friction and end stops.
+///
+/// Each step solves, for the acceleration `a`,
+///
+/// ```text
+/// (M + armature + h·D + h²·K) a = motor + external − C dq − g − friction(dq) − stops(q + h·dq, dq)
+/// ```
+///
+/// with `D` the slope of friction and stop damping and `K` the stops' stiffness, then advances
+/// velocity before position. That is the implicit Euler rule for what is stiff (friction at rest,
+/// end stops) and the symplectic one for the rest, so the step stays stable however stiff those
+/// are, and a free arm keeps its energy (see the test).
+pub struct RigidArm {
+    model: &'static Model,
+    parameters: RigidParameters,
+    load: Load,
+    q: JointVector,
+    dq: JointVector,
+    sensed: JointVector,
+}
+
+impl RigidArm {
+    /// An arm at rest at `q`, `[rad]`, carrying `load`.
+    pub fn new(
+        model: &'static Model,
+        parameters: RigidParameters,
+        q: JointVector,
+        load: Load,
+    ) -> Self {
+        let sensed = model.gravity(&q, &load, &parameters.gravity_earth);
+        Self {
+            model,
+            parameters,
+            load,
+            q,
+            dq: JointVector::zeros(),
+            sensed,
+        }
+    }
+}
+
+impl Plant for RigidArm {
+    fn q(&self) -> &JointVector {
+        &self.q
+    }
+
+    fn dq(&self) -> &JointVector {
+        &self.dq
+    }
+
+    fn sensed_torque(&self) -> &JointVector {
+        &self.sensed
+    }
+
+    fn armature(&self) -> &JointVector {
+        &self.parameters.armature
+    }
+
+    fn step(&mut self, motor: &JointVector, external: &JointVector, dt: f64) {
+        let RigidParameters {
+            armature,
+            friction,
+            stops,
+            gravity_earth,
+        } = &self.parameters;
+        let (drag, slope) = friction.at(&self.dq);
+        let mut torque = motor + external - drag;
+        let mut inertia = armature + slope * dt;
+        for i in 0..7 {
+            let depth = stops.depth(i, self.q[i] + dt * self.dq[i]);
+            if depth != 0.0 {
+                torque[i] -= stops.stiffness * depth + stops.damping * self.dq[i];
+                inertia[i] += dt * stops.damping + dt * dt * stops.stiffness;
+            }
+        }
+        let ddq = self
+            .model
+            .forward_dynamics(
+                &self.q,
+                &self.dq,
+                &torque,
+                &self.load,
+                gravity_earth,
+                &inertia,
+            )
+            .unwrap_or_else(JointVector::zeros);
+        // The sensors sit between gear and link: rotor and friction are on the motor's side.
+        self.sensed = motor - drag - (armature + slope * dt).component_mul(&ddq);
+        self.dq += ddq * dt;
+        self.q += self.dq * dt;
+    }
+
+    fn place(&mut self, q: &JointVector) {
+        self.q = *q;
+        self.dq = JointVector::zeros();
+        self.sensed = self
+            .model
+            .gravity(q, &self.load, &self.parameters.gravity_earth);
+    }
+
+    fn attach(&mut self, load: Load) {
+        self.load = load;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_model::{GRAVITY_EARTH, READY};
+
+    const STEP: f64 = 0.000_25;
+
+    fn ideal(q: JointVector) -> RigidArm {
+        let parameters = RigidParameters {
+            friction: Friction::NONE,
+            stops: EndStops::NONE,
+            ..RigidParameters::fr3()
+        };
+        RigidArm::new(Model::fr3(), parameters, q, Load::NONE)
+    }
+
+    /// Kinetic energy, from the mass matrix and the rotors.
+    fn kinetic(arm: &RigidArm) -> f64 {
+        let mass = arm.model.mass(&arm.q, &arm.load);
+        let rotors = arm.dq.component_mul(&arm.dq).dot(&arm.parameters.armature);
+        0.5 * (arm.dq.dot(&(mass * arm.dq)) + rotors)
+    }
+
+    #[test]
+    fn a_free_arm_trades_potential_for_kinetic_energy_and_loses_none() {
+        let mut arm = ideal(READY);
+        let none = JointVector::zeros();
+        // Potential energy as the work done against gravity, by the midpoint rule.
+        let mut potential = 0.0;
+        let (mut largest, mut worst) = (0.0_f64, 0.0_f64);
+        for _ in 0..8000 {
+            let before = arm.q;
+            arm.step(&none, &none, STEP);
+            let middle = (before + arm.q) / 2.0;
+            let gravity = arm.model.gravity(&middle, &Load::NONE, &GRAVITY_EARTH);
+            potential += gravity.dot(&(arm.q - before));
+            largest = largest.max(kinetic(&arm));
+            worst = worst.max((kinetic(&arm) + potential).abs());
+        }
+        assert!(largest > 10.0, "the arm hardly moved: {largest} J");
+        assert!(worst < 0.02 * largest, "drift {worst} J of {largest} J");
+    }
+
+    #[test]
+    fn gravity_torque_holds_the_arm_still() {
+        let mut arm = RigidArm::new(Model::fr3(), RigidParameters::fr3(), READY, Load::NONE);
+        let none = JointVector::zeros();
+        for _ in 0..4000 {
+            let hold = arm.model.gravity(&arm.q, &Load::NONE, &GRAVITY_EARTH);
+            arm.step(&hold, &none, STEP);
+        }
+        assert!((arm.q - READY).amax() < 1e-9);
+    }
+
+    #[test]
+    fn the_sensors_read_what_accelerates_the_links() {
+        let mut arm = ideal(READY);
+        let motor = JointVector::from([5.0, -3.0, 2.0, 25.0, 0.5, 1.0, 0.1]);
+        let before = arm.dq;
+        let q = arm.q;
+        arm.step(&motor, &JointVector::zeros(), STEP);
+        let ddq = (arm.dq - before) / STEP;
+        let links = arm
+            .model
+            .inverse_dynamics(&q, &before, &ddq, &Load::NONE, &GRAVITY_EARTH);
+        assert!((arm.sensed - links).amax() < 1e-9);
+    }
+
+    #[test]
+    fn an_end_stop_holds_the_strongest_joint_without_ringing() {
+        let limits = Model::fr3().joint_limits();
+        let mut arm = RigidArm::new(Model::fr3(), RigidParameters::fr3(), READY, Load::NONE);
+        let mut push = JointVector::zeros();
+        push[0] = 87.0;
+        for _ in 0..20_000 {
+            let hold = arm.model.gravity(&arm.q, &Load::NONE, &GRAVITY_EARTH);
+            arm.step(&(hold + push), &JointVector::zeros(), STEP);
+        }
+        assert!(arm.q[0] > limits.hard_upper[0] && arm.q[0] < limits.hard_upper[0] + 0.08);
+        assert!(arm.dq[0].abs() < 1e-3, "{}", arm.dq[0]);
+    }
+
+    #[test]
+    fn the_light_last_joint_is_stable_under_a_strong_damper_held_for_a_millisecond() {
+        let mut arm = RigidArm::new(Model::fr3(), RigidParameters::fr3(), READY, Load::NONE);
+        let kick = JointVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0]);
+        arm.step(&kick, &JointVector::zeros(), 0.01);
+        for _ in 0..200 {
+            let mut torque = arm.model.gravity(&arm.q, &Load::NONE, &GRAVITY_EARTH);
+            torque[6] -= 15.0 * arm.dq[6];
+            for _ in 0..4 {
+                arm.step(&torque, &JointVector::zeros(), STEP);
+            }
+        }
+        assert!(arm.dq[6].abs() < 1e-3, "{}", arm.dq[6]);
+    }
+}

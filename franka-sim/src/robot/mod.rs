@@ -1,0 +1,234 @@
+//! The whole simulated robot as a value: bytes in, bytes out, one millisecond per [`Robot::tick`].
+//!
+//! ```text
+//! TCP bytes ── receive() ──> session ──> requests ──┐                     ┌──> take_reply()
+//!                                                   ├─> motion ─> control ┤
+//! datagrams ── command() ──> the newest command ────┘    tick()   plant   └──> tick(): datagram
+//! ```
+//!
+//! There is no clock, socket, thread or log in here. Whoever drives it calls, per millisecond:
+//!
+//! 1. [`command`](Robot::command) for each datagram, [`receive`](Robot::receive) for stream bytes,
+//!    and after each `receive` sends what [`take_reply`](Robot::take_reply) has;
+//! 2. [`tick`](Robot::tick), and sends its datagram **before** the replies that follow: a reply
+//!    like `kReflexAborted` must not overtake the state that explains it.
+
+mod condition;
+mod control;
+mod hands;
+mod motion;
+mod publish;
+mod session;
+
+pub use session::SessionError;
+
+use std::collections::VecDeque;
+
+use bytes::Bytes;
+use franka_model::{Dynamics, JointVector, Model};
+use franka_proto::{CommandId, Errors, MoveRequest, RobotCommand, RobotState, Version};
+
+use crate::brake::Brake;
+use crate::config::Config;
+use crate::estimate::Estimate;
+use crate::generator::{Arm, Desired};
+use crate::noise::Random;
+use crate::plant::{Plant, RigidArm, RigidParameters};
+use crate::settings::Settings;
+use crate::signal::JointSignal;
+use condition::Recovery;
+use control::Measurement;
+use hands::Push;
+use motion::Motion;
+use session::Client;
+
+/// A simulated robot; see the [module](self).
+pub struct Robot {
+    config: Config,
+    version: Version,
+    model: &'static Model,
+    plant: Box<dyn Plant>,
+    description: String,
+    settings: Settings,
+
+    client: Option<Client>,
+    replies: VecDeque<Bytes>,
+    /// The command for the cycle that the last state opened.
+    command: Option<RobotCommand>,
+    /// `message_id` of the last state.
+    clock: u64,
+
+    activity: Activity,
+    /// A `Move` that begins as soon as the arm has come to rest.
+    waiting: Option<(CommandId, MoveRequest)>,
+    /// `StopMove`s to answer as soon as the arm has come to rest.
+    stops: Vec<CommandId>,
+    recovery: Option<Recovery>,
+    user_stop: bool,
+    errors: Errors,
+    reflex_reason: Errors,
+
+    desired: Desired,
+    estimate: Estimate,
+    measurement: Measurement,
+    /// At the measured state, with the declared load.
+    dynamics: Dynamics,
+    pushes: Vec<Push>,
+    random: Random,
+
+    state: RobotState,
+    datagram: [u8; RobotState::MAX_SIZE],
+}
+
+/// What the arm is doing.
+// There is one value of it: the size of its largest variant does not matter.
+#[allow(clippy::large_enum_variant)]
+enum Activity {
+    /// Standing at the desired position.
+    Holding,
+    /// Coming to rest by itself.
+    Braking(Brake),
+    /// Following a client.
+    Moving(Motion),
+}
+
+/// A state to send to the client.
+#[derive(Debug, Clone, Copy)]
+pub struct Datagram<'a> {
+    /// The client's UDP port.
+    pub port: u16,
+    /// The encoded state.
+    pub bytes: &'a [u8],
+}
+
+impl Robot {
+    /// A robot at rest, with the rigid-body plant.
+    pub fn new(config: Config) -> Self {
+        let model = Model::of(config.kind);
+        let plant = RigidArm::new(
+            model,
+            RigidParameters::fr3(),
+            config.q,
+            config.tool.load.combine(&config.payload),
+        );
+        Self::with_plant(config, Box::new(plant))
+    }
+
+    /// A robot at rest where `plant` is, whose controllers believe in the arm of `config.kind`.
+    pub fn with_plant(config: Config, plant: Box<dyn Plant>) -> Self {
+        let model = Model::of(config.kind);
+        let settings = Settings::new(config.tool);
+        let q = *plant.q();
+        let arm = Arm {
+            model,
+            frames: &settings.frames,
+        };
+        let desired = Desired::resting(&arm, q);
+        let dynamics = model.dynamics(
+            &q,
+            plant.dq(),
+            &settings.frames,
+            &settings.declared_load(),
+            &franka_model::GRAVITY_EARTH,
+        );
+        let mut robot = Self {
+            version: Version::V10,
+            model,
+            description: crate::urdf::fr3(model.joint_limits()),
+            client: None,
+            replies: VecDeque::new(),
+            command: None,
+            clock: config.clock,
+            activity: Activity::Holding,
+            waiting: None,
+            stops: Vec::new(),
+            recovery: None,
+            user_stop: false,
+            errors: Errors::NONE,
+            reflex_reason: Errors::NONE,
+            desired,
+            estimate: Estimate::new(),
+            measurement: Measurement::resting(plant.as_ref()),
+            dynamics,
+            pushes: Vec::new(),
+            random: Random::new(config.seed),
+            state: RobotState::default(),
+            datagram: [0; RobotState::MAX_SIZE],
+            settings,
+            plant,
+            config,
+        };
+        robot.publish(&JointVector::zeros());
+        robot
+    }
+
+    /// Takes a UDP datagram of the client.
+    ///
+    /// It counts if it answers the newest state and is the first to do so; everything else is
+    /// dropped, as is a datagram that is no command.
+    pub fn command(&mut self, datagram: &[u8]) {
+        let Ok(command) = RobotCommand::decode(self.version, datagram) else {
+            return;
+        };
+        let Activity::Moving(motion) = &self.activity else {
+            return;
+        };
+        if self.command.is_none() && motion.accepts(command.message_id, self.clock) {
+            self.command = Some(command);
+        }
+    }
+
+    /// Advances by one millisecond and returns the state to send, if a client is there.
+    pub fn tick(&mut self) -> Option<Datagram<'_>> {
+        self.clock += 1;
+        self.run_motion();
+        let torque = self.control();
+        self.supervise();
+        self.settle();
+        self.publish(&torque);
+        let port = self.client.as_ref()?.udp_port()?;
+        // The buffer has room for every version, and no state uses what its version lacks.
+        let length = self.state.encode(self.version, &mut self.datagram).ok()?;
+        Some(Datagram {
+            port,
+            bytes: &self.datagram[..length],
+        })
+    }
+
+    /// The last state, as the client sees it apart from the wire's rounding.
+    pub fn state(&self) -> &RobotState {
+        &self.state
+    }
+
+    /// How the robot was made.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// The description that clients fetch, a URDF text.
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    fn arm(&self) -> Arm<'_> {
+        Arm {
+            model: self.model,
+            frames: &self.settings.frames,
+        }
+    }
+
+    fn is_moving(&self) -> bool {
+        matches!(self.activity, Activity::Moving(_))
+    }
+
+    /// Where the desired joints would be if they were where the arm is.
+    fn measured_signal(&self) -> JointSignal {
+        JointSignal {
+            dq: *self.plant.dq(),
+            ..JointSignal::resting(*self.plant.q())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,261 @@
+//! A motion under way: which commands count, what they do, and how it ends.
+
+use franka_model::JointVector;
+use franka_model::limits::JointLimits;
+use franka_proto::{
+    CommandId, ControllerMode, Errors, MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode,
+    MoveRequest, RobotCommand, RobotError,
+};
+
+use crate::generator::{Arm, Desired, Input, PointToPoint, advance};
+use crate::score::{LOST_LIMIT, Score};
+use crate::signal::CYCLE;
+
+/// Between `kMotionStarted` and the final reply to a `Move`.
+#[derive(Debug, Clone)]
+pub(super) struct Motion {
+    id: CommandId,
+    request: MoveRequest,
+    /// `message_id` of the first state that shows the motion. Commands that answer earlier states
+    /// belong to the motion before.
+    first_state: u64,
+    score: Score,
+    /// `tau_J_d`: the last torques accepted, zero before the first, `[N·m]`.
+    torque: JointVector,
+    /// Whether the last cycle had no command and so was none for the generator.
+    paused: bool,
+    /// In place of one command per cycle.
+    asynchronous: Option<PointToPoint>,
+}
+
+/// Which violations end a motion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rules {
+    pub(super) limits: bool,
+    pub(super) communication: bool,
+}
+
+/// What became of a motion in one cycle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It goes on.
+    Continues,
+    /// The client finished it.
+    Finished,
+    /// A command broke these rules; nothing of it has been taken over.
+    Broken(Errors),
+    /// A command holds numbers that are none.
+    Invalid,
+}
+
+impl Motion {
+    pub(super) fn new(
+        id: CommandId,
+        request: MoveRequest,
+        first_state: u64,
+        limits: &JointLimits,
+    ) -> Self {
+        Self {
+            id,
+            request,
+            first_state,
+            score: Score::default(),
+            torque: JointVector::zeros(),
+            paused: false,
+            asynchronous: request
+                .asynchronous
+                .map(|velocity| PointToPoint::new(&JointVector::from(velocity), limits)),
+        }
+    }
+
+    /// The `Move` to answer.
+    pub(super) fn id(&self) -> CommandId {
+        self.id
+    }
+
+    pub(super) fn request(&self) -> &MoveRequest {
+        &self.request
+    }
+
+    pub(super) fn generator_mode(&self) -> MotionGeneratorMode {
+        self.request.generator.in_state()
+    }
+
+    pub(super) fn controller_mode(&self) -> ControllerMode {
+        self.request.controller.in_state()
+    }
+
+    /// Whether the client's torques drive the arm.
+    pub(super) fn is_external(&self) -> bool {
+        self.request.controller == MoveControllerMode::ExternalController
+    }
+
+    /// Whether torques are all that the client sends.
+    pub(super) fn is_torque_only(&self) -> bool {
+        self.request.generator == MoveGeneratorMode::None
+    }
+
+    /// The client's torques, `[N·m]`.
+    pub(super) fn torque(&self) -> &JointVector {
+        &self.torque
+    }
+
+    /// Whether the setpoint stands still because no command came, with the motion to be continued.
+    pub(super) fn is_paused(&self) -> bool {
+        self.paused
+    }
+
+    /// `control_command_success_rate`.
+    pub(super) fn success_rate(&self) -> f64 {
+        self.score.rate()
+    }
+
+    /// Whether a command counts that answers state `answers` while `newest` is the last one
+    /// published. A late command does not: the cycle has been extrapolated already.
+    pub(super) fn accepts(&self, answers: u64, newest: u64) -> bool {
+        answers >= self.first_state
+            && (answers == newest || (self.asynchronous.is_some() && answers < newest))
+    }
+
+    /// Takes in what arrived for one cycle, and advances `desired`.
+    pub(super) fn cycle(
+        &mut self,
+        command: Option<&RobotCommand>,
+        desired: &mut Desired,
+        arm: &Arm<'_>,
+        rules: Rules,
+    ) -> Verdict {
+        if self.asynchronous.is_some() {
+            return self.plan(command, desired, arm, rules);
+        }
+        let mut errors = Errors::NONE;
+        self.paused = false;
+        let input = match command {
+            Some(command) => {
+                // Without limits there is no wrong place to start from, either.
+                let first = !self.score.has_begun() && rules.limits;
+                self.score.hit();
+                if first {
+                    Input::First(command)
+                } else {
+                    Input::Next(command)
+                }
+            }
+            None if !self.score.has_begun() => return Verdict::Continues,
+            None => {
+                let lost = self.score.miss();
+                if !rules.communication {
+                    self.paused = true;
+                    return Verdict::Continues;
+                }
+                if lost >= LOST_LIMIT {
+                    errors.insert(RobotError::CommunicationConstraintsViolation);
+                }
+                Input::Lost
+            }
+        };
+
+        let Ok((next, broken)) = advance(self.request.generator, input, desired, arm) else {
+            return Verdict::Invalid;
+        };
+        errors = errors.union(enforced(broken, rules));
+        if let Some(command) = command.filter(|_| self.is_external()) {
+            let torque = JointVector::from(command.tau_J_d);
+            if !torque.iter().all(|value| value.is_finite()) {
+                return Verdict::Invalid;
+            }
+            if rules.limits && self.is_discontinuous(&torque, arm.model.joint_limits()) {
+                errors.insert(RobotError::ControllerTorqueDiscontinuity);
+            }
+            if errors.is_empty() {
+                self.torque = torque;
+            }
+        }
+        if !errors.is_empty() {
+            return Verdict::Broken(errors);
+        }
+        *desired = next;
+        if command.is_some_and(|command| self.is_last(command)) {
+            self.finish(desired, arm, rules)
+        } else {
+            Verdict::Continues
+        }
+    }
+
+    /// A cycle of an asynchronous motion: the robot itself moves towards the last target.
+    fn plan(
+        &mut self,
+        command: Option<&RobotCommand>,
+        desired: &mut Desired,
+        arm: &Arm<'_>,
+        rules: Rules,
+    ) -> Verdict {
+        let Some(generator) = &mut self.asynchronous else {
+            return Verdict::Continues;
+        };
+        if let Some(command) = command {
+            if command.motion_generation_finished {
+                // libfranka's last command holds zeros instead of a position.
+                return Verdict::Finished;
+            }
+            let target = JointVector::from(command.q_c);
+            if !target.iter().all(|value| value.is_finite()) {
+                return Verdict::Invalid;
+            }
+            if rules.limits && !within(&target, arm.model.joint_limits()) {
+                return Verdict::Broken(RobotError::JointPositionLimitsViolation.into());
+            }
+            generator.go_to(&target, &desired.joints);
+        }
+        desired.joints = generator.advance(&desired.joints);
+        desired.follow_joints(arm);
+        Verdict::Continues
+    }
+
+    fn is_last(&self, command: &RobotCommand) -> bool {
+        if self.is_torque_only() {
+            command.torque_command_finished
+        } else {
+            command.motion_generation_finished
+        }
+    }
+
+    /// A motion may only finish at rest: its last command then stands still, which is checked like
+    /// any other command.
+    fn finish(&self, desired: &Desired, arm: &Arm<'_>, rules: Rules) -> Verdict {
+        match advance(self.request.generator, Input::Rest, desired, arm) {
+            Err(_) => Verdict::Invalid,
+            Ok((_, broken)) => {
+                let errors = enforced(broken, rules);
+                if errors.is_empty() {
+                    Verdict::Finished
+                } else {
+                    Verdict::Broken(errors)
+                }
+            }
+        }
+    }
+
+    fn is_discontinuous(&self, torque: &JointVector, limits: &JointLimits) -> bool {
+        let rate = (torque - self.torque) / CYCLE;
+        (0..7).any(|i| rate[i].abs() > limits.torque_rate[i] + ROUNDING)
+    }
+}
+
+/// What of `errors` counts. A matrix that is no pose is never acceptable.
+fn enforced(errors: Errors, rules: Rules) -> Errors {
+    if rules.limits {
+        return errors;
+    }
+    errors
+        .iter()
+        .filter(|&error| error == RobotError::CartesianPositionMotionGeneratorInvalidFrameFlag)
+        .collect()
+}
+
+fn within(q: &JointVector, limits: &JointLimits) -> bool {
+    (0..7).all(|i| (limits.hard_lower[i]..=limits.hard_upper[i]).contains(&q[i]))
+}
+
+/// A step of exactly 1 N·m per cycle is allowed, also when the sum rounds, `[N·m/s]`.
+const ROUNDING: f64 = 1e-9;

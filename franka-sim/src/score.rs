@@ -1,0 +1,84 @@
+//! Which cycles of a motion the client answered.
+
+/// Cycles lost in a row that end a motion (FCI documentation, "communication_constraints_violation").
+pub(crate) const LOST_LIMIT: u32 = 20;
+
+/// Cycles that the success rate looks back on (libfranka 0.21, `robot_state.h`).
+const WINDOW: u32 = 100;
+
+/// The last hundred cycles, newest in the lowest bit.
+///
+/// Counting begins with the client's first command: before it, the robot waits.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Score {
+    received: u128,
+    counted: u32,
+    lost_in_a_row: u32,
+}
+
+impl Score {
+    /// Whether a command has been received since the motion began.
+    pub(crate) fn has_begun(&self) -> bool {
+        self.counted > 0
+    }
+
+    /// Counts a cycle whose command came in time.
+    pub(crate) fn hit(&mut self) {
+        self.count(1);
+        self.lost_in_a_row = 0;
+    }
+
+    /// Counts a cycle without a command; returns how many have been lost in a row.
+    pub(crate) fn miss(&mut self) -> u32 {
+        self.count(0);
+        self.lost_in_a_row += 1;
+        self.lost_in_a_row
+    }
+
+    /// Fraction of commands received over the window, or over the cycles so far while they are
+    /// fewer. Zero before the first command.
+    pub(crate) fn rate(&self) -> f64 {
+        if self.counted == 0 {
+            0.0
+        } else {
+            f64::from(self.received.count_ones()) / f64::from(self.counted)
+        }
+    }
+
+    fn count(&mut self, bit: u128) {
+        self.received = (self.received << 1 | bit) & ((1 << WINDOW) - 1);
+        self.counted = (self.counted + 1).min(WINDOW);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rate_looks_back_a_hundred_cycles() {
+        let mut score = Score::default();
+        assert_eq!(score.rate(), 0.0);
+        score.hit();
+        assert_eq!(score.rate(), 1.0);
+        score.miss();
+        assert_eq!(score.rate(), 0.5);
+        for _ in 0..98 {
+            score.hit();
+        }
+        assert_eq!(score.rate(), 0.99);
+        score.hit();
+        score.hit();
+        assert_eq!(score.rate(), 1.0);
+    }
+
+    #[test]
+    fn losses_count_in_a_row_only() {
+        let mut score = Score::default();
+        for _ in 0..LOST_LIMIT - 1 {
+            score.miss();
+        }
+        score.hit();
+        assert_eq!(score.miss(), 1);
+    }
+}

@@ -1,0 +1,237 @@
+//! What a client may set: frames, load, stiffnesses, thresholds.
+
+use franka_model::{EndEffector, JointVector, Load, Twist, joint_vector, transform};
+use franka_proto::{CollisionBehavior, Request, SetterStatus};
+use nalgebra::{Matrix3, Matrix4, Vector3};
+
+use crate::config::Tool;
+use crate::estimate::default_thresholds;
+
+/// The values in force. They outlive the client that set them, as on a robot.
+#[derive(Debug, Clone)]
+pub(crate) struct Settings {
+    pub(crate) tool: Tool,
+    /// `NE_T_EE`
+    pub(crate) ne_t_ee: Matrix4<f64>,
+    /// `F_T_EE` and `EE_T_K`
+    pub(crate) frames: EndEffector,
+    /// Declared by `SetLoad`.
+    pub(crate) load: Load,
+    /// `[N·m/rad]`
+    pub(crate) joint_stiffness: JointVector,
+    /// In stiffness-frame axes, `[N/m, N·m/rad]`.
+    pub(crate) cartesian_stiffness: Twist,
+    pub(crate) thresholds: CollisionBehavior,
+}
+
+/// Stiffness of the joint controller that holds the arm, and of joint motions until the client sets
+/// another, `[N·m/rad]`: the values of libfranka 0.21, `examples_common.cpp`.
+pub(crate) const JOINT_STIFFNESS: JointVector =
+    joint_vector([3000.0, 3000.0, 3000.0, 2500.0, 2500.0, 2000.0, 2000.0]);
+
+/// Likewise for the Cartesian controller, `[N/m, N·m/rad]`.
+const CARTESIAN_STIFFNESS: [f64; 6] = [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0];
+
+impl Settings {
+    /// Factory settings with a tool mounted.
+    pub(crate) fn new(tool: Tool) -> Self {
+        Self {
+            tool,
+            ne_t_ee: Matrix4::identity(),
+            frames: EndEffector {
+                f_t_ee: tool.f_t_ne,
+                ee_t_k: Matrix4::identity(),
+            },
+            load: Load::NONE,
+            joint_stiffness: JOINT_STIFFNESS,
+            cartesian_stiffness: Twist::from(CARTESIAN_STIFFNESS),
+            thresholds: default_thresholds(),
+        }
+    }
+
+    /// What the robot believes the flange to carry.
+    pub(crate) fn declared_load(&self) -> Load {
+        self.tool.load.combine(&self.load)
+    }
+
+    /// Applies a setter, or says why not. Guiding modes are accepted and have no effect: no hand
+    /// guides the arm.
+    pub(crate) fn apply(&mut self, request: &Request) -> SetterStatus {
+        let applied = match request {
+            Request::SetCollisionBehavior(thresholds) => {
+                are_thresholds(thresholds).then(|| self.thresholds = *thresholds)
+            }
+            Request::SetJointImpedance(stiffness) => all_within(stiffness, 0.0, 14250.0)
+                .then(|| self.joint_stiffness = JointVector::from(*stiffness)),
+            Request::SetCartesianImpedance(stiffness) => {
+                let (linear, angular) = stiffness.split_at(3);
+                (all_within(linear, 10.0, 3000.0) && all_within(angular, 1.0, 300.0))
+                    .then(|| self.cartesian_stiffness = Twist::from(*stiffness))
+            }
+            Request::SetGuidingMode { .. } => Some(()),
+            Request::SetEEToK(matrix) => rigid(matrix).map(|m| self.frames.ee_t_k = m),
+            Request::SetNEToEE(matrix) => rigid(matrix).map(|m| {
+                self.ne_t_ee = m;
+                self.frames.f_t_ee = self.tool.f_t_ne * m;
+            }),
+            Request::SetLoad(load) => physical(load).map(|load| self.load = load),
+            _ => None,
+        };
+        match applied {
+            Some(()) => SetterStatus::Success,
+            None => SetterStatus::InvalidArgumentRejected,
+        }
+    }
+}
+
+fn all_within(values: &[f64], lower: f64, upper: f64) -> bool {
+    values.iter().all(|value| (lower..=upper).contains(value))
+}
+
+/// Thresholds are finite and not negative. Upper ones below the lower ones are allowed: then the
+/// collision comes without a contact before it.
+fn are_thresholds(thresholds: &CollisionBehavior) -> bool {
+    let t = thresholds;
+    let torques = [
+        &t.lower_torque_thresholds_acceleration,
+        &t.upper_torque_thresholds_acceleration,
+        &t.lower_torque_thresholds_nominal,
+        &t.upper_torque_thresholds_nominal,
+    ];
+    let forces = [
+        &t.lower_force_thresholds_acceleration,
+        &t.upper_force_thresholds_acceleration,
+        &t.lower_force_thresholds_nominal,
+        &t.upper_force_thresholds_nominal,
+    ];
+    torques
+        .into_iter()
+        .flatten()
+        .chain(forces.into_iter().flatten())
+        .all(|value| value.is_finite() && *value >= 0.0)
+}
+
+fn rigid(column_major: &[f64; 16]) -> Option<Matrix4<f64>> {
+    transform::isometry_from_array(column_major)?;
+    Some(Matrix4::from_column_slice(column_major))
+}
+
+/// A load that a rigid body can have: mass not negative, inertia symmetric and positive
+/// semidefinite (up to rounding).
+fn physical(load: &franka_proto::Load) -> Option<Load> {
+    let inertia = Matrix3::from_column_slice(&load.I_load);
+    let com = Vector3::from(load.F_x_Cload);
+    let finite = load.m_load.is_finite()
+        && com.iter().all(|x| x.is_finite())
+        && inertia.iter().all(|x| x.is_finite());
+    if !finite || load.m_load < 0.0 {
+        return None;
+    }
+    let tolerance = 1e-9 + 1e-6 * inertia.amax();
+    let symmetric = (inertia - inertia.transpose()).amax() <= tolerance;
+    let semidefinite = symmetric && inertia.symmetric_eigenvalues().min() >= -tolerance;
+    semidefinite.then_some(Load {
+        mass: load.m_load,
+        com,
+        inertia,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const INVALID: SetterStatus = SetterStatus::InvalidArgumentRejected;
+
+    fn identity() -> [f64; 16] {
+        let mut matrix = [0.0; 16];
+        for i in 0..4 {
+            matrix[5 * i] = 1.0;
+        }
+        matrix
+    }
+
+    #[test]
+    fn stiffnesses_have_the_documented_ranges() {
+        let mut settings = Settings::new(Tool::NONE);
+        for (value, status) in [
+            (0.0, SetterStatus::Success),
+            (14250.0, SetterStatus::Success),
+            (14250.1, INVALID),
+            (-1.0, INVALID),
+            (f64::NAN, INVALID),
+        ] {
+            let request = Request::SetJointImpedance([value; 7]);
+            assert_eq!(settings.apply(&request), status, "{value}");
+        }
+        for (linear, angular, status) in [
+            (10.0, 1.0, SetterStatus::Success),
+            (3000.0, 300.0, SetterStatus::Success),
+            (9.0, 1.0, INVALID),
+            (10.0, 301.0, INVALID),
+        ] {
+            let (l, a) = (linear, angular);
+            let request = Request::SetCartesianImpedance([l, l, l, a, a, a]);
+            assert_eq!(settings.apply(&request), status);
+        }
+    }
+
+    #[test]
+    fn a_refused_value_leaves_the_old_one() {
+        let mut settings = Settings::new(Tool::NONE);
+        let before = settings.joint_stiffness;
+        settings.apply(&Request::SetJointImpedance([1e6; 7]));
+        assert_eq!(settings.joint_stiffness, before);
+    }
+
+    #[test]
+    fn frames_have_to_be_rigid_transforms() {
+        let mut settings = Settings::new(Tool::hand());
+        let mut shifted = identity();
+        shifted[14] = 0.1;
+        assert_eq!(
+            settings.apply(&Request::SetNEToEE(shifted)),
+            SetterStatus::Success
+        );
+        assert!((settings.frames.f_t_ee[(2, 3)] - 0.2034).abs() < 1e-12);
+        let mut mirrored = identity();
+        mirrored[0] = -1.0;
+        assert_eq!(settings.apply(&Request::SetEEToK(mirrored)), INVALID);
+        let mut projective = identity();
+        projective[3] = 0.1;
+        assert_eq!(settings.apply(&Request::SetNEToEE(projective)), INVALID);
+    }
+
+    #[test]
+    fn loads_have_to_be_physical() {
+        let mut settings = Settings::new(Tool::NONE);
+        let good = franka_proto::Load {
+            m_load: 1.0,
+            F_x_Cload: [0.0, 0.0, 0.1],
+            I_load: [0.01, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.01],
+        };
+        assert_eq!(
+            settings.apply(&Request::SetLoad(good)),
+            SetterStatus::Success
+        );
+        assert_eq!(settings.declared_load().mass, 1.0);
+        let mut light = good;
+        light.m_load = -0.1;
+        assert_eq!(settings.apply(&Request::SetLoad(light)), INVALID);
+        let mut odd = good;
+        odd.I_load[8] = -0.01;
+        assert_eq!(settings.apply(&Request::SetLoad(odd)), INVALID);
+    }
+
+    #[test]
+    fn thresholds_must_be_finite_and_not_negative() {
+        let mut settings = Settings::new(Tool::NONE);
+        let mut thresholds = default_thresholds();
+        thresholds.upper_force_thresholds_nominal[2] = f64::INFINITY;
+        let request = Request::SetCollisionBehavior(thresholds);
+        assert_eq!(settings.apply(&request), INVALID);
+        thresholds.upper_force_thresholds_nominal[2] = 0.0;
+        let request = Request::SetCollisionBehavior(thresholds);
+        assert_eq!(settings.apply(&request), SetterStatus::Success);
+    }
+}

@@ -1,0 +1,254 @@
+//! Commanded quantities with their first two derivatives, advanced once per millisecond.
+//!
+//! Derivatives are backward differences of the commanded values, started from what the state
+//! published before (FCI documentation, control parameters). A cycle whose command is lost
+//! continues with the acceleration of the last one.
+
+use franka_model::{JointVector, Twist, rotation, transform};
+use nalgebra::{Isometry3, Vector3};
+
+/// Duration of a control cycle, `[s]`.
+pub(crate) const CYCLE: f64 = 1e-3;
+
+/// Positions of the seven joints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct JointSignal {
+    /// `[rad]`
+    pub(crate) q: JointVector,
+    /// `[rad/s]`
+    pub(crate) dq: JointVector,
+    /// `[rad/s²]`
+    pub(crate) ddq: JointVector,
+}
+
+impl JointSignal {
+    /// At rest at `q`.
+    pub(crate) fn resting(q: JointVector) -> Self {
+        Self {
+            q,
+            dq: JointVector::zeros(),
+            ddq: JointVector::zeros(),
+        }
+    }
+
+    /// One cycle later at `q`, and the jerk that this takes, `[rad/s³]`.
+    pub(crate) fn to_position(self, q: &JointVector) -> (Self, JointVector) {
+        let (mut next, jerk) = self.to_velocity(&((q - self.q) / CYCLE));
+        next.q = *q;
+        (next, jerk)
+    }
+
+    /// One cycle later at velocity `dq`, and the jerk that this takes, `[rad/s³]`.
+    pub(crate) fn to_velocity(self, dq: &JointVector) -> (Self, JointVector) {
+        let ddq = (dq - self.dq) / CYCLE;
+        let next = Self {
+            q: self.q + dq * CYCLE,
+            dq: *dq,
+            ddq,
+        };
+        (next, (ddq - self.ddq) / CYCLE)
+    }
+
+    /// One cycle later with the acceleration unchanged.
+    pub(crate) fn extrapolated(self) -> Self {
+        let dq = self.dq + self.ddq * CYCLE;
+        Self {
+            q: self.q + dq * CYCLE,
+            dq,
+            ddq: self.ddq,
+        }
+    }
+
+    /// What a client knows of this signal: the state carries it in single precision.
+    pub(crate) fn published(self) -> Self {
+        Self {
+            q: self.q.map(single),
+            dq: self.dq.map(single),
+            ddq: self.ddq.map(single),
+        }
+    }
+}
+
+/// A pose with twist and twist acceleration, both in base axes at the frame's origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CartesianSignal {
+    /// In the base frame, `[m]`.
+    pub(crate) pose: Isometry3<f64>,
+    /// `[m/s, rad/s]`
+    pub(crate) twist: Twist,
+    /// `[m/s², rad/s²]`
+    pub(crate) acceleration: Twist,
+}
+
+impl CartesianSignal {
+    /// At rest at `pose`.
+    pub(crate) fn resting(pose: Isometry3<f64>) -> Self {
+        Self {
+            pose,
+            twist: Twist::zeros(),
+            acceleration: Twist::zeros(),
+        }
+    }
+
+    /// One cycle later at `pose`, and the jerk that this takes, `[m/s³, rad/s³]`.
+    pub(crate) fn to_pose(self, pose: &Isometry3<f64>) -> (Self, Twist) {
+        let shift = (pose.translation.vector - self.pose.translation.vector) / CYCLE;
+        let turn = rotation::error(&pose.rotation, &self.pose.rotation) / CYCLE;
+        let (mut next, jerk) = self.to_twist(&stack(&shift, &turn));
+        next.pose = *pose;
+        (next, jerk)
+    }
+
+    /// One cycle later at twist `twist`, and the jerk that this takes, `[m/s³, rad/s³]`.
+    pub(crate) fn to_twist(self, twist: &Twist) -> (Self, Twist) {
+        let acceleration = (twist - self.twist) / CYCLE;
+        let next = Self {
+            pose: moved(&self.pose, twist),
+            twist: *twist,
+            acceleration,
+        };
+        (next, (acceleration - self.acceleration) / CYCLE)
+    }
+
+    /// One cycle later with the acceleration unchanged.
+    pub(crate) fn extrapolated(self) -> Self {
+        let twist = self.twist + self.acceleration * CYCLE;
+        Self {
+            pose: moved(&self.pose, &twist),
+            twist,
+            acceleration: self.acceleration,
+        }
+    }
+
+    /// What a client knows of this signal: the state carries it in single precision.
+    pub(crate) fn published(self) -> Self {
+        let rounded = transform::array(&self.pose).map(single);
+        Self {
+            // Rounding moves a rotation matrix by 1e-7, far from where this fails.
+            pose: transform::isometry_from_array(&rounded).unwrap_or(self.pose),
+            twist: self.twist.map(single),
+            acceleration: self.acceleration.map(single),
+        }
+    }
+}
+
+/// The elbow: the angle of joint 3.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct ElbowSignal {
+    /// `[rad]`
+    pub(crate) angle: f64,
+    /// `[rad/s]`
+    pub(crate) velocity: f64,
+    /// `[rad/s²]`
+    pub(crate) acceleration: f64,
+}
+
+impl ElbowSignal {
+    /// At rest at `angle`, `[rad]`.
+    pub(crate) fn resting(angle: f64) -> Self {
+        Self {
+            angle,
+            ..Self::default()
+        }
+    }
+
+    /// One cycle later at `angle`, and the jerk that this takes, `[rad/s³]`.
+    pub(crate) fn to_angle(self, angle: f64) -> (Self, f64) {
+        let velocity = (angle - self.angle) / CYCLE;
+        let acceleration = (velocity - self.velocity) / CYCLE;
+        let next = Self {
+            angle,
+            velocity,
+            acceleration,
+        };
+        (next, (acceleration - self.acceleration) / CYCLE)
+    }
+
+    /// One cycle later with the acceleration unchanged.
+    pub(crate) fn extrapolated(self) -> Self {
+        let velocity = self.velocity + self.acceleration * CYCLE;
+        Self {
+            angle: self.angle + velocity * CYCLE,
+            velocity,
+            acceleration: self.acceleration,
+        }
+    }
+
+    /// What a client knows of this signal: the state carries it in single precision.
+    pub(crate) fn published(self) -> Self {
+        Self {
+            angle: single(self.angle),
+            velocity: single(self.velocity),
+            acceleration: single(self.acceleration),
+        }
+    }
+}
+
+/// The `[linear; angular]` vector of two halves.
+pub(crate) fn stack(linear: &Vector3<f64>, angular: &Vector3<f64>) -> Twist {
+    Twist::new(
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
+    )
+}
+
+/// The two halves of a `[linear; angular]` vector.
+pub(crate) fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
+    (
+        Vector3::new(twist[0], twist[1], twist[2]),
+        Vector3::new(twist[3], twist[4], twist[5]),
+    )
+}
+
+fn moved(pose: &Isometry3<f64>, twist: &Twist) -> Isometry3<f64> {
+    let (linear, angular) = halves(twist);
+    let mut rotation = rotation::exp(&(angular * CYCLE)) * pose.rotation;
+    // Thousands of products would otherwise let the quaternion's length drift.
+    rotation.renormalize_fast();
+    Isometry3::from_parts((pose.translation.vector + linear * CYCLE).into(), rotation)
+}
+
+fn single(value: f64) -> f64 {
+    f64::from(value as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lost_cycle_continues_a_parabola() {
+        let start = JointSignal {
+            q: JointVector::repeat(0.1),
+            dq: JointVector::repeat(0.5),
+            ddq: JointVector::repeat(2.0),
+        };
+        let next = start.extrapolated();
+        // The command that goes on with the same acceleration is told apart by rounding only.
+        let (again, jerk) = start.to_position(&next.q);
+        assert!((again.ddq - next.ddq).amax() < 1e-8);
+        assert!(jerk.amax() < 1e-5);
+    }
+
+    #[test]
+    fn poses_and_twists_describe_the_same_motion() {
+        let start = CartesianSignal::resting(Isometry3::new(
+            Vector3::new(0.3, 0.1, 0.5),
+            Vector3::new(3.0, 0.2, -0.1),
+        ));
+        let twist = Twist::new(0.1, -0.2, 0.3, 0.5, -0.4, 0.2);
+        let (by_twist, _) = start.to_twist(&twist);
+        let (by_pose, _) = start.to_pose(&by_twist.pose);
+        assert!((by_pose.twist - twist).amax() < 1e-9);
+        assert!((by_pose.acceleration - by_twist.acceleration).amax() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_published_is_single_precision() {
+        let signal = JointSignal::resting(JointVector::repeat(0.1)).published();
+        assert_eq!(signal.q[0], f64::from(0.1_f32));
+        let pose = Isometry3::new(Vector3::new(0.3, 0.1, 0.5), Vector3::new(3.0, 0.2, -0.1));
+        let published = CartesianSignal::resting(pose).published();
+        assert_eq!(published.pose.translation.vector.x, f64::from(0.3_f32));
+        assert!(rotation::error(&published.pose.rotation, &pose.rotation).norm() < 1e-6);
+    }
+}
