@@ -14,7 +14,7 @@ use super::{Case, Malformed, Node, Report};
 ///
 /// Messages of commands that the protocol crate does not implement have to be refused by name. The
 /// hand and the vacuum gripper are not part of that crate.
-pub fn messages(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn messages(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     for version in Version::ALL {
         for node in root.get(&format!("v{version}"))?.list()? {

@@ -13,7 +13,7 @@ use super::{Case, Malformed, Node, Report};
 /// Checks `wire_v10.json` or `wire_v5.json`: command numbers, names and sizes, the bytes of every
 /// enumerator, the errors, the sizes of the datagrams. Offsets are asserted when the protocol crate
 /// is compiled, and golden messages prove them.
-pub fn headers(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn headers(root: &Node<'_>) -> Result<Report, Malformed> {
     let node = root.get("fci_version")?;
     let version = Version::from_number(narrow(&node)?);
     let version = version.ok_or_else(|| node.malformed("a version of the protocol"))?;
