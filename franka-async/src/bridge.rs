@@ -14,6 +14,7 @@ use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output};
 use franka_rt::session::{Goal, GoalError, GoalId, Target};
 use franka_rt::thread::{Handle, Notice, Thread};
 use franka_rt::wake::Wake;
+use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 use tokio::time::Instant;
@@ -64,6 +65,17 @@ pub(crate) struct Inputs {
     /// Unbounded, since dropping a motion must be able to send; what awaits an answer bounds itself.
     pub(crate) queue: mpsc::UnboundedSender<Input>,
     pub(crate) records: broadcast::Sender<Record>,
+}
+
+/// Makes the thread's bell heard on this runtime.
+///
+/// # Errors
+/// If the runtime's poll does not take the descriptor.
+pub(crate) fn attach(bell: Wake) -> io::Result<AsyncFd<Wake>> {
+    // SAFETY: a `Wake` owns its eventfd through an `Arc` that nothing replaces: the descriptor is open, and the same, for
+    // as long as the `Wake` lives, and the `AsyncFd` owns the `Wake`.
+    let attached = unsafe { AsyncFd::register_with_interest(bell, Interest::READABLE) };
+    attached.map_err(Into::into)
 }
 
 /// Waits until the bell rings and silences it.

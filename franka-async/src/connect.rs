@@ -118,7 +118,7 @@ async fn open_with(
     };
     let driver = Driver::new(version).with_link_timeout(builder.link_timeout);
     let mut handle = thread::spawn(config, driver, udp, address.ip(), version)?;
-    let bell = AsyncFd::register(handle.wake.clone())?;
+    let bell = bridge::attach(handle.wake.clone())?;
     let first = timeout(builder.connect_timeout, first_state(&mut handle, &bell))
         .await
         .map_err(|_| ConnectError::NoState)??;

@@ -1,0 +1,55 @@
+//! Random reachable targets, one after the other.
+
+use franka_model::{EndEffector, JointVector, Model};
+use franka_rt::session::{PoseError, Target};
+use franka_tests::lockstep::{Lockstep, pose_of};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+/// Distance kept from the ends of the joints' ranges, `[rad]`, so that a straight line between targets has room.
+const MARGIN: f64 = 0.3;
+
+#[test]
+fn two_hundred_random_targets_are_reached_within_a_millimetre() {
+    let seed = 20;
+    let mut random = SmallRng::seed_from_u64(seed);
+    let limits = Model::fr3().joint_limits();
+    let mut lockstep = Lockstep::ready();
+    let hand = EndEffector {
+        f_t_ee: franka_sim::Tool::hand().f_t_ne,
+        ..EndEffector::default()
+    };
+    let mut worst = PoseError::default();
+    for case in 0..200 {
+        let q = JointVector::from_fn(|i, _| {
+            let (from, to) = (limits.lower[i] + MARGIN, limits.upper[i] - MARGIN);
+            // Near the ready pose, so that every other target can be a straight line away.
+            let near = franka_model::READY[i] + random.random_range(-0.35..0.35);
+            near.clamp(from, to)
+        });
+        let target = pose_of(&q, &hand);
+        // Poses walk straight lines, joint targets bring the arm back to a posture that has room.
+        let goal = if case % 2 == 0 {
+            Target::Joints(q.into())
+        } else {
+            Target::Pose(target)
+        };
+        let goal = lockstep.begin(goal);
+        let report = lockstep
+            .until_resolved(goal, 30_000)
+            .unwrap_or_else(|error| panic!("seed {seed}, case {case}: {error}"));
+        let error = PoseError::between(&lockstep.true_pose(), &target);
+        assert!(
+            error.translation < 1e-3 && error.rotation < 2e-3,
+            "seed {seed}, case {case}: {error:?} after {:?}",
+            report.duration
+        );
+        worst.translation = worst.translation.max(error.translation);
+        worst.rotation = worst.rotation.max(error.rotation);
+    }
+    println!(
+        "seed {seed}: worst {:.3} mm, {:.3} mrad",
+        worst.translation * 1e3,
+        worst.rotation * 1e3
+    );
+}

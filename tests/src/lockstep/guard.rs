@@ -1,0 +1,89 @@
+//! Holds every command against the limits of the robot, independently of the code that made it.
+
+use franka_model::Model;
+use franka_proto::{RobotCommand, RobotState};
+use franka_rt::driver::Record;
+
+/// Length of a cycle, `[s]`.
+const CYCLE: f64 = 1e-3;
+
+/// Remembers the command before, for rates.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CommandGuard {
+    last: Option<Last>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    time: u64,
+    goal: u64,
+    tau: [f64; 7],
+    dq_ref: [f64; 7],
+}
+
+impl CommandGuard {
+    /// # Panics
+    /// If the command violates a limit of the FR3.
+    pub(super) fn check(&mut self, command: &RobotCommand, state: &RobotState, record: &Record) {
+        assert_eq!(
+            command.message_id, state.message_id,
+            "a command answers the state it was made for"
+        );
+        let limits = Model::fr3().joint_limits();
+        let at = state.message_id;
+        for i in 0..7 {
+            let joint = i + 1;
+            let tau = command.tau_J_d[i];
+            assert!(
+                tau.is_finite() && tau.abs() <= limits.torque[i],
+                "{at}: joint {joint} gets {tau} N m"
+            );
+            // The robot holds a command against the last one that it took, which it echoes as `f32`.
+            let rate = (tau - state.tau_J_d[i]).abs() / CYCLE;
+            assert!(
+                rate <= limits.torque_rate[i] + 0.01,
+                "{at}: joint {joint} at {rate} N m/s"
+            );
+            let dq = record.dq_ref[i];
+            assert!(
+                dq.abs() <= limits.velocity[i],
+                "{at}: reference of joint {joint} at {dq} rad/s"
+            );
+            let ddq = record.ddq_ref[i];
+            let most = limits.acceleration[i] + 1e-6;
+            assert!(
+                ddq.abs() <= most,
+                "{at}: reference of joint {joint} at {ddq} rad/s^2"
+            );
+        }
+        if let Some(last) = self
+            .last
+            .filter(|last| last.time + 1 == at && last.goal > 0)
+        {
+            for i in 0..7 {
+                let joint = i + 1;
+                // Against the unrounded command, where no command was lost in between.
+                if f64::from(last.tau[i] as f32) == state.tau_J_d[i] {
+                    let rate = (command.tau_J_d[i] - last.tau[i]).abs() / CYCLE;
+                    assert!(
+                        rate <= limits.torque_rate[i],
+                        "{at}: joint {joint} at {rate} N m/s"
+                    );
+                }
+                let step = (record.dq_ref[i] - last.dq_ref[i]).abs() / CYCLE;
+                let most = limits.acceleration[i] * 1.001;
+                assert!(
+                    step <= most,
+                    "{at}: reference of joint {joint} steps by {step} rad/s^2"
+                );
+            }
+        }
+        let Record { goal, dq_ref, .. } = *record;
+        self.last = Some(Last {
+            time: at,
+            goal,
+            tau: command.tau_J_d,
+            dq_ref,
+        });
+    }
+}
