@@ -9,6 +9,7 @@
 //!
 //! | module | content |
 //! |---|---|
+//! | [`serve`] | the same robot on sockets: [`Sim::fr3`]`().start().await` |
 //! | [`robot`] | the robot as a value, without clock and sockets: what tests in virtual time drive |
 //! | [`plant`] | the physics of the arm |
 //! | [`config`] | what a robot is like: pose, tool, load, noise, strictness |
@@ -22,9 +23,11 @@ mod noise;
 pub mod plant;
 pub mod robot;
 mod score;
+pub mod serve;
 mod settings;
 mod signal;
 mod urdf;
 
 pub use config::{Config, Noise, Tool};
 pub use robot::{Datagram, Robot, SessionError};
+pub use serve::{Pace, Running, Sim, Stopped};

@@ -1,0 +1,109 @@
+//! The stream: one client at a time.
+
+use std::time::Duration;
+
+use bytes::{Bytes, BytesMut};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::mpsc;
+use tokio::time::timeout;
+
+use super::cycle::Order;
+
+/// Replies that may wait for a client that does not read.
+const REPLIES: usize = 64;
+
+/// How long a second client waits for the first to be gone. One that reconnects arrives a moment
+/// before its old connection has been taken down.
+const HANDOVER: Duration = Duration::from_millis(50);
+
+/// How long to wait after the listener failed (out of file descriptors, for one).
+const RETRY: Duration = Duration::from_millis(100);
+
+/// Serves clients until the thread has gone or the task is aborted.
+pub(super) async fn serve(listener: TcpListener, orders: mpsc::Sender<Order>) {
+    let mut next = None;
+    while !orders.is_closed() {
+        let stream = match next.take() {
+            Some(stream) => stream,
+            None => accept(&listener).await,
+        };
+        let mut session = std::pin::pin!(session(stream, orders.clone()));
+        loop {
+            tokio::select! {
+                biased;
+                () = &mut session => break,
+                other = accept(&listener) => {
+                    // Refused by closing: a client sees an orderly end instead of silence.
+                    if timeout(HANDOVER, &mut session).await.is_ok() {
+                        next = Some(other);
+                        break;
+                    }
+                }
+            }
+        }
+    }
+}
+
+async fn accept(listener: &TcpListener) -> TcpStream {
+    loop {
+        match listener.accept().await {
+            Ok((stream, _)) => return stream,
+            Err(error) => {
+                tracing::warn!(%error, "cannot accept a connection");
+                tokio::time::sleep(RETRY).await;
+            }
+        }
+    }
+}
+
+/// One client from first byte to last.
+async fn session(stream: TcpStream, orders: mpsc::Sender<Order>) {
+    let Ok(peer) = stream.peer_addr() else {
+        return;
+    };
+    // Replies are small and their delay is felt; without it, they are only slower.
+    let _ = stream.set_nodelay(true);
+    tracing::info!(%peer, "client connected");
+    let (sender, replies) = mpsc::channel(REPLIES);
+    let connect = Order::Connect {
+        peer: peer.ip(),
+        replies: sender,
+    };
+    if orders.send(connect).await.is_ok() {
+        transfer(stream, &orders, replies).await;
+        // If the thread has gone, so has the robot.
+        let _ = orders.send(Order::Disconnect).await;
+    }
+    tracing::info!(%peer, "client gone");
+}
+
+/// Moves bytes both ways until either side is done.
+async fn transfer(
+    mut stream: TcpStream,
+    orders: &mpsc::Sender<Order>,
+    mut replies: mpsc::Receiver<Bytes>,
+) {
+    let (mut read, mut write) = stream.split();
+    let incoming = async {
+        let mut buffer = BytesMut::with_capacity(4096);
+        while matches!(read.read_buf(&mut buffer).await, Ok(count) if count > 0) {
+            let bytes = buffer.split().freeze();
+            if orders.send(Order::Receive(bytes)).await.is_err() {
+                return;
+            }
+        }
+    };
+    let outgoing = async {
+        // The thread drops its end to close the connection.
+        while let Some(reply) = replies.recv().await {
+            if write.write_all(&reply).await.is_err() {
+                return;
+            }
+        }
+    };
+    tokio::select! {
+        () = incoming => {}
+        () = outgoing => {}
+    }
+}

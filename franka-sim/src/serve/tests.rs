@@ -1,0 +1,134 @@
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream, UdpSocket};
+use std::time::{Duration, Instant};
+
+use franka_proto::framing::next_message;
+use franka_proto::{RobotMode, RobotState, Version, client};
+
+use super::*;
+
+/// A plain blocking client.
+struct Client {
+    /// Open for as long as the client lives.
+    _stream: TcpStream,
+    socket: UdpSocket,
+}
+
+impl Client {
+    fn connect(address: SocketAddr) -> Self {
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        let wait = Some(Duration::from_secs(2));
+        socket.set_read_timeout(wait).expect("a timeout");
+        let mut stream = TcpStream::connect(address).expect("a listener");
+        stream.set_read_timeout(wait).expect("a timeout");
+        let mut session = client::Session::new(Version::V10);
+        let port = socket.local_addr().expect("an address").port();
+        stream
+            .write_all(session.connect(port).as_bytes())
+            .expect("an open stream");
+        let mut reply = [0; 15];
+        stream.read_exact(&mut reply).expect("an answer");
+        let message = next_message(&reply).expect("whole").expect("complete");
+        session.on_message(message).expect("an answer");
+        assert!(session.is_connected());
+        Self {
+            _stream: stream,
+            socket,
+        }
+    }
+
+    fn state(&self) -> RobotState {
+        let mut buffer = [0; RobotState::MAX_SIZE];
+        let length = self.socket.recv(&mut buffer).expect("a state");
+        RobotState::decode(Version::V10, &buffer[..length]).expect("a state")
+    }
+}
+
+fn runtime() -> tokio::runtime::Runtime {
+    tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(1)
+        .enable_all()
+        .build()
+        .expect("a runtime")
+}
+
+#[test]
+fn states_come_every_millisecond_even_while_the_runtime_is_blocked() {
+    let runtime = runtime();
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
+    let client = Client::connect(sim.addr());
+    let first = client.state().message_id;
+    let start = Instant::now();
+    runtime.spawn(async { std::thread::sleep(Duration::from_millis(500)) });
+    let mut last = first;
+    while start.elapsed() < Duration::from_millis(400) {
+        let state = client.state();
+        assert_eq!(state.message_id, last + 1);
+        last = state.message_id;
+    }
+    // The host may be busy; it cannot be this busy.
+    assert!(last - first > 100, "{}", last - first);
+    assert!(last - first < 440, "{}", last - first);
+}
+
+#[test]
+fn a_second_client_is_turned_away_and_the_next_one_served() {
+    let runtime = runtime();
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
+    let first = Client::connect(sim.addr());
+    let mut second = TcpStream::connect(sim.addr()).expect("a listener");
+    second
+        .set_read_timeout(Some(Duration::from_secs(2)))
+        .expect("a timeout");
+    assert_eq!(second.read(&mut [0; 1]).expect("an orderly end"), 0);
+    first.state();
+    drop(first);
+    // At once, and again: the old connection is still being taken down.
+    for _ in 0..5 {
+        Client::connect(sim.addr()).state();
+    }
+}
+
+#[test]
+fn garbage_closes_the_connection_and_the_robot_stays() {
+    let runtime = runtime();
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
+    let mut stream = TcpStream::connect(sim.addr()).expect("a listener");
+    stream
+        .set_read_timeout(Some(Duration::from_secs(2)))
+        .expect("a timeout");
+    stream.write_all(&[0xff; 100]).expect("an open stream");
+    assert_eq!(stream.read(&mut [0; 1]).expect("an orderly end"), 0);
+    Client::connect(sim.addr()).state();
+}
+
+#[test]
+fn hands_reach_the_robot_and_stopping_frees_the_port() {
+    let runtime = runtime();
+    runtime.block_on(async {
+        let sim = Sim::fr3().start().await.expect("a robot");
+        let address = sim.addr();
+        sim.with(|robot| robot.press_user_stop(true))
+            .await
+            .expect("running");
+        tokio::time::sleep(Duration::from_millis(20)).await;
+        let mode = sim.with(|robot| robot.state().robot_mode).await;
+        assert_eq!(mode, Ok(RobotMode::UserStopped));
+        assert!(sim.pace().await.expect("running").cycles > 0);
+        sim.stop().await;
+        let again = Sim::fr3().bind(address).start().await;
+        assert!(again.is_ok(), "{again:?}");
+    });
+}
+
+#[test]
+fn robots_share_a_process() {
+    let runtime = runtime();
+    let sims: Vec<_> = (0..3)
+        .map(|_| runtime.block_on(Sim::fr3().start()).expect("a robot"))
+        .collect();
+    let clients: Vec<_> = sims.iter().map(|s| Client::connect(s.addr())).collect();
+    for client in &clients {
+        assert_eq!(client.state().robot_mode, RobotMode::Idle);
+    }
+}
