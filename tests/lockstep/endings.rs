@@ -181,31 +181,52 @@ fn losses_that_the_robot_tolerates_do_not_end_a_motion() {
     }
 }
 
-#[test]
-fn an_arm_that_is_held_is_reported_short_and_let_go_without_a_step() {
+/// A robot whose collision thresholds let a hand push.
+fn tolerant() -> Lockstep {
     let mut lockstep = Lockstep::ready();
-    lockstep.request(&Request::SetCollisionBehavior(CollisionBehavior::uniform(
-        [100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6],
-    )));
+    let behavior = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
+    lockstep.request(&Request::SetCollisionBehavior(behavior));
     lockstep.run(5);
-    let start = lockstep.true_pose();
-    let goal = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.12) * start));
-    // Somebody holds the arm down with more than the leash lets it pull.
-    let mut wrench = Wrench::zeros();
-    wrench[2] = -60.0;
-    lockstep.robot.push_end_effector(wrench, 1_000_000);
-    lockstep.run(3000);
-    assert!(lockstep.record.bindings.contains(Guard::Leash));
+    lockstep
+}
+
+fn downward(newtons: f64) -> Wrench {
+    Wrench::new(0.0, 0.0, -newtons, 0.0, 0.0, 0.0)
+}
+
+#[test]
+fn an_arm_that_is_held_short_is_reported_and_let_go_without_a_step() {
+    let mut lockstep = tolerant();
+    let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
+    let goal = lockstep.begin(Target::Pose(target));
+    lockstep.robot.push_end_effector(downward(12.0), 1_000_000);
     let error = lockstep.until_resolved(goal, 20_000).unwrap_err();
     let MotionError::Short(error) = error else {
         panic!("{error:?}")
     };
-    assert!(error.translation > 0.1, "{error:?}");
+    // 12 N against 750 N/m and what the joint springs add to it.
+    assert!((0.008..0.016).contains(&error.translation), "{error:?}");
     assert_eq!(
         lockstep.state.robot_mode,
         RobotMode::Idle,
         "ended without a reflex"
     );
+}
+
+#[test]
+fn an_arm_that_is_pushed_away_stays_on_the_leash_and_comes_back() {
+    let mut lockstep = tolerant();
+    let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
+    let goal = lockstep.begin(Target::Pose(target));
+    lockstep.run(300);
+    lockstep.robot.push_end_effector(downward(40.0), 250);
+    let mut bound = 0;
+    for _ in 0..250 {
+        lockstep.tick();
+        bound += u32::from(lockstep.record.bindings.contains(Guard::Leash));
+    }
+    assert!(bound > 100, "the leash bound in {bound} of 250 cycles");
+    lockstep.until_resolved(goal, 8000).unwrap();
 }
 
 #[test]

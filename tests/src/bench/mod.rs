@@ -13,6 +13,7 @@
 //! | module | measures |
 //! |---|---|
 //! | [`codec`] | a state read, a command written |
+//! | [`cycle`] | target control, datagram in to datagram out |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
 //! | [`otg`] | a new target for seven joints in motion |
 
@@ -20,6 +21,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 pub mod codec;
+pub mod cycle;
 pub mod model;
 pub mod otg;
 
@@ -67,7 +69,7 @@ impl Statistic {
 
 /// All benchmarks of the project.
 pub fn all() -> Vec<Benchmark> {
-    [codec::all(), model::all(), otg::all()]
+    [codec::all(), cycle::all(), model::all(), otg::all()]
         .into_iter()
         .flatten()
         .collect()

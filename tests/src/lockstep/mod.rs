@@ -13,6 +13,7 @@
 
 mod guard;
 mod link;
+mod wander;
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::time::Duration;
@@ -29,6 +30,7 @@ use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
 
 pub use link::Link;
+pub use wander::Wander;
 
 use guard::CommandGuard;
 
@@ -111,6 +113,15 @@ impl Lockstep {
     /// # Panics
     /// If a command violates a limit of the robot, or the client's session meets a message it cannot read.
     pub fn tick(&mut self) {
+        self.tick_around(|cycle| cycle());
+    }
+
+    /// Like [`Self::tick`], with the control cycle, datagram in to datagram out, run by `around`: to time it, or to count
+    /// what it allocates.
+    ///
+    /// # Panics
+    /// See [`Self::tick`]; and if `around` does not run the cycle.
+    pub fn tick_around(&mut self, mut around: impl FnMut(&mut dyn FnMut())) {
         self.milliseconds += 1;
         while let Some(bytes) = self.to_robot.pop_front() {
             self.robot
@@ -122,16 +133,26 @@ impl Lockstep {
             self.from_robot.extend_from_slice(&reply);
         }
         match state.filter(|_| self.link.passes_state()) {
-            Some(bytes) => {
-                let state = RobotState::decode(self.session.version(), &bytes)
-                    .expect("a state of this version");
+            Some(datagram) => {
                 self.heard = self.milliseconds;
+                let version = self.session.version();
+                let mut answer = None;
+                let mut command = [0; RobotCommand::MAX_SIZE];
+                around(&mut || {
+                    answer = Some(cycle(&mut self.driver, version, &datagram, &mut command))
+                });
+                let (state, size) = answer.expect("the cycle has run");
                 self.state = state;
-                if let Some(command) = self.driver.on_state(&state) {
-                    self.guard.check(&command, &state, self.driver.record());
-                    self.send(&command);
-                }
                 self.record = *self.driver.record();
+                if let Some(size) = size {
+                    let command = &command[..size];
+                    let decoded =
+                        RobotCommand::decode(version, command).expect("a command of this version");
+                    self.guard.check(&decoded, &state, &self.record);
+                    if self.link.passes_command() {
+                        self.robot.command(command);
+                    }
+                }
             }
             None => self
                 .driver
@@ -257,16 +278,6 @@ impl Lockstep {
         Duration::from_millis(self.milliseconds)
     }
 
-    fn send(&mut self, command: &RobotCommand) {
-        let mut bytes = [0; RobotCommand::MAX_SIZE];
-        let size = command
-            .encode(self.session.version(), &mut bytes)
-            .expect("it fits");
-        if self.link.passes_command() {
-            self.robot.command(&bytes[..size]);
-        }
-    }
-
     fn take_replies(&mut self) {
         let received = std::mem::take(&mut self.from_robot);
         let mut rest = &received[..];
@@ -309,6 +320,20 @@ impl Lockstep {
             }
         }
     }
+}
+
+/// What the control thread does between a state and its command: returns the state, and the size of the command if there
+/// is one.
+fn cycle(
+    driver: &mut Driver,
+    version: Version,
+    datagram: &[u8],
+    command: &mut [u8],
+) -> (RobotState, Option<usize>) {
+    let state = RobotState::decode(version, datagram).expect("a state of this version");
+    let answer = driver.on_state(&state);
+    let size = answer.map(|answer| answer.encode(version, command).expect("it fits"));
+    (state, size)
 }
 
 /// Pose of the end effector of an FR3 at `q`.

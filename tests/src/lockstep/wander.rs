@@ -1,0 +1,81 @@
+//! Target control that never ends: targets of both kinds, steps and streams, at irregular times.
+
+use franka_model::READY;
+use franka_rt::session::{GoalId, Target, Then};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+use super::Lockstep;
+
+/// Sends an arm about, from a seed.
+pub struct Wander {
+    /// The system that is being sent about.
+    pub lockstep: Lockstep,
+    random: SmallRng,
+    home: Isometry3<f64>,
+    goal: GoalId,
+    next: u64,
+}
+
+impl Wander {
+    /// An arm in the ready pose, on its way.
+    pub fn new(seed: u64) -> Self {
+        let mut lockstep = Lockstep::ready();
+        let home = lockstep.true_pose();
+        let goal = lockstep.goal(Target::Pose(home), Then::Hold);
+        let id = lockstep.submit(goal).expect("the arm is there already");
+        let mut this = Self {
+            lockstep,
+            random: SmallRng::seed_from_u64(seed),
+            home,
+            goal: id,
+            next: 0,
+        };
+        this.lockstep.run(20);
+        this
+    }
+
+    /// One millisecond; see [`Lockstep::tick_around`].
+    pub fn tick_around(&mut self, around: impl FnMut(&mut dyn FnMut())) {
+        if self.lockstep.now() >= self.next {
+            self.next = self.lockstep.now() + self.random.random_range(5..400);
+            self.change_course();
+        }
+        self.lockstep.tick_around(around);
+    }
+
+    fn change_course(&mut self) {
+        if self.random.random_bool(0.25) {
+            let offset: [f64; 7] = core::array::from_fn(|_| self.random.random_range(-0.2..0.2));
+            let goal = Target::Joints(core::array::from_fn(|i| READY[i] + offset[i]));
+            self.submit(goal);
+        } else {
+            let mut vector =
+                |most: f64| Vector3::from_fn(|_, _| self.random.random_range(-most..most));
+            let (way, turn) = (vector(0.08), vector(0.2));
+            let pose = Isometry3::from_parts(
+                Translation3::from(self.home.translation.vector + way),
+                UnitQuaternion::from_scaled_axis(turn) * self.home.rotation,
+            );
+            if self.random.random_bool(0.5) {
+                self.submit(Target::Pose(pose));
+            } else {
+                let state = self.lockstep.state;
+                let updated = self
+                    .lockstep
+                    .lifecycle
+                    .update(self.goal, Target::Pose(pose), &state);
+                assert_eq!(updated, Ok(true), "the goal is being followed");
+            }
+        }
+    }
+
+    fn submit(&mut self, target: Target) {
+        let goal = self.lockstep.goal(target, Then::Hold);
+        self.goal = self
+            .lockstep
+            .submit(goal)
+            .expect("targets near the ready pose are reachable");
+    }
+}
