@@ -60,7 +60,9 @@ impl Axis {
         profile.push(first, t1);
         profile.push(0.0, t2);
         profile.push(-first, t3);
-        profile.push(0.0, t4);
+        let per_velocity = jerk * unit * unit;
+        let along = frame * solution.sign;
+        profile.cruise(along * per_velocity * solution.shape.cruise, t4);
         profile.finish(-up, [t5, t6, t7], self.target);
     }
 }

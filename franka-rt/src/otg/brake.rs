@@ -1,9 +1,10 @@
 //! From outside the limits back into them.
 //!
-//! States outside the limits come from measurements and from limits that were lowered. The convention is "inside again as
-//! early as possible": full jerk, then the acceleration limit, until the velocity is back at its limit and will stay there.
-//! It is a convention and not part of the optimum. A rule that only asks the velocity to converge to its limit can be
-//! shorter, but stays above the limit for longer. The state is never clamped, since a clamp is a step in what the robot sees.
+//! States outside the limits come from measurements and from limits that were lowered. The convention is
+//! "inside again as early as possible": full jerk, then the acceleration limit, until the velocity is back at
+//! its limit and will stay there. It is a convention and not part of the optimum. A rule that only asks the
+//! velocity to converge to its limit can be shorter, but stays above the limit for longer. The state is never
+//! clamped, since a clamp is a step in what the robot sees.
 
 use super::task::Task;
 
@@ -128,6 +129,15 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn braking_ends_as_soon_as_the_velocity_is_back() {
+        // Ramp only, ramp and hold, and the hold cut short where undoing it would undershoot.
+        for (v, top, expected) in [(10.2, 10.0, 10.0), (12.0, 10.0, 10.0), (3.0, 0.1, 0.4)] {
+            let (_, after) = into_limits(task(v, 0.0, top));
+            assert!((after.v - expected).abs() < 1e-14, "{v} {top}: {after:?}");
         }
     }
 

@@ -8,18 +8,21 @@ use super::state::{State, check_finite};
 
 /// One nominal cycle of the robot, in seconds (FCI documentation: 1 kHz).
 ///
-/// The generator advances by this per command, whatever the time between two states: to the robot, two milliseconds' motion in one
-/// command is a doubled velocity.
+/// The generator advances by this per command, whatever the time between two states: to the robot, two
+/// milliseconds' motion in one command is a doubled velocity.
 pub const CYCLE: f64 = 1e-3;
 
-/// Moves `N` axes to rest at a target that may change at any time, inside limits of velocity, acceleration and jerk.
+/// Moves `N` axes to rest at a target that may change at any time, inside limits of velocity, acceleration
+/// and jerk.
 ///
 /// - Input: [`set_target`](Self::set_target), [`set_limits`](Self::set_limits), [`brake`](Self::brake),
 ///   [`set_state`](Self::set_state). Each plans anew from the present state, unless nothing changes.
 /// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) to look ahead.
-/// - Getters: [`state`](Self::state), [`target`](Self::target), [`remaining`](Self::remaining), [`is_done`](Self::is_done).
+/// - Getters: [`state`](Self::state), [`target`](Self::target), [`remaining`](Self::remaining),
+///   [`is_done`](Self::is_done).
 ///
-/// All of it is bounded work without allocation, fit for the real-time thread. An error leaves the generator as it was.
+/// All of it is bounded work without allocation, fit for the real-time thread. An error leaves the generator
+/// as it was.
 ///
 /// ```
 /// use franka_rt::otg::{Generator, Limits, State};
@@ -60,7 +63,8 @@ impl<const N: usize> Generator<N> {
     /// Synchronisation is [`Synchronisation::Straight`].
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it lies more than 100 decades from the limits.
+    /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it lies more than 100 decades
+    /// from the limits.
     pub fn new(state: State<N>, limits: Limits<N>) -> Result<Self, PlanError> {
         let mut generator = Self {
             limits,
@@ -120,16 +124,18 @@ impl<const N: usize> Generator<N> {
 
     /// Gives up the target and comes to rest in the least time.
     ///
-    /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its own if the axes have the same
-    /// ratio of acceleration to jerk, and at most the difference of these ratios longer otherwise. Off a line each axis
-    /// stops by itself. Braking cannot fail: state and limits were checked when they came in.
+    /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its own if
+    /// the axes have the same ratio of acceleration to jerk, and at most the difference of these ratios
+    /// longer otherwise. Off a line each axis stops by itself. Braking cannot fail: state and limits were
+    /// checked when they came in.
     pub fn brake(&mut self) {
         if self.goal != Goal::Rest {
             self.plan_stop();
         }
     }
 
-    /// Re-anchors the generator at `state` and plans anew: to the target if there is one, else to rest in the least time.
+    /// Re-anchors the generator at `state` and plans anew: to the target if there is one, else to rest in the
+    /// least time.
     ///
     /// The output steps to `state`; that it is close to the last output is for the caller to see to.
     ///
@@ -157,7 +163,8 @@ impl<const N: usize> Generator<N> {
 
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
-    /// The cycle in which the motion ends, and all after it, give exactly the target without velocity and acceleration.
+    /// The cycle in which the motion ends, and all after it, give exactly the target without velocity and
+    /// acceleration.
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
         self.state = self.plan.sample(self.elapsed());

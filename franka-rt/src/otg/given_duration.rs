@@ -2,29 +2,28 @@
 //!
 //! For targets at rest two families with one parameter each suffice.
 //!
-//! **Velocity cap.** Transfer to a velocity `w`, cruise, stop. Eliminating the cruise from the equations of time and distance
-//! leaves one equation, which needs no division by `w`. Upwards (`w` at or above the velocity that remains when the
-//! acceleration is ramped out), with `c, pi` the start extended to zero acceleration as in step one and `A(d)` the area of
-//! [`stop_distance`](super::transfer::stop_distance):
+//! **Velocity cap.** Transfer to a velocity `w`, cruise, stop. Eliminating the cruise from the equations of
+//! time and distance leaves one equation, which needs no division by `w`. Upwards (`w` at or above the
+//! velocity that remains when the acceleration is ramped out), with `c, pi` the start extended to zero
+//! acceleration as in step one and `A(d)` the area of [`stop_distance`](super::transfer::stop_distance):
 //!
 //! ```text
 //! g(w) = A(w - c) + A(w) - (T + a) w + d - pi = 0
 //! ```
 //!
-//! and downwards `A(w) - A(c - w) - (T - a) w + d - pi`, with `c, pi` of a negative first jerk. `g` is convex or monotone
-//! where the cruise is not negative. If both transfers hold their acceleration it is a quadratic or linear equation. The
-//! cruise follows from the time equation, so the duration is exact and rounding goes into the position, where it is smallest.
+//! and downwards `A(w) - A(c - w) - (T - a) w + d - pi`, with `c, pi` of a negative first jerk. `g` is convex
+//! or monotone where the cruise is not negative. If both transfers hold their acceleration it is a quadratic
+//! or linear equation. The cruise follows from the time equation, so the duration is exact and rounding goes
+//! into the position, where it is smallest.
 //!
-//! **Acceleration cap.** Needed where an axis is braking already into a target just past its stop point and should lose a
-//! little time. Lower the acceleration limit to `cap`, ramping a larger acceleration down to it first, and take the
-//! least-time profile under it. Its duration is continuous in `cap`, least at one, and unbounded towards zero, so there is a
-//! solution for every duration; a bracketed search finds it. The velocity limit is safe: the ramp leaves the coasting
-//! velocity unchanged.
+//! **Acceleration cap**, where no cruise fits: see [`super::acceleration_cap`].
 //!
-//! Slowing time down instead (one factor for the whole profile) would change the velocity at the start, and lowering all
-//! three limits at once makes the duration discontinuous where a start no longer fits inside them.
+//! Slowing time down instead (one factor for the whole profile) would change the velocity at the start, and
+//! lowering all three limits at once makes the duration discontinuous where a start no longer fits inside
+//! them.
 
-use super::least_time::{Least, Shape, least_time};
+use super::acceleration_cap::acceleration_cap;
+use super::least_time::{Least, Shape};
 use super::task::Task;
 use super::transfer::{ramp_and_hold, stop_distance_and_slope, transfer_time};
 
@@ -52,7 +51,7 @@ pub(super) fn lasting(least: &Least, duration: f64) -> Lasting {
     if duration - least.duration <= SAME * duration {
         return unstretched;
     }
-    match velocity_cap(&least.task, least.peak, duration) {
+    match velocity_cap(&least.task, least.shape.cruise, duration) {
         Some(shape) => Lasting {
             shape,
             ..unstretched
@@ -164,7 +163,7 @@ impl Cap {
         let shape = Shape::two_transfers(
             self.sign * a,
             ramp_and_hold(first),
-            cruise,
+            (w, cruise),
             ramp_and_hold(w),
         );
         Some(Shape {
@@ -174,97 +173,134 @@ impl Cap {
     }
 }
 
-/// The least-time profile under a lowered acceleration limit.
-fn acceleration_cap(task: &Task, duration: f64) -> Lasting {
-    let probe = |cap: f64| Probe::new(task, cap, duration);
-    // At a cap of one the profile is too short. Find a cap at which it is not.
-    let mut a = probe(0.5);
-    let mut b = probe(1.0);
-    for _ in 0..MAX_STEPS {
-        if a.excess >= 0.0 {
-            break;
-        }
-        (b, a) = (a, probe(0.5 * a.cap));
-    }
-    // Chandrupatla's method: inverse quadratic interpolation where the three points allow it, else bisection. `a` and `b`
-    // bracket the root, `a` is the newest probe, `c` the one that it or `b` replaced.
-    let mut part = 0.5_f64;
-    for _ in 0..MAX_STEPS {
-        let best = if a.excess.abs() < b.excess.abs() {
-            a
-        } else {
-            b
-        };
-        let width = (b.cap - a.cap).abs();
-        let resolution = 2.0 * f64::EPSILON * best.cap / width;
-        if best.excess.abs() <= SAME * duration || resolution >= 0.5 {
-            return best.lasting();
-        }
-        let next = probe(a.cap + part.clamp(resolution, 1.0 - resolution) * (b.cap - a.cap));
-        let c = if (next.excess > 0.0) == (a.excess > 0.0) {
-            a
-        } else {
-            core::mem::replace(&mut b, a)
-        };
-        a = next;
-        part = interpolate(&a, &b, &c);
-    }
-    a.lasting()
-}
-
-/// Where between `a` and `b` the root lies, as a fraction, by the parabola through three points if it is monotone there.
-fn interpolate(a: &Probe, b: &Probe, c: &Probe) -> f64 {
-    let (fa, fb, fc) = (a.excess, b.excess, c.excess);
-    let xi = (a.cap - b.cap) / (c.cap - b.cap);
-    let phi = (fa - fb) / (fc - fb);
-    if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
-        fa / (fb - fa) * fc / (fb - fc)
-            + (c.cap - a.cap) / (b.cap - a.cap) * fa / (fc - fa) * fb / (fc - fb)
-    } else {
-        0.5
-    }
-}
-
-/// The least-time profile under one acceleration cap.
-#[derive(Clone, Copy)]
-struct Probe {
-    cap: f64,
-    ramp: (f64, f64),
-    least: Least,
-    /// By how much it is too long.
-    excess: f64,
-}
-
-impl Probe {
-    fn new(task: &Task, cap: f64, duration: f64) -> Self {
-        let jerk = -1_f64.copysign(task.a);
-        let time = (task.a.abs() - cap).max(0.0);
-        let after = if time > 0.0 {
-            task.after(jerk, time)
-        } else {
-            *task
-        };
-        let least = least_time(after.capped(cap));
-        Self {
-            cap,
-            ramp: (jerk, time),
-            least,
-            excess: time + cap * least.duration - duration,
-        }
-    }
-
-    fn lasting(&self) -> Lasting {
-        Lasting {
-            ramp: self.ramp,
-            cap: self.cap,
-            sign: self.least.sign,
-            shape: self.least.shape,
-        }
-    }
-}
-
 /// Relative difference of durations that is rounding.
-const SAME: f64 = 1e-14;
+pub(super) const SAME: f64 = 1e-14;
 
 /// Bound of each search.
-const MAX_STEPS: usize = 60;
+pub(super) const MAX_STEPS: usize = 60;
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::otg::least_time::least_time;
+
+    /// Follows a solution; returns its duration, the task left at its end, and the largest acceleration,
+    /// velocity and distance beyond the target between segments.
+    fn follow(task: &Task, solution: &Lasting) -> (f64, Task, f64, f64, f64) {
+        let Lasting {
+            cap, sign, shape, ..
+        } = *solution;
+        let first = shape.first * sign;
+        let jerks = [first, 0.0, -first, 0.0, -sign, 0.0, sign];
+        let segments = jerks.iter().zip(shape.t).map(|(j, t)| (*j, cap * t));
+        let (mut left, mut duration, mut a, mut v, mut beyond) =
+            (*task, 0.0, 0.0_f64, 0.0_f64, 0.0_f64);
+        for (i, (jerk, t)) in core::iter::once(solution.ramp).chain(segments).enumerate() {
+            assert!(t >= 0.0);
+            if i == 4 && t > 0.0 {
+                // As profiles do: a rounding left here would grow with the square of the cruise.
+                left.v = sign * cap * cap * shape.cruise;
+                left.a = 0.0;
+            }
+            duration += t;
+            left = left.after(jerk, t);
+            a = a.max(left.a.abs());
+            v = v.max(left.v.abs());
+            beyond = beyond.max(-left.d);
+        }
+        (duration, left, a, v, beyond)
+    }
+
+    /// A start inside its limits, with a target at a distance from the stop point that is small more often
+    /// than not.
+    fn task() -> impl Strategy<Value = Task> {
+        let distance = prop_oneof![1 => -5.0..-1.0, 1 => -1.0..2.0];
+        let sign = prop_oneof![Just(1.0), Just(-1.0)];
+        (-1.5..2.5, -1.0..1.0, -1.0..1.0, distance, sign).prop_map(
+            |(exponent, coasting, bend, distance, sign): (f64, f64, f64, f64, f64)| {
+                let top = 10_f64.powf(exponent);
+                let room = (2.0 * top * (1.0 + coasting * bend.signum())).sqrt();
+                let a = bend * room.min(1.0);
+                let task = Task {
+                    d: 0.0,
+                    v: top * coasting - 0.5 * a * a.abs(),
+                    a,
+                    top,
+                    fuzz: 0.0,
+                };
+                let scale = top * (1.0 + top.min(1.0));
+                Task {
+                    d: task.stop_point().0 + sign * scale * 10_f64.powf(distance),
+                    ..task
+                }
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(5000) })]
+
+        #[test]
+        fn every_longer_duration_has_a_profile(task in task(), exponent in -5.0..0.7) {
+            let least = least_time(task);
+            let duration = least.duration * (1.0 + 10_f64.powf(exponent));
+            let solution = lasting(&least, duration);
+            let (lasts, left, a, v, beyond) = follow(&least.task, &solution);
+            let size = task.d.abs() + task.top * duration;
+            // Near a stop point the rounding of a position costs its root in time.
+            let rounding = f64::EPSILON * size;
+            let slack = 1e-13 * duration + 2.0 * rounding.sqrt();
+            let waits = duration - lasts;
+            prop_assert!(waits >= -slack, "{waits} of {duration}: {solution:?}");
+            if waits > slack {
+                prop_assert!(velocity_cap(&least.task, least.shape.cruise, duration).is_none());
+                prop_assert!(waits <= 0.25 * duration, "{waits} of {duration}: {solution:?}");
+            }
+            let avoidable = least.task.d >= 0.0 && least.task.coasting_velocity() >= 0.0;
+            prop_assert!(!avoidable || beyond <= 64.0 * rounding, "overshoots by {beyond}: {solution:?}");
+            prop_assert!(left.d.abs() <= 64.0 * rounding, "{} missing of {size}", left.d);
+            prop_assert!(left.v.abs() <= 1e-12 * (1.0 + task.top) && left.a.abs() <= 1e-12);
+            prop_assert!(a <= 1.0 + 1e-12 && v <= task.top * (1.0 + 1e-12), "{a} {v}");
+        }
+    }
+
+    #[test]
+    fn an_axis_braking_into_a_near_target_uses_the_acceleration_cap() {
+        let task = Task {
+            d: 0.0,
+            v: 2.0,
+            a: -0.9,
+            top: 10.0,
+            fuzz: 0.0,
+        };
+        let stop = task.stop_point().0;
+        let least = least_time(Task {
+            d: stop + 1e-3,
+            ..task
+        });
+        assert!(velocity_cap(&least.task, least.shape.cruise, 1.02 * least.duration).is_none());
+        let solution = lasting(&least, 1.02 * least.duration);
+        assert!(solution.cap < 1.0 && solution.cap > 0.5, "{solution:?}");
+    }
+
+    #[test]
+    fn a_stop_point_can_be_waited_at() {
+        let task = Task {
+            d: 0.0,
+            v: 2.0,
+            a: 0.3,
+            top: 10.0,
+            fuzz: 1e-15,
+        };
+        let least = least_time(Task {
+            d: task.stop_point().0,
+            ..task
+        });
+        let solution = lasting(&least, 10.0 * least.duration);
+        let (lasts, left, ..) = follow(&least.task, &solution);
+        assert!((lasts - 10.0 * least.duration).abs() < 1e-12 * lasts);
+        assert!(left.d.abs() < 1e-12 && left.v.abs() < 1e-12);
+    }
+}

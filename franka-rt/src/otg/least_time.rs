@@ -1,28 +1,30 @@
 //! Step one: the least-time profile of one axis.
 //!
-//! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` grows with `T` and is an
-//! interval. The optimum is therefore "push towards one side, then stop": the side is that of the target as seen from where
-//! an immediate stop would end. A target inside the braking distance needs no special case.
+//! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` grows with `T`
+//! and is an interval. The optimum is therefore "push towards one side, then stop": the side is that of the
+//! target as seen from where an immediate stop would end. A target inside the braking distance needs no
+//! special case.
 //!
-//! In the frame in which the push is upwards the jerks are `+ 0 - 0 - 0 +` (seven durations). Extending the first jerk to the
-//! instant where the acceleration is zero turns the start `(v, a)` into `(c, 0)` with
+//! In the frame in which the push is upwards the jerks are `+ 0 - 0 - 0 +` (seven durations). Extending the
+//! first jerk to the instant where the acceleration is zero turns the start `(v, a)` into `(c, 0)` with
 //!
 //! ```text
 //! c = v - a^2/2      at      pi = a (a^2/3 - v)
 //! ```
 //!
-//! With `x` the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the velocity between the two halves,
-//! the motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`, which grows with `w`. Comparing the target with that at the
-//! breakpoints names the one case that applies: a cruise or an acceleration hold, both closed, or neither, where the
-//! monotone and convex equation
+//! With `x` the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the velocity between
+//! the two halves, the motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`, which grows with `w`.
+//! Comparing the target with that at the breakpoints names the one case that applies: a cruise or an
+//! acceleration hold, both closed, or neither, where the monotone and convex equation
 //!
 //! ```text
 //! F(x) = pi + 2 c x + x^3 + stop(c + x^2) = d
 //! ```
 //!
-//! is solved by Newton steps from the right, which cannot leave the interval. `x` may be negative: an axis that brakes
-//! already and only needs to brake less. A search over peak velocities has no such profile, and is up to 28 % slower there.
-//! Trying all families and testing each result, the usual way, fails on their common boundaries by rounding.
+//! is solved by Newton steps from the right, which cannot leave the interval. `x` may be negative: an axis
+//! that brakes already and only needs to brake less. A search over peak velocities has no such profile, and
+//! is up to 28 % slower there. Trying all families and testing each result, the usual way, fails on their
+//! common boundaries by rounding.
 
 use super::task::Task;
 use super::transfer::{ramp_and_hold, stop_distance, transfer_distance};
@@ -34,6 +36,8 @@ pub(super) struct Shape {
     pub(super) first: f64,
     /// The seven durations, none negative.
     pub(super) t: [f64; 7],
+    /// Velocity between the two halves: during the fourth, if that is not zero.
+    pub(super) cruise: f64,
 }
 
 impl Shape {
@@ -42,9 +46,15 @@ impl Shape {
         self.t.iter().sum()
     }
 
-    /// The two transfers `(a, ramp, hold)` over `w`: up from acceleration `a` with ramp `x`, down with ramp `y`.
-    pub(super) fn two_transfers(a: f64, up: (f64, f64), cruise: f64, down: (f64, f64)) -> Self {
-        let ((x, hold_up), (y, hold_down)) = (up, down);
+    /// Transfer from acceleration `a` to the velocity `cruise`, held for `time`, and transfer to rest; both
+    /// as ramp and hold.
+    pub(super) fn two_transfers(
+        a: f64,
+        to_cruise: (f64, f64),
+        (cruise, time): (f64, f64),
+        to_rest: (f64, f64),
+    ) -> Self {
+        let ((x, first_hold), (y, second_hold)) = (to_cruise, to_rest);
         // A negative x is an acceleration that never reaches zero: one negative jerk from x to -y.
         let (t3, t5) = if x < 0.0 {
             (0.0, (x + y).max(0.0))
@@ -54,7 +64,8 @@ impl Shape {
         let t1 = (x - a).max(0.0);
         Self {
             first: 1.0,
-            t: [t1, hold_up, t3, cruise, t5, hold_down, y],
+            t: [t1, first_hold, t3, time, t5, second_hold, y],
+            cruise,
         }
     }
 }
@@ -68,8 +79,6 @@ pub(super) struct Least {
     pub(super) task: Task,
     /// Its solution.
     pub(super) shape: Shape,
-    /// Velocity between the two halves.
-    pub(super) peak: f64,
     /// Sum of the durations.
     pub(super) duration: f64,
 }
@@ -89,7 +98,7 @@ pub(super) fn least_time(task: Task) -> Least {
     };
     task.top = task.top.max(0.0);
     let start = Start::of(&task);
-    let (shape, peak) = if is_stop {
+    let shape = if is_stop {
         start.turning_at(start.least_ramp())
     } else {
         start.solve(task.d)
@@ -98,7 +107,6 @@ pub(super) fn least_time(task: Task) -> Least {
         sign,
         task,
         shape,
-        peak,
         duration: shape.duration(),
     }
 }
@@ -124,14 +132,15 @@ impl Start {
         }
     }
 
-    /// Shape and peak velocity for the distance `d`, at or above the stop point.
-    fn solve(&self, d: f64) -> (Shape, f64) {
+    /// The shape for the distance `d`, at or above the stop point.
+    fn solve(&self, d: f64) -> Shape {
         let Self { a, c, pi, top } = *self;
         let to_top = (top - c).max(0.0);
         let at_top = pi + transfer_distance(c, top) + stop_distance(top);
         if d >= at_top {
             let (up, down) = (ramp_and_hold(to_top), ramp_and_hold(top));
-            return (Shape::two_transfers(a, up, (d - at_top) / top, down), top);
+            let time = (d - at_top) / top;
+            return Shape::two_transfers(a, up, (top, time), down);
         }
         if to_top > 1.0 {
             let w = c + 1.0;
@@ -142,9 +151,10 @@ impl Start {
         self.turning_at(self.solve_ramp(d, to_top.min(1.0).sqrt()))
     }
 
-    /// The first transfer holds its acceleration. With both transfers' areas added, `stop` of `w` over the saturated first
-    /// one is a perfect square in `sqrt(w)` below saturation of the second, and a quadratic in `w` above.
-    fn with_hold(&self, d: f64) -> (Shape, f64) {
+    /// The first transfer holds its acceleration. With both transfers' areas added, `stop` of `w` over the
+    /// saturated first one is a perfect square in `sqrt(w)` below saturation of the second, and a quadratic
+    /// in `w` above.
+    fn with_hold(&self, d: f64) -> Shape {
         let Self { a, c, pi, .. } = *self;
         let q = (d - pi - 0.5 * c * (1.0 - c)).max(0.0);
         let s = (2.0 * q).sqrt();
@@ -156,14 +166,13 @@ impl Start {
             (w, (1.0, (w - 1.0).max(0.0)))
         };
         let up = (1.0, (w - c - 1.0).max(0.0));
-        (Shape::two_transfers(a, up, 0.0, down), w)
+        Shape::two_transfers(a, up, (w, 0.0), down)
     }
 
     /// The profile without cruise and first hold whose acceleration turns at `x`.
-    fn turning_at(&self, x: f64) -> (Shape, f64) {
+    fn turning_at(&self, x: f64) -> Shape {
         let w = (self.c + x * x).max(0.0);
-        let shape = Shape::two_transfers(self.a, (x, 0.0), 0.0, ramp_and_hold(w));
-        (shape, w)
+        Shape::two_transfers(self.a, (x, 0.0), (w, 0.0), ramp_and_hold(w))
     }
 
     /// The smallest acceleration to turn at: an immediate stop.
@@ -198,7 +207,8 @@ impl Start {
         if gap <= 0.0 || most <= least {
             return least;
         }
-        // Upper bounds: the tangent at the left end, since F is convex; and F' >= 6 x^2 for c >= 0, F' >= x^2 otherwise.
+        // Upper bounds: the tangent at the left end, since F is convex; and F' >= 6 x^2 for c >= 0, F' >= x^2
+        // otherwise.
         let mut x = most;
         if gap < slope * (most - least) {
             x = least + gap / slope;
@@ -228,5 +238,6 @@ impl Start {
     }
 }
 
-/// Newton steps that a convex search may take. Three to five are usual; near a double root each step only halves the rest.
+/// Newton steps that a convex search may take. Three to five are usual; near a double root each step only
+/// halves the rest.
 const MAX_NEWTON: usize = 60;

@@ -1,10 +1,11 @@
 //! Limits of the axes, each on its own or as norms over groups of axes.
 //!
-//! Some limits bind a norm: the speed of a hand, not each of its three components. Independent axes keep such a budget if each
-//! gets an equal share of it, the budget divided by the square root of the group's size: then no combination of the axes
-//! exceeds it. But shares waste up to `1 - 1/sqrt(3)`, 42 %, of the speed along a base axis. A straight line needs no
-//! shares: its direction is known, so the whole budget holds along it. [`Limits`] therefore keeps the budgets, uses the
-//! whole of them on straight lines, and the shares where axes move on their own.
+//! Some limits bind a norm: the speed of a hand, not each of its three components. Independent axes keep such
+//! a budget if each gets an equal share of it, the budget divided by the square root of the group's size:
+//! then no combination of the axes exceeds it. But shares waste up to `1 - 1/sqrt(3)`, 42 %, of the speed
+//! along a base axis. A straight line needs no shares: its direction is known, so the whole budget holds
+//! along it. [`Limits`] therefore keeps the budgets, uses the whole of them on straight lines, and the shares
+//! where axes move on their own.
 
 use super::error::{PlanError, Quantity};
 
@@ -71,8 +72,8 @@ impl AxisLimits {
 
 /// Checked limits of `N` axes: positive and finite.
 ///
-/// Consecutive axes form groups. A group of one axis is limited by itself; in a larger group the budget binds the Euclidean
-/// norm over its axes.
+/// Consecutive axes form groups. A group of one axis is limited by itself; in a larger group the budget binds
+/// the Euclidean norm over its axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits<const N: usize> {
     /// What each axis may do on its own: its share of the group's budget.
@@ -115,13 +116,14 @@ impl<const N: usize> Limits<N> {
         }))
     }
 
-    /// Groups of consecutive axes, as pairs of size and budget; a budget binds the Euclidean norm over its group.
+    /// Groups of consecutive axes, as pairs of size and budget; a budget binds the Euclidean norm over its
+    /// group.
     ///
     /// A Cartesian generator has two groups of three: translation and rotation.
     ///
     /// # Errors
-    /// [`PlanError::Limit`] for a budget that is not a positive finite number, with the first axis of its group;
-    /// [`PlanError::Groups`] if the sizes do not sum to `N`.
+    /// [`PlanError::Limit`] for a budget that is not a positive finite number, with the first axis of its
+    /// group; [`PlanError::Groups`] if the sizes do not sum to `N`.
     pub fn norms(groups: &[(usize, AxisLimits)]) -> Result<Self, PlanError> {
         let got = groups
             .iter()

@@ -11,7 +11,8 @@ use super::turn::lay_out_lead;
 /// How the axes of a motion to a target move together. All arrive at the same instant in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Synchronisation {
-    /// In phase, on a straight line, wherever the motion so far allows it, which it does from rest; else in time only.
+    /// In phase, on a straight line, wherever the motion so far allows it, which it does from rest; else in
+    /// time only.
     #[default]
     Straight,
     /// In time only: as early as the slowest axis can arrive, on a curved path.
@@ -135,7 +136,8 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Lays out the axes so that all arrive when the slowest does, `until` seconds after the plan's start or later.
+    /// Lays out the axes so that all arrive when the slowest does, `until` seconds after the plan's start or
+    /// later.
     fn move_axes(
         &mut self,
         state: &State<N>,
@@ -159,7 +161,8 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Replaces the plan by the least-time stop: along the line that the state is on, else of each axis on its own.
+    /// Replaces the plan by the least-time stop: along the line that the state is on, else of each axis on
+    /// its own.
     pub(super) fn stop(&mut self, start: &Start<'_, N>) {
         if let Some((line, along)) = &start.line {
             lay_out_stop(
@@ -228,7 +231,8 @@ impl<const N: usize> Plan<N> {
     }
 }
 
-/// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a duration costs no cycle.
+/// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a duration costs
+/// no cycle.
 ///
 /// A millionth of a cycle: what is left there is the third power of it, times a sixth of the jerk limit.
 const SLACK: f64 = 1e-9;

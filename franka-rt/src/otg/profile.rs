@@ -5,9 +5,9 @@ use super::state::AxisState;
 
 /// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
 ///
-/// Positions are kept relative to the start, so that a large offset rounds the result once and not in each segment. The last
-/// three segments of a motion to a target are laid out backwards from the target: the end is exact, and what rounding there
-/// is lies at full speed, where it is relatively smallest.
+/// Positions are kept relative to the start, so that a large offset rounds the result once and not in each
+/// segment. The last three segments of a motion to a target are laid out backwards from the target: the end
+/// is exact, and what rounding there is lies at full speed, where it is relatively smallest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Profile {
     origin: f64,
@@ -61,6 +61,19 @@ impl Profile {
         if t > 0.0 {
             self.place(jerk, t, self.front);
             self.front = self.front.after(jerk, t);
+        }
+    }
+
+    /// Appends `t` seconds of exactly constant `velocity`, which the segments before lead to but for
+    /// rounding.
+    ///
+    /// A cruise may last millions of times longer than the ramps around it: the last bit of an acceleration
+    /// or velocity left from them would grow into a distance.
+    pub(super) fn cruise(&mut self, velocity: f64, t: f64) {
+        if t > 0.0 {
+            self.front.velocity = velocity;
+            self.front.acceleration = 0.0;
+            self.push(0.0, t);
         }
     }
 

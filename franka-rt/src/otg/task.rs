@@ -1,7 +1,8 @@
 //! One axis and its target in units of its own limits.
 //!
-//! Fourth powers of raw quantities would mix fifteen decades. With the acceleration limit and the jerk as units only the
-//! velocity limit is left as a parameter, and positions count from where the axis is, so large offsets cost nothing.
+//! Fourth powers of raw quantities would mix fifteen decades. With the acceleration limit and the jerk as
+//! units only the velocity limit is left as a parameter, and positions count from where the axis is, so large
+//! offsets cost nothing.
 
 use super::limits::AxisLimits;
 use super::state::AxisState;
@@ -36,6 +37,7 @@ impl Task {
             && fits(1.0 / task.top)
             && fits(unit)
             && fits(1.0 / unit)
+            && fits(limits.acceleration * unit * unit)
             && fits(1.0 / (limits.acceleration * unit * unit));
         representable.then_some((task, unit))
     }
@@ -111,5 +113,6 @@ impl Task {
 /// Relative rounding of a position that some ten operations led to.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Bound of distances and velocities in units of the limits, chosen so that no product of the solution overflows.
+/// Bound of distances and velocities in units of the limits, chosen so that no product of the solution
+/// overflows.
 const FAR: f64 = 1e100;

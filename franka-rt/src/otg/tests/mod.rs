@@ -1,0 +1,10 @@
+//! Properties of whole motions. The parts have their tests beside them.
+
+mod closed_loop;
+mod least;
+mod lines;
+mod oracle;
+mod random;
+mod refusals;
+mod stretched;
+mod walk;
