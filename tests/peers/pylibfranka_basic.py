@@ -53,6 +53,9 @@ def main(address):
         except Exception as error:  # Any exception of any step is a failure of that step.
             print(f"FAIL  {name}: {type(error).__name__}: {error}", flush=True)
             traceback.print_exc()
+            if session.robot is None:
+                print("      without a connection no other step can run")
+                break
             session.clear()
         else:
             passed += 1
@@ -102,8 +105,6 @@ class Session:
     def clear(self):
         """Best effort after a failed step, so that the next one starts from an idle robot."""
         try:
-            if self.robot is None:
-                self.connect()
             self.robot.automatic_error_recovery()
         except Exception as error:
             print(f"      clearing failed too: {error}")
