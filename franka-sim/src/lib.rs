@@ -9,10 +9,39 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`serve`] | the same robot on sockets: [`Sim::fr3`]`().start().await` |
+//! | [`serve`] | the robot on sockets: [`Sim::fr3`]`().start().await` |
 //! | [`robot`] | the robot as a value, without clock and sockets: what tests in virtual time drive |
 //! | [`plant`] | the physics of the arm |
 //! | [`config`] | what a robot is like: pose, tool, load, noise, strictness |
+//!
+//! The binary `franka-sim` is [`serve`] with a command line, for clients in any language.
+//!
+//! # Example
+//!
+//! One millisecond at a time, without sockets:
+//!
+//! ```
+//! use franka_sim::{Config, Robot};
+//! use franka_model::Wrench;
+//!
+//! let mut robot = Robot::new(Config::default());
+//! robot.push_end_effector(Wrench::new(0.0, 0.0, -20.0, 0.0, 0.0, 0.0), 500);
+//! for _ in 0..500 {
+//!     robot.tick();
+//! }
+//! // The robot feels what it does to the hand that pushes: upwards, 20 N.
+//! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
+//! ```
+//!
+//! # What it does not do
+//!
+//! - The robot: protocol 10 with the FR3 only. No Hand, no hand guiding, no safety functions.
+//! - Errors that never come: self-collision, virtual walls, power limit, instability, and those of
+//!   the force controller, of Desk's own motions and of the base's acceleration.
+//! - Physics: rigid links and joints. Nothing stands in the arm's way, itself included.
+//! - What a robot keeps to itself (start tolerances, thresholds by default, gains of its own
+//!   controllers, the filter of its force estimate) has values chosen here; each says so where it
+//!   stands. None has been measured on a robot.
 
 mod brake;
 pub mod config;

@@ -1,5 +1,6 @@
 //! A simulated Franka robot for any client that speaks its protocol.
 
+use std::io::IsTerminal;
 use std::net::{IpAddr, SocketAddr};
 use std::process::ExitCode;
 
@@ -99,6 +100,7 @@ impl Arguments {
 async fn main() -> ExitCode {
     tracing_subscriber::fmt()
         .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
         .with_target(false)
         .init();
     let arguments = Arguments::parse();

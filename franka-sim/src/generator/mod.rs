@@ -155,11 +155,6 @@ fn joint_velocity(
         (None, Input::Rest) => from.to_velocity(&JointVector::zeros()),
         (None, _) => (from.extrapolated(), JointVector::zeros()),
     });
-    // Positions are the integral of what was commanded, not what a rounded history says.
-    let joints = JointSignal {
-        q: before.joints.q + joints.dq * crate::signal::CYCLE,
-        ..joints
-    };
     let mut errors = broken.named(
         E::JointMotionGeneratorVelocityLimitsViolation,
         E::JointMotionGeneratorAccelerationDiscontinuity,
@@ -230,12 +225,6 @@ fn cartesian_velocity(
             (None, Input::Rest) => from.to_twist(&Twist::zeros()),
             (None, _) => (from.extrapolated(), Twist::zeros()),
         });
-    // As for joint velocities: the pose is the integral of the exact history.
-    let (integrated, _) = before.cartesian.to_twist(&cartesian.twist);
-    let cartesian = CartesianSignal {
-        pose: integrated.pose,
-        ..cartesian
-    };
     let errors = broken.named(
         E::CartesianMotionGeneratorVelocityLimitsViolation,
         E::CartesianMotionGeneratorAccelerationDiscontinuity,

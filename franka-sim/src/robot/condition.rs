@@ -195,6 +195,9 @@ impl Robot {
         self.errors = self.errors.union(errors);
         self.reflex_reason = self.errors;
         self.end_motion(MoveStatus::ReflexAborted);
+        if let Some(Recovery { id: Some(id), .. }) = self.recovery.take() {
+            self.reply(id, Reply::Recovery(RecoveryStatus::ReflexAborted));
+        }
         if let Some((id, _)) = self.waiting.take() {
             self.reply(id, Reply::Move(MoveStatus::CommandNotPossibleRejected));
         }

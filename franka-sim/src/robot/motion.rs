@@ -9,7 +9,7 @@ use franka_proto::{
 
 use crate::generator::{Arm, Desired, Input, PointToPoint, advance};
 use crate::score::{LOST_LIMIT, Score};
-use crate::signal::CYCLE;
+use crate::signal::{CYCLE, JointSignal};
 
 /// Between `kMotionStarted` and the final reply to a `Move`.
 #[derive(Debug, Clone)]
@@ -118,6 +118,9 @@ impl Motion {
     }
 
     /// Takes in what arrived for one cycle, and advances `desired`.
+    ///
+    /// Torques of a lost cycle are those of the one before (FCI documentation), with or without
+    /// [`Rules::communication`].
     pub(super) fn cycle(
         &mut self,
         command: Option<&RobotCommand>,
@@ -222,12 +225,13 @@ impl Motion {
 
     /// A motion may only finish at rest: its last command then stands still, which is checked like
     /// any other command.
-    fn finish(&self, desired: &Desired, arm: &Arm<'_>, rules: Rules) -> Verdict {
+    fn finish(&self, desired: &mut Desired, arm: &Arm<'_>, rules: Rules) -> Verdict {
         match advance(self.request.generator, Input::Rest, desired, arm) {
             Err(_) => Verdict::Invalid,
             Ok((_, broken)) => {
                 let errors = enforced(broken, rules);
                 if errors.is_empty() {
+                    desired.joints = JointSignal::resting(desired.joints.q);
                     Verdict::Finished
                 } else {
                     Verdict::Broken(errors)

@@ -17,6 +17,7 @@ use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 
 use franka_model::{JointVector, Load};
+use franka_proto::RobotState;
 use tokio::net::TcpListener;
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
@@ -177,6 +178,17 @@ impl Running {
         }));
         self.orders.send(order).await.map_err(|_| Stopped)?;
         result.await.map_err(|_| Stopped)
+    }
+
+    /// The newest state, in full precision.
+    ///
+    /// # Errors
+    /// As [`with`](Self::with).
+    ///
+    /// # Cancel safety
+    /// Dropping the future has no effect.
+    pub async fn state(&self) -> Result<RobotState, Stopped> {
+        self.with(|robot| *robot.state()).await
     }
 
     /// How well the thread has kept the millisecond so far.

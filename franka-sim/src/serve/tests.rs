@@ -112,8 +112,8 @@ fn hands_reach_the_robot_and_stopping_frees_the_port() {
             .await
             .expect("running");
         tokio::time::sleep(Duration::from_millis(20)).await;
-        let mode = sim.with(|robot| robot.state().robot_mode).await;
-        assert_eq!(mode, Ok(RobotMode::UserStopped));
+        let state = sim.state().await.expect("running");
+        assert_eq!(state.robot_mode, RobotMode::UserStopped);
         assert!(sim.pace().await.expect("running").cycles > 0);
         sim.stop().await;
         let again = Sim::fr3().bind(address).start().await;

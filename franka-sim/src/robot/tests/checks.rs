@@ -360,3 +360,68 @@ fn a_robot_without_enforcement_lets_everything_pass() {
     let pose = transform::isometry_from_array(&pair.state.O_T_EE);
     assert!(pose.is_some());
 }
+
+#[test]
+fn a_fast_tip_of_a_long_tool_is_a_cartesian_violation() {
+    let mut pair = Pair::fr3();
+    let mut ne_t_ee = pair.state.NE_T_EE;
+    ne_t_ee[12] = 1.5;
+    pair.request(&Request::SetNEToEE(ne_t_ee));
+    let id = pair.start_torques();
+    let mut tau = JointVector::zeros();
+    while pair.state.robot_mode == RobotMode::Move {
+        tau[6] = (tau[6] + 0.01).min(2.0);
+        pair.tick(Some(torques(&tau)));
+    }
+    pair.assert_reflex(id, &[E::CartesianVelocityViolation]);
+}
+
+#[test]
+fn a_soft_arm_pushed_off_its_path_or_goal_is_noticed_if_the_client_cares() {
+    let run = |path: f64, goal: f64| {
+        let mut pair = Pair::fr3();
+        pair.request(&Request::SetJointImpedance([200.0; 7]));
+        let mut request = MoveRequest::new(
+            MoveControllerMode::JointImpedance,
+            MoveGeneratorMode::JointPosition,
+        );
+        request.maximum_path_deviation.translation = path;
+        request.maximum_goal_pose_deviation.translation = goal;
+        let id = pair.begin(request);
+        let push = JointVector::from([10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        pair.robot.push_joints(push, 2000);
+        for _ in 0..500 {
+            pair.tick(Some(positions(&READY)));
+            if pair.state.robot_mode != RobotMode::Move {
+                return (pair, id);
+            }
+        }
+        pair.tick(Some(RobotCommand {
+            motion_generation_finished: true,
+            ..positions(&READY)
+        }));
+        (pair, id)
+    };
+    let (pair, id) = run(0.01, 10.0);
+    pair.assert_reflex(id, &[E::MaxPathPoseDeviationViolation]);
+    let (pair, id) = run(10.0, 0.01);
+    pair.assert_reflex(id, &[E::MaxGoalPoseDeviationViolation]);
+    let (pair, id) = run(10.0, 10.0);
+    assert_eq!(pair.outcome(id), MoveStatus::Success);
+}
+
+#[test]
+fn more_torque_than_a_sensor_reads_is_noticed() {
+    let mut pair = Pair::fr3();
+    let high = franka_proto::CollisionBehavior::uniform([1e3; 7], [1e3; 7], [1e4; 6], [1e4; 6]);
+    pair.request(&Request::SetCollisionBehavior(high));
+    let id = pair.start_joints();
+    let mut shove = JointVector::zeros();
+    shove[4] = 60.0;
+    pair.robot.push_joints(shove, 100);
+    while pair.state.robot_mode == RobotMode::Move {
+        pair.tick(Some(positions(&READY)));
+    }
+    assert!(pair.state.errors.contains(E::TauJRangeViolation));
+    assert_eq!(pair.outcome(id), MoveStatus::ReflexAborted);
+}

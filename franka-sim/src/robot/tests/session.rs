@@ -330,3 +330,63 @@ fn a_cartesian_motion_cannot_start_in_a_singularity() {
     assert_eq!(pair.state.robot_mode, RobotMode::Idle);
     pair.start_joints();
 }
+
+#[test]
+fn the_same_seed_and_input_give_the_same_states() {
+    let run = |seed| {
+        let mut pair = Pair::connected(Config {
+            noise: crate::config::Noise::MODERATE,
+            seed,
+            ..Config::default()
+        });
+        pair.start_torques();
+        for _ in 0..200 {
+            pair.tick(Some(RobotCommand::default()));
+        }
+        pair.state
+    };
+    assert_eq!(run(7), run(7));
+    let (state, other) = (run(7), run(8));
+    assert_ne!(state, other);
+    for i in 0..7 {
+        assert!((state.q[i] - other.q[i]).abs() < 1e-4);
+        assert!(state.dq[i] != 0.0 && state.dq[i].abs() < 0.02);
+        assert!((state.tau_J[i] - other.tau_J[i]).abs() < 1.0);
+    }
+}
+
+#[test]
+fn a_second_motion_takes_the_place_of_the_first() {
+    let mut pair = Pair::fr3();
+    let first = pair.start_torques();
+    pair.tick(Some(RobotCommand::default()));
+    let request = MoveRequest::new(
+        MoveControllerMode::JointImpedance,
+        MoveGeneratorMode::JointPosition,
+    );
+    let second = pair.request(&Request::Move(request));
+    assert_eq!(pair.outcome(first), MoveStatus::Preempted);
+    pair.idle(20);
+    assert_eq!(
+        pair.statuses(second),
+        [Status::Move(MoveStatus::MotionStarted)]
+    );
+    assert_eq!(
+        pair.state.motion_generator_mode,
+        MotionGeneratorMode::JointPosition
+    );
+}
+
+#[test]
+fn an_error_during_the_recovery_ends_it() {
+    let mut pair = Pair::fr3();
+    pair.robot.trip(RobotError::JointReflex);
+    let recovery = pair.request(&Request::AutomaticErrorRecovery);
+    pair.idle(10);
+    pair.robot.trip(RobotError::InstabilityDetected);
+    pair.tick(None);
+    let aborted = Status::Recovery(RecoveryStatus::ReflexAborted);
+    assert_eq!(pair.statuses(recovery), [aborted]);
+    assert_eq!(pair.state.robot_mode, RobotMode::Reflex);
+    assert_eq!(pair.state.errors.len(), 2);
+}
