@@ -350,7 +350,7 @@ def spread(got, want):
 
 def near(what, got, want, tolerance):
     error = spread(got, want)
-    check(error <= tolerance, f"{what}: off by {error:.3e}, allowed {tolerance:.0e}")
+    check(error <= tolerance, f"{what}: off by {error:.3e}, allowed {tolerance:g}")
 
 
 def raises(kind, action):

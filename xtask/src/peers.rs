@@ -30,6 +30,7 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let simulator = workspace.target().join("debug").join("franka-sim");
     let mut simulator = Command::new(simulator);
     simulator.args(["--bind", &address, "--port", PORT]);
+    simulator.env("NO_COLOR", "1");
     let _simulator = Running::start(simulator)?;
 
     let mut script = workspace.program(&interpreter);
