@@ -2,7 +2,7 @@
 //!
 //! | module | what it is |
 //! |---|---|
-//! | [`bench`] | what the work of one control cycle costs |
+//! | [`mod@bench`] | what the work of one control cycle costs |
 //! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
