@@ -28,14 +28,8 @@ struct Arguments {
     port: u16,
 
     /// Joint positions at the start, in radians, separated by commas; the ready pose if absent.
-    #[arg(
-        long,
-        value_name = "Q1,...,Q7",
-        value_delimiter = ',',
-        num_args = 7,
-        allow_hyphen_values = true
-    )]
-    q: Option<Vec<f64>>,
+    #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
+    q: Option<[f64; 7]>,
 
     /// Mounts the Franka Hand's mass and frame on the flange (its fingers are not simulated).
     #[arg(long)]
@@ -43,12 +37,12 @@ struct Arguments {
 
     /// A load on the flange that the robot does not know of until a client declares it, in
     /// kilograms.
-    #[arg(long, value_name = "KG", default_value_t = 0.0)]
+    #[arg(long, value_name = "KG", value_parser = mass, default_value = "0", allow_hyphen_values = true)]
     payload: f64,
 
     /// Centre of mass of the load in the flange frame, in metres.
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 3, default_values_t = [0.0, 0.0, 0.05], allow_hyphen_values = true)]
-    payload_com: Vec<f64>,
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, default_value = "0,0,0.05", allow_hyphen_values = true)]
+    payload_com: [f64; 3],
 
     /// Adds noise to the sensors.
     #[arg(long)]
@@ -76,8 +70,8 @@ impl Arguments {
             enforce_communication: !self.no_enforce_communication,
             ..Config::default()
         };
-        if let Some(q) = &self.q {
-            config.q = JointVector::from_column_slice(q);
+        if let Some(q) = self.q {
+            config.q = JointVector::from(q);
         }
         if self.hand {
             config.tool = Tool::hand();
@@ -88,12 +82,36 @@ impl Arguments {
         if self.payload > 0.0 {
             config.payload = Load {
                 mass: self.payload,
-                com: Vector3::from_column_slice(&self.payload_com),
+                com: Vector3::from(self.payload_com),
                 inertia: Matrix3::zeros(),
             };
         }
         config
     }
+}
+
+/// `N` finite numbers, separated by commas.
+fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let values = text
+        .split(',')
+        .map(|number| number.trim().parse::<f64>().map_err(|e| e.to_string()))
+        .collect::<Result<Vec<_>, _>>()?;
+    if !values.iter().all(|value| value.is_finite()) {
+        return Err("every number has to be finite".into());
+    }
+    let count = values.len();
+    values
+        .try_into()
+        .map_err(|_| format!("{N} numbers expected, {count} given"))
+}
+
+/// A mass that a load can have.
+fn mass(text: &str) -> Result<f64, String> {
+    let [mass] = numbers::<1>(text)?;
+    if mass < 0.0 {
+        return Err("a mass is not negative".into());
+    }
+    Ok(mass)
 }
 
 #[tokio::main(flavor = "current_thread")]
@@ -128,4 +146,44 @@ async fn run(arguments: &Arguments) -> std::io::Result<()> {
     }
     sim.stop().await;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(arguments: &[&str]) -> Result<Arguments, clap::Error> {
+        Arguments::try_parse_from([&["franka-sim"], arguments].concat())
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn arguments_become_the_make_up() {
+        let arguments = parse(&["--q", "-1,0,0,-2,0,1.5,0", "--payload", "2", "--hand"]);
+        let config = arguments.expect("valid").config();
+        assert_eq!(config.q[0], -1.0);
+        assert_eq!(config.payload.mass, 2.0);
+        assert_eq!(config.payload.com.z, 0.05);
+        assert_eq!(config.tool, Tool::hand());
+        assert!(config.enforce_limits && config.enforce_communication);
+        let config = parse(&["--no-enforce-limits"]).expect("valid").config();
+        assert!(!config.enforce_limits);
+    }
+
+    #[test]
+    fn what_makes_no_robot_is_refused() {
+        for wrong in [
+            ["--q", "1,2"],
+            ["--q", "nan,0,0,0,0,0,0"],
+            ["--payload", "-1"],
+            ["--payload-com", "0,0"],
+        ] {
+            assert!(parse(&wrong).is_err(), "{wrong:?}");
+        }
+    }
 }
