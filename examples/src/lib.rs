@@ -1,1 +1,51 @@
-//! Runnable programs
+//! What the examples share: a robot at the address given, or a simulated one in this process.
+
+use anyhow::Context;
+use clap::{Args, Parser};
+use franka_async::{Realtime, Robot};
+use franka_sim::{Running, Sim};
+
+/// Options of every example.
+#[derive(Args, Clone, Debug)]
+pub struct Connection {
+    /// Address of a robot or simulator, `host` or `host:port`; without it a simulator starts in this process.
+    pub address: Option<String>,
+    /// Go on without a real-time kernel when driving a robot. A simulator never asks for one.
+    #[arg(long)]
+    pub ignore_realtime: bool,
+}
+
+/// Command line of the examples without options of their own.
+#[derive(Debug, Parser)]
+pub struct Arguments {
+    /// Which robot.
+    #[command(flatten)]
+    pub connection: Connection,
+}
+
+impl Connection {
+    /// Connects. Keep what comes with the robot: dropping it ends the simulator, if there is one.
+    ///
+    /// # Errors
+    /// If nothing answers at the address, or the simulator cannot start.
+    pub async fn open(&self) -> anyhow::Result<(Robot, Option<Running>)> {
+        if let Some(address) = &self.address {
+            let realtime = if self.ignore_realtime {
+                Realtime::Ignore
+            } else {
+                Realtime::Enforce
+            };
+            let robot = Robot::builder(address).realtime(realtime).connect().await;
+            return Ok((
+                robot.with_context(|| format!("connecting to {address}"))?,
+                None,
+            ));
+        }
+        let sim = Sim::fr3().start().await.context("starting the simulator")?;
+        let robot = Robot::builder(sim.addr())
+            .realtime(Realtime::Ignore)
+            .connect()
+            .await?;
+        Ok((robot, Some(sim)))
+    }
+}

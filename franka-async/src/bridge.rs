@@ -34,7 +34,7 @@ pub(crate) type Outcome = Result<MotionReport, MotionError>;
 #[derive(Debug)]
 pub(crate) enum Input {
     Submit {
-        goal: Goal,
+        goal: Box<Goal>,
         done: oneshot::Sender<Outcome>,
     },
     /// `taken` hears whether the goal is still the newest.
@@ -252,7 +252,7 @@ impl Bridge {
         let now = self.now();
         match input {
             Input::Submit { goal, done } => {
-                let submitted = self.lifecycle.submit(goal, &self.states.borrow(), now);
+                let submitted = self.lifecycle.submit(*goal, &self.states.borrow(), now);
                 match submitted {
                     Ok(()) => {
                         self.waiting.insert(goal.id, done);

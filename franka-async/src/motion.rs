@@ -73,7 +73,7 @@ impl Motion {
     pub fn detach(self) {
         let (done, _) = oneshot::channel();
         self.robot.send(Input::Submit {
-            goal: self.goal,
+            goal: Box::new(self.goal),
             done,
         });
     }
@@ -152,7 +152,8 @@ impl Future for Moving {
     fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Outcome> {
         if let Stage::Ready(goal) = &self.stage {
             let (done, outcome) = oneshot::channel();
-            self.robot.send(Input::Submit { goal: **goal, done });
+            let goal = goal.clone();
+            self.robot.send(Input::Submit { goal, done });
             self.stage = Stage::Begun(outcome);
         }
         let Stage::Begun(outcome) = &mut self.stage else {

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use franka_model::{Model, transform};
+use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::Record;
 use franka_rt::session::{GoalId, Target};
@@ -102,17 +102,21 @@ impl Robot {
 
     /// The measured pose of the end effector, `O_T_EE` of the newest state.
     pub fn pose(&self) -> Pose {
-        // A robot whose end effector is not set up as a rigid transformation shows its flange's pose instead.
         let state = self.state();
-        transform::isometry_from_array(&state.O_T_EE).unwrap_or_else(|| {
-            let flange = franka_model::Frame::Flange;
-            let pose = self.shared.model.pose(
-                flange,
-                &state.q.into(),
-                &franka_model::EndEffector::default(),
-            );
-            transform::isometry(&pose).expect("poses of the model's own frames are rigid")
-        })
+        // What the robot says, unless it is no pose; then what its joints say.
+        transform::isometry_from_array(&state.O_T_EE).unwrap_or_else(|| self.pose_at(state.q))
+    }
+
+    /// The pose that the end effector has at the joint positions `q`, `[rad]`, with the end effector of the newest state.
+    /// One that is not a rigid transformation counts as the flange.
+    pub fn pose_at(&self, q: [f64; 7]) -> Pose {
+        let ee = transform::isometry_from_array(&self.state().F_T_EE).unwrap_or_default();
+        let ee = EndEffector {
+            f_t_ee: transform::matrix(&ee),
+            ..EndEffector::default()
+        };
+        let pose = self.model().pose(Frame::EndEffector, &q.into(), &ee);
+        transform::isometry(&pose).unwrap_or_default()
     }
 
     /// The model of the connected robot.
