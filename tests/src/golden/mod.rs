@@ -25,6 +25,7 @@
 
 mod model;
 mod node;
+mod otg;
 mod report;
 mod run;
 mod wire;
@@ -56,5 +57,13 @@ pub const SUITES: &[Suite] = &[
     Suite {
         file: "model/velocity_limit_vectors_fr3.json",
         check: model::velocity_envelope,
+    },
+    Suite {
+        file: "otg/single_axis.json",
+        check: otg::single_axis,
+    },
+    Suite {
+        file: "otg/multi_axis.json",
+        check: otg::multi_axis,
     },
 ];

@@ -1,0 +1,210 @@
+//! The trajectory generator against time-optimal motions made with Ruckig 0.19.4.
+//!
+//! Optimal motions of one axis are unique, so all of it is compared. Motions of several axes are not: of the axes
+//! that wait for the slowest one only the common duration is, and what they must keep is checked.
+
+use franka_rt::otg::{Generator, Limits, PlanError, State, Synchronisation};
+
+use super::{Case, Malformed, Node, Report};
+
+/// Of durations, relative. The files hold what independent solutions agree on to 4e-8 at worst, near stop points
+/// and in their own arithmetic; the two generators agree to 1e-11.
+const DURATION: f64 = 1e-9;
+/// Of samples, relative to the distance of the motion and to the limits.
+const SAMPLE: f64 = 1e-8;
+/// Of limits, relative.
+const EXCESS: f64 = 1e-9;
+/// Samples of a motion whose limits are checked.
+const SAMPLES: u32 = 200;
+/// Instants of the samples in the file, as parts of the duration.
+const INSTANTS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+
+/// Checks `otg/single_axis.json`. Starts outside the limits are included: both generators brake by the same rule.
+pub(super) fn single_axis(root: &Node<'_>) -> Result<Report, Malformed> {
+    let mut report = Report::default();
+    for node in root.get("cases")?.list()? {
+        let number = |name: &str| node.get(name)?.number();
+        let problem = Problem {
+            start: State {
+                position: [number("p0")?],
+                velocity: [number("v0")?],
+                acceleration: [number("a0")?],
+            },
+            target: [number("target")?],
+            velocity: [number("vmax")?],
+            acceleration: [number("amax")?],
+            jerk: [number("jmax")?],
+        };
+        let duration = number("duration")?;
+        let samples = node.get("samples")?.list()?;
+        let samples: Vec<[f64; 3]> = samples
+            .iter()
+            .map(Node::numbers)
+            .collect::<Result<_, _>>()?;
+        if samples.len() != INSTANTS.len() {
+            return Err(node.malformed("five samples"));
+        }
+        let name = format!("{} ({})", node.path(), node.get("kind")?.text()?);
+        report.case(name, |case| match problem.plan() {
+            Ok(plan) => {
+                problem.check_duration(case, &plan, duration);
+                problem.check_samples(case, &plan, duration, &samples);
+                problem.check_end(case, &plan);
+            }
+            Err(error) => case.fail(error.to_string()),
+        });
+    }
+    Ok(report)
+}
+
+/// Checks `otg/multi_axis.json`.
+pub(super) fn multi_axis(root: &Node<'_>) -> Result<Report, Malformed> {
+    let mut report = Report::default();
+    for node in root.get("cases")?.list()? {
+        match node.get("axes")?.integer()? {
+            3 => synchronised::<3>(&node, &mut report)?,
+            7 => synchronised::<7>(&node, &mut report)?,
+            _ => return Err(node.get("axes")?.malformed("3 or 7")),
+        }
+    }
+    Ok(report)
+}
+
+fn synchronised<const N: usize>(node: &Node<'_>, report: &mut Report) -> Result<(), Malformed> {
+    let numbers = |name: &str| node.get(name)?.numbers::<N>();
+    let problem = Problem {
+        start: State {
+            position: numbers("p0")?,
+            velocity: numbers("v0")?,
+            acceleration: numbers("a0")?,
+        },
+        target: numbers("target")?,
+        velocity: numbers("vmax")?,
+        acceleration: numbers("amax")?,
+        jerk: numbers("jmax")?,
+    };
+    let axis_durations = numbers("axis_duration")?;
+    let duration = node.get("duration")?.number()?;
+    report.case(format!("{} ({N} axes)", node.path()), |case| {
+        for (axis, &duration) in axis_durations.iter().enumerate() {
+            let alone = problem.axis(axis);
+            match alone.plan() {
+                Ok(plan) => alone.check_duration(case, &plan, duration),
+                Err(error) => case.fail(format!("axis {axis}: {error}")),
+            }
+        }
+        match problem.plan() {
+            Ok(plan) => {
+                problem.check_duration(case, &plan, duration);
+                problem.check_limits(case, &plan);
+                problem.check_end(case, &plan);
+            }
+            Err(error) => case.fail(error.to_string()),
+        }
+    });
+    Ok(())
+}
+
+struct Problem<const N: usize> {
+    start: State<N>,
+    target: [f64; N],
+    velocity: [f64; N],
+    acceleration: [f64; N],
+    jerk: [f64; N],
+}
+
+impl<const N: usize> Problem<N> {
+    fn plan(&self) -> Result<Generator<N>, PlanError> {
+        let limits = Limits::from_arrays(self.velocity, self.acceleration, self.jerk)?;
+        let generator = Generator::new(self.start, limits)?;
+        let mut generator = generator.with_synchronisation(Synchronisation::Time);
+        generator.set_target(&self.target)?;
+        Ok(generator)
+    }
+
+    /// One axis of it on its own.
+    fn axis(&self, axis: usize) -> Problem<1> {
+        Problem {
+            start: State {
+                position: [self.start.position[axis]],
+                velocity: [self.start.velocity[axis]],
+                acceleration: [self.start.acceleration[axis]],
+            },
+            target: [self.target[axis]],
+            velocity: [self.velocity[axis]],
+            acceleration: [self.acceleration[axis]],
+            jerk: [self.jerk[axis]],
+        }
+    }
+
+    fn check_duration(&self, case: &mut Case<'_>, plan: &Generator<N>, duration: f64) {
+        let tolerance = DURATION * duration;
+        case.near("duration", &[plan.duration()], &[duration], tolerance);
+    }
+
+    /// The end is exactly the target, and the motion leads there: a millionth before it, it is within what the jerk
+    /// makes of that time, and the rounding of positions.
+    fn check_end(&self, case: &mut Case<'_>, plan: &Generator<N>) {
+        let duration = plan.duration();
+        case.equal("end", plan.sample(duration), State::at_rest(self.target));
+        let left = 1e-6 * duration;
+        let before = plan.sample(duration - left);
+        for i in 0..N {
+            let (from, to) = (self.start.position[i], self.target[i]);
+            let size = from.abs() + to.abs() + self.velocity[i] * duration;
+            let reach = self.jerk[i] * left.powi(3) / 6.0 + 4.0 * f64::EPSILON * size;
+            let lands = (before.position[i] - to).abs() <= reach;
+            case.equal("motion leads to its end", lands, true);
+        }
+    }
+
+    fn check_limits(&self, case: &mut Case<'_>, plan: &Generator<N>) {
+        let dt = plan.duration() / f64::from(SAMPLES);
+        let mut before = self.start;
+        let mut excess = [0.0_f64; 3];
+        for k in 1..=SAMPLES {
+            let now = plan.sample(dt * f64::from(k));
+            for i in 0..N {
+                let jerk = (now.acceleration[i] - before.acceleration[i]) / dt;
+                // What the last bit of an acceleration at its limit looks like as a jerk.
+                let rounding = 4.0 * f64::EPSILON * self.acceleration[i] / dt;
+                let parts = [
+                    now.velocity[i].abs() / self.velocity[i],
+                    now.acceleration[i].abs() / self.acceleration[i],
+                    (jerk.abs() - rounding) / self.jerk[i],
+                ];
+                for (excess, part) in excess.iter_mut().zip(parts) {
+                    *excess = excess.max(part - 1.0);
+                }
+            }
+            before = now;
+        }
+        case.near("excess over limits", &excess, &[0.0; 3], EXCESS);
+    }
+}
+
+impl Problem<1> {
+    fn check_samples(
+        &self,
+        case: &mut Case<'_>,
+        plan: &Generator<1>,
+        duration: f64,
+        samples: &[[f64; 3]],
+    ) {
+        let start = self.start.position[0];
+        let positions = samples.iter().map(|sample| sample[0]);
+        let distance = positions
+            .chain(self.target)
+            .fold(0.0_f64, |farthest, p| farthest.max((p - start).abs()));
+        // The last bits of a position may be more than the distance moved.
+        let rounding = 4.0 * f64::EPSILON * start.abs().max(self.target[0].abs());
+        for (instant, [p, v, a]) in INSTANTS.iter().zip(samples) {
+            let got = plan.sample(instant * duration);
+            let tolerance = SAMPLE * distance + rounding;
+            case.near("position", &got.position, &[*p], tolerance);
+            case.near("velocity", &got.velocity, &[*v], SAMPLE * self.velocity[0]);
+            let tolerance = SAMPLE * self.acceleration[0];
+            case.near("acceleration", &got.acceleration, &[*a], tolerance);
+        }
+    }
+}
