@@ -43,6 +43,22 @@ impl Desired {
         desired
     }
 
+    /// At rest where the last state said, to the digit.
+    ///
+    /// A motion begins here, because a client begins with what it has read. Otherwise the rounding
+    /// of the state would count as acceleration (0.1 rad/s²), and over some lost commands be
+    /// extrapolated to a jump.
+    pub(crate) fn as_published(&self) -> Self {
+        let pose = CartesianSignal::resting(self.cartesian.pose)
+            .published()
+            .pose;
+        Self {
+            joints: JointSignal::resting(self.joints.published().q),
+            cartesian: CartesianSignal::resting(pose),
+            elbow: ElbowSignal::resting(self.elbow.published().angle),
+        }
+    }
+
     /// Takes pose and elbow from the joints, without motion of their own.
     pub(crate) fn follow_joints(&mut self, arm: &Arm<'_>) {
         self.cartesian = CartesianSignal::resting(arm.pose(&self.joints.q));

@@ -18,7 +18,6 @@ use super::motion::{Motion, Rules, Verdict};
 use super::{Activity, Robot};
 use crate::brake::Brake;
 use crate::generator::Arm;
-use crate::generator::Desired;
 use crate::signal::halves;
 
 /// An automatic error recovery under way.
@@ -112,7 +111,7 @@ impl Robot {
         }
         self.reflex_reason = Errors::NONE;
         self.command = None;
-        self.desired = Desired::resting(&self.arm(), self.desired.joints.q);
+        self.desired = self.desired.as_published();
         let limits = self.model.joint_limits();
         self.activity = Activity::Moving(Motion::new(id, request, self.clock + 1, limits));
     }

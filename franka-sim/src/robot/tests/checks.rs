@@ -425,3 +425,35 @@ fn more_torque_than_a_sensor_reads_is_noticed() {
     assert!(pair.state.errors.contains(E::TauJRangeViolation));
     assert_eq!(pair.outcome(id), MoveStatus::ReflexAborted);
 }
+
+#[test]
+fn losses_right_after_the_first_command_leave_no_trace() {
+    // From positions that single precision rounds.
+    let q = READY + JointVector::repeat(0.123_456_789);
+    for generator in [
+        MoveGeneratorMode::JointPosition,
+        MoveGeneratorMode::CartesianPosition,
+    ] {
+        let mut pair = Pair::connected(Config {
+            q,
+            ..Config::default()
+        });
+        let command = RobotCommand {
+            q_c: pair.state.q_d,
+            O_T_EE_c: pair.state.O_T_EE_c,
+            ..RobotCommand::default()
+        };
+        pair.start(MoveControllerMode::JointImpedance, generator);
+        pair.tick(Some(command));
+        pair.idle(19);
+        assert!(JointVector::from(pair.state.dq_d).amax() < 1e-6);
+        pair.tick(Some(command));
+        assert_eq!(
+            pair.state.robot_mode,
+            RobotMode::Move,
+            "{}",
+            pair.state.errors
+        );
+        assert!((pair.q_d() - q).amax() < 1e-6);
+    }
+}
