@@ -124,10 +124,10 @@ impl<const N: usize> Generator<N> {
 
     /// Gives up the target and comes to rest in the least time.
     ///
-    /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its own if
-    /// the axes have the same ratio of acceleration to jerk, and at most the difference of these ratios
-    /// longer otherwise. Off a line each axis stops by itself. Braking cannot fail: state and limits were
-    /// checked when they came in.
+    /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its own if the
+    /// axes have the same ratio of acceleration to jerk, and about the difference of these ratios longer
+    /// otherwise. Off a line each axis stops by itself. Braking cannot fail: state and limits were checked when
+    /// they came in.
     pub fn brake(&mut self) {
         if self.goal != Goal::Rest {
             self.plan_stop();
