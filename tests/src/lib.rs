@@ -1,4 +1,4 @@
-//! What the cross-crate suites share: golden vectors and the measuring frame of the benchmarks.
+//! What the cross-crate suites share: golden vectors, the lockstep harness and the measuring frame of the benchmarks.
 //!
 //! | module | what it is |
 //! |---|---|
@@ -9,3 +9,8 @@
 pub mod bench;
 pub mod golden;
 pub mod lockstep;
+
+/// Holds the program of the README to what there is.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
