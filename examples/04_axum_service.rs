@@ -16,7 +16,7 @@ use franka_async::{MotionError, Pose, Robot, RobotState};
 use franka_examples::Connection;
 use futures::{Stream, StreamExt};
 use serde_json::{Value, json};
-use tokio_stream::wrappers::{IntervalStream, WatchStream};
+use tokio_stream::wrappers::IntervalStream;
 
 #[derive(Parser)]
 struct Arguments {
@@ -32,8 +32,8 @@ type Refused = (StatusCode, String);
 async fn main() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
     let (robot, _sim) = arguments.connection.open().await?;
-    let state = |State(robot): State<Robot>| async move { Json(view(robot.state())) };
-    let stop = |State(robot): State<Robot>| async move { robot.stop().await.map_err(refuse) };
+    let state = |robot: State<Robot>| async move { Json(view(robot.state())) };
+    let stop = |robot: State<Robot>| async move { robot.stop().await.map_err(refuse) };
     let app = Router::new()
         .route("/move_to", post(move_to))
         .route("/stop", post(stop))
@@ -62,9 +62,10 @@ async fn move_to(robot: State<Robot>, Json([x, y, z]): Json<[f64; 3]>) -> Result
 }
 
 async fn events(robot: State<Robot>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
+    let states = robot.states();
     let ticks = IntervalStream::new(tokio::time::interval(Duration::from_millis(50)));
-    let states = WatchStream::new(robot.states()).zip(ticks);
-    Sse::new(states.map(|(state, _)| Ok(Event::default().data(view(state).to_string()))))
+    let newest = ticks.map(move |_| view(*states.borrow()).to_string());
+    Sse::new(newest.map(|text| Ok(Event::default().data(text))))
 }
 
 fn view(state: RobotState) -> Value {

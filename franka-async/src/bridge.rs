@@ -19,7 +19,7 @@ use tokio::io::unix::AsyncFd;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 use tokio::time::Instant;
 
-use crate::channel::{Channel, Report};
+use crate::channel::{CLOSED_BY_US, Channel, Connection, Report};
 
 /// Records that a slow listener may lag behind before it misses some: two seconds.
 const RECORDS: usize = 2048;
@@ -98,6 +98,7 @@ pub(crate) struct Bridge {
     newest: franka_rt::thread::StateReader,
     thread: Option<Thread<Driver>>,
     channel: Channel,
+    connection: Option<Connection>,
     states: watch::Sender<RobotState>,
     records: broadcast::Sender<Record>,
     waiting: HashMap<GoalId, oneshot::Sender<Outcome>>,
@@ -110,7 +111,7 @@ impl Bridge {
         version: Version,
         handle: Handle,
         bell: AsyncFd<Wake>,
-        channel: Channel,
+        (channel, connection): (Channel, Connection),
         states: watch::Sender<RobotState>,
     ) -> Self {
         Self {
@@ -122,6 +123,7 @@ impl Bridge {
             newest: handle.states,
             thread: Some(handle.thread),
             channel,
+            connection: Some(connection),
             states,
             records: broadcast::channel(RECORDS).0,
             waiting: HashMap::new(),
@@ -300,16 +302,15 @@ impl Bridge {
         Instant::now() + CLOSING_TIMEOUT
     }
 
-    /// Tells everybody who still waits, and ends the thread.
+    /// Tells everybody who still waits, closes the connection and ends the thread.
     async fn end(mut self, mut inbox: mpsc::UnboundedReceiver<Input>) {
         inbox.close();
-        self.lifecycle
-            .on_connection_closed("the robot's handles were closed");
+        self.lifecycle.on_connection_closed(CLOSED_BY_US);
         self.carry_out().await;
         while let Some(input) = inbox.recv().await {
             match input {
                 Input::Submit { done, .. } => {
-                    let reason = "the robot's handles were closed".to_owned();
+                    let reason = CLOSED_BY_US.to_owned();
                     let _ = done.send(Err(MotionError::ConnectionClosed { reason }));
                 }
                 Input::Shutdown { done } => {
@@ -321,6 +322,9 @@ impl Bridge {
                 | Input::Cancel { .. }
                 | Input::Stop { .. } => {}
             }
+        }
+        if let Some(connection) = self.connection.take() {
+            connection.close().await;
         }
         if let Some(thread) = self.thread.take() {
             match tokio::task::spawn_blocking(move || thread.join()).await {

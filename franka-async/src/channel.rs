@@ -15,8 +15,10 @@ use franka_rt::driver::MotionId;
 use futures::{SinkExt, StreamExt};
 use tokio::net::TcpStream;
 use tokio::sync::{mpsc, oneshot, watch};
+use tokio::task::JoinHandle;
 use tokio::time::Instant;
 use tokio_util::codec::Framed;
+use tokio_util::sync::CancellationToken;
 
 use crate::codec::{Frame, MessageCodec};
 use crate::error::CommandError;
@@ -30,11 +32,34 @@ const CAPACITY: usize = 32;
 /// What libfranka says when it finds the connection closed.
 const CLOSED_BY_PEER: &str = "libfranka: server closed connection";
 
-/// The way to the task. Clones share it; the connection is closed when the last one is dropped.
+/// What callers hear after the connection was closed from this side.
+pub(crate) const CLOSED_BY_US: &str = "the robot's handles were closed";
+
+/// The way to the task. Clones share it.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel {
     calls: mpsc::Sender<Call>,
     ended: Arc<OnceLock<String>>,
+}
+
+/// The task itself, owned by the bridge.
+#[derive(Debug)]
+pub(crate) struct Connection {
+    task: JoinHandle<()>,
+    closing: CancellationToken,
+}
+
+impl Connection {
+    /// Closes the connection and returns once the socket is gone.
+    ///
+    /// # Cancel safety
+    /// Once polled, the connection closes.
+    pub(crate) async fn close(self) {
+        self.closing.cancel();
+        if let Err(error) = self.task.await {
+            tracing::error!(%error, "command channel");
+        }
+    }
 }
 
 /// What the channel tells the bridge.
@@ -86,7 +111,7 @@ impl Channel {
         stream: Framed<TcpStream, MessageCodec>,
         session: Session,
         states: watch::Receiver<RobotState>,
-    ) -> (Self, mpsc::UnboundedReceiver<Report>) {
+    ) -> (Self, Connection, mpsc::UnboundedReceiver<Report>) {
         let (calls, queue) = mpsc::channel(CAPACITY);
         // Unbounded, and yet bounded: two replies per motion, and motions follow one another.
         let (reports, inbox) = mpsc::unbounded_channel();
@@ -98,8 +123,9 @@ impl Channel {
             reports,
             waiting: HashMap::new(),
         };
-        tokio::spawn(task.run(queue, ended.clone()));
-        (Self { calls, ended }, inbox)
+        let closing = CancellationToken::new();
+        let task = tokio::spawn(task.run(queue, ended.clone(), closing.clone()));
+        (Self { calls, ended }, Connection { task, closing }, inbox)
     }
 
     /// Sends a request and waits for its answer.
@@ -161,8 +187,16 @@ struct Waiting {
 }
 
 impl Task {
-    async fn run(mut self, mut calls: mpsc::Receiver<Call>, ended: Arc<OnceLock<String>>) {
-        let reason = self.serve(&mut calls).await;
+    async fn run(
+        mut self,
+        mut calls: mpsc::Receiver<Call>,
+        ended: Arc<OnceLock<String>>,
+        closing: CancellationToken,
+    ) {
+        let reason = tokio::select! {
+            reason = self.serve(&mut calls) => reason,
+            () = closing.cancelled() => CLOSED_BY_US.to_owned(),
+        };
         // Told before the queue closes, so that nobody finds it closed without a reason.
         let reason = ended.get_or_init(|| reason).clone();
         drop(calls);
@@ -207,7 +241,7 @@ impl Task {
                             return reason;
                         }
                     }
-                    None => return "the robot's last handle was dropped".to_owned(),
+                    None => return CLOSED_BY_US.to_owned(),
                 },
                 () = deadline => self.on_deadline(Instant::now()),
             }

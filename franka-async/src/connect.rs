@@ -37,9 +37,9 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
 
     let address = resolve(&builder.endpoint).await?;
     let mut opened = open(address, &builder).await?;
-    let model = model_of(opened.version)?;
     let (states, published) = watch::channel(opened.first);
-    let (channel, reports) = Channel::start(opened.stream, opened.session, published.clone());
+    let (channel, connection, reports) =
+        Channel::start(opened.stream, opened.session, published.clone());
     opened
         .handle
         .records
@@ -48,16 +48,16 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         .ok();
     let stats = opened.handle.stats.clone();
     let bridge = Bridge::new(
-        model,
+        opened.model,
         opened.version,
         opened.handle,
         opened.bell,
-        channel.clone(),
+        (channel.clone(), connection),
         states,
     );
     let inputs = bridge.start(reports);
     Ok(Robot::new(
-        model,
+        opened.model,
         opened.version,
         address,
         inputs,
@@ -69,6 +69,7 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
 
 struct Opened {
     version: Version,
+    model: &'static Model,
     stream: Framed<TcpStream, MessageCodec>,
     session: Session,
     handle: Handle,
@@ -100,6 +101,7 @@ async fn open_with(
     address: SocketAddr,
     builder: &Builder,
 ) -> Result<Opened, ConnectError> {
+    let model = model_of(version)?;
     let tcp = dial(address, builder.connect_timeout).await?;
     let udp = exchange::bind()?;
     let port = udp.local_addr()?.port();
@@ -124,6 +126,7 @@ async fn open_with(
         .map_err(|_| ConnectError::NoState)??;
     Ok(Opened {
         version,
+        model,
         stream,
         session,
         handle,

@@ -13,7 +13,7 @@ use tokio::sync::{broadcast, oneshot, watch};
 
 use crate::bridge::{Input, Inputs, Outcome};
 use crate::builder::{Builder, Endpoint};
-use crate::channel::Channel;
+use crate::channel::{CLOSED_BY_US, Channel};
 use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 
 /// A connected robot.
@@ -204,7 +204,7 @@ impl Robot {
 
     pub(crate) fn closed() -> Outcome {
         Err(MotionError::ConnectionClosed {
-            reason: "the robot's handles were closed".to_owned(),
+            reason: CLOSED_BY_US.to_owned(),
         })
     }
 }

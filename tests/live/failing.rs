@@ -1,0 +1,140 @@
+//! Connections that fail in the middle of a motion.
+
+use std::time::{Duration, Instant};
+
+use franka_async::{CommandError, MotionError, Pose, RobotMode};
+use franka_proto::RobotError;
+
+use crate::{alone, connect, simulated};
+
+/// A motion of about four seconds, and the moment in it when things go wrong.
+fn long_way(robot: &franka_async::Robot) -> franka_async::Motion {
+    robot
+        .move_to(Pose::translation(0.0, 0.0, 0.1) * robot.pose())
+        .speed(0.25)
+}
+
+const MIDDLE: Duration = Duration::from_millis(800);
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_robot_that_falls_silent_for_two_seconds_is_lost_after_one() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let moving = tokio::spawn(long_way(&robot).into_future());
+    tokio::time::sleep(MIDDLE).await;
+    // The cycle of the simulator stands still; its TCP connection lives on.
+    let silence = sim.with(|_| std::thread::sleep(Duration::from_secs(2)));
+    let begun = Instant::now();
+    let (silent, outcome) = tokio::join!(silence, async {
+        let outcome = moving.await.unwrap();
+        (outcome, begun.elapsed())
+    });
+    silent.unwrap();
+    let (outcome, after) = outcome;
+    let error = outcome.unwrap_err();
+    assert!(matches!(error, MotionError::LinkLost { .. }), "{error:?}");
+    assert!(
+        error
+            .to_string()
+            .starts_with("libfranka: UDP receive: Timeout"),
+        "{error}"
+    );
+    assert!(
+        after >= Duration::from_millis(900) && after < Duration::from_millis(1900),
+        "{after:?}"
+    );
+
+    // The same connection serves again once the robot is back and recovered.
+    tokio::time::sleep(Duration::from_secs(1)).await;
+    robot.recover().await.unwrap();
+    assert_eq!(robot.state().robot_mode, RobotMode::Idle);
+    robot.move_to(robot.pose()).await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_robot_that_dies_ends_the_motion_and_everything_after_it() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let moving = tokio::spawn(long_way(&robot).into_future());
+    tokio::time::sleep(MIDDLE).await;
+    sim.stop().await;
+    let outcome = tokio::time::timeout(Duration::from_secs(3), moving)
+        .await
+        .expect("no hang")
+        .unwrap();
+    let error = outcome.unwrap_err();
+    assert!(
+        matches!(error, MotionError::ConnectionClosed { .. }),
+        "{error:?}"
+    );
+    let text = error.to_string();
+    assert!(
+        text == "libfranka: server closed connection"
+            || text.starts_with("libfranka: TCP receive: "),
+        "{text}"
+    );
+    let refused = robot.move_to(robot.pose()).await.unwrap_err();
+    assert!(
+        matches!(refused, MotionError::ConnectionClosed { .. }),
+        "{refused:?}"
+    );
+    let refused = robot.recover().await.unwrap_err();
+    assert!(
+        matches!(refused, CommandError::ConnectionClosed { .. }),
+        "{refused:?}"
+    );
+    robot.shutdown().await;
+    let (robot, _sim) = simulated().await;
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_reflex_is_named_and_can_be_recovered_from() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let moving = tokio::spawn(long_way(&robot).into_future());
+    tokio::time::sleep(MIDDLE).await;
+    sim.with(|robot| robot.trip(RobotError::JointReflex))
+        .await
+        .unwrap();
+    let error = moving.await.unwrap().unwrap_err();
+    let text = error.to_string();
+    assert!(
+        text.starts_with(
+            r#"libfranka: Move command aborted: motion aborted by reflex! ["joint_reflex"]"#
+        ),
+        "{text}"
+    );
+    let refused = robot.move_to(robot.pose()).await.unwrap_err();
+    assert!(matches!(refused, MotionError::Rejected(_)), "{refused:?}");
+    robot.recover().await.unwrap();
+    robot.move_to(robot.pose()).await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_last_handle_dropped_in_mid_motion_brakes_and_closes() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    long_way(&robot).detach();
+    tokio::time::sleep(MIDDLE).await;
+    drop(robot);
+    let gone = async {
+        while sim.with(|robot| robot.is_connected()).await.unwrap() {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    };
+    tokio::time::timeout(Duration::from_secs(5), gone)
+        .await
+        .expect("the connection is closed");
+    let state = sim.state().await.unwrap();
+    assert_eq!(
+        state.robot_mode,
+        RobotMode::Idle,
+        "it ended without a reflex: {}",
+        state.reflex_reason
+    );
+    let robot = connect(&sim).await;
+    robot.shutdown().await;
+}

@@ -1,0 +1,36 @@
+//! The driver and the simulator over real sockets on this machine, where the socket or the clock is what is tested.
+//!
+//! Run one at a time: each test has a robot, and two cores carry only so many.
+
+mod connecting;
+mod failing;
+mod moving;
+mod starving;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use franka_async::{Realtime, Robot};
+use franka_sim::{Running, Sim, Tool};
+
+/// Held by each test, so that they do not disturb each other's clocks.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+fn alone() -> MutexGuard<'static, ()> {
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A simulated FR3 with a hand, and a handle on it.
+async fn simulated() -> (Robot, Running) {
+    let sim = Sim::fr3()
+        .tool(Tool::hand())
+        .start()
+        .await
+        .expect("a simulator starts");
+    let robot = connect(&sim).await;
+    (robot, sim)
+}
+
+async fn connect(sim: &Running) -> Robot {
+    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    builder.connect().await.expect("a simulator takes a client")
+}

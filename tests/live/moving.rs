@@ -1,0 +1,179 @@
+//! Motions over sockets: what a program sees of them.
+
+use std::time::Duration;
+
+use franka_async::{CollisionBehavior, CommandError, Load, MotionError, Pose, PoseError};
+use franka_proto::{SetterStatus, Status};
+use tokio::sync::watch;
+
+use crate::{alone, simulated};
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_pose_and_joints_are_reached() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let start = robot.pose();
+    let up = Pose::translation(0.0, 0.0, 0.05) * start;
+    let report = robot.move_to(up).await.unwrap();
+    let error = PoseError::between(&robot.pose(), &up);
+    assert!(
+        error.translation < 1e-3 && error.rotation < 2e-3,
+        "{error:?}"
+    );
+    assert!(
+        report.final_error.is_some() && report.worst_turnaround > Duration::ZERO,
+        "{report:?}"
+    );
+    let mut q = robot.state().q;
+    q[0] += 0.2;
+    robot.move_joints(q).await.unwrap();
+    let error = PoseError::between(&robot.pose(), &robot.pose_at(q));
+    assert!(
+        error.translation < 1e-3 && error.rotation < 2e-3,
+        "{error:?}"
+    );
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_dropped_motion_brakes_and_a_new_one_takes_over() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let start = robot.pose();
+    let far = Pose::translation(0.0, 0.1, 0.1) * start;
+    let dropped =
+        tokio::time::timeout(Duration::from_millis(500), robot.move_to(far).into_future()).await;
+    assert!(dropped.is_err(), "still under way");
+    let report = robot.move_to(start).await.unwrap();
+    assert!(report.final_error.unwrap().translation < 1e-3);
+
+    let first = tokio::spawn(robot.move_to(far).into_future());
+    tokio::time::sleep(Duration::from_millis(300)).await;
+    robot.move_to(start).await.unwrap();
+    assert_eq!(first.await.unwrap(), Err(MotionError::Superseded));
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn nothing_moves_before_the_first_poll_and_a_canceller_brakes() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let motion = robot.move_to(Pose::translation(0.0, 0.0, 0.1) * robot.pose());
+    let canceller = motion.canceller();
+    tokio::time::sleep(Duration::from_millis(200)).await;
+    assert!(!robot.state().motion_running());
+    let moving = tokio::spawn(motion.into_future());
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    canceller.cancel();
+    assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
+    // Stopping what rests is no error.
+    robot.stop().await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_watch_is_followed_to_its_last_value() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let start = robot.pose();
+    let (sender, targets) = watch::channel(start);
+    let following = tokio::spawn(robot.follow(targets).into_future());
+    let mut last = start;
+    for step in 1..=10_u32 {
+        last = Pose::translation(0.0, 0.004 * f64::from(step), 0.0) * start;
+        sender.send(last).unwrap();
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    drop(sender);
+    following.await.unwrap().unwrap();
+    let error = PoseError::between(&robot.pose(), &last);
+    assert!(error.translation < 1e-3, "{error:?}");
+
+    let (sender, targets) = watch::channel(robot.pose());
+    let following = tokio::spawn(robot.follow(targets).into_future());
+    tokio::time::sleep(Duration::from_millis(200)).await;
+    sender.send(Pose::translation(5.0, 0.0, 0.0)).unwrap();
+    let error = following.await.unwrap().unwrap_err();
+    assert!(matches!(error, MotionError::Goal(_)), "{error:?}");
+    assert!(
+        !robot.state().motion_running(),
+        "braked and ended before it said so"
+    );
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn parameters_are_taken_at_rest_and_refused_in_motion() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    robot
+        .set_collision_behavior(CollisionBehavior::uniform(
+            [30.0; 7], [40.0; 7], [40.0; 6], [50.0; 6],
+        ))
+        .await
+        .unwrap();
+    robot.set_joint_impedance([3000.0; 7]).await.unwrap();
+    robot
+        .set_cartesian_impedance([2000.0, 2000.0, 2000.0, 100.0, 100.0, 100.0])
+        .await
+        .unwrap();
+    robot.set_guiding_mode([true; 6], false).await.unwrap();
+    robot
+        .set_k(Pose::translation(0.0, 0.0, 0.02))
+        .await
+        .unwrap();
+    robot
+        .set_ee(Pose::translation(0.0, 0.0, 0.01))
+        .await
+        .unwrap();
+    let load = Load {
+        m_load: 0.2,
+        F_x_Cload: [0.0, 0.0, 0.1],
+        I_load: [1e-3, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0, 0.0, 1e-3],
+    };
+    robot.set_load(load).await.unwrap();
+    robot.recover().await.unwrap();
+    assert!(robot.urdf().await.unwrap().contains("<robot"));
+
+    let invalid = robot.set_joint_impedance([-1.0; 7]).await.unwrap_err();
+    let CommandError::Refused(refusal) = invalid else {
+        panic!("{invalid:?}")
+    };
+    assert_eq!(
+        refusal.status(),
+        Status::Setter(SetterStatus::InvalidArgumentRejected)
+    );
+
+    robot
+        .move_to(Pose::translation(0.0, 0.0, 0.05) * robot.pose())
+        .detach();
+    tokio::time::sleep(Duration::from_millis(300)).await;
+    let refused = robot.set_joint_impedance([3000.0; 7]).await.unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        r#"libfranka: Set Joint Impedance command rejected: command not possible in the current mode ("Move")!"#
+    );
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn five_robots_in_one_process_move_at_once() {
+    let _alone = alone();
+    let mut moving = tokio::task::JoinSet::new();
+    for i in 0..5_u32 {
+        moving.spawn(async move {
+            let (robot, sim) = simulated().await;
+            let target = Pose::translation(0.0, 0.01 * f64::from(i), 0.03) * robot.pose();
+            let outcome = robot.move_to(target).await;
+            let error = PoseError::between(&robot.pose(), &target);
+            robot.shutdown().await;
+            sim.stop().await;
+            (i, outcome, error)
+        });
+    }
+    while let Some(done) = moving.join_next().await {
+        let (i, outcome, error) = done.unwrap();
+        outcome.unwrap_or_else(|error| panic!("robot {i}: {error}"));
+        assert!(error.translation < 1e-3, "robot {i}: {error:?}");
+    }
+}
