@@ -1,31 +1,16 @@
 //! The joints in base axes: where every frame is and along what every axis points.
 //!
-//! The geometry is that of the FER and the FR3 alike: an alternating chain in which every joint
-//! frame is rolled by 0 or ±90° against the one before, so a joint costs one plane rotation and a
-//! permutation of columns. Positions are relative to the shoulder S, where axes 1, 2 and 3 meet:
-//! those axes then have no moment about the reference point.
+//! The [geometry](crate::geometry) is that of the FER and the FR3 alike: an alternating chain in
+//! which every joint frame is rolled by 0 or ±90° against the one before, so a joint costs one
+//! plane rotation and a permutation of columns. Positions are relative to the shoulder S, where
+//! axes 1, 2 and 3 meet: those axes then have no moment about the reference point.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::JointVector;
+use crate::geometry::{ELBOW, FLANGE, FOREARM, UPPER_ARM, WRIST};
 use crate::inertia::cross;
 use crate::scalar::sin_cos;
-
-// Lengths in metres, from the joint origins of the vendor's URDF (libfranka 0.21, `test/fr3.urdf`;
-// `franka_description` 1.0.1, `kinematics.yaml` of the FR3 and the FER).
-
-/// Base to shoulder, along the axis of joint 1.
-pub(crate) const SHOULDER: f64 = 0.333;
-/// Shoulder to elbow, along the axis of joint 3.
-pub(crate) const UPPER_ARM: f64 = 0.316;
-/// Offset of the axis of joint 4 from the axes of joints 3 and 5.
-pub(crate) const ELBOW: f64 = 0.0825;
-/// Elbow to wrist, along the axis of joint 5.
-pub(crate) const FOREARM: f64 = 0.384;
-/// Offset of the axis of joint 7 from the wrist, where axes 5 and 6 meet.
-pub(crate) const WRIST: f64 = 0.088;
-/// Frame of link 7 to flange, along the axis of joint 7.
-pub(crate) const FLANGE: f64 = 0.107;
 
 /// Rotations, origins and screws of the seven joint frames, in base axes.
 pub(crate) struct Chain {

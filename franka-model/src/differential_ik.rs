@@ -207,7 +207,7 @@ mod tests {
         let mut random = Random::new(53);
         let limits = Model::fr3().joint_limits();
         for _ in 0..5000 {
-            let q = random.posture();
+            let q = random.posture(Model::fr3());
             let (lower, upper) = limits.velocity_envelope(&q, 0.0);
             let bounds = JointBox::new(&lower, &upper);
             let twist = Twist::from_fn(|_, _| random.uniform(-2.0, 2.0));
@@ -230,7 +230,7 @@ mod tests {
         let stretched = crate::elbow::FLIP_ANGLE;
         let mut singular = 0;
         for case in 0..20_000 {
-            let mut q = random.posture();
+            let mut q = random.posture(Model::fr3());
             let near = random.uniform(-0.1, 0.1);
             match case % 4 {
                 0 => q[1] = near,                                // shoulder

@@ -23,7 +23,7 @@ pub fn elbow(q: &JointVector) -> [f64; 2] {
 mod tests {
     use super::*;
     use crate::READY;
-    use crate::chain::{ELBOW, FOREARM, UPPER_ARM};
+    use crate::geometry::{ELBOW, FOREARM, UPPER_ARM};
     use crate::scalar::atan2;
 
     #[test]

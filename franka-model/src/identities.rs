@@ -2,7 +2,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::fr3::LINKS;
 use crate::random::Random;
 use crate::{
     EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, MassMatrix, Model, Twist, rotation,
@@ -36,7 +35,7 @@ fn for_each_case(seed: u64, check: impl Fn(&Model, &Case)) {
         };
         let load = random.load();
         let case = Case {
-            q: random.posture(),
+            q: random.posture(Model::fr3()),
             dq: random.joints(2.0),
             ddq: random.joints(10.0),
             load: if index % 4 == 0 { Load::NONE } else { load },
@@ -131,10 +130,8 @@ fn body(model: &Model, case: &Case, i: usize) -> (f64, Vector3<f64>, Matrix3<f64
         let load = &case.load;
         (Frame::Flange, load.mass, load.com, load.inertia)
     } else {
-        let link = &LINKS[i];
-        let columns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|e| link.inertia.times(&e));
-        let inertia = Matrix3::from_columns(&columns);
-        (Frame::ALL[i], link.mass, link.com, inertia)
+        let link = &model.links()[i];
+        (Frame::ALL[i], link.mass, link.com, link.inertia.matrix())
     };
     let pose = model.pose(frame, &case.q, &case.ee);
     let rotation = pose.fixed_view::<3, 3>(0, 0);
@@ -285,7 +282,7 @@ fn a_payload_in_two_parts_weighs_like_their_combination() {
     let mut random = Random::new(42);
     let model = Model::fr3();
     for _ in 0..200 {
-        let (q, a, b) = (random.posture(), random.load(), random.load());
+        let (q, a, b) = (random.posture(model), random.load(), random.load());
         let gravity = |load| model.gravity(&q, load, &GRAVITY_EARTH);
         let mass = |load| model.mass(&q, load);
         let (both, none) = (a.combine(&b), Load::NONE);

@@ -4,15 +4,16 @@ use core::ops::{Add, AddAssign};
 
 use nalgebra::{Matrix3, Vector3};
 
-/// A symmetric 3×3 matrix by its six numbers.
+/// A symmetric 3×3 matrix by its six numbers: rows x, y, z and columns x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Symmetric3 {
-    pub(crate) xx: f64,
-    pub(crate) xy: f64,
-    pub(crate) xz: f64,
-    pub(crate) yy: f64,
-    pub(crate) yz: f64,
-    pub(crate) zz: f64,
+#[allow(missing_docs)] // the fields are the places in the matrix
+pub struct Symmetric3 {
+    pub xx: f64,
+    pub xy: f64,
+    pub xz: f64,
+    pub yy: f64,
+    pub yz: f64,
+    pub zz: f64,
 }
 
 impl Symmetric3 {
@@ -35,6 +36,15 @@ impl Symmetric3 {
             yz: 0.5 * (m.m23 + m.m32),
             zz: m.m33,
         }
+    }
+
+    /// All nine numbers.
+    pub fn matrix(&self) -> Matrix3<f64> {
+        Matrix3::new(
+            self.xx, self.xy, self.xz, //
+            self.xy, self.yy, self.yz, //
+            self.xz, self.yz, self.zz,
+        )
     }
 
     /// Inertia of a point mass at `r` about the origin: `mass (|r|² 1 − r rᵀ)`.
@@ -106,13 +116,34 @@ impl AddAssign for Symmetric3 {
 /// A rigid body: mass `[kg]`, centre of mass `[m]` and inertia about it `[kg·m²]`, in one set of
 /// axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct RigidBody {
-    pub(crate) mass: f64,
-    pub(crate) com: Vector3<f64>,
-    pub(crate) inertia: Symmetric3,
+pub struct RigidBody {
+    /// `[kg]`.
+    pub mass: f64,
+    /// Centre of mass, `[m]`.
+    pub com: Vector3<f64>,
+    /// Inertia about the centre of mass, `[kg·m²]`.
+    pub inertia: Symmetric3,
 }
 
 impl RigidBody {
+    /// From numbers in the order of a URDF: `inertia` is xx, xy, xz, yy, yz, zz.
+    pub(crate) const fn new(mass: f64, com: [f64; 3], inertia: [f64; 6]) -> Self {
+        let [x, y, z] = com;
+        let [xx, xy, xz, yy, yz, zz] = inertia;
+        Self {
+            mass,
+            com: Vector3::new(x, y, z),
+            inertia: Symmetric3 {
+                xx,
+                xy,
+                xz,
+                yy,
+                yz,
+                zz,
+            },
+        }
+    }
+
     /// Both bodies as one; `self` where the total has no mass.
     pub(crate) fn joined(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;

@@ -234,7 +234,7 @@ mod tests {
         let mut random = Random::new(61);
         let ee = tool();
         for _ in 0..1000 {
-            let target = pose(&random.posture(), &ee);
+            let target = pose(&random.posture(Model::fr3()), &ee);
             let q = solve(Model::fr3(), &target, &ee, &READY).expect("within reach");
             assert!(Model::fr3().joint_limits().contains(&q));
             let reached = pose(&q, &ee);
@@ -251,7 +251,7 @@ mod tests {
     fn a_good_seed_is_kept() {
         let mut random = Random::new(62);
         for _ in 0..200 {
-            let seed = random.posture();
+            let seed = random.posture(Model::fr3());
             let target = pose(&seed, &EndEffector::default());
             let q = solve(Model::fr3(), &target, &EndEffector::default(), &seed);
             assert!((q.expect("the seed itself") - seed).amax() < 1e-12);

@@ -3,8 +3,9 @@
 use nalgebra::{Cholesky, Matrix3, Matrix4, Vector3};
 
 use crate::Jacobian;
-use crate::chain::{Chain, SHOULDER};
+use crate::chain::Chain;
 use crate::frame::{EndEffector, Frame};
+use crate::geometry::SHOULDER;
 use crate::inertia::cross;
 use crate::scalar::sqrt;
 

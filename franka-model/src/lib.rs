@@ -15,6 +15,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`frame`], [`load`] | the ten frames of the vendor's model, end effector, payload |
+//! | [`geometry`] | lengths and joint frames |
 //! | [`limits`] | position, velocity, acceleration, jerk, torque and Cartesian limits |
 //! | [`rotation`] | rotation vectors: exponential, logarithm, angular velocity and acceleration |
 //! | [`transform`] | column-major arrays and 4×4 matrices to isometries and back |
@@ -63,12 +64,14 @@ mod dynamics;
 mod fr3;
 mod inertia;
 mod jacobian;
+mod kind;
 mod model;
 mod scalar;
 
 pub mod differential_ik;
 pub mod elbow;
 pub mod frame;
+pub mod geometry;
 pub mod inverse_kinematics;
 pub mod limits;
 pub mod load;
@@ -84,9 +87,11 @@ mod random;
 
 pub use dynamics::Dynamics;
 pub use frame::{EndEffector, Frame};
+pub use inertia::{RigidBody, Symmetric3};
 pub use jacobian::manipulability;
+pub use kind::RobotKind;
 pub use load::Load;
-pub use model::{Model, RobotKind};
+pub use model::Model;
 
 use nalgebra::{ArrayStorage, SMatrix, SVector, Vector3};
 

@@ -1,10 +1,11 @@
-//! What the robot allows: joints, end effector and elbow.
+//! What the robot allows: joints, end effector and elbow. The numbers and their sources stand with
+//! each robot's description.
 //!
 //! All values are nominal, the ones that the robot checks against. A client stays below them by
 //! [`CLIENT_MARGIN`] (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
 
 use crate::scalar::sqrt;
-use crate::{JointVector, RobotKind, joint_vector};
+use crate::{JointVector, RobotKind};
 
 /// What libfranka keeps off every limit: the same number in every unit
 /// (libfranka 0.21, `rate_limiting.h`).
@@ -24,10 +25,8 @@ pub struct JointLimits {
     /// Greatest speed anywhere, `[rad/s]`; near the position limits see
     /// [`velocity_envelope`](Self::velocity_envelope).
     pub velocity: JointVector,
-    /// Speed, `[rad/s]`, that the envelope takes off the braking parabola.
-    pub velocity_offset: JointVector,
-    /// Deceleration, `[rad/s²]`, of the envelope's braking parabola.
-    pub envelope_deceleration: JointVector,
+    /// How the speed is bounded near the position limits; `None` where it is the same everywhere.
+    pub envelope: Option<BrakingEnvelope>,
     /// Greatest acceleration of a commanded motion, `[rad/s²]`.
     pub acceleration: JointVector,
     /// Greatest jerk of a commanded motion, `[rad/s³]`.
@@ -38,29 +37,43 @@ pub struct JointLimits {
     pub torque_rate: JointVector,
 }
 
+/// Speeds near a position limit, as of a joint that brakes towards it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BrakingEnvelope {
+    /// Deceleration of the parabola, `[rad/s²]`.
+    pub deceleration: JointVector,
+    /// Speed, `[rad/s]`, that comes off the parabola.
+    pub offset: JointVector,
+}
+
+impl BrakingEnvelope {
+    /// Speed of joint `i`, `[rad/s]`, at `distance` `[rad]` from its position limit.
+    fn speed(&self, i: usize, distance: f64) -> f64 {
+        let parabola = sqrt((2.0 * self.deceleration[i] * distance).max(0.0));
+        (parabola - self.offset[i]).max(0.0)
+    }
+}
+
 impl JointLimits {
     /// The limits of a kind of robot.
     pub const fn of(kind: RobotKind) -> &'static Self {
-        match kind {
-            RobotKind::Fr3 => &FR3_JOINTS,
-        }
+        &kind.description().joints
     }
 
     /// Velocities allowed at the positions `q`: `(lower, upper)`, `[rad/s]`.
     ///
-    /// Towards a position limit the speed is bounded by what `envelope_deceleration` stops before
-    /// the hard limit, less `velocity_offset`. `margin` `[rad/s]` then comes off both sides: the
-    /// robot checks with 0, libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position limit
-    /// the bound towards it is `-margin` inwards: it asks for a way back.
+    /// With a [`BrakingEnvelope`] the speed towards a position limit is bounded by what stops before
+    /// the hard limit; without one it is [`velocity`](Self::velocity) everywhere, also beyond the
+    /// limits. `margin` `[rad/s]` then comes off both sides: the robot checks with 0, libfranka
+    /// limits with [`CLIENT_MARGIN`]. At and beyond a position limit with an envelope the bound
+    /// towards it is `-margin` inwards: it asks for a way back.
     ///
     /// Formula and operation order of libfranka 0.21, whose results it meets to the last digit.
     pub fn velocity_envelope(&self, q: &JointVector, margin: f64) -> (JointVector, JointVector) {
         let speed = |i: usize, distance: f64| {
-            let parabola = sqrt((2.0 * self.envelope_deceleration[i] * distance).max(0.0));
-            (parabola - self.velocity_offset[i])
-                .max(0.0)
-                .min(self.velocity[i])
-                - margin
+            let nominal = self.velocity[i];
+            let braking = self.envelope.as_ref();
+            braking.map_or(nominal, |envelope| envelope.speed(i, distance).min(nominal)) - margin
         };
         (
             JointVector::from_fn(|i, _| -speed(i, q[i] - self.hard_lower[i])),
@@ -99,50 +112,9 @@ pub struct CartesianLimits {
 impl CartesianLimits {
     /// The limits of a kind of robot.
     pub const fn of(kind: RobotKind) -> &'static Self {
-        match kind {
-            RobotKind::Fr3 => &FR3_CARTESIAN,
-        }
+        &kind.description().cartesian
     }
 }
-
-/// `lower` and `upper`: limits table of the FCI documentation (`franka_description` 1.0.1,
-/// `robots/fr3/joint_limits.yaml`). `hard_*`, `velocity*`, `envelope_deceleration`, `torque`: the
-/// URDF that the robot serves (libfranka 0.21, `test/fr3.urdf`). The others: libfranka 0.21,
-/// `rate_limiting.h`.
-static FR3_JOINTS: JointLimits = JointLimits {
-    lower: joint_vector([-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159]),
-    upper: joint_vector([2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159]),
-    hard_lower: joint_vector([
-        -2.7501, -1.7918, -2.9065, -3.0481, -2.8101, 0.54092, -3.0196,
-    ]),
-    hard_upper: joint_vector([2.7501, 1.7918, 2.9065, -0.1458, 2.8101, 4.5205, 3.0196]),
-    velocity: joint_vector([2.62, 2.62, 2.62, 2.62, 5.26, 4.18, 5.26]),
-    velocity_offset: joint_vector([0.3, 0.2, 0.2, 0.3, 0.35, 0.35, 0.35]),
-    envelope_deceleration: joint_vector([6.0, 2.585, 3.5, 4.0, 17.0, 5.5, 17.0]),
-    acceleration: joint_vector([10.0; 7]),
-    jerk: joint_vector([5000.0; 7]),
-    torque: joint_vector([87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0]),
-    torque_rate: joint_vector([1000.0; 7]),
-};
-
-/// libfranka 0.21, `rate_limiting.h`.
-static FR3_CARTESIAN: CartesianLimits = CartesianLimits {
-    translation: MotionLimits {
-        velocity: 3.0,
-        acceleration: 9.0,
-        jerk: 4500.0,
-    },
-    rotation: MotionLimits {
-        velocity: 2.5,
-        acceleration: 17.0,
-        jerk: 8500.0,
-    },
-    elbow: MotionLimits {
-        velocity: 1.5,
-        acceleration: 10.0,
-        jerk: 5000.0,
-    },
-};
 
 #[cfg(test)]
 mod tests {

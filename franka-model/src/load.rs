@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::chain::FLANGE;
+use crate::geometry::FLANGE;
 use crate::inertia::{RigidBody, Symmetric3};
 
 /// A rigid payload on the flange: the tool, what it holds, or both combined.

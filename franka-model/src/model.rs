@@ -7,19 +7,12 @@ use crate::dynamics::{self, Dynamics};
 use crate::frame::{EndEffector, Frame};
 use crate::inertia::RigidBody;
 use crate::jacobian::{self, Placement};
+use crate::kind::RobotKind;
 use crate::limits::{CartesianLimits, JointLimits};
 use crate::load::Load;
-use crate::{Jacobian, JointVector, MassMatrix, fr3};
+use crate::{Jacobian, JointVector, MassMatrix};
 
-/// The kinds of robot that the crate describes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum RobotKind {
-    /// Franka Research 3.
-    Fr3,
-}
-
-/// A robot's constants. There is one value per kind: take it by reference.
+/// A robot's constants. There are few values, all static: take them by reference.
 ///
 /// Throughout, `q` are joint positions `[rad]`, `dq` velocities `[rad/s]`, `ddq` accelerations
 /// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in
@@ -27,31 +20,42 @@ pub enum RobotKind {
 /// that are not finite give results that are not finite.
 #[derive(Debug)]
 pub struct Model {
-    kind: RobotKind,
-    links: [RigidBody; 7],
+    pub(crate) kind: RobotKind,
+    pub(crate) base: RigidBody,
+    pub(crate) links: [RigidBody; 7],
 }
-
-static FR3: Model = Model {
-    kind: RobotKind::Fr3,
-    links: fr3::LINKS,
-};
 
 impl Model {
     /// The Franka Research 3.
-    pub fn fr3() -> &'static Self {
-        &FR3
+    pub const fn fr3() -> &'static Self {
+        Self::of(RobotKind::Fr3)
     }
 
-    /// The model of a kind.
-    pub fn of(kind: RobotKind) -> &'static Self {
-        match kind {
-            RobotKind::Fr3 => &FR3,
-        }
+    /// The model that the vendor's client has of a kind: what a controller computes with.
+    pub const fn of(kind: RobotKind) -> &'static Self {
+        kind.description().client
+    }
+
+    /// A model of a kind that a physical arm could have: what a simulation moves.
+    ///
+    /// For the Franka Research 3 it is [`of`](Self::of).
+    pub const fn realisable(kind: RobotKind) -> &'static Self {
+        kind.description().realisable
     }
 
     /// Which robot this is.
     pub fn kind(&self) -> RobotKind {
         self.kind
+    }
+
+    /// The body that stands still, in the base frame. No dynamics depends on it.
+    pub fn base(&self) -> &RigidBody {
+        &self.base
+    }
+
+    /// Links 1 to 7 without a load, each in the axes of its own link.
+    pub fn links(&self) -> &[RigidBody; 7] {
+        &self.links
     }
 
     /// What its joints may do.

@@ -2,8 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::limits::JointLimits;
-use crate::{JointVector, Load, RobotKind};
+use crate::{JointVector, Load, Model};
 
 /// SplitMix64: Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators, 2014.
 pub(crate) struct Random(u64);
@@ -34,8 +33,8 @@ impl Random {
     }
 
     /// Positions within the limits.
-    pub(crate) fn posture(&mut self) -> JointVector {
-        let limits = JointLimits::of(RobotKind::Fr3);
+    pub(crate) fn posture(&mut self, model: &Model) -> JointVector {
+        let limits = model.joint_limits();
         JointVector::from_fn(|i, _| self.uniform(limits.lower[i], limits.upper[i]))
     }
 

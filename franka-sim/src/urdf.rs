@@ -13,22 +13,26 @@
 
 use core::fmt::Write;
 
-use franka_model::limits::JointLimits;
+use franka_model::geometry::{FLANGE, JOINT_ORIGINS};
+use franka_model::{Model, RigidBody};
 
-/// The URDF text of a Franka Research 3 with these limits.
-pub(crate) fn fr3(limits: &JointLimits) -> String {
+/// The URDF text of a robot that a client shall believe to be `model`.
+///
+/// The element of the velocity envelope is left out for a model that has none.
+pub(crate) fn text(model: &Model) -> String {
     let mut text = String::from("<?xml version=\"1.0\" ?>\n<robot name=\"fr3\">\n");
-    write_robot(&mut text, limits).expect("writing to a string cannot fail");
+    write_robot(&mut text, model).expect("writing to a string cannot fail");
     text
 }
 
-fn write_robot(text: &mut String, limits: &JointLimits) -> core::fmt::Result {
-    for (i, link) in LINKS.iter().enumerate() {
-        write_link(text, i, link)?;
+fn write_robot(text: &mut String, model: &Model) -> core::fmt::Result {
+    let bodies = core::iter::once(model.base()).chain(model.links());
+    for (i, body) in bodies.enumerate() {
+        write_link(text, i, body)?;
     }
     writeln!(text, "  <link name=\"link8\"/>")?;
     for i in 0..7 {
-        write_joint(text, i, limits)?;
+        write_joint(text, i, model)?;
     }
     writeln!(
         text,
@@ -38,165 +42,64 @@ fn write_robot(text: &mut String, limits: &JointLimits) -> core::fmt::Result {
     )
 }
 
-fn write_link(text: &mut String, i: usize, link: &Inertial) -> core::fmt::Result {
-    let [x, y, z] = link.com;
-    let [xx, xy, xz, yy, yz, zz] = link.inertia;
+fn write_link(text: &mut String, i: usize, body: &RigidBody) -> core::fmt::Result {
+    let (com, inertia) = (&body.com, &body.inertia);
     writeln!(
         text,
         "  <link name=\"link{i}\">\n    <inertial>\n      \
-         <origin rpy=\"0 0 0\" xyz=\"{x} {y} {z}\"/>\n      <mass value=\"{}\"/>\n      \
-         <inertia ixx=\"{xx}\" ixy=\"{xy}\" ixz=\"{xz}\" iyy=\"{yy}\" iyz=\"{yz}\" izz=\"{zz}\"/>\n    \
+         <origin rpy=\"0 0 0\" xyz=\"{} {} {}\"/>\n      <mass value=\"{}\"/>\n      \
+         <inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/>\n    \
          </inertial>\n  </link>",
-        link.mass
+        com.x,
+        com.y,
+        com.z,
+        body.mass,
+        inertia.xx,
+        inertia.xy,
+        inertia.xz,
+        inertia.yy,
+        inertia.yz,
+        inertia.zz,
     )
 }
 
-fn write_joint(text: &mut String, i: usize, limits: &JointLimits) -> core::fmt::Result {
-    let (roll, [x, y, z]) = JOINTS[i];
+fn write_joint(text: &mut String, i: usize, model: &Model) -> core::fmt::Result {
+    let (origin, limits) = (&JOINT_ORIGINS[i], model.joint_limits());
+    let (at, roll) = (&origin.translation, origin.roll);
     let (parent, child) = (i, i + 1);
     writeln!(
         text,
         "  <joint name=\"joint{child}\" type=\"revolute\">\n    \
-         <origin rpy=\"{roll} 0 0\" xyz=\"{x} {y} {z}\"/>\n    \
+         <origin rpy=\"{roll} 0 0\" xyz=\"{} {} {}\"/>\n    \
          <parent link=\"link{parent}\"/>\n    <child link=\"link{child}\"/>\n    \
          <axis xyz=\"0 0 1\"/>\n    \
-         <limit effort=\"{}\" lower=\"{}\" upper=\"{}\" velocity=\"{}\"/>\n    \
-         <position_based_velocity_limits deceleration_limit=\"{}\" velocity_offset=\"{}\"/>\n  \
-         </joint>",
+         <limit effort=\"{}\" lower=\"{}\" upper=\"{}\" velocity=\"{}\"/>",
+        at.x,
+        at.y,
+        at.z,
         limits.torque[i],
         limits.hard_lower[i],
         limits.hard_upper[i],
         limits.velocity[i],
-        limits.envelope_deceleration[i],
-        limits.velocity_offset[i],
-    )
+    )?;
+    if let Some(envelope) = &limits.envelope {
+        writeln!(
+            text,
+            "    <position_based_velocity_limits deceleration_limit=\"{}\" velocity_offset=\"{}\"/>",
+            envelope.deceleration[i], envelope.offset[i],
+        )?;
+    }
+    writeln!(text, "  </joint>")
 }
-
-/// Mass, centre of mass and inertia about it (xx xy xz yy yz zz) of a link, in its axes.
-struct Inertial {
-    mass: f64,
-    com: [f64; 3],
-    inertia: [f64; 6],
-}
-
-/// Height of the flange above link 7, `[m]`.
-const FLANGE: f64 = 0.107;
-
-const QUARTER: f64 = core::f64::consts::FRAC_PI_2;
-
-/// Roll `[rad]` and position `[m]` of each joint in the link before: libfranka 0.21,
-/// `test/fr3.urdf`.
-const JOINTS: [(f64, [f64; 3]); 7] = [
-    (0.0, [0.0, 0.0, 0.333]),
-    (-QUARTER, [0.0, 0.0, 0.0]),
-    (QUARTER, [0.0, -0.316, 0.0]),
-    (QUARTER, [0.0825, 0.0, 0.0]),
-    (-QUARTER, [-0.0825, 0.384, 0.0]),
-    (QUARTER, [0.0, 0.0, 0.0]),
-    (QUARTER, [0.088, 0.0, 0.0]),
-];
-
-/// Links 0 to 7, from the same file. `franka_model` has 1 to 7 inside; the test holds both together.
-const LINKS: [Inertial; 8] = [
-    Inertial {
-        mass: 2.3966,
-        com: [-0.0172, 0.0004, 0.0745],
-        inertia: [0.009, 0.0, 0.002, 0.0115, 0.0, 0.0085],
-    },
-    Inertial {
-        mass: 2.9274653454,
-        com: [4.128e-07, -0.0181251324, -0.038603597],
-        inertia: [
-            0.023927316485107913,
-            1.3317903455714081e-05,
-            -0.00011404774918616684,
-            0.0224821613275756,
-            -0.0019950320628240115,
-            0.006350098258530016,
-        ],
-    },
-    Inertial {
-        mass: 2.9355370338,
-        com: [0.0031828864, -0.0743221644, 0.0088146084],
-        inertia: [
-            0.041938946257609425,
-            0.00020257331521090626,
-            0.004077784227179924,
-            0.02514514885014724,
-            -0.0042252158006570156,
-            0.06170214472888839,
-        ],
-    },
-    Inertial {
-        mass: 2.2449013699,
-        com: [0.0407015686, -0.0048200565, -0.0289730823],
-        inertia: [
-            0.02410142547240885,
-            0.002404694559042109,
-            -0.002856269270114313,
-            0.01974053266708178,
-            -0.002104212683891874,
-            0.019044494482244823,
-        ],
-    },
-    Inertial {
-        mass: 2.6155955791,
-        com: [-0.0459100965, 0.063049296, -0.0085187868],
-        inertia: [
-            0.03452998321913202,
-            0.01322552265982813,
-            0.01015142998484113,
-            0.028881621933049058,
-            -0.0009762833870704552,
-            0.04125471171146641,
-        ],
-    },
-    Inertial {
-        mass: 2.3271207594,
-        com: [-0.0016039605, 0.0292536262, -0.097296599],
-        inertia: [
-            0.051610278463662895,
-            -0.005715173387783472,
-            -0.0035673167625872135,
-            0.04787729713371481,
-            0.010673985108535986,
-            0.016423625579357254,
-        ],
-    },
-    Inertial {
-        mass: 1.8170376524,
-        com: [0.0597131221, -0.0410294666, -0.0101692726],
-        inertia: [
-            0.005412333594383447,
-            0.006193456360285834,
-            0.0014219289306117652,
-            0.014058329545509979,
-            -0.0013140753741120031,
-            0.016080817924212554,
-        ],
-    },
-    Inertial {
-        mass: 0.6271432862,
-        com: [0.0045225817, 0.0086261921, -0.0161633251],
-        inertia: [
-            0.00021092389150104718,
-            -2.433299114461931e-05,
-            4.564480393778983e-05,
-            0.00017718568002411474,
-            8.744070223226438e-05,
-            5.993190599659971e-05,
-        ],
-    },
-];
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_model::{GRAVITY_EARTH, JointVector, Load, MassMatrix, Model, READY};
+    use franka_model::{GRAVITY_EARTH, JointVector, Load, MassMatrix, READY};
     use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
     fn text() -> String {
-        fr3(Model::fr3().joint_limits())
+        super::text(Model::fr3())
     }
 
     /// The numbers of attribute `name` in the first `<element` after `start`.
@@ -280,11 +183,9 @@ mod tests {
             assert_eq!(number("velocity"), limits.velocity[i]);
             assert_eq!(number("effort"), limits.torque[i]);
             let number = |name| attribute(joint, "position_based_velocity_limits", name)[0];
-            assert_eq!(number("velocity_offset"), limits.velocity_offset[i]);
-            assert_eq!(
-                number("deceleration_limit"),
-                limits.envelope_deceleration[i]
-            );
+            let envelope = limits.envelope.expect("the robot serves one");
+            assert_eq!(number("velocity_offset"), envelope.offset[i]);
+            assert_eq!(number("deceleration_limit"), envelope.deceleration[i]);
         }
     }
 

@@ -134,7 +134,7 @@ impl Robot {
         let mut robot = Self {
             version: Version::V10,
             model,
-            description: crate::urdf::fr3(model.joint_limits()),
+            description: crate::urdf::text(model),
             client: None,
             replies: VecDeque::new(),
             command: None,

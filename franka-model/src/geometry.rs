@@ -1,0 +1,78 @@
+//! Lengths and joint frames, the same for the FER and the FR3.
+//!
+//! Source: the joint origins of the vendor's URDF (libfranka 0.21, `test/fr3.urdf`;
+//! `franka_description` 1.0.1, `kinematics.yaml` of both robots).
+
+use core::f64::consts::FRAC_PI_2;
+
+use nalgebra::Vector3;
+
+/// Base to shoulder, where axes 1, 2 and 3 meet, along the axis of joint 1, `[m]`.
+pub const SHOULDER: f64 = 0.333;
+/// Shoulder to elbow, along the axis of joint 3, `[m]`.
+pub const UPPER_ARM: f64 = 0.316;
+/// Offset of the axis of joint 4 from the axes of joints 3 and 5, `[m]`.
+pub const ELBOW: f64 = 0.0825;
+/// Elbow to wrist, along the axis of joint 5, `[m]`.
+pub const FOREARM: f64 = 0.384;
+/// Offset of the axis of joint 7 from the wrist, where axes 5 and 6 meet, `[m]`.
+pub const WRIST: f64 = 0.088;
+/// Frame of link 7 to flange, along the axis of joint 7, `[m]`.
+pub const FLANGE: f64 = 0.107;
+
+/// Where a joint's frame is in the frame of the link before, with the joint at zero: moved by
+/// `translation`, then rolled about x. The joint turns about z of the result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointOrigin {
+    /// `[m]`, in the axes of the link before.
+    pub translation: Vector3<f64>,
+    /// About x, `[rad]`: 0 or a quarter turn. Pitch and yaw are zero.
+    pub roll: f64,
+}
+
+/// The origins of joints 1 to 7; that of joint 1 is in the base frame.
+pub const JOINT_ORIGINS: [JointOrigin; 7] = {
+    const fn origin(x: f64, y: f64, z: f64, roll: f64) -> JointOrigin {
+        JointOrigin {
+            translation: Vector3::new(x, y, z),
+            roll,
+        }
+    }
+    [
+        origin(0.0, 0.0, SHOULDER, 0.0),
+        origin(0.0, 0.0, 0.0, -FRAC_PI_2),
+        origin(0.0, -UPPER_ARM, 0.0, FRAC_PI_2),
+        origin(ELBOW, 0.0, 0.0, FRAC_PI_2),
+        origin(-ELBOW, FOREARM, 0.0, -FRAC_PI_2),
+        origin(0.0, 0.0, 0.0, FRAC_PI_2),
+        origin(WRIST, 0.0, 0.0, FRAC_PI_2),
+    ]
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::{EndEffector, Frame, Model};
+    use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+
+    #[test]
+    fn the_frames_of_the_model_are_the_origins_one_after_the_other() {
+        let mut random = Random::new(71);
+        let model = Model::fr3();
+        for _ in 0..100 {
+            let q = random.posture(model);
+            let mut link = Isometry3::identity();
+            for (i, origin) in JOINT_ORIGINS.iter().enumerate() {
+                let roll = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), origin.roll);
+                let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), q[i]);
+                link *= Isometry3::from_parts(origin.translation.into(), roll * turn);
+                let pose = model.pose(Frame::ALL[i], &q, &EndEffector::default());
+                assert!((pose - link.to_homogeneous()).amax() < 1e-14);
+            }
+            link *= Isometry3::translation(0.0, 0.0, FLANGE);
+            let pose = model.pose(Frame::Flange, &q, &EndEffector::default());
+            assert!((pose - link.to_homogeneous()).amax() < 1e-14);
+        }
+    }
+}

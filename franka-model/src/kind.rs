@@ -1,0 +1,35 @@
+//! Which robots there are, and everything that differs between them.
+
+use crate::fr3;
+use crate::limits::{CartesianLimits, JointLimits};
+use crate::model::Model;
+
+/// The kinds of robot that the crate describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum RobotKind {
+    /// Franka Research 3.
+    Fr3,
+}
+
+impl RobotKind {
+    /// Every kind.
+    pub const ALL: [Self; 1] = [Self::Fr3];
+
+    /// The one place that tells the kinds apart.
+    pub(crate) const fn description(self) -> &'static Description {
+        match self {
+            Self::Fr3 => &fr3::FR3,
+        }
+    }
+}
+
+/// What differs between the kinds; the [geometry](crate::geometry) does not.
+pub(crate) struct Description {
+    /// The vendor's model, for clients.
+    pub(crate) client: &'static Model,
+    /// A model that a physical arm could have, for simulation.
+    pub(crate) realisable: &'static Model,
+    pub(crate) joints: JointLimits,
+    pub(crate) cartesian: CartesianLimits,
+}
