@@ -4,6 +4,7 @@ use crate::inertia::RigidBody;
 use crate::joint_vector;
 use crate::kind::{Description, RobotKind};
 use crate::limits::{BrakingEnvelope, CartesianLimits, JointLimits, MotionLimits};
+use crate::merge::Merge;
 use crate::model::Model;
 
 pub(crate) static FR3: Description = Description {
@@ -109,6 +110,7 @@ static MODEL: Model = Model {
             ],
         ),
     ],
+    merge: Merge::Rigid,
 };
 
 /// `lower` and `upper`: limits table of the FCI documentation (`franka_description` 1.0.1,

@@ -1,7 +1,8 @@
-//! Numbers of the FR3 at two postures, computed from the same URDF with Pinocchio 4.1.
+//! Numbers at two postures, computed from the same parameters with Pinocchio 4.1.
 
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector3};
 
+use crate::merge::Merge;
 use crate::{
     EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model, READY, joint_vector,
     manipulability,
@@ -88,8 +89,8 @@ fn a_frame_that_is_not_quite_orthonormal_is_used_as_given() {
 type Torques = [[f64; 7]; 3];
 
 #[track_caller]
-fn assert_torques(load: &Load, [gravity, coriolis, diagonal]: Torques) {
-    let (model, ones) = (Model::fr3(), joint_vector([1.0; 7]));
+fn assert_torques(model: &Model, load: &Load, [gravity, coriolis, diagonal]: Torques) {
+    let ones = joint_vector([1.0; 7]);
     let got = model.gravity(&READY, load, &GRAVITY_EARTH);
     assert_near(got.as_slice(), &gravity, NINE);
     let got = model.coriolis(&READY, &ones, load);
@@ -101,6 +102,7 @@ fn assert_torques(load: &Load, [gravity, coriolis, diagonal]: Torques) {
 #[test]
 fn dynamics_without_a_payload() {
     assert_torques(
+        Model::fr3(),
         &Load::NONE,
         [
             [
@@ -137,6 +139,7 @@ fn dynamics_without_a_payload() {
 #[test]
 fn dynamics_with_the_hands_payload() {
     assert_torques(
+        Model::fr3(),
         &hand_load(),
         [
             [
@@ -165,6 +168,84 @@ fn dynamics_with_the_hands_payload() {
                 0.043004491,
                 0.050726245,
                 0.001892426,
+            ],
+        ],
+    );
+}
+
+#[test]
+fn dynamics_of_the_fer() {
+    assert_torques(
+        Model::fer(),
+        &Load::NONE,
+        [
+            [
+                0.0,
+                -1.735531140,
+                -0.670750875,
+                18.522873683,
+                0.715627332,
+                1.671521850,
+                0.0,
+            ],
+            [
+                0.795303079,
+                -1.660292410,
+                2.226965986,
+                -0.608814562,
+                0.061786027,
+                -0.217824107,
+                0.008025844,
+            ],
+            [
+                0.435393888,
+                1.446910128,
+                0.868571739,
+                0.784482372,
+                0.009456399,
+                0.026186954,
+                0.001272253,
+            ],
+        ],
+    );
+    // The rigid composition, which the vendor's library of the FER does not have.
+    let fer = Model::fer();
+    let rigid = Model {
+        kind: fer.kind,
+        base: fer.base,
+        links: fer.links,
+        merge: Merge::Rigid,
+    };
+    assert_torques(
+        &rigid,
+        &hand_load(),
+        [
+            [
+                0.0,
+                -3.882628517,
+                -0.706557375,
+                21.852369245,
+                0.766265370,
+                2.251078212,
+                0.0,
+            ],
+            [
+                1.180615010,
+                -1.845140910,
+                2.696443737,
+                -0.830303829,
+                0.239045048,
+                -0.420424182,
+                0.006778951,
+            ],
+            [
+                0.502751353,
+                1.551990798,
+                0.971743395,
+                0.946196660,
+                0.024944269,
+                0.046419453,
+                0.003045253,
             ],
         ],
     );

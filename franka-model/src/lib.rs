@@ -50,7 +50,7 @@
 //! # What it does not do
 //!
 //! Friction, rotor inertia and joint elasticity are not part of the model, as they are not part of
-//! the vendor's. There is no self-collision check and no robot but the Franka Research 3 yet.
+//! the vendor's. There is no self-collision check.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -61,10 +61,12 @@ mod bodies;
 mod box_qp;
 mod chain;
 mod dynamics;
+mod fer;
 mod fr3;
 mod inertia;
 mod jacobian;
 mod kind;
+mod merge;
 mod model;
 mod scalar;
 

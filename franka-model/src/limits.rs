@@ -157,6 +157,28 @@ mod tests {
     }
 
     #[test]
+    fn without_an_envelope_the_speed_is_the_same_everywhere() {
+        let limits = JointLimits::of(RobotKind::Fer);
+        for q in [READY, limits.upper, limits.lower, limits.upper * 2.0] {
+            let (lower, upper) = limits.velocity_envelope(&q, CLIENT_MARGIN);
+            assert_eq!(upper, limits.velocity.add_scalar(-CLIENT_MARGIN));
+            assert_eq!(lower, -upper);
+        }
+    }
+
+    #[test]
+    fn the_fer_takes_the_ready_pose_and_what_the_fr3_does_not() {
+        let (fer, fr3) = (
+            JointLimits::of(RobotKind::Fer),
+            JointLimits::of(RobotKind::Fr3),
+        );
+        assert!(fer.contains(&READY));
+        let mut q = READY;
+        q[5] = 0.1;
+        assert!(fer.contains(&q) && !fr3.contains(&q));
+    }
+
+    #[test]
     fn positions_to_command_are_inside_the_hard_limits() {
         let limits = JointLimits::of(RobotKind::Fr3);
         assert!((limits.upper - limits.hard_upper).max() < 0.0);

@@ -25,7 +25,7 @@ pub use session::SessionError;
 use std::collections::VecDeque;
 
 use bytes::Bytes;
-use franka_model::{Dynamics, JointVector, Model};
+use franka_model::{Dynamics, JointVector, Model, RobotKind};
 use franka_proto::{CommandId, Errors, MoveRequest, RobotCommand, RobotState, Version};
 
 use crate::brake::Brake;
@@ -103,6 +103,9 @@ pub struct Datagram<'a> {
 
 impl Robot {
     /// A robot at rest, with the rigid-body plant.
+    ///
+    /// # Panics
+    /// If the kind of robot is not the Franka Research 3: no other speaks here yet.
     pub fn new(config: Config) -> Self {
         let model = Model::of(config.kind);
         let plant = RigidArm::new(
@@ -115,7 +118,12 @@ impl Robot {
     }
 
     /// A robot at rest where `plant` is, whose controllers believe in the arm of `config.kind`.
+    ///
+    /// # Panics
+    /// Like [`new`](Self::new).
     pub fn with_plant(config: Config, plant: Box<dyn Plant>) -> Self {
+        let kind = config.kind;
+        assert_eq!(kind, RobotKind::Fr3, "this kind is not simulated yet");
         let model = Model::of(config.kind);
         let settings = Settings::new(config.tool);
         let q = *plant.q();

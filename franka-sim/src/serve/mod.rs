@@ -16,7 +16,7 @@ pub use cycle::Pace;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 
-use franka_model::{JointVector, Load};
+use franka_model::{JointVector, Load, RobotKind};
 use franka_proto::RobotState;
 use tokio::net::TcpListener;
 use tokio::sync::{mpsc, oneshot};
@@ -109,11 +109,17 @@ impl Sim {
     /// number of robots may run in one process.
     ///
     /// # Errors
-    /// Those of binding the sockets and of starting the thread.
+    /// `Unsupported` for a kind of robot that is not simulated yet, and those of binding the sockets
+    /// and of starting the thread.
     ///
     /// # Cancel safety
     /// Dropping the future before it completes leaves nothing behind.
     pub async fn start(self) -> io::Result<Running> {
+        if self.config.kind != RobotKind::Fr3 {
+            let kind = self.config.kind;
+            let text = format!("{kind:?} is not simulated yet, only Fr3");
+            return Err(io::Error::new(io::ErrorKind::Unsupported, text));
+        }
         let listener = TcpListener::bind(self.bind).await?;
         let address = listener.local_addr()?;
         let socket = UdpSocket::bind(SocketAddr::new(address.ip(), 0))?;

@@ -1,0 +1,57 @@
+//! How a load and link 7 become one body.
+
+use nalgebra::Vector3;
+
+use crate::inertia::{RigidBody, Symmetric3};
+
+/// A rule of composition. Mass and first moment, and so gravity, are the same under both.
+#[derive(Debug)]
+pub(crate) enum Merge {
+    /// That of mechanics: inertias about the common centre of mass add up.
+    Rigid,
+    /// That of the FER's model library: link 7, which has this mass and centre of mass in there,
+    /// keeps its inertia about its own centre, without the lever to the common one.
+    WithoutOwnLever((f64, [f64; 3])),
+}
+
+impl Merge {
+    /// `link` and `load`, both in the axes of link 7, as one.
+    pub(crate) fn join(&self, link: &RigidBody, load: &RigidBody) -> RigidBody {
+        let mut joined = link.joined(load);
+        if let Self::WithoutOwnLever((mass, com)) = *self {
+            let lever = (load.com - Vector3::from(com)) * (load.mass / (mass + load.mass));
+            joined.inertia += Symmetric3::of_point(-mass, &lever);
+        }
+        joined
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINK: RigidBody = RigidBody::new(
+        0.5,
+        [0.01, -0.02, 0.03],
+        [2e-3, 1e-4, -2e-4, 3e-3, 4e-4, 1e-3],
+    );
+    const LOAD: RigidBody =
+        RigidBody::new(1.5, [0.02, 0.05, 0.13], [4e-3, 0.0, 0.0, 5e-3, 0.0, 6e-3]);
+
+    #[test]
+    fn without_its_own_lever_the_inertias_and_the_loads_lever_remain() {
+        let rule = Merge::WithoutOwnLever((LINK.mass, LINK.com.into()));
+        let joined = rule.join(&LINK, &LOAD);
+        let levered = Symmetric3::of_point(LOAD.mass, &(LOAD.com - joined.com));
+        let expected = LINK.inertia.matrix() + LOAD.inertia.matrix() + levered.matrix();
+        assert!((joined.inertia.matrix() - expected).amax() < 1e-17);
+    }
+
+    #[test]
+    fn mass_and_centre_do_not_depend_on_the_rule() {
+        let rigid = Merge::Rigid.join(&LINK, &LOAD);
+        let other = Merge::WithoutOwnLever((0.3, [0.0, 0.0, 0.02])).join(&LINK, &LOAD);
+        assert_eq!((rigid.mass, rigid.com), (other.mass, other.com));
+        assert_ne!(rigid.inertia, other.inertia);
+    }
+}
