@@ -32,12 +32,6 @@ pub enum DecodeError {
         /// The version of the session.
         version: Version,
     },
-    /// The version has the command, and this crate does not read it yet.
-    #[error("{command} is not implemented")]
-    NotImplemented {
-        /// The command.
-        command: Command,
-    },
     /// An enumerator in a request is none of the version's.
     #[error("{field} {value} has no meaning")]
     UnknownValue {
@@ -97,7 +91,7 @@ pub enum EncodeError {
 #[non_exhaustive]
 pub enum RequestError {
     /// The version has no such command, or none with these parameters.
-    #[error("protocol {version} has no {what}")]
+    #[error("protocol {version} ({}) has no {what}", version.robot())]
     Unsupported {
         /// What was asked for.
         what: &'static str,
@@ -149,11 +143,12 @@ pub enum ReplyError {
         version: Version,
     },
     /// A model is sent with
-    /// [`server::Session::model_header`](crate::server::Session::model_header), which also bounds
-    /// its text.
-    #[error("a model text of {len} bytes does not fit")]
+    /// [`server::Session::model_header`](crate::server::Session::model_header) or
+    /// [`server::Session::library_header`](crate::server::Session::library_header), which also bound
+    /// its length.
+    #[error("a model of {len} bytes does not fit")]
     TextLength {
-        /// Length of the text in bytes.
+        /// Length of the model in bytes.
         len: usize,
     },
 }

@@ -62,9 +62,7 @@
 //! # What is not here
 //!
 //! Sockets and deadlines; which state to accept and when to answer it (that is the cycle); limits
-//! and filters; the Franka Hand and the vacuum gripper; the three commands that only protocol 5 has
-//! (`GetCartesianLimit`, `SetFilters`, `LoadModelLibrary`), which the table knows by number and
-//! decoding names in its error.
+//! and filters.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -93,9 +91,10 @@ pub use errors::{Errors, RobotError};
 pub use modes::{ControllerMode, MotionGeneratorMode, RobotMode};
 pub use outgoing::Outgoing;
 pub use service::{
-    CollisionBehavior, Command, CommandId, ConnectStatus, Deviation, Load, ModelStatus,
-    MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus, RecoveryStatus, Refusal, Reply,
-    Request, SetterStatus, Status, StopStatus,
+    Architecture, CollisionBehavior, Command, CommandId, ConnectStatus, Deviation, Filters,
+    LibraryStatus, Load, ModelStatus, MoveControllerMode, MoveGeneratorMode, MoveRequest,
+    MoveStatus, RecoveryStatus, Refusal, Reply, Request, SetterStatus, Status, StopStatus, System,
+    VirtualWall,
 };
 pub use state::{RobotState, TotalLoad};
 pub use version::{IncompatibleVersion, Version};

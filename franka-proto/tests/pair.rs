@@ -2,10 +2,10 @@
 
 use franka_proto::framing::{MAX_REQUEST_SIZE, Message, next_message, next_message_within};
 use franka_proto::{
-    Command, CommandId, ConnectStatus, DecodeError, IncompatibleVersion, ModelStatus,
-    MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus, Outgoing, RecoveryStatus,
-    Refusal, Reply, ReplyError, Request, RequestError, RobotMode, SetterStatus, StopStatus,
-    Version, Violation, client, server,
+    Architecture, Command, CommandId, ConnectStatus, DecodeError, Filters, IncompatibleVersion,
+    LibraryStatus, ModelStatus, MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus,
+    Outgoing, RecoveryStatus, Refusal, Reply, ReplyError, Request, RequestError, RobotMode,
+    SetterStatus, StopStatus, System, Version, Violation, VirtualWall, client, server,
 };
 
 struct Pair {
@@ -279,6 +279,86 @@ fn what_a_version_lacks_is_refused_before_a_byte_is_made() {
     assert_eq!(pair.client.pending(), 0);
     // No id is lost.
     assert_eq!(pair.request(&Request::StopMove), CommandId(1));
+
+    let mut pair = Pair::connected(Version::V10);
+    for (request, name) in [
+        (Request::GetCartesianLimit { id: 1 }, "Get Cartesian Limit"),
+        (Request::SetFilters(Filters::uniform(1000.0)), "Set Filters"),
+        (library(), "Load Model Library"),
+    ] {
+        let error = pair.client.request(&request).unwrap_err();
+        let expected = format!("protocol 10 (Franka Research 3) has no {name}");
+        assert_eq!(error.to_string(), expected);
+    }
+    assert_eq!(pair.request(&Request::StopMove), CommandId(1));
+}
+
+fn library() -> Request {
+    Request::LoadModelLibrary {
+        architecture: Architecture::Arm64,
+        system: System::Linux,
+    }
+}
+
+#[test]
+fn walls_filters_and_libraries_exist_in_protocol_5() {
+    let mut pair = Pair::connected(Version::V5);
+    let filters = pair.request(&Request::SetFilters(Filters::uniform(100.0)));
+    let limit = pair.request(&Request::GetCartesianLimit { id: -3 });
+    let wall = VirtualWall {
+        object_world_size: [1.0, 2.0, 3.0],
+        object_frame: [0.5; 16],
+        object_activation: true,
+    };
+    let status = SetterStatus::Success;
+    pair.reply(limit, Reply::CartesianLimit { status, wall });
+    pair.reply(filters, Reply::Setter(SetterStatus::Success));
+
+    let id = pair.request(&library());
+    let reply = Reply::ModelLibrary {
+        status: LibraryStatus::Error,
+        library: &[],
+    };
+    pair.reply(id, reply);
+    let refusal = Refusal::from_reply(Command::LoadModelLibrary, &reply, RobotMode::Idle);
+    assert!(refusal.is_some());
+
+    let id = pair.request(&library());
+    let file = [0x7f; 5000];
+    let header = pair.server.library_header(id, file.len()).unwrap();
+    let stream = [header.as_bytes(), &file].concat();
+    let message = next_message(&stream).unwrap().unwrap();
+    let event = pair.client.on_message(message).unwrap();
+    let (status, library) = (LibraryStatus::Success, &file[..]);
+    let expected = client::Event::Reply {
+        id,
+        command: Command::LoadModelLibrary,
+        reply: Reply::ModelLibrary { status, library },
+    };
+    assert_eq!(event, expected);
+}
+
+#[test]
+fn a_library_for_an_unknown_system_is_an_error_and_the_session_goes_on() {
+    let mut pair = Pair::connected(Version::V5);
+    let outgoing = pair.client.request(&library()).unwrap();
+    let mut bytes = outgoing.as_bytes().to_vec();
+    bytes[13] = 2;
+    let event = pair
+        .server
+        .on_message(next_message(&bytes).unwrap().unwrap())
+        .unwrap();
+    let server::Event::Rejected { id, reply, .. } = event else {
+        panic!("{event:?}");
+    };
+    let event = pair.client.on_message(message(&reply)).unwrap();
+    let expected = Reply::ModelLibrary {
+        status: LibraryStatus::Error,
+        library: &[],
+    };
+    assert!(matches!(event, client::Event::Reply { reply, .. } if reply == expected));
+    assert!(!pair.client.abandon(id));
+    pair.request(&Request::StopMove);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use franka_proto::framing::{Header, Message, next_message};
 use franka_proto::{
-    CollisionBehavior, Command, CommandId, ControllerMode, Deviation, Errors, Load,
+    CollisionBehavior, Command, CommandId, ControllerMode, Deviation, Errors, Filters, Load,
     MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode, MoveRequest, Reply, Request,
     RobotCommand, RobotMode, RobotState, Version, client, server,
 };
@@ -108,6 +108,9 @@ fn request() -> impl Strategy<Value = Request> {
             .prop_map(|(version, udp_port)| Request::Connect { version, udp_port }),
         Just(Request::StopMove),
         Just(Request::AutomaticErrorRecovery),
+        Just(Request::GetRobotModel),
+        number().prop_map(|frequency| Request::SetFilters(Filters::uniform(frequency))),
+        any::<i32>().prop_map(|id| Request::GetCartesianLimit { id }),
     ]
 }
 
@@ -165,7 +168,9 @@ proptest! {
     fn a_request_comes_back_value_for_value(
         version in version(), request in request(), id in any::<u32>()
     ) {
-        let outgoing = request.encode(version, CommandId(id)).unwrap();
+        let encoded = request.encode(version, CommandId(id));
+        prop_assert_eq!(encoded.is_ok(), version.supports(request.command()));
+        let Ok(outgoing) = encoded else { return Ok(()) };
         let message = next_message(outgoing.as_bytes()).unwrap().unwrap();
         prop_assert_eq!(message.header.command_id, id);
         prop_assert_eq!(Request::decode(version, &message), Ok(request));

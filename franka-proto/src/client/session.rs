@@ -24,7 +24,7 @@ enum Phase {
 }
 
 /// What a message of the robot means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event<'a> {
     /// The handshake succeeded; requests may follow.

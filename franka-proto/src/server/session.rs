@@ -4,7 +4,9 @@ use crate::error::{DecodeError, ReplyError, Violation};
 use crate::framing::{Header, MAX_MESSAGE_SIZE, Message};
 use crate::outgoing::Outgoing;
 use crate::pending::{self, Pending};
-use crate::service::{Command, CommandId, ConnectStatus, ModelStatus, MoveStatus, Reply, Request};
+use crate::service::{
+    Command, CommandId, ConnectStatus, LibraryStatus, ModelStatus, MoveStatus, Reply, Request,
+};
 use crate::version::Version;
 
 /// One connection of a client, from its first byte to its last.
@@ -50,8 +52,8 @@ pub enum Event {
         /// What is asked for.
         request: Request,
     },
-    /// A `Move` with a mode that does not exist, which a robot answers as an invalid argument. Send
-    /// `reply`; the request is done.
+    /// A request with an enumerator that does not exist, such as a `Move` with an unknown mode. A
+    /// robot answers it as an invalid argument. Send `reply`; the request is done.
     Rejected {
         /// The id of the request.
         id: CommandId,
@@ -96,10 +98,17 @@ impl Session {
         let id = message.header.id();
         let request = match Request::decode(self.version, &message) {
             Ok(request) => request,
-            Err(error @ DecodeError::UnknownValue { .. }) if self.phase == Phase::Open => {
-                return self.reject(id, error);
+            Err(error) => {
+                let command = self.version.command_from_number(message.header.command);
+                return match (error, command.and_then(Reply::to_unknown_value)) {
+                    (DecodeError::UnknownValue { .. }, Some(reply))
+                        if self.phase == Phase::Open =>
+                    {
+                        self.reject(id, reply, error)
+                    }
+                    _ => Err(Violation::Request { id, error }),
+                };
             }
-            Err(error) => return Err(Violation::Request { id, error }),
         };
         match (self.phase, request) {
             (Phase::Listening, Request::Connect { version, udp_port }) => {
@@ -124,10 +133,10 @@ impl Session {
     /// # Errors
     /// [`ReplyError`]; the session is then as before.
     pub fn reply(&mut self, id: CommandId, reply: Reply<'_>) -> Result<Outgoing, ReplyError> {
-        if let Reply::Model { text, .. } = reply
-            && !text.is_empty()
+        if let Reply::Model { text: tail, .. } | Reply::ModelLibrary { library: tail, .. } = reply
+            && !tail.is_empty()
         {
-            return Err(ReplyError::TextLength { len: text.len() });
+            return Err(ReplyError::TextLength { len: tail.len() });
         }
         self.answer(id, &reply, 0)
     }
@@ -139,14 +148,36 @@ impl Session {
     /// [`ReplyError::TextLength`] if the message would be longer than [`MAX_MESSAGE_SIZE`], and
     /// those of [`Session::reply`]; the session is then as before.
     pub fn model_header(&mut self, id: CommandId, text_len: usize) -> Result<Outgoing, ReplyError> {
-        if text_len > MAX_MESSAGE_SIZE - Header::SIZE - 1 {
-            return Err(ReplyError::TextLength { len: text_len });
-        }
         let reply = Reply::Model {
             status: ModelStatus::Success,
             text: &[],
         };
-        self.answer(id, &reply, text_len)
+        self.answer_with_tail(id, &reply, text_len)
+    }
+
+    /// The beginning of the message that answers `LoadModelLibrary`: the caller sends the `len`
+    /// bytes of the library right behind it.
+    ///
+    /// # Errors
+    /// As [`Session::model_header`].
+    pub fn library_header(&mut self, id: CommandId, len: usize) -> Result<Outgoing, ReplyError> {
+        let reply = Reply::ModelLibrary {
+            status: LibraryStatus::Success,
+            library: &[],
+        };
+        self.answer_with_tail(id, &reply, len)
+    }
+
+    fn answer_with_tail(
+        &mut self,
+        id: CommandId,
+        reply: &Reply<'_>,
+        len: usize,
+    ) -> Result<Outgoing, ReplyError> {
+        if len > MAX_MESSAGE_SIZE - Header::SIZE - 1 {
+            return Err(ReplyError::TextLength { len });
+        }
+        self.answer(id, reply, len)
     }
 
     fn answer(
@@ -190,12 +221,17 @@ impl Session {
         }
     }
 
-    fn reject(&mut self, id: CommandId, error: DecodeError) -> Result<Event, Violation> {
-        self.remember(id, Command::Move)?;
-        let reply = Reply::Move(MoveStatus::InvalidArgumentRejected);
-        let reply = self.reply(id, reply);
-        // The version has `Move` and this status, and the request has just been noted.
-        let reply = reply.expect("a pending Move can be rejected");
+    fn reject(
+        &mut self,
+        id: CommandId,
+        (command, reply): (Command, Reply<'_>),
+        error: DecodeError,
+    ) -> Result<Event, Violation> {
+        self.remember(id, command)?;
+        // A version that has the command has this status, and the request has just been noted.
+        let reply = self
+            .reply(id, reply)
+            .expect("a pending request can be rejected");
         Ok(Event::Rejected { id, error, reply })
     }
 

@@ -2,14 +2,19 @@
 
 mod collision;
 mod command;
+mod filters;
+mod library;
 mod motion;
 mod refusal;
 mod reply;
 mod request;
 mod status;
+mod wall;
 
 pub use collision::CollisionBehavior;
 pub use command::{Command, CommandId};
+pub use filters::Filters;
+pub use library::{Architecture, System};
 pub(crate) use motion::{AsynchronousPart, MoveCodec};
 pub use motion::{Deviation, MoveControllerMode, MoveGeneratorMode, MoveRequest};
 pub use refusal::Refusal;
@@ -17,5 +22,7 @@ pub use reply::Reply;
 pub(crate) use request::payload;
 pub use request::{Load, Request};
 pub use status::{
-    ConnectStatus, ModelStatus, MoveStatus, RecoveryStatus, SetterStatus, Status, StopStatus,
+    ConnectStatus, LibraryStatus, ModelStatus, MoveStatus, RecoveryStatus, SetterStatus, Status,
+    StopStatus,
 };
+pub use wall::VirtualWall;

@@ -240,7 +240,7 @@ fn decode<A: AsynchronousPart>(message: &Message<'_>) -> Result<MoveRequest, Dec
 }
 
 /// The enumerator whose number is `value`.
-fn nth<T: Copy>(all: &[T], field: &'static str, value: u32) -> Result<T, DecodeError> {
+pub(super) fn nth<T: Copy>(all: &[T], field: &'static str, value: u32) -> Result<T, DecodeError> {
     let index = usize::try_from(value).unwrap_or(usize::MAX);
     let known = all.get(index).copied();
     known.ok_or(DecodeError::UnknownValue { field, value })

@@ -3,7 +3,8 @@
 use core::fmt;
 
 use super::{
-    Command, ModelStatus, MoveStatus, RecoveryStatus, Reply, SetterStatus, Status, StopStatus,
+    Command, LibraryStatus, ModelStatus, MoveStatus, RecoveryStatus, Reply, SetterStatus, Status,
+    StopStatus,
 };
 use crate::modes::RobotMode;
 
@@ -125,6 +126,10 @@ impl Refusal {
                 ModelStatus::CommandNotPossibleRejected => Reason::NotPossible,
                 ModelStatus::CommandRejectedDueToActivatedSafetyFunctions => Reason::Text(SAFETY),
             },
+            Status::Library(status) => match status {
+                LibraryStatus::Success => Reason::Text(""),
+                LibraryStatus::Error => Reason::Library,
+            },
         }
     }
 }
@@ -135,6 +140,9 @@ impl fmt::Display for Refusal {
         match self.reason() {
             Reason::Text(text) => write!(f, "libfranka: {command}{text}"),
             Reason::MoveSafety => write!(f, "libfranka: {}{SAFETY}", Command::Move),
+            Reason::Library => {
+                f.write_str("libfranka: Server reports error when loading model library.")
+            }
             Reason::NotPossible => {
                 write!(
                     f,
@@ -158,6 +166,8 @@ enum Reason {
     NotPossible,
     /// The safety text in the name of `Move`, whatever the command.
     MoveSafety,
+    /// The text of the model library, which names no command.
+    Library,
 }
 
 const SAFETY: &str = " command rejected due to activated safety function! \
@@ -184,6 +194,7 @@ mod tests {
             Status::Setter(SetterStatus::Success),
             Status::Recovery(RecoveryStatus::Success),
             Status::Model(ModelStatus::Success),
+            Status::Library(LibraryStatus::Success),
         ] {
             assert_eq!(Refusal::new(Command::Move, status, RobotMode::Idle), None);
         }
@@ -277,9 +288,19 @@ mod tests {
     }
 
     #[test]
-    fn stop_setter_and_recovery_have_their_texts() {
+    fn the_other_commands_have_their_texts() {
         let mode = RobotMode::Reflex;
         for (command, status, expected) in [
+            (
+                Command::GetCartesianLimit,
+                Status::Setter(SetterStatus::InvalidArgumentRejected),
+                "libfranka: Get Cartesian Limit command rejected: invalid argument!",
+            ),
+            (
+                Command::LoadModelLibrary,
+                Status::Library(LibraryStatus::Error),
+                "libfranka: Server reports error when loading model library.",
+            ),
             (
                 Command::StopMove,
                 Status::StopMove(StopStatus::EmergencyAborted),

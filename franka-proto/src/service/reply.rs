@@ -1,8 +1,8 @@
 //! What the robot answers.
 
 use super::{
-    Command, CommandId, ConnectStatus, ModelStatus, MoveStatus, RecoveryStatus, SetterStatus,
-    Status, StopStatus, payload,
+    Command, CommandId, ConnectStatus, LibraryStatus, ModelStatus, MoveStatus, RecoveryStatus,
+    SetterStatus, Status, StopStatus, VirtualWall, payload,
 };
 use crate::error::{DecodeError, ReplyError};
 use crate::framing::Message;
@@ -11,7 +11,7 @@ use crate::version::Version;
 use crate::wire;
 
 /// What the robot answers to one request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reply<'a> {
     /// To `Connect`.
@@ -36,6 +36,20 @@ pub enum Reply<'a> {
         /// URDF, in general UTF-8; empty after a refusal.
         text: &'a [u8],
     },
+    /// To `GetCartesianLimit`.
+    CartesianLimit {
+        /// Whether there is such a wall.
+        status: SetterStatus,
+        /// The wall; of no meaning after a refusal.
+        wall: VirtualWall,
+    },
+    /// To `LoadModelLibrary`.
+    ModelLibrary {
+        /// Whether the library is there.
+        status: LibraryStatus,
+        /// A file for the client's loader; empty after a refusal.
+        library: &'a [u8],
+    },
 }
 
 impl<'a> Reply<'a> {
@@ -50,7 +64,23 @@ impl<'a> Reply<'a> {
             Self::Setter(status) => Some(Status::Setter(status)),
             Self::Recovery(status) => Some(Status::Recovery(status)),
             Self::Model { status, .. } => Some(Status::Model(status)),
+            Self::CartesianLimit { status, .. } => Some(Status::Setter(status)),
+            Self::ModelLibrary { status, .. } => Some(Status::Library(status)),
         }
+    }
+
+    /// What a robot answers to a request with an enumerator that does not exist, for the commands
+    /// that have enumerators.
+    pub(crate) fn to_unknown_value(command: Command) -> Option<(Command, Reply<'static>)> {
+        let reply = match command {
+            Command::Move => Reply::Move(MoveStatus::InvalidArgumentRejected),
+            Command::LoadModelLibrary => Reply::ModelLibrary {
+                status: LibraryStatus::Error,
+                library: &[],
+            },
+            _ => return None,
+        };
+        Some((command, reply))
     }
 
     /// Whether `command` is answered with this kind of reply.
@@ -62,6 +92,8 @@ impl<'a> Reply<'a> {
             Self::StopMove(_) => command == Command::StopMove,
             Self::Recovery(_) => command == Command::AutomaticErrorRecovery,
             Self::Model { .. } => command == Command::GetRobotModel,
+            Self::CartesianLimit { .. } => command == Command::GetCartesianLimit,
+            Self::ModelLibrary { .. } => command == Command::LoadModelLibrary,
             Self::Setter(_) => matches!(
                 command,
                 Command::SetCollisionBehavior
@@ -77,7 +109,7 @@ impl<'a> Reply<'a> {
     }
 
     /// The message that carries this reply to the request `id` for `command`; `extra` bytes of a
-    /// model's text are sent behind it and count in the header's size.
+    /// model are sent behind it and count in the header's size.
     pub(crate) fn encode(
         &self,
         version: Version,
@@ -97,6 +129,8 @@ impl<'a> Reply<'a> {
             Self::Setter(status) => byte(table.setter, status),
             Self::Recovery(status) => byte(table.recovery, status),
             Self::Model { status, .. } => byte(table.model, status),
+            Self::CartesianLimit { status, .. } => byte(table.setter, status),
+            Self::ModelLibrary { status, .. } => byte(table.library, status),
         };
         let status = status.ok_or(ReplyError::Unsupported { version })?;
         Ok(match *self {
@@ -107,6 +141,9 @@ impl<'a> Reply<'a> {
                 };
                 Outgoing::new(number, id, &payload, 0)
             }
+            Self::CartesianLimit { wall, .. } => {
+                Outgoing::new(number, id, &wall.to_wire(status), 0)
+            }
             _ => Outgoing::new(number, id, &status, extra),
         })
     }
@@ -114,9 +151,8 @@ impl<'a> Reply<'a> {
     /// The reply to `command` in a message of the robot; bytes behind a fixed reply are ignored.
     ///
     /// # Errors
-    /// [`DecodeError::MessageSize`] if the payload is too short, [`DecodeError::UnknownStatus`] if
-    /// the version gives the status byte no meaning, and [`DecodeError::NotImplemented`] for the
-    /// commands that only protocol 5 has.
+    /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownStatus`]
+    /// if the version gives the status byte no meaning.
     pub fn decode(
         version: Version,
         command: Command,
@@ -142,9 +178,14 @@ impl<'a> Reply<'a> {
                 status: meaning(table.model, status).ok_or(unknown)?,
                 text: &message.payload[1..],
             },
-            Command::GetCartesianLimit | Command::LoadModelLibrary => {
-                return Err(DecodeError::NotImplemented { command });
-            }
+            Command::GetCartesianLimit => Self::CartesianLimit {
+                status: meaning(table.setter, status).ok_or(unknown)?,
+                wall: VirtualWall::from_wire(payload(message)?),
+            },
+            Command::LoadModelLibrary => Self::ModelLibrary {
+                status: meaning(table.library, status).ok_or(unknown)?,
+                library: &message.payload[1..],
+            },
             Command::SetCollisionBehavior
             | Command::SetJointImpedance
             | Command::SetCartesianImpedance

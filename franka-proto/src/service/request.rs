@@ -3,7 +3,9 @@
 
 use zerocopy::{FromBytes, Immutable, KnownLayout, Unaligned};
 
-use super::{CollisionBehavior, Command, CommandId, MoveRequest};
+use super::{
+    Architecture, CollisionBehavior, Command, CommandId, Filters, MoveRequest, System, library,
+};
 use crate::error::{DecodeError, RequestError};
 use crate::framing::Message;
 use crate::outgoing::Outgoing;
@@ -53,6 +55,20 @@ pub enum Request {
     AutomaticErrorRecovery,
     /// Fetches the robot's description as URDF text; protocol 10 only.
     GetRobotModel,
+    /// Reads a virtual wall (libfranka's `getVirtualWall`); protocol 5 only.
+    GetCartesianLimit {
+        /// Which wall.
+        id: i32,
+    },
+    /// Sets the filters of the robot's interfaces; protocol 5 only.
+    SetFilters(Filters),
+    /// Fetches the robot's model as a shared library; protocol 5 only.
+    LoadModelLibrary {
+        /// Processor of the client.
+        architecture: Architecture,
+        /// Operating system of the client.
+        system: System,
+    },
 }
 
 /// What the end effector carries. The end effector itself is set up in Desk.
@@ -83,6 +99,9 @@ impl Request {
             Self::SetLoad(_) => Command::SetLoad,
             Self::AutomaticErrorRecovery => Command::AutomaticErrorRecovery,
             Self::GetRobotModel => Command::GetRobotModel,
+            Self::GetCartesianLimit { .. } => Command::GetCartesianLimit,
+            Self::SetFilters(_) => Command::SetFilters,
+            Self::LoadModelLibrary { .. } => Command::LoadModelLibrary,
         }
     }
 
@@ -145,6 +164,15 @@ impl Request {
                 };
                 Outgoing::new(number, id, &payload, 0)
             }
+            &Self::GetCartesianLimit { id: wall } => {
+                let payload = wire::service::GetCartesianLimit { id: wall.into() };
+                Outgoing::new(number, id, &payload, 0)
+            }
+            Self::SetFilters(filters) => Outgoing::new(number, id, &filters.to_wire(), 0),
+            &Self::LoadModelLibrary {
+                architecture,
+                system,
+            } => Outgoing::new(number, id, &library::to_wire(architecture, system), 0),
         })
     }
 
@@ -152,9 +180,8 @@ impl Request {
     ///
     /// # Errors
     /// [`DecodeError::UnknownCommand`] if the version has no such number,
-    /// [`DecodeError::MessageSize`] if the payload is too short, [`DecodeError::UnknownValue`] if a
-    /// mode of a `Move` is not one of the version's, and [`DecodeError::NotImplemented`] for the
-    /// commands that only protocol 5 has.
+    /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownValue`]
+    /// if an enumerator in it (a mode of a `Move`, say) is none of the version's.
     pub fn decode(version: Version, message: &Message<'_>) -> Result<Self, DecodeError> {
         let number = message.header.command;
         let command = version
@@ -200,8 +227,18 @@ impl Request {
             }
             Command::AutomaticErrorRecovery => Self::AutomaticErrorRecovery,
             Command::GetRobotModel => Self::GetRobotModel,
-            Command::GetCartesianLimit | Command::SetFilters | Command::LoadModelLibrary => {
-                return Err(DecodeError::NotImplemented { command });
+            Command::GetCartesianLimit => {
+                let payload: &wire::service::GetCartesianLimit = payload(message)?;
+                let id = payload.id.get();
+                Self::GetCartesianLimit { id }
+            }
+            Command::SetFilters => Self::SetFilters(Filters::from_wire(payload(message)?)),
+            Command::LoadModelLibrary => {
+                let (architecture, system) = library::from_wire(payload(message)?)?;
+                Self::LoadModelLibrary {
+                    architecture,
+                    system,
+                }
             }
         })
     }

@@ -99,6 +99,15 @@ pub enum ModelStatus {
     CommandRejectedDueToActivatedSafetyFunctions,
 }
 
+/// Answer to `LoadModelLibrary`; protocol 5 only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LibraryStatus {
+    /// The library follows.
+    Success,
+    /// There is no library for this architecture and system.
+    Error,
+}
+
 /// The status of any command but `Connect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Status {
@@ -112,6 +121,8 @@ pub enum Status {
     Recovery(RecoveryStatus),
     /// Of `GetRobotModel`.
     Model(ModelStatus),
+    /// Of `LoadModelLibrary`.
+    Library(LibraryStatus),
 }
 
 impl Status {
@@ -125,6 +136,7 @@ impl Status {
                 | Self::Setter(SetterStatus::Success)
                 | Self::Recovery(RecoveryStatus::Success)
                 | Self::Model(ModelStatus::Success)
+                | Self::Library(LibraryStatus::Success)
         )
     }
 }

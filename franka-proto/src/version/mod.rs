@@ -40,6 +40,12 @@ impl Version {
             .find(|version| version.number() == number)
     }
 
+    /// The vendor's name of the robot that speaks this version.
+    #[must_use]
+    pub fn robot(self) -> &'static str {
+        self.table().robot
+    }
+
     /// The number of a command; `None` if the version does not have it.
     #[must_use]
     pub fn command_number(self, command: Command) -> Option<u32> {

@@ -7,8 +7,8 @@
 use crate::command::CommandCodec;
 use crate::modes::MotionGeneratorMode;
 use crate::service::{
-    AsynchronousPart, Command, ConnectStatus, ModelStatus, MoveCodec, MoveGeneratorMode,
-    MoveStatus, RecoveryStatus, SetterStatus, StopStatus,
+    AsynchronousPart, Command, ConnectStatus, LibraryStatus, ModelStatus, MoveCodec,
+    MoveGeneratorMode, MoveStatus, RecoveryStatus, SetterStatus, StopStatus,
 };
 use crate::state::{AccelerometerBlock, GeneratorModes, StateCodec};
 use crate::wire::{self, F32, F64};
@@ -16,6 +16,7 @@ use crate::wire::{self, F32, F64};
 /// One version's row.
 pub(crate) struct Table {
     pub(crate) number: u16,
+    pub(crate) robot: &'static str,
     /// Commands by number.
     pub(crate) commands: &'static [Command],
     /// Statuses by byte.
@@ -25,6 +26,7 @@ pub(crate) struct Table {
     pub(crate) setter: &'static [SetterStatus],
     pub(crate) recovery: &'static [RecoveryStatus],
     pub(crate) model: &'static [ModelStatus],
+    pub(crate) library: &'static [LibraryStatus],
     /// Layouts.
     pub(crate) state_codec: StateCodec,
     pub(crate) command_codec: CommandCodec,
@@ -41,6 +43,7 @@ pub(crate) struct Table {
 /// Protocol 5: Franka Emika Robot.
 pub(crate) static V5: Table = Table {
     number: 5,
+    robot: "Franka Emika Robot",
     commands: &[
         Command::Connect,
         Command::Move,
@@ -91,6 +94,7 @@ pub(crate) static V5: Table = Table {
         RecoveryStatus::Aborted,
     ],
     model: &[],
+    library: &[LibraryStatus::Success, LibraryStatus::Error],
     state_codec: StateCodec::of::<F64, (), GeneratorsV5>(),
     command_codec: CommandCodec::of::<()>(),
     move_codec: MoveCodec::of::<()>(),
@@ -106,6 +110,7 @@ pub(crate) static V5: Table = Table {
 /// Protocol 10: Franka Research 3.
 pub(crate) static V10: Table = Table {
     number: 10,
+    robot: "Franka Research 3",
     commands: &[
         Command::Connect,
         Command::Move,
@@ -163,6 +168,7 @@ pub(crate) static V10: Table = Table {
         ModelStatus::CommandNotPossibleRejected,
         ModelStatus::CommandRejectedDueToActivatedSafetyFunctions,
     ],
+    library: &[],
     state_codec: StateCodec::of::<F32, wire::Accelerometers, GeneratorsV10>(),
     command_codec: CommandCodec::of::<u8>(),
     move_codec: MoveCodec::of::<wire::service::AsynchronousMotion>(),

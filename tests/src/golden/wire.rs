@@ -2,18 +2,15 @@
 
 use franka_proto::framing::{Message, next_message};
 use franka_proto::{
-    CollisionBehavior, Command, CommandId, ConnectStatus, DecodeError, Deviation, Load,
+    Architecture, CollisionBehavior, Command, CommandId, ConnectStatus, Deviation, Filters, Load,
     MoveControllerMode, MoveGeneratorMode, MoveRequest, Outgoing, Reply, Request, SuccessRate,
-    Version, server,
+    System, Version, VirtualWall, server,
 };
 
 use super::wire_datagrams::{command, state};
-use super::{Case, Malformed, Node, Report};
+use super::{Malformed, Node, Report};
 
 /// Checks `wire_golden.json`: bytes made by the compiled protocol headers.
-///
-/// Messages of commands that the protocol crate does not implement have to be refused by name. The
-/// hand and the vacuum gripper are not part of that crate.
 pub(super) fn messages(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     for version in Version::ALL {
@@ -81,10 +78,7 @@ impl Golden<'_> {
     fn request(&self, report: &mut Report, command: Command) -> Result<(), Malformed> {
         let (id, message) = (self.id()?, self.message()?);
         let decoded = Request::decode(self.version, &message);
-        let Some(request) = self.request_values(command)? else {
-            report.case(&self.name, |case| not_implemented(case, command, decoded));
-            return Ok(());
-        };
+        let request = self.request_values(command)?;
         report.case(&self.name, |case| {
             case.equal("id", message.header.id(), id);
             case.equal("values", decoded, Ok(request));
@@ -95,10 +89,10 @@ impl Golden<'_> {
         Ok(())
     }
 
-    /// The request with the values of the file; `None` for a command that is not implemented.
-    fn request_values(&self, command: Command) -> Result<Option<Request>, Malformed> {
+    /// The request with the values of the file.
+    fn request_values(&self, command: Command) -> Result<Request, Malformed> {
         let values = &self.values;
-        Ok(Some(match command {
+        Ok(match command {
             Command::Connect => Request::Connect {
                 version: narrow(&values.get("version")?)?,
                 udp_port: narrow(&values.get("udp_port")?)?,
@@ -133,10 +127,41 @@ impl Golden<'_> {
             }),
             Command::AutomaticErrorRecovery => Request::AutomaticErrorRecovery,
             Command::GetRobotModel => Request::GetRobotModel,
-            Command::GetCartesianLimit | Command::SetFilters | Command::LoadModelLibrary => {
-                return Ok(None);
+            Command::GetCartesianLimit => {
+                let id = values.get("id")?.number()?;
+                Request::GetCartesianLimit { id: id as i32 }
             }
-        }))
+            Command::SetFilters => Request::SetFilters(self.filters()?),
+            Command::LoadModelLibrary => Request::LoadModelLibrary {
+                architecture: match values.get("architecture")?.integer()? {
+                    0 => Architecture::X64,
+                    1 => Architecture::X86,
+                    2 => Architecture::Arm,
+                    3 => Architecture::Arm64,
+                    _ => return Err(values.malformed("an architecture")),
+                },
+                system: match values.get("system")?.integer()? {
+                    0 => System::Linux,
+                    1 => System::Windows,
+                    _ => return Err(values.malformed("an operating system")),
+                },
+            },
+        })
+    }
+
+    fn filters(&self) -> Result<Filters, Malformed> {
+        let frequency = |name: &str| {
+            self.values
+                .get(&format!("{name}_filter_frequency"))?
+                .number()
+        };
+        Ok(Filters {
+            joint_position_filter_frequency: frequency("joint_position")?,
+            joint_velocity_filter_frequency: frequency("joint_velocity")?,
+            cartesian_position_filter_frequency: frequency("cartesian_position")?,
+            cartesian_velocity_filter_frequency: frequency("cartesian_velocity")?,
+            controller_filter_frequency: frequency("controller")?,
+        })
     }
 
     fn motion(&self) -> Result<MoveRequest, Malformed> {
@@ -196,13 +221,6 @@ impl Golden<'_> {
     fn reply(&self, report: &mut Report, command: Command) -> Result<(), Malformed> {
         let (id, message) = (self.id()?, self.message()?);
         let decoded = Reply::decode(self.version, command, &message);
-        if matches!(
-            command,
-            Command::GetCartesianLimit | Command::LoadModelLibrary
-        ) {
-            report.case(&self.name, |case| not_implemented(case, command, decoded));
-            return Ok(());
-        }
         let status: usize = narrow(&self.values.get("status")?)?;
         let status_name = match self.values.find("status_name") {
             Some(name) => name.text()?,
@@ -211,6 +229,14 @@ impl Golden<'_> {
         };
         let version = match self.values.find("version") {
             Some(version) => Some(narrow(&version)?),
+            None => None,
+        };
+        let wall = match self.values.find("object_frame") {
+            Some(frame) => Some(VirtualWall {
+                object_world_size: self.values.get("object_world_size")?.numbers()?,
+                object_frame: frame.numbers()?,
+                object_activation: self.values.get("object_activation")?.boolean()?,
+            }),
             None => None,
         };
         let model = match self.values.find("robot_model") {
@@ -226,6 +252,7 @@ impl Golden<'_> {
             match reply {
                 Reply::Connect { version: got, .. } => case.equal("version", Some(got), version),
                 Reply::Model { text, .. } => case.equal("text", text, model.as_bytes()),
+                Reply::CartesianLimit { wall: got, .. } => case.equal("wall", Some(got), wall),
                 _ => {}
             }
             match self.server_bytes(command, id, reply) {
@@ -270,6 +297,7 @@ impl Golden<'_> {
             Command::StopMove => Request::StopMove,
             Command::AutomaticErrorRecovery => Request::AutomaticErrorRecovery,
             Command::GetRobotModel => Request::GetRobotModel,
+            Command::GetCartesianLimit => Request::GetCartesianLimit { id: 0 },
             _ => Request::SetEEToK([0.0; 16]),
         };
         deliver(&mut session, &request, version, id)?;
@@ -315,20 +343,10 @@ pub(super) fn status_of(reply: &Reply<'_>) -> String {
         Reply::Setter(status) => format!("k{status:?}"),
         Reply::Recovery(status) => format!("k{status:?}"),
         Reply::Model { status, .. } => format!("k{status:?}"),
+        Reply::CartesianLimit { status, .. } => format!("k{status:?}"),
+        Reply::ModelLibrary { status, .. } => format!("k{status:?}"),
         reply => format!("{reply:?}"),
     }
-}
-
-fn not_implemented<T: PartialEq + std::fmt::Debug>(
-    case: &mut Case<'_>,
-    command: Command,
-    decoded: Result<T, DecodeError>,
-) {
-    case.equal(
-        "refusal",
-        decoded,
-        Err(DecodeError::NotImplemented { command }),
-    );
 }
 
 /// An integer of the file as a narrower type.

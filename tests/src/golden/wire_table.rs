@@ -2,9 +2,9 @@
 
 use franka_proto::framing::{Header, Message};
 use franka_proto::{
-    CollisionBehavior, Command, CommandId, ControllerMode, DecodeError, MotionGeneratorMode,
-    MoveControllerMode, MoveGeneratorMode, MoveRequest, Reply, Request, RobotError, RobotMode,
-    RobotState, Version,
+    Architecture, CollisionBehavior, Command, CommandId, ControllerMode, DecodeError, Filters,
+    MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode, MoveRequest, Reply, Request,
+    RobotError, RobotMode, RobotState, System, Version,
 };
 
 use super::wire::{narrow, status_of};
@@ -71,27 +71,25 @@ fn check_command(report: &mut Report, version: Version, node: &Node<'_>) -> Resu
         if !display_name.starts_with("(none") {
             case.equal("display name", command.display_name(), display_name);
         }
-        if let Some(request) = sample(command) {
-            let id = CommandId(0);
-            let size = request
-                .encode(version, id)
-                .map(|bytes| bytes.as_bytes().len());
-            case.equal("request size", size, Ok(request_size));
-            let payload = response_size - Header::SIZE;
-            let bytes = vec![0; payload];
-            let decode = |size| Reply::decode(version, command, &message(number, &bytes[..size]));
-            case.equal("reply of this size is read", decode(payload).is_ok(), true);
-            let short = decode(payload - 1);
-            let too_short = matches!(short, Err(DecodeError::MessageSize { .. }));
-            case.equal("shorter reply is refused", too_short, true);
-        }
+        let id = CommandId(0);
+        let size = sample(command)
+            .encode(version, id)
+            .map(|bytes| bytes.as_bytes().len());
+        case.equal("request size", size, Ok(request_size));
+        let payload = response_size - Header::SIZE;
+        let bytes = vec![0; payload];
+        let decode = |size| Reply::decode(version, command, &message(number, &bytes[..size]));
+        case.equal("reply of this size is read", decode(payload).is_ok(), true);
+        let short = decode(payload - 1);
+        let too_short = matches!(short, Err(DecodeError::MessageSize { .. }));
+        case.equal("shorter reply is refused", too_short, true);
     });
     Ok(())
 }
 
-/// Some request for a command, if it is implemented.
-fn sample(command: Command) -> Option<Request> {
-    Some(match command {
+/// Some request for a command.
+fn sample(command: Command) -> Request {
+    match command {
         Command::Connect => Request::Connect {
             version: 0,
             udp_port: 0,
@@ -117,10 +115,13 @@ fn sample(command: Command) -> Option<Request> {
         Command::SetLoad => Request::SetLoad(Default::default()),
         Command::AutomaticErrorRecovery => Request::AutomaticErrorRecovery,
         Command::GetRobotModel => Request::GetRobotModel,
-        Command::GetCartesianLimit | Command::SetFilters | Command::LoadModelLibrary => {
-            return None;
-        }
-    })
+        Command::GetCartesianLimit => Request::GetCartesianLimit { id: 0 },
+        Command::SetFilters => Request::SetFilters(Filters::uniform(0.0)),
+        Command::LoadModelLibrary => Request::LoadModelLibrary {
+            architecture: Architecture::X64,
+            system: System::Linux,
+        },
+    }
 }
 
 fn message(command: u32, payload: &[u8]) -> Message<'_> {
@@ -156,11 +157,12 @@ fn check_enum(report: &mut Report, version: Version, node: &Node<'_>) -> Result<
 type Meaning = Box<dyn Fn(u8) -> Option<String>>;
 
 /// How this crate reads the bytes of an enum; `None` for enums that it has no reader for: numbers
-/// of commands, checked on their own, and what belongs to commands that are not implemented.
+/// of commands, checked on their own, and what other enums are derived from.
 fn reader(name: &str, version: Version) -> Option<Meaning> {
     let status = |command: Command| -> Meaning {
         Box::new(move |byte| {
-            let payload = [byte, 0, 0];
+            let mut payload = [0; 154];
+            payload[0] = byte;
             let reply = Reply::decode(version, command, &message(0, &payload));
             reply.ok().map(|reply| status_of(&reply))
         })
@@ -175,6 +177,19 @@ fn reader(name: &str, version: Version) -> Option<Meaning> {
         "CommandBase::Status" if version.supports(Command::GetRobotModel) => {
             status(Command::GetRobotModel)
         }
+        "LoadModelLibrary::Status" => status(Command::LoadModelLibrary),
+        "LoadModelLibrary::Architecture" => Box::new(move |byte| {
+            let (architecture, _) = library(version, byte, 0)?;
+            Some(match architecture {
+                Architecture::Arm => "kARM".to_owned(),
+                Architecture::Arm64 => "kARM64".to_owned(),
+                architecture => format!("k{architecture:?}"),
+            })
+        }),
+        "LoadModelLibrary::System" => Box::new(move |byte| {
+            let (_, system) = library(version, 0, byte)?;
+            Some(format!("k{system:?}"))
+        }),
         "Move::ControllerMode" => Box::new(move |byte| {
             let request = motion(version, byte, 0)?;
             Some(format!("k{:?}", request.controller))
@@ -208,6 +223,18 @@ fn reader(name: &str, version: Version) -> Option<Meaning> {
         }),
         _ => return None,
     })
+}
+
+/// What these bytes of a `LoadModelLibrary` mean, if they do.
+fn library(version: Version, architecture: u8, system: u8) -> Option<(Architecture, System)> {
+    let number = version.command_number(Command::LoadModelLibrary)?;
+    match Request::decode(version, &message(number, &[architecture, system])) {
+        Ok(Request::LoadModelLibrary {
+            architecture,
+            system,
+        }) => Some((architecture, system)),
+        _ => None,
+    }
 }
 
 /// The `Move` with these modes, if they exist.

@@ -1,15 +1,19 @@
 //! Payloads of requests and replies, one request family per file.
 //!
 //! A request without parameters has no struct: it is a header alone. Replies that are a status
-//! alone are one byte.
+//! alone have none either.
 
 mod connect;
+mod library;
+mod limit;
 mod motion;
 mod setters;
 
 pub use connect::{ConnectRequest, ConnectResponse};
+pub use library::LoadModelLibrary;
+pub use limit::{CartesianLimit, GetCartesianLimit};
 pub use motion::{AsynchronousMotion, Deviation, MoveRequest};
 pub use setters::{
-    SetCartesianImpedance, SetCollisionBehavior, SetFrame, SetGuidingMode, SetJointImpedance,
-    SetLoad,
+    SetCartesianImpedance, SetCollisionBehavior, SetFilters, SetFrame, SetGuidingMode,
+    SetJointImpedance, SetLoad,
 };

@@ -73,6 +73,22 @@ pub struct SetLoad {
     pub I_load: [F64; 9],
 }
 
+/// `SetFilters::Request`, protocol 5 only: cutoff frequencies.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub struct SetFilters {
+    /// Of commanded joint positions `[Hz]`.
+    pub joint_position_filter_frequency: F64,
+    /// Of commanded joint velocities `[Hz]`.
+    pub joint_velocity_filter_frequency: F64,
+    /// Of commanded poses `[Hz]`.
+    pub cartesian_position_filter_frequency: F64,
+    /// Of commanded twists `[Hz]`.
+    pub cartesian_velocity_filter_frequency: F64,
+    /// Of the controller `[Hz]`.
+    pub controller_filter_frequency: F64,
+}
+
 assert_layout!(SetCollisionBehavior, size: 416, {
     lower_torque_thresholds_acceleration: 0, upper_torque_thresholds_acceleration: 56,
     lower_torque_thresholds_nominal: 112, upper_torque_thresholds_nominal: 168,
@@ -84,3 +100,8 @@ assert_layout!(SetCartesianImpedance, size: 48, { K_x: 0 });
 assert_layout!(SetGuidingMode, size: 7, { guiding_mode: 0, nullspace: 6 });
 assert_layout!(SetFrame, size: 128, { transform: 0 });
 assert_layout!(SetLoad, size: 104, { m_load: 0, F_x_Cload: 8, I_load: 32 });
+assert_layout!(SetFilters, size: 40, {
+    joint_position_filter_frequency: 0, joint_velocity_filter_frequency: 8,
+    cartesian_position_filter_frequency: 16, cartesian_velocity_filter_frequency: 24,
+    controller_filter_frequency: 32,
+});

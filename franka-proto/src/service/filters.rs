@@ -1,0 +1,53 @@
+//! The filters of a robot of protocol 5.
+
+use crate::wire::service::SetFilters;
+
+/// Cutoff frequencies of the robot's own low-pass filters, documented as 1 to 1000 Hz, where 1000
+/// switches a filter off. Protocol 5 only, and deprecated there: filter on the client's side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filters {
+    /// Of commanded joint positions `[Hz]`.
+    pub joint_position_filter_frequency: f64,
+    /// Of commanded joint velocities `[Hz]`.
+    pub joint_velocity_filter_frequency: f64,
+    /// Of commanded poses `[Hz]`.
+    pub cartesian_position_filter_frequency: f64,
+    /// Of commanded twists `[Hz]`.
+    pub cartesian_velocity_filter_frequency: f64,
+    /// Of the controller `[Hz]`.
+    pub controller_filter_frequency: f64,
+}
+
+impl Filters {
+    /// The same cutoff frequency `[Hz]` for all.
+    #[must_use]
+    pub fn uniform(frequency: f64) -> Self {
+        Self {
+            joint_position_filter_frequency: frequency,
+            joint_velocity_filter_frequency: frequency,
+            cartesian_position_filter_frequency: frequency,
+            cartesian_velocity_filter_frequency: frequency,
+            controller_filter_frequency: frequency,
+        }
+    }
+
+    pub(super) fn to_wire(self) -> SetFilters {
+        SetFilters {
+            joint_position_filter_frequency: self.joint_position_filter_frequency.into(),
+            joint_velocity_filter_frequency: self.joint_velocity_filter_frequency.into(),
+            cartesian_position_filter_frequency: self.cartesian_position_filter_frequency.into(),
+            cartesian_velocity_filter_frequency: self.cartesian_velocity_filter_frequency.into(),
+            controller_filter_frequency: self.controller_filter_frequency.into(),
+        }
+    }
+
+    pub(super) fn from_wire(wire: &SetFilters) -> Self {
+        Self {
+            joint_position_filter_frequency: wire.joint_position_filter_frequency.get(),
+            joint_velocity_filter_frequency: wire.joint_velocity_filter_frequency.get(),
+            cartesian_position_filter_frequency: wire.cartesian_position_filter_frequency.get(),
+            cartesian_velocity_filter_frequency: wire.cartesian_velocity_filter_frequency.get(),
+            controller_filter_frequency: wire.controller_filter_frequency.get(),
+        }
+    }
+}
