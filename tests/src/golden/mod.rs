@@ -52,7 +52,15 @@ pub const SUITES: &[Suite] = &[
     },
     Suite {
         file: "model/model_vectors_fr3.json",
-        check: model::rigid_body,
+        check: model::fr3,
+    },
+    Suite {
+        file: "model/model_vectors_fer.json",
+        check: model::fer,
+    },
+    Suite {
+        file: "model/model_vectors_fer.json",
+        check: model::fer_realisable,
     },
     Suite {
         file: "model/velocity_limit_vectors_fr3.json",
