@@ -12,12 +12,26 @@ use tokio::sync::oneshot;
 use crate::Robot;
 use crate::bridge::{Input, Outcome};
 
-/// A motion that has not begun: nothing is sent before it is awaited or detached.
-#[derive(Clone, Debug)]
+/// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a motion of its own, with its
+/// own [`canceller`](Self::canceller).
+#[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Motion {
     robot: Robot,
     goal: Goal,
+}
+
+impl Clone for Motion {
+    fn clone(&self) -> Self {
+        let goal = Goal {
+            id: self.robot.next_goal(),
+            ..self.goal
+        };
+        Self {
+            robot: self.robot.clone(),
+            goal,
+        }
+    }
 }
 
 impl Motion {
@@ -116,6 +130,9 @@ impl Canceller {
 ///
 /// # Cancel safety
 /// Dropping it brakes the arm within the motion's budget, in the background.
+///
+/// # Panics
+/// When polled after it has resolved, as futures may.
 #[derive(Debug)]
 #[must_use = "futures do nothing unless polled"]
 pub struct Moving {
