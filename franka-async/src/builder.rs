@@ -135,7 +135,8 @@ impl Builder {
         self
     }
 
-    /// Time that each step of connecting may take: the TCP connection, the handshake, the first state. 1 s by default.
+    /// Time that each step of connecting may take: finding the host, the TCP connection, the handshake, the first state. 1 s
+    /// by default.
     pub fn connect_timeout(mut self, timeout: Duration) -> Self {
         self.connect_timeout = timeout;
         self

@@ -42,6 +42,15 @@ impl Decoder for MessageCodec {
         let size = message.header.size as usize;
         Ok(Some(Frame(received.split_to(size).freeze())))
     }
+
+    /// A stream may end within a message: that is the end of the stream all the same, and no failure to read it.
+    fn decode_eof(&mut self, received: &mut BytesMut) -> Result<Option<Frame>, StreamError> {
+        let frame = self.decode(received)?;
+        if frame.is_none() {
+            received.clear();
+        }
+        Ok(frame)
+    }
 }
 
 impl Encoder<Outgoing> for MessageCodec {
@@ -107,6 +116,14 @@ mod tests {
                 ]
             );
         }
+    }
+
+    #[test]
+    fn a_stream_that_ends_within_a_message_ends() {
+        let mut buffer = BytesMut::from(&[0, 0, 0, 0, 1, 0, 0, 0, 13, 0, 0, 0][..]);
+        assert!(MessageCodec.decode(&mut buffer).unwrap().is_none());
+        assert!(MessageCodec.decode_eof(&mut buffer).unwrap().is_none());
+        assert!(buffer.is_empty());
     }
 
     #[test]

@@ -35,17 +35,13 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let scheduling = builder.scheduling.clone();
     scheduling.probe()?;
 
-    let address = resolve(&builder.endpoint).await?;
-    let mut opened = open(address, &builder).await?;
+    let address = timeout(builder.connect_timeout, resolve(&builder.endpoint))
+        .await
+        .map_err(|_| ConnectError::Timeout)??;
+    let opened = open(address, &builder).await?;
     let (states, published) = watch::channel(opened.first);
     let (channel, connection, reports) =
         Channel::start(opened.stream, opened.session, published.clone());
-    opened
-        .handle
-        .records
-        .read_chunk(opened.handle.records.slots())
-        .map(|chunk| chunk.commit_all())
-        .ok();
     let stats = opened.handle.stats.clone();
     let bridge = Bridge::new(
         opened.model,
@@ -147,14 +143,16 @@ fn model_of(version: Version) -> Result<&'static Model, ConnectError> {
 }
 
 async fn resolve(endpoint: &Endpoint) -> Result<SocketAddr, ConnectError> {
-    let found = tokio::net::lookup_host((endpoint.host.as_str(), endpoint.port)).await;
+    let network = |reason: &str| ConnectError::Network {
+        reason: reason.into(),
+    };
+    let mut found = tokio::net::lookup_host((endpoint.host.as_str(), endpoint.port))
+        .await
+        .map_err(|_| network("Host not found"))?;
     // The robot's datagrams are IPv4.
-    let address = found
-        .ok()
-        .and_then(|mut addresses| addresses.find(SocketAddr::is_ipv4));
-    address.ok_or_else(|| ConnectError::Network {
-        reason: "Host not found".into(),
-    })
+    found
+        .find(SocketAddr::is_ipv4)
+        .ok_or_else(|| network("No address found"))
 }
 
 async fn dial(address: SocketAddr, limit: Duration) -> Result<TcpStream, ConnectError> {
@@ -171,7 +169,9 @@ async fn dial(address: SocketAddr, limit: Duration) -> Result<TcpStream, Connect
         }
         Err(_) => return Err(ConnectError::Timeout),
     };
-    stream.set_nodelay(true)?;
+    if let Err(error) = stream.set_nodelay(true) {
+        tracing::debug!(%error, "small requests may be delayed");
+    }
     let (idle, interval, count) = KEEPALIVE;
     let keepalive = TcpKeepalive::new()
         .with_time(idle)
