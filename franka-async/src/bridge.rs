@@ -64,7 +64,8 @@ pub(crate) enum Input {
 pub(crate) struct Inputs {
     /// Unbounded, since dropping a motion must be able to send; what awaits an answer bounds itself.
     pub(crate) queue: mpsc::UnboundedSender<Input>,
-    pub(crate) records: broadcast::Sender<Record>,
+    /// Weak, so that listeners hear of the end.
+    pub(crate) records: broadcast::WeakSender<Record>,
 }
 
 /// Makes the thread's bell heard on this runtime.
@@ -103,6 +104,8 @@ pub(crate) struct Bridge {
     records: broadcast::Sender<Record>,
     waiting: HashMap<GoalId, oneshot::Sender<Outcome>>,
     started: Instant,
+    /// Whether robot or thread is out of reach, for good.
+    lost: bool,
 }
 
 impl Bridge {
@@ -128,15 +131,16 @@ impl Bridge {
             records: broadcast::channel(RECORDS).0,
             waiting: HashMap::new(),
             started: Instant::now(),
+            lost: false,
         }
     }
 
-    /// Runs the bridge as a task until all ways into it are gone.
+    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is told to end.
     pub(crate) fn start(self, reports: mpsc::UnboundedReceiver<Report>) -> Inputs {
         let (queue, inbox) = mpsc::unbounded_channel();
         let inputs = Inputs {
             queue,
-            records: self.records.clone(),
+            records: self.records.downgrade(),
         };
         tokio::spawn(self.run(inbox, reports));
         inputs
@@ -150,8 +154,8 @@ impl Bridge {
         let mut closing = None;
         let mut done = Vec::new();
         loop {
-            self.carry_out().await;
-            if closing.is_some() && self.lifecycle.is_idle() {
+            self.carry_out();
+            if self.lost || closing.is_some() && self.lifecycle.is_idle() {
                 break;
             }
             let deadline = [
@@ -162,7 +166,7 @@ impl Bridge {
             tokio::select! {
                 heard = hear(&self.bell) => {
                     if let Err(error) = heard {
-                        self.lifecycle.on_connection_closed(&format!("the control thread cannot be heard: {error}"));
+                        self.lose(&format!("the control thread cannot be heard: {error}"));
                     }
                     self.listen();
                 }
@@ -184,7 +188,7 @@ impl Bridge {
                 }
             }
         }
-        self.end(inbox).await;
+        self.end(inbox, &mut done).await;
         for done in done {
             // A caller who no longer waits has been dropped.
             let _ = done.send(());
@@ -196,21 +200,15 @@ impl Bridge {
     }
 
     /// Carries out what the lifecycle has decided, in its order.
-    async fn carry_out(&mut self) {
+    fn carry_out(&mut self) {
         while let Some(output) = self.lifecycle.poll() {
             match output {
                 Output::Order(order) => {
                     if self.orders.push(order).is_err() {
-                        self.lifecycle
-                            .on_connection_closed("the control thread takes no orders");
+                        self.lose("the control thread takes no orders");
                     }
                 }
-                Output::Send { motion, request } => {
-                    // A closed channel has said so in a report of its own.
-                    if let Err(error) = self.channel.send(motion, request).await {
-                        tracing::debug!(%error, "a motion's request was not sent");
-                    }
-                }
+                Output::Send { motion, request } => self.channel.send(motion, request),
                 Output::Resolve { goal, result } => {
                     if let Err(error) = &result {
                         tracing::info!(goal = goal.0, %error, "motion ended");
@@ -245,9 +243,16 @@ impl Bridge {
             }
         }
         if self.thread.as_ref().is_some_and(Thread::has_ended) {
-            self.lifecycle
-                .on_connection_closed("the control thread has ended");
+            self.lose("the control thread has ended");
         }
+    }
+
+    /// Takes note that robot or thread is out of reach. Everything else ends with it: a thread without a connection would
+    /// go on towards a goal that nobody can take back, while one that has ended lets the robot stop the arm.
+    fn lose(&mut self, reason: &str) {
+        self.channel.note_end(reason);
+        self.lifecycle.on_connection_closed(reason);
+        self.lost = true;
     }
 
     fn on_input(&mut self, input: Input) {
@@ -291,7 +296,7 @@ impl Bridge {
             Report::MoveViolation { motion, violation } => {
                 self.lifecycle.on_move_violation(motion, violation, now);
             }
-            Report::Closed { reason } => self.lifecycle.on_connection_closed(&reason),
+            Report::Closed { reason } => self.lose(&reason),
         }
     }
 
@@ -302,25 +307,21 @@ impl Bridge {
         Instant::now() + CLOSING_TIMEOUT
     }
 
-    /// Tells everybody who still waits, closes the connection and ends the thread.
-    async fn end(mut self, mut inbox: mpsc::UnboundedReceiver<Input>) {
+    /// Tells everybody who still waits, closes the connection and ends the thread. Whoever asks for that meanwhile joins
+    /// `done`.
+    async fn end(
+        mut self,
+        mut inbox: mpsc::UnboundedReceiver<Input>,
+        done: &mut Vec<oneshot::Sender<()>>,
+    ) {
+        self.channel.note_end(CLOSED_BY_US);
         inbox.close();
         self.lifecycle.on_connection_closed(CLOSED_BY_US);
-        self.carry_out().await;
+        self.carry_out();
         while let Some(input) = inbox.recv().await {
-            match input {
-                Input::Submit { done, .. } => {
-                    let reason = CLOSED_BY_US.to_owned();
-                    let _ = done.send(Err(MotionError::ConnectionClosed { reason }));
-                }
-                Input::Shutdown { done } => {
-                    let _ = done.send(());
-                }
-                // Dropping the answer says that nothing moves any more.
-                Input::Update { .. }
-                | Input::Close { .. }
-                | Input::Cancel { .. }
-                | Input::Stop { .. } => {}
+            // All others hear of the end by their answers being dropped.
+            if let Input::Shutdown { done: reply } = input {
+                done.push(reply);
             }
         }
         if let Some(connection) = self.connection.take() {

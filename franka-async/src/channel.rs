@@ -1,7 +1,8 @@
 //! The command channel: one task that owns the TCP connection, sends requests and hands replies to whoever waits.
 //!
 //! Replies match by command id. Every request has a deadline but `Move`, whose two replies belong to the lifecycle of
-//! the motion. When the connection ends, everybody who waits is told why, and so is everybody who comes later.
+//! the motion. Motions have a queue and places of their own, so that no number of other requests holds up a stop. When
+//! the connection ends, everybody who waits is told why, and so is everybody who comes later.
 
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -20,7 +21,7 @@ use tokio::time::Instant;
 use tokio_util::codec::Framed;
 use tokio_util::sync::CancellationToken;
 
-use crate::codec::{Frame, MessageCodec};
+use crate::codec::{Frame, MessageCodec, StreamError, reason};
 use crate::error::CommandError;
 
 /// Time in which a request has to leave. Source: `SO_SNDTIMEO` of libfranka's command socket.
@@ -29,16 +30,24 @@ const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 /// Requests that may wait for the task. A caller beyond that waits for room.
 const CAPACITY: usize = 32;
 
+/// Requests of callers that may wait for their answers: two places are a motion's, for its `Move` and its `StopMove`.
+const CALLS: usize = <Session>::PENDING_LIMIT - 2;
+
 /// What libfranka says when it finds the connection closed.
 const CLOSED_BY_PEER: &str = "libfranka: server closed connection";
 
 /// What callers hear after the connection was closed from this side.
 pub(crate) const CLOSED_BY_US: &str = "the robot's handles were closed";
 
+/// What callers hear when nobody was left to say why the connection ended.
+const RUNTIME_ENDED: &str = "the runtime that served the connection has ended";
+
 /// The way to the task. Clones share it.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel {
     calls: mpsc::Sender<Call>,
+    /// Unbounded, and yet bounded: two requests per motion, and motions follow one another.
+    motions: mpsc::UnboundedSender<Call>,
     ended: Arc<OnceLock<String>>,
 }
 
@@ -113,6 +122,7 @@ impl Channel {
         states: watch::Receiver<RobotState>,
     ) -> (Self, Connection, mpsc::UnboundedReceiver<Report>) {
         let (calls, queue) = mpsc::channel(CAPACITY);
+        let (motions, first) = mpsc::unbounded_channel();
         // Unbounded, and yet bounded: two replies per motion, and motions follow one another.
         let (reports, inbox) = mpsc::unbounded_channel();
         let ended = Arc::new(OnceLock::new());
@@ -124,8 +134,13 @@ impl Channel {
             waiting: HashMap::new(),
         };
         let closing = CancellationToken::new();
-        let task = tokio::spawn(task.run(queue, ended.clone(), closing.clone()));
-        (Self { calls, ended }, Connection { task, closing }, inbox)
+        let task = tokio::spawn(task.run((first, queue), ended.clone(), closing.clone()));
+        let channel = Self {
+            calls,
+            motions,
+            ended,
+        };
+        (channel, Connection { task, closing }, inbox)
     }
 
     /// Sends a request and waits for its answer.
@@ -148,29 +163,37 @@ impl Channel {
         answered.await.unwrap_or_else(|_| Err(self.closed()))
     }
 
-    /// Sends a request on behalf of a motion. Replies to a `Move` come as [`Report`]s.
-    pub(crate) async fn send(
-        &self,
-        motion: MotionId,
-        request: Request,
-    ) -> Result<(), CommandError> {
+    /// Sends a request on behalf of a motion, ahead of all others. Replies to a `Move` come as [`Report`]s; a closed
+    /// channel has said so in a report of its own.
+    pub(crate) fn send(&self, motion: MotionId, request: Request) {
         let waiter = match request {
             Request::Move(_) => Waiter::Motion(motion),
             _ => Waiter::Nobody,
         };
-        self.calls
-            .send(Call { request, waiter })
-            .await
-            .map_err(|_| self.closed())
+        if self.motions.send(Call { request, waiter }).is_err() {
+            tracing::debug!("a motion's request was not sent");
+        }
+    }
+
+    /// Decides what everybody hears about the end of the connection, unless that is decided already.
+    pub(crate) fn note_end(&self, reason: &str) {
+        self.ended.get_or_init(|| reason.to_owned());
+    }
+
+    /// Why the connection has ended, if it has.
+    pub(crate) fn end_reason(&self) -> &str {
+        self.ended.get().map_or(RUNTIME_ENDED, String::as_str)
     }
 
     fn closed(&self) -> CommandError {
-        let reason = self.ended.get().map_or(CLOSED_BY_PEER, String::as_str);
         CommandError::ConnectionClosed {
-            reason: reason.to_owned(),
+            reason: self.end_reason().to_owned(),
         }
     }
 }
+
+/// The two queues into the task: motions, and everything else.
+type Queues = (mpsc::UnboundedReceiver<Call>, mpsc::Receiver<Call>);
 
 struct Task {
     stream: Framed<TcpStream, MessageCodec>,
@@ -189,17 +212,17 @@ struct Waiting {
 impl Task {
     async fn run(
         mut self,
-        mut calls: mpsc::Receiver<Call>,
+        mut queues: Queues,
         ended: Arc<OnceLock<String>>,
         closing: CancellationToken,
     ) {
         let reason = tokio::select! {
-            reason = self.serve(&mut calls) => reason,
+            reason = self.serve(&mut queues) => reason,
             () = closing.cancelled() => CLOSED_BY_US.to_owned(),
         };
-        // Told before the queue closes, so that nobody finds it closed without a reason.
+        // Told before the queues close, so that nobody finds them closed without a reason.
         let reason = ended.get_or_init(|| reason).clone();
-        drop(calls);
+        drop(queues);
         for (_, waiting) in self.waiting.drain() {
             if let Waiter::Caller { answer, .. } = waiting.waiter {
                 // A caller who no longer listens has been dropped.
@@ -212,7 +235,7 @@ impl Task {
     }
 
     /// Serves until the connection ends and returns why it did.
-    async fn serve(&mut self, calls: &mut mpsc::Receiver<Call>) -> String {
+    async fn serve(&mut self, (motions, calls): &mut Queues) -> String {
         loop {
             let until = self
                 .waiting
@@ -235,7 +258,13 @@ impl Task {
                     Some(Err(error)) => return error.to_string(),
                     None => return CLOSED_BY_PEER.to_owned(),
                 },
-                call = calls.recv() => match call {
+                Some(call) = motions.recv() => {
+                    if let Err(reason) = self.on_call(call).await {
+                        return reason;
+                    }
+                }
+                // Without room for its answer, a call waits in the queue.
+                call = calls.recv(), if self.session.pending() < CALLS => match call {
                     Some(call) => {
                         if let Err(reason) = self.on_call(call).await {
                             return reason;
@@ -249,6 +278,9 @@ impl Task {
     }
 
     async fn on_call(&mut self, Call { request, waiter }: Call) -> Result<(), String> {
+        if matches!(waiter, Waiter::Motion(_)) {
+            self.forget_motions();
+        }
         let outgoing = match self.session.request(&request) {
             Ok(outgoing) => outgoing,
             Err(error) => {
@@ -263,23 +295,43 @@ impl Task {
                 return Ok(());
             }
         };
-        let until = match waiter {
-            Waiter::Caller { deadline, .. } => Some(Instant::now() + deadline),
-            Waiter::Motion(_) | Waiter::Nobody => None,
-        };
+        let id = outgoing.id();
         let command = request.command();
-        self.waiting.insert(
-            outgoing.id(),
-            Waiting {
-                command,
-                waiter,
-                until,
-            },
-        );
+        match waiter {
+            Waiter::Nobody => {
+                self.session.abandon(id);
+            }
+            Waiter::Motion(_) => self.wait(id, command, waiter, None),
+            Waiter::Caller { deadline, .. } => {
+                self.wait(id, command, waiter, Some(Instant::now() + deadline));
+            }
+        }
         match tokio::time::timeout(SEND_TIMEOUT, self.stream.send(outgoing)).await {
             Ok(Ok(())) => Ok(()),
-            Ok(Err(error)) => Err(error.to_string().replace("TCP receive", "TCP send bytes")),
+            Ok(Err(StreamError::Io(error))) => {
+                Err(format!("libfranka: TCP send bytes: {}", reason(&error)))
+            }
+            Ok(Err(StreamError::Frame(error))) => Err(error.to_string()),
             Err(_) => Err("libfranka: TCP send bytes: Timeout".to_owned()),
+        }
+    }
+
+    fn wait(&mut self, id: CommandId, command: Command, waiter: Waiter, until: Option<Instant>) {
+        let waiting = Waiting {
+            command,
+            waiter,
+            until,
+        };
+        self.waiting.insert(id, waiting);
+    }
+
+    /// Gives up waiting for motions that the lifecycle has done with: it begins one after the other.
+    fn forget_motions(&mut self) {
+        let over = self
+            .waiting
+            .extract_if(|_, waiting| matches!(waiting.waiter, Waiter::Motion(_)));
+        for (id, _) in over {
+            self.session.abandon(id);
         }
     }
 

@@ -180,7 +180,7 @@ impl Future for Moving {
             return Poll::Pending;
         };
         self.stage = Stage::Over;
-        Poll::Ready(outcome.unwrap_or_else(|_| Robot::closed()))
+        Poll::Ready(outcome.unwrap_or_else(|_| self.robot.closed()))
     }
 }
 

@@ -13,7 +13,7 @@ use tokio::sync::{broadcast, oneshot, watch};
 
 use crate::bridge::{Input, Inputs, Outcome};
 use crate::builder::{Builder, Endpoint};
-use crate::channel::{CLOSED_BY_US, Channel};
+use crate::channel::Channel;
 use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 
 /// A connected robot.
@@ -22,8 +22,11 @@ use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 /// Dropping the last handle brakes the arm, ends the motion and closes the connection, in the background;
 /// [`Robot::shutdown`] does the same and can be awaited. Motions in progress are handles too.
 ///
-/// If the runtime ends first, nobody is left to brake: the robot then misses its commands and stops by itself, with a
-/// reflex. Await [`Robot::shutdown`] before the program ends.
+/// A connection that is lost ends everything that belongs to it, control thread included; the handles that are left then
+/// say why. If the runtime ends first, nobody is left to brake: the robot then misses its commands and stops by itself,
+/// with a reflex. Await [`Robot::shutdown`] before the program ends.
+///
+/// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
 #[derive(Clone, Debug)]
 pub struct Robot {
     shared: Arc<Shared>,
@@ -95,9 +98,13 @@ impl Robot {
     }
 
     /// What every cycle of the control thread saw and did, one record per state. A listener that lags more than two
-    /// seconds behind is told how many it missed.
+    /// seconds behind is told how many it missed. Closes when the connection does.
     pub fn records(&self) -> broadcast::Receiver<Record> {
-        self.shared.inputs.records.subscribe()
+        match self.shared.inputs.records.upgrade() {
+            Some(records) => records.subscribe(),
+            // Closed from the outset.
+            None => broadcast::channel(1).1,
+        }
     }
 
     /// The measured pose of the end effector, `O_T_EE` of the newest state.
@@ -160,8 +167,9 @@ impl Robot {
     /// motion itself resolves as [`MotionError::Stopped`].
     ///
     /// # Errors
-    /// [`MotionError`] if the motion ended otherwise, for instance by a reflex; or [`MotionError::Superseded`] by a goal
-    /// that came after the stop.
+    /// [`MotionError`] if the motion ended otherwise, for instance by a reflex; [`MotionError::Superseded`] by a goal that
+    /// came after the stop; [`MotionError::ConnectionClosed`] if there is no connection, so that nobody can say whether
+    /// the arm rests.
     ///
     /// # Cancel safety
     /// Once polled, the arm is braked even if the future is dropped.
@@ -171,6 +179,7 @@ impl Robot {
         self.send(Input::Stop { goal, done });
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
+            Err(_) if self.shared.inputs.queue.is_closed() => self.closed().map(|_| ()),
             // Nothing moved.
             Err(_) => Ok(()),
         }
@@ -202,9 +211,10 @@ impl Robot {
         let _ = self.shared.inputs.queue.send(input);
     }
 
-    pub(crate) fn closed() -> Outcome {
+    /// How a motion ends that nobody took, or whose end nobody saw.
+    pub(crate) fn closed(&self) -> Outcome {
         Err(MotionError::ConnectionClosed {
-            reason: CLOSED_BY_US.to_owned(),
+            reason: self.shared.channel.end_reason().to_owned(),
         })
     }
 }
