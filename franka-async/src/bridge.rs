@@ -18,6 +18,7 @@ use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 use tokio::time::Instant;
+use tokio_util::sync::CancellationToken;
 
 use crate::channel::{CLOSED_BY_US, Channel, Connection, Report};
 
@@ -135,14 +136,19 @@ impl Bridge {
         }
     }
 
-    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is told to end.
-    pub(crate) fn start(self, reports: mpsc::UnboundedReceiver<Report>) -> Inputs {
+    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is told to end: by an
+    /// input, or by `cancellation`.
+    pub(crate) fn start(
+        self,
+        reports: mpsc::UnboundedReceiver<Report>,
+        cancellation: CancellationToken,
+    ) -> Inputs {
         let (queue, inbox) = mpsc::unbounded_channel();
         let inputs = Inputs {
             queue,
             records: self.records.downgrade(),
         };
-        tokio::spawn(self.run(inbox, reports));
+        tokio::spawn(self.run(inbox, reports, cancellation));
         inputs
     }
 
@@ -150,6 +156,7 @@ impl Bridge {
         mut self,
         mut inbox: mpsc::UnboundedReceiver<Input>,
         mut reports: mpsc::UnboundedReceiver<Report>,
+        cancellation: CancellationToken,
     ) {
         let mut closing = None;
         let mut done = Vec::new();
@@ -169,6 +176,9 @@ impl Bridge {
                         self.lose(&format!("the control thread cannot be heard: {error}"));
                     }
                     self.listen();
+                }
+                () = cancellation.cancelled(), if closing.is_none() => {
+                    closing = Some(self.begin_closing());
                 }
                 input = inbox.recv(), if closing.is_none() => match input {
                     Some(Input::Shutdown { done: reply }) => {

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use franka_proto::Version;
 use franka_rt::sched::{Realtime, Scheduling};
+use tokio_util::sync::CancellationToken;
 
 use crate::connect;
 use crate::{ConnectError, Robot};
@@ -85,6 +86,7 @@ pub struct Builder {
     pub(crate) scheduling: Scheduling,
     pub(crate) connect_timeout: Duration,
     pub(crate) link_timeout: Duration,
+    pub(crate) cancellation: CancellationToken,
 }
 
 impl Builder {
@@ -95,6 +97,7 @@ impl Builder {
             scheduling: Scheduling::default(),
             connect_timeout: connect::TCP_TIMEOUT,
             link_timeout: franka_rt::driver::LINK_TIMEOUT,
+            cancellation: CancellationToken::new(),
         }
     }
 
@@ -145,6 +148,14 @@ impl Builder {
     /// Silence of the robot after which a running motion fails with `LinkLost`. 1 s by default.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
+        self
+    }
+
+    /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does: brakes, ends the motion, closes. For
+    /// programs that end all their tasks by one token; await `shutdown` all the same, to know when it is done. Connecting
+    /// itself goes on: drop its future to give it up.
+    pub fn cancellation(mut self, token: CancellationToken) -> Self {
+        self.cancellation = token;
         self
     }
 

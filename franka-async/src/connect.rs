@@ -51,7 +51,7 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         (channel.clone(), connection),
         states,
     );
-    let inputs = bridge.start(reports);
+    let inputs = bridge.start(reports, builder.cancellation);
     Ok(Robot::new(
         opened.model,
         opened.version,

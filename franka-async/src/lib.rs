@@ -62,5 +62,7 @@ pub use franka_rt::sched::Realtime;
 pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};
 pub use franka_rt::stats::Stats;
 
+pub use tokio_util::sync::CancellationToken;
+
 /// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame, `O_T_EE`.
 pub type Pose = nalgebra::Isometry3<f64>;
