@@ -66,3 +66,34 @@ pub use tokio_util::sync::CancellationToken;
 
 /// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame, `O_T_EE`.
 pub type Pose = nalgebra::Isometry3<f64>;
+
+/// What programs build on: handles go anywhere, futures go to any worker.
+const _: () = {
+    const fn shared<T: Clone + Send + Sync + 'static>() {}
+    const fn spawned<T: Send + 'static>() {}
+    shared::<Robot>();
+    shared::<Canceller>();
+    shared::<Motion>();
+    shared::<Follow>();
+    spawned::<Moving>();
+    spawned::<<Follow as IntoFuture>::IntoFuture>();
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn futures_may_run_on_any_worker() {
+        fn sent<T: Send>(_: T) {}
+        // Compiled, not called: there is no robot.
+        let _: fn(&Robot, Builder) = |robot, builder| {
+            sent(builder.connect());
+            sent(robot.stop());
+            sent(robot.recover());
+            sent(robot.set_joint_impedance([0.0; 7]));
+            sent(robot.urdf());
+            sent(robot.shutdown());
+        };
+    }
+}
