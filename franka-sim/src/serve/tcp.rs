@@ -13,6 +13,9 @@ use super::cycle::Order;
 /// Replies that may wait for a client that does not read.
 const REPLIES: usize = 64;
 
+/// How long a client may leave no room for a reply. One that does not read must not keep others out.
+const SEND_TIMEOUT: Duration = Duration::from_secs(1);
+
 /// How long a second client waits for the first to be gone. One that reconnects arrives a moment
 /// before its old connection has been taken down.
 const HANDOVER: Duration = Duration::from_millis(50);
@@ -97,7 +100,8 @@ async fn transfer(
     let outgoing = async {
         // The thread drops its end to close the connection.
         while let Some(reply) = replies.recv().await {
-            if write.write_all(&reply).await.is_err() {
+            let sent = timeout(SEND_TIMEOUT, write.write_all(&reply)).await;
+            if !matches!(sent, Ok(Ok(()))) {
                 return;
             }
         }
