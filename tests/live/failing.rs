@@ -2,18 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use franka_async::{CommandError, MotionError, Pose, RobotMode};
+use franka_async::{CommandError, MotionError, RobotMode};
 use franka_proto::RobotError;
 
-use crate::{alone, connect, simulated};
+use crate::{alone, connect, long_way, simulated};
 
-/// A motion of about four seconds, and the moment in it when things go wrong.
-fn long_way(robot: &franka_async::Robot) -> franka_async::Motion {
-    robot
-        .move_to(Pose::translation(0.0, 0.0, 0.1) * robot.pose())
-        .speed(0.25)
-}
-
+/// The moment in the long way when things go wrong.
 const MIDDLE: Duration = Duration::from_millis(800);
 
 #[tokio::test(flavor = "multi_thread")]

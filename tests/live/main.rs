@@ -3,13 +3,17 @@
 //! Run one at a time: each test has a robot, and two cores carry only so many.
 
 mod connecting;
+mod dropping;
+mod ending;
 mod failing;
+mod misbehaving;
 mod moving;
+mod peer;
 mod starving;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use franka_async::{Realtime, Robot};
+use franka_async::{Motion, Pose, Realtime, Robot};
 use franka_sim::{Running, Sim, Tool};
 
 /// Held by each test, so that they do not disturb each other's clocks.
@@ -33,4 +37,11 @@ async fn simulated() -> (Robot, Running) {
 async fn connect(sim: &Running) -> Robot {
     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
     builder.connect().await.expect("a simulator takes a client")
+}
+
+/// A motion of about four seconds.
+fn long_way(robot: &Robot) -> Motion {
+    robot
+        .move_to(Pose::translation(0.0, 0.0, 0.1) * robot.pose())
+        .speed(0.25)
 }

@@ -1,0 +1,171 @@
+//! Ends: of a robot, a client, a token, a runtime, in whatever phase a motion is.
+
+use std::time::{Duration, Instant};
+
+use franka_async::{CancellationToken, MotionError, Pose, Realtime, Robot, RobotMode, Version};
+use franka_proto::framing::next_message;
+use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, Request, client};
+use franka_sim::Sim;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::time::{sleep, timeout};
+
+use crate::{alone, connect, long_way, simulated};
+
+const SOON: Duration = Duration::from_secs(3);
+
+/// Control threads of this process.
+fn control_threads() -> usize {
+    let tasks = std::fs::read_dir("/proc/self/task").unwrap();
+    tasks
+        .filter_map(|task| std::fs::read_to_string(task.ok()?.path().join("comm")).ok())
+        .filter(|name| name.trim() == "franka-rt")
+        .count()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_robot_that_dies_in_any_phase_of_a_motion_resolves_it() {
+    let _alone = alone();
+    // Before the answer to `Move`, at the first commands, on the way, and braking.
+    for (delay, braking) in [
+        (0, false),
+        (2, false),
+        (30, false),
+        (500, false),
+        (500, true),
+    ] {
+        let (robot, sim) = simulated().await;
+        let motion = long_way(&robot);
+        let canceller = motion.canceller();
+        let moving = tokio::spawn(motion.into_future());
+        sleep(Duration::from_millis(delay)).await;
+        if braking {
+            canceller.cancel();
+            sleep(Duration::from_millis(30)).await;
+        }
+        sim.stop().await;
+        let outcome = timeout(SOON, moving).await.expect("no hang").unwrap();
+        assert!(
+            matches!(outcome, Err(MotionError::ConnectionClosed { .. })),
+            "{delay} ms: {outcome:?}"
+        );
+        // The handle is kept, and holds nothing that runs.
+        timeout(SOON, async {
+            while control_threads() > 0 {
+                sleep(Duration::from_millis(5)).await;
+            }
+        })
+        .await
+        .expect("the thread has ended");
+        drop(robot);
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_client_that_vanishes_after_its_move_makes_room_at_once() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    robot.shutdown().await;
+    for _ in 0..3 {
+        let mut stream = TcpStream::connect(sim.addr()).await.unwrap();
+        let mut session = client::Session::new(Version::V10);
+        stream
+            .write_all(session.connect(9).as_bytes())
+            .await
+            .unwrap();
+        let mut received = Vec::new();
+        while next_message(&received).unwrap().is_none() {
+            assert!(stream.read_buf(&mut received).await.unwrap() > 0);
+        }
+        session
+            .on_message(next_message(&received).unwrap().unwrap())
+            .unwrap();
+        let request = MoveRequest::new(
+            MoveControllerMode::ExternalController,
+            MoveGeneratorMode::None,
+        );
+        let request = session.request(&Request::Move(request)).unwrap();
+        stream.write_all(request.as_bytes()).await.unwrap();
+        drop(stream);
+        let robot = connect(&sim).await;
+        let served = timeout(SOON, async {
+            while robot.state().robot_mode != RobotMode::Idle {
+                robot.recover().await.unwrap();
+            }
+            robot.move_to(robot.pose()).await.unwrap();
+        });
+        served.await.expect("served at once");
+        robot.shutdown().await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_cancelled_token_brakes_ends_and_closes() {
+    let _alone = alone();
+    let sim = Sim::fr3().start().await.unwrap();
+    let token = CancellationToken::new();
+    let builder = Robot::builder(sim.addr())
+        .realtime(Realtime::Ignore)
+        .cancellation(token.child_token());
+    let robot = builder.connect().await.unwrap();
+    let mut states = robot.states();
+    let moving = tokio::spawn(long_way(&robot).into_future());
+    sleep(Duration::from_millis(400)).await;
+    token.cancel();
+    assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
+    timeout(SOON, async { while states.changed().await.is_ok() {} })
+        .await
+        .expect("closed");
+    let state = sim.state().await.unwrap();
+    assert_eq!(state.robot_mode, RobotMode::Idle, "{}", state.reflex_reason);
+    let error = robot.stop().await.unwrap_err();
+    assert_eq!(error.to_string(), "the robot's handles were closed");
+    robot.shutdown().await;
+    assert_eq!(control_threads(), 0);
+}
+
+#[tokio::test]
+async fn one_thread_is_runtime_enough() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();
+    robot.move_to(up).await.unwrap();
+    robot.shutdown().await;
+    sim.stop().await;
+}
+
+#[test]
+fn a_runtime_that_ends_in_mid_motion_leaves_nothing_running() {
+    let _alone = alone();
+    let build = || {
+        tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()
+            .unwrap()
+    };
+    let (elsewhere, runtime) = (build(), build());
+    let sim = elsewhere.block_on(Sim::fr3().start()).unwrap();
+    let robot = runtime.block_on(connect(&sim));
+    let moving = elsewhere.spawn(long_way(&robot).into_future());
+    std::thread::sleep(Duration::from_millis(300));
+    drop(runtime);
+    let text = "the runtime that served the connection has ended";
+    let outcome = elsewhere.block_on(moving).unwrap();
+    assert_eq!(outcome.unwrap_err().to_string(), text);
+    let error = elsewhere.block_on(robot.recover()).unwrap_err();
+    assert_eq!(error.to_string(), text);
+    let begun = Instant::now();
+    while control_threads() > 0 || elsewhere.block_on(sim.with(|r| r.is_connected())).unwrap() {
+        assert!(begun.elapsed() < SOON, "the thread or the socket lives on");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // The next one recovers the robot, which missed its commands.
+    elsewhere.block_on(async {
+        let robot = connect(&sim).await;
+        robot.recover().await.unwrap();
+        robot.move_to(robot.pose()).await.unwrap();
+        robot.shutdown().await;
+        sim.stop().await;
+    });
+}

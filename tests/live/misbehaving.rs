@@ -1,0 +1,230 @@
+//! A robot that leaves the protocol, or says nothing: errors that name it, motions that resolve, and a next connection.
+
+use std::net::UdpSocket;
+use std::time::{Duration, Instant};
+
+use franka_async::{CommandError, Load, MotionError, Pose};
+use franka_proto::Command;
+use franka_proto::framing::Header;
+use tokio::task::JoinSet;
+use tokio::time::{sleep, timeout};
+
+use crate::peer::{Manners, Peer, Treatment, reply};
+use crate::{alone, long_way};
+
+/// Time within which whatever is told to end has ended, on a loaded machine too.
+const SOON: Duration = Duration::from_secs(3);
+
+const LOAD: Load = Load {
+    m_load: 0.1,
+    F_x_Cload: [0.0; 3],
+    I_load: [1e-4, 0.0, 0.0, 0.0, 1e-4, 0.0, 0.0, 0.0, 1e-4],
+};
+
+/// Streams that end a connection, and what they are called.
+const GARBAGE: [(&[u8], &str); 3] = [
+    (&[0; 40], "libfranka: Incorrect TCP message size."),
+    (
+        b"HTTP/1.1 400 Bad Request\r\n\r\n",
+        "a message of 808465440 bytes is announced",
+    ),
+    // A message that is announced, and cut off.
+    (
+        &[1, 0, 0, 0, 1, 0, 0, 0, 13, 0, 0, 0],
+        "libfranka: server closed connection",
+    ),
+];
+
+#[tokio::test(flavor = "multi_thread")]
+async fn garbage_in_mid_session_closes_everything_and_says_why() {
+    let _alone = alone();
+    let peer = Peer::start(Manners::default());
+    for in_motion in [false, true] {
+        for (garbage, text) in GARBAGE {
+            let robot = peer.connect().await;
+            let (mut states, mut records) = (robot.states(), robot.records());
+            let moving = in_motion.then(|| tokio::spawn(long_way(&robot).into_future()));
+            sleep(Duration::from_millis(200)).await;
+            peer.inject(garbage);
+            if text.ends_with("closed connection") {
+                peer.close();
+            }
+            if let Some(moving) = moving {
+                let outcome = timeout(SOON, moving).await.expect("no hang").unwrap();
+                let error = outcome.unwrap_err();
+                assert!(error.to_string().starts_with(text), "{error}");
+            }
+            let ended = timeout(SOON, async {
+                while states.changed().await.is_ok() {}
+                while !matches!(
+                    records.recv().await,
+                    Err(tokio::sync::broadcast::error::RecvError::Closed)
+                ) {}
+            });
+            ended.await.expect("listeners hear of the end");
+            assert!(robot.records().recv().await.is_err());
+            for error in [
+                robot.recover().await.unwrap_err().to_string(),
+                robot.stop().await.unwrap_err().to_string(),
+                robot.move_to(robot.pose()).await.unwrap_err().to_string(),
+            ] {
+                assert!(error.starts_with(text), "{error}");
+            }
+            robot.shutdown().await;
+        }
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn replies_that_nobody_waits_for_change_nothing() {
+    let _alone = alone();
+    let peer = Peer::start(Manners::default());
+    let robot = peer.connect().await;
+    let moving = tokio::spawn(robot.move_to(robot.pose()).into_future());
+    for command_id in [0, 77, u32::MAX] {
+        let header = Header {
+            command: 1,
+            command_id,
+            size: 0,
+        };
+        peer.inject(&reply(header, 0));
+        peer.inject(&reply(header, 200));
+    }
+    moving.await.unwrap().unwrap();
+    robot.set_load(LOAD).await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_status_that_does_not_exist_is_named_and_the_connection_lives() {
+    let _alone = alone();
+    let peer = Peer::start(Manners {
+        request: |command| match command {
+            Some(Command::SetLoad | Command::Move) => Treatment::Answer(200),
+            _ => Treatment::Pass,
+        },
+        ..Manners::default()
+    });
+    let robot = peer.connect().await;
+    let error = robot.set_load(LOAD).await.unwrap_err();
+    assert!(matches!(error, CommandError::Violation(_)), "{error:?}");
+    assert_eq!(
+        error.to_string(),
+        "libfranka: Unexpected response while handling Set Load command!"
+    );
+    // Again and again: what is given up takes no place for ever.
+    for _ in 0..40 {
+        let error = robot.move_to(robot.pose()).await.unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "libfranka: Unexpected response while handling Move command!"
+        );
+    }
+    robot.set_joint_impedance([3000.0; 7]).await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_robot_that_does_not_begin_is_told_to_stop_and_given_up() {
+    let _alone = alone();
+    let silent = Manners {
+        request: |command| match command {
+            Some(Command::Move | Command::StopMove) => Treatment::Swallow,
+            _ => Treatment::Pass,
+        },
+        ..Manners::default()
+    };
+    let pretending = Manners {
+        request: |command| match command {
+            Some(Command::Move) => Treatment::Answer(1),
+            _ => Treatment::Pass,
+        },
+        ..Manners::default()
+    };
+    let mut trials = JoinSet::new();
+    for manners in [silent, pretending] {
+        trials.spawn(async move {
+            let peer = Peer::start(manners);
+            let robot = peer.connect().await;
+            let begun = Instant::now();
+            let error = robot.move_to(robot.pose()).await.unwrap_err();
+            assert!(matches!(error, MotionError::Protocol { .. }), "{error:?}");
+            assert!(begun.elapsed() < Duration::from_secs(20), "{error}");
+            robot.set_load(LOAD).await.unwrap();
+            robot.shutdown().await;
+        });
+    }
+    while let Some(trial) = trials.join_next().await {
+        trial.unwrap();
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_robot_that_reads_no_requests_holds_up_no_stop() {
+    let _alone = alone();
+    let peer = Peer::start(Manners::default());
+    let robot = peer.connect().await;
+    let moving = tokio::spawn(long_way(&robot).into_future());
+    sleep(Duration::from_millis(300)).await;
+    peer.stop_reading();
+    // More than may wait for their answers at once: the rest waits for its turn.
+    let mut calls = JoinSet::new();
+    for _ in 0..40 {
+        let robot = robot.clone();
+        calls.spawn(async move { robot.set_load(LOAD).await });
+    }
+    robot.stop().await.unwrap();
+    assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
+    for _ in 0..20 {
+        let error = calls.join_next().await.unwrap().unwrap().unwrap_err();
+        assert_eq!(error.to_string(), "no answer to Set Load within 5000 ms");
+    }
+    robot.shutdown().await;
+    while let Some(call) = calls.join_next().await {
+        assert!(call.unwrap().is_err());
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn stray_datagrams_do_not_disturb_a_motion() {
+    let _alone = alone();
+    let peer = Peer::start(Manners::default());
+    let robot = peer.connect().await;
+    let moving = tokio::spawn(long_way(&robot).speed(0.5).into_future());
+    for address in ["127.0.0.1:0", "127.0.0.2:0"] {
+        let stray = UdpSocket::bind(address).unwrap();
+        for length in [0, 1, 371, 1376, 1377, 9000] {
+            // From the robot's own address, a whole state is a state: only a stranger sends one here.
+            if length < 1377 || address.starts_with("127.0.0.2") {
+                stray
+                    .send_to(&vec![0xff; length], peer.client_udp())
+                    .unwrap();
+            }
+        }
+        sleep(Duration::from_millis(100)).await;
+    }
+    moving.await.unwrap().unwrap();
+    assert_eq!(robot.stats().malformed.get(), 4);
+    assert_eq!(robot.stats().foreign.get(), 6);
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn no_pose_is_followed_after_the_robot_has_gone() {
+    let _alone = alone();
+    let peer = Peer::start(Manners::default());
+    let robot = peer.connect().await;
+    let (sender, targets) = tokio::sync::watch::channel(robot.pose());
+    let following = tokio::spawn(robot.follow(targets).into_future());
+    sleep(Duration::from_millis(200)).await;
+    drop(peer);
+    let outcome = timeout(SOON, following).await.expect("no hang").unwrap();
+    assert!(
+        matches!(outcome, Err(MotionError::ConnectionClosed { .. })),
+        "{outcome:?}"
+    );
+    assert!(
+        sender.send(Pose::identity()).is_err(),
+        "nobody follows any more"
+    );
+}
