@@ -26,6 +26,11 @@ pub enum Event {
         /// Counts so far.
         statistics: MotionStatistics,
     },
+    /// The finishing command is out for the first time; it is repeated until the robot leaves the motion's modes.
+    Finishing {
+        /// The motion.
+        motion: MotionId,
+    },
     /// The motion is over for the thread. Its program comes along to be freed.
     Ended(Ended),
     /// No state has come for so long that the link counts as lost. A later state revives it.
@@ -140,8 +145,9 @@ impl MotionStatistics {
 
 /// Events that wait for the thread to carry them out.
 ///
-/// A motion causes at most `Started`, two reports in one cycle, `Ended` and `LinkLost`; the thread empties the queue
-/// every cycle unless the world outside has stopped listening altogether.
+/// A motion causes at most `Started`, a report per goal, `Finishing`, `Ended` and `LinkLost`, and needs orders from
+/// outside; the thread empties the queue every cycle unless the world outside has stopped listening altogether. A link
+/// that comes and goes meanwhile fills one slot and no more, so that there is room for the end of a motion.
 #[derive(Debug, Default)]
 pub(super) struct EventQueue {
     slots: [Option<Event>; EventQueue::CAPACITY],
@@ -155,8 +161,14 @@ impl EventQueue {
     /// Appends. A full queue leaks the event: what it carries must not be freed on the thread, and no motion can
     /// start without somebody outside who listens.
     pub(super) fn push(&mut self, event: Event) {
+        let newest = (self.first + self.count + Self::CAPACITY - 1) % Self::CAPACITY;
+        if let (Event::LinkLost { silence }, Some(Event::LinkLost { silence: told })) =
+            (&event, &mut self.slots[newest])
+        {
+            *told = *silence;
+            return;
+        }
         if self.count == Self::CAPACITY {
-            debug_assert!(false, "nobody takes the driver's events");
             core::mem::forget(event);
             return;
         }
@@ -169,5 +181,46 @@ impl EventQueue {
         self.first = (self.first + 1) % Self::CAPACITY;
         self.count -= 1;
         Some(event)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_that_comes_and_goes_unheard_leaves_room_for_the_end_of_a_motion() {
+        let mut queue = EventQueue::default();
+        for ms in 1..=100 {
+            queue.push(Event::LinkLost {
+                silence: Duration::from_millis(ms),
+            });
+        }
+        queue.push(Event::Finishing {
+            motion: MotionId(7),
+        });
+        let Some(Event::LinkLost { silence }) = queue.pop() else {
+            panic!("the link was lost")
+        };
+        assert_eq!(silence.as_millis(), 100);
+        assert!(matches!(queue.pop(), Some(Event::Finishing { .. })));
+        assert!(queue.pop().is_none());
+    }
+
+    #[test]
+    fn a_full_queue_keeps_what_it_holds_and_does_not_panic() {
+        let mut queue = EventQueue::default();
+        for number in 0..40 {
+            queue.push(Event::Finishing {
+                motion: MotionId(number),
+            });
+        }
+        for expected in 0..EventQueue::CAPACITY as u64 {
+            let event = queue.pop();
+            assert!(
+                matches!(event, Some(Event::Finishing { motion: MotionId(got) }) if got == expected)
+            );
+        }
+        assert!(queue.pop().is_none());
     }
 }

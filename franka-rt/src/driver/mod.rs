@@ -18,6 +18,8 @@
 mod event;
 mod order;
 mod record;
+#[cfg(test)]
+mod tests;
 
 use core::time::Duration;
 
@@ -148,7 +150,8 @@ impl Driver {
     /// Takes a newly received state and returns the command that answers it, if one is due.
     ///
     /// Bounded work: at most one step of the program. A state that is not newer than the newest so far is ignored,
-    /// as the robot numbers its cycles strictly upwards.
+    /// as the robot numbers its cycles strictly upwards. A motion does not answer a state whose joint positions,
+    /// velocities or torques are not finite: the robot bridges the gap, or stops by itself if more of them follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let skipped = match self.newest {
             Some(newest) if state.message_id <= newest => return None,
@@ -160,7 +163,7 @@ impl Driver {
         self.record = Record::watching(state, skipped);
         match core::mem::replace(&mut self.phase, Phase::Watching) {
             Phase::Watching => None,
-            Phase::Armed(motion) if motion.modes.shown_by(state) => {
+            Phase::Armed(motion) if motion.modes.shown_by(state) && is_sound(state) => {
                 self.events.push(Event::Started {
                     motion: motion.id,
                     time: state.message_id,
@@ -185,6 +188,12 @@ impl Driver {
                         Ending::Aborted
                     },
                 );
+                None
+            }
+            Phase::Running(mut motion) if !is_sound(state) => {
+                motion.statistics.note(state, skipped);
+                self.record.activity = Activity::Running;
+                self.phase = Phase::Running(motion);
                 None
             }
             Phase::Running(mut motion) => {
@@ -233,6 +242,7 @@ impl Driver {
         self.phase = if step.finished {
             motion.statistics.finish_sent = true;
             self.record.activity = Activity::Finishing;
+            self.events.push(Event::Finishing { motion: motion.id });
             Phase::Finishing(motion, command)
         } else {
             self.record.activity = Activity::Running;
@@ -263,4 +273,10 @@ impl Driver {
             program,
         }));
     }
+}
+
+/// Whether what every program computes with is finite. Anything a program made of other numbers would go to the motors.
+fn is_sound(state: &RobotState) -> bool {
+    let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
+    numbers.copied().all(f64::is_finite)
 }

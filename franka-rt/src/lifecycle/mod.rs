@@ -28,7 +28,7 @@ use franka_proto::{
 
 use crate::driver::{Ended, Ending, Event, Modes, MotionId, MotionStatistics, Order, Program};
 use crate::session::{
-    Goal, GoalError, GoalId, RELEASE_TIMEOUT, SessionEvent, Settlement, Target, TargetSession, Then,
+    Goal, GoalError, GoalId, SessionEvent, Settlement, Target, TargetSession, Then,
 };
 use crate::slot::{self, SlotWriter};
 
@@ -182,7 +182,7 @@ impl Lifecycle {
     }
 
     /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the goal is still the
-    /// one being followed.
+    /// one being followed: one that was taken back is not, whatever was still on its way for it.
     ///
     /// # Errors
     /// [`GoalError`] for a target that is not accepted; the previous one stays.
@@ -281,8 +281,8 @@ impl Lifecycle {
         self.conclude(now);
     }
 
-    /// Takes note that a reply to the `Move` of `motion` could not be read: nobody knows what the robot is doing, so it is
-    /// told to stop, and the goal resolves.
+    /// Takes note that a reply to the `Move` of `motion` could not be read: nobody knows what the robot is doing, so the arm
+    /// is braked, the robot told to stop, and the goal resolves.
     pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
         let Some(active) = self.active(motion) else {
             return;
@@ -291,10 +291,6 @@ impl Lifecycle {
             self.outputs
                 .push_back(Output::Order(Order::Disarm { motion }));
         }
-        self.outputs.push_back(Output::Send {
-            motion,
-            request: Request::StopMove,
-        });
         self.finish(now, Some(MotionError::Violation(violation)));
     }
 
@@ -314,7 +310,14 @@ impl Lifecycle {
                 motion,
                 event,
                 statistics,
-            } => self.on_session_event(motion, event, statistics, now),
+            } => self.on_session_event(motion, event, statistics),
+            Event::Finishing { motion } => {
+                if let Some(active) = self.active(motion)
+                    && active.command == CommandSide::Started
+                {
+                    active.deadline = Some(now + END_TIMEOUT);
+                }
+            }
             Event::Ended(ended) => {
                 let Some(active) = self.active(ended.motion) else {
                     return;
@@ -328,13 +331,14 @@ impl Lifecycle {
         }
     }
 
-    /// The command connection is gone: every goal resolves, nothing starts any more.
+    /// The command connection is gone: every goal resolves, an arm that moves is braked, nothing starts any more.
     pub fn on_connection_closed(&mut self, reason: &str) {
         let phase = core::mem::replace(&mut self.phase, Phase::Closed(reason.to_owned()));
         let error = MotionError::ConnectionClosed {
             reason: reason.to_owned(),
         };
-        if let Phase::Active(active) = phase {
+        if let Phase::Active(mut active) = phase {
+            active.brake();
             if matches!(active.thread, ThreadSide::Armed) {
                 self.outputs.push_back(Output::Order(Order::Disarm {
                     motion: active.motion,
@@ -371,6 +375,7 @@ impl Lifecycle {
             ) => {
                 active.command = CommandSide::Cancelled;
                 active.deadline = Some(now + END_TIMEOUT);
+                active.brake();
                 if matches!(active.thread, ThreadSide::Armed) {
                     self.outputs
                         .push_back(Output::Order(Order::Disarm { motion }));
@@ -457,6 +462,9 @@ impl Lifecycle {
             (_, Phase::Active(active)) if active.current.goal.id == id => &mut active.current,
             _ => return Ok(false),
         };
+        if waiting.cancelled {
+            return Ok(false);
+        }
         let goal = change(&waiting.goal);
         if let Some(state) = state {
             goal.check(self.model, state)?;
@@ -510,7 +518,6 @@ impl Lifecycle {
         motion: MotionId,
         event: SessionEvent,
         statistics: MotionStatistics,
-        now: Duration,
     ) {
         let Some(active) = self.active(motion) else {
             return;
@@ -527,9 +534,6 @@ impl Lifecycle {
                     duration_ms,
                     statistics,
                 });
-                if active.current.goal.id == goal {
-                    active.deadline = Some(now + RELEASE_TIMEOUT + END_TIMEOUT);
-                }
             }
             SessionEvent::BadEndEffector => active.bad_end_effector = true,
         }
@@ -553,13 +557,26 @@ impl Lifecycle {
         }
     }
 
-    /// Ends the motion, with `error` for its goal or else by what the two sides have said.
+    /// Ends the motion, with `error` for its goal or else by what the two sides have said. A robot that has not said that
+    /// the motion is over is told to stop it, and a thread that goes on is told to brake.
     fn finish(&mut self, now: Duration, error: Option<MotionError>) {
-        let Phase::Active(active) = core::mem::replace(&mut self.phase, Phase::Idle) else {
+        let Phase::Active(mut active) = core::mem::replace(&mut self.phase, Phase::Idle) else {
             return;
         };
-        let result = match (error, &active.thread) {
-            (Some(error), _) => Err(error),
+        if matches!(
+            active.command,
+            CommandSide::Requested | CommandSide::Started
+        ) {
+            self.outputs.push_back(Output::Send {
+                motion: active.motion,
+                request: Request::StopMove,
+            });
+        }
+        let (result, statistics) = match (error, &active.thread) {
+            (Some(error), _) => {
+                active.brake();
+                (Err(error), MotionStatistics::default())
+            }
             (None, ThreadSide::Ended(ended)) => {
                 if active.came_too_late(ended) {
                     // The session had let go before it saw this goal: the goal gets a motion of its own.
@@ -567,20 +584,56 @@ impl Lifecycle {
                         self.next.is_none(),
                         "a newer goal would have taken its place"
                     );
-                    return self.start(active.current, now);
+                    return self.follow(active.current, &Ok(()), &ended.statistics, now);
                 }
-                active.verdict(ended)
+                (active.verdict(ended), ended.statistics)
             }
-            (None, ThreadSide::Armed | ThreadSide::Running) => return,
+            (None, ThreadSide::Armed | ThreadSide::Running) => {
+                unreachable!("a motion concludes when its thread side has ended")
+            }
         };
-        self.resolve(active.current.goal.id, result);
+        self.resolve(active.current.goal.id, result.clone());
         if let Some(next) = self.next.take() {
-            self.start(next, now);
+            self.follow(next, &result.map(drop), &statistics, now);
         }
+    }
+
+    /// Takes up a goal that waited for the motion before it, which has ended with `before`. If rest is all that it asks
+    /// for, the end of that motion has brought it, and no motion is started to brake nothing.
+    fn follow(
+        &mut self,
+        waiting: Waiting,
+        before: &Result<(), MotionError>,
+        statistics: &MotionStatistics,
+        now: Duration,
+    ) {
+        if waiting.goal.target != Target::Rest || waiting.goal.then != Then::Finish {
+            return self.start(waiting, now);
+        }
+        let result = match before {
+            // Nobody knows, or the robot sees to it, whether the arm rests.
+            Err(error)
+                if !error.is_ready_for_more() && !matches!(error, MotionError::Rejected(_)) =>
+            {
+                Err(error.clone())
+            }
+            _ if waiting.cancelled => Err(MotionError::Stopped),
+            _ => Ok(MotionReport::new(statistics, 0, None)),
+        };
+        self.resolve(waiting.goal.id, result);
     }
 }
 
 impl Active {
+    /// Has the thread come to rest and finish, whatever it was doing: nobody waits for this motion any more.
+    fn brake(&mut self) {
+        self.slot.write(&Goal {
+            target: Target::Rest,
+            then: Then::Finish,
+            ..self.current.goal
+        });
+    }
+
     /// Whether the motion ended well with an older goal than the current one.
     fn came_too_late(&self, ended: &Ended) -> bool {
         let Program::Target(session) = &ended.program;
@@ -609,7 +662,6 @@ impl Active {
         };
         let refusal = Refusal::new(Command::Move, Status::Move(status), ended.robot_mode);
         match (refusal, ended.ending, &self.settled) {
-            (Some(refusal), Ending::Disarmed, _) => Err(MotionError::Rejected(refusal)),
             (Some(refusal), ending, _) if status == MoveStatus::ReflexAborted => {
                 Err(MotionError::Reflex(Reflex {
                     failure: ControlFailure {
@@ -619,6 +671,9 @@ impl Active {
                     },
                     while_finishing: ending == Ending::Finished,
                 }))
+            }
+            (Some(refusal), Ending::Disarmed, _) if is_rejection(status) => {
+                Err(MotionError::Rejected(refusal))
             }
             (None, Ending::Finished, _) if self.bad_end_effector => {
                 Err(GoalError::EndEffector.into())
@@ -652,4 +707,15 @@ impl Settled {
             final_error,
         ))
     }
+}
+
+/// Whether the robot did not let the motion begin, rather than ended it before the thread saw it run.
+fn is_rejection(status: MoveStatus) -> bool {
+    matches!(
+        status,
+        MoveStatus::CommandNotPossibleRejected
+            | MoveStatus::CommandRejectedDueToActivatedSafetyFunctions
+            | MoveStatus::StartAtSingularPoseRejected
+            | MoveStatus::InvalidArgumentRejected
+    )
 }
