@@ -10,7 +10,7 @@
 
 use franka_model::{Dynamics, Jacobian, JointVector};
 
-use crate::law::Gains;
+use crate::law::{Gains, shaping};
 
 /// Weight of the reference velocity in the damper, `g` above. At 1 the damper opposes only the velocity error, so the
 /// arm does not lag behind a moving reference by its damping.
@@ -74,7 +74,7 @@ pub fn torques(
     dynamics: &Dynamics,
 ) -> (JointVector, bool) {
     let interaction = spring_and_damper(gains, reference, q, dq, &dynamics.jacobian);
-    let (clamped, bound) = super::shaping::clamp(&interaction);
+    let (clamped, bound) = shaping::clamp(&interaction, &shaping::TORQUE_CLAMP.into());
     (clamped + dynamics.coriolis, bound)
 }
 

@@ -15,9 +15,9 @@ const CYCLE: f64 = 1e-3;
 /// Share of the new value in the low-pass filter, `T / (T + 1 / (2 pi f))`.
 const FILTER_GAIN: f64 = CYCLE / (CYCLE + 1.0 / (2.0 * core::f64::consts::PI * CUTOFF_FREQUENCY));
 
-/// Bounds each torque by [`TORQUE_CLAMP`] and tells whether that changed any.
-pub fn clamp(tau: &JointVector) -> (JointVector, bool) {
-    let clamped = tau.zip_map(&TORQUE_CLAMP.into(), |tau, most| tau.clamp(-most, most));
+/// Bounds each torque by `most`, `[N m]`, and tells whether that changed any.
+pub fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool) {
+    let clamped = tau.zip_map(most, |tau, most| tau.clamp(-most, most));
     (clamped, clamped != *tau)
 }
 
@@ -76,10 +76,10 @@ mod tests {
 
     #[test]
     fn clamps_each_joint_by_its_own_bound() {
-        let (tau, bound) = clamp(&JointVector::repeat(50.0));
+        let (tau, bound) = clamp(&JointVector::repeat(50.0), &TORQUE_CLAMP.into());
         assert!(bound);
         assert_eq!(tau[0], 50.0);
         assert_eq!(tau[6], 11.5);
-        assert!(!clamp(&JointVector::repeat(-11.5)).1);
+        assert!(!clamp(&JointVector::repeat(-11.5), &TORQUE_CLAMP.into()).1);
     }
 }

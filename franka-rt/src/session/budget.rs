@@ -1,6 +1,7 @@
 //! How fast a goal may be approached: limits per joint, and limits for the norm of translation and rotation.
 
-use franka_model::limits::JointLimits;
+use franka_model::Twist;
+use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
 use nalgebra::Vector3;
 
 use crate::otg::AxisLimits;
@@ -58,6 +59,34 @@ impl Budget {
         }
     }
 
+    /// The budget with the accelerations and jerks of translation and rotation raised as [`able_to_stop`] does, where a
+    /// motion at `twist` and `acceleration` does not keep them.
+    pub(crate) fn able_to_stop(
+        &self,
+        twist: &Twist,
+        acceleration: &Twist,
+        most: &CartesianLimits,
+    ) -> Self {
+        let raised = |limits: AxisLimits, part: usize, most: &MotionLimits| {
+            let velocity = twist.fixed_rows::<3>(part).norm();
+            let acceleration = acceleration.fixed_rows::<3>(part).norm();
+            if keeps(&limits, velocity, acceleration) {
+                return limits;
+            }
+            let most = AxisLimits {
+                velocity: most.velocity,
+                acceleration: most.acceleration,
+                jerk: most.jerk,
+            };
+            able_to_stop(limits, velocity, acceleration, most)
+        };
+        Self {
+            joints: self.joints,
+            translation: raised(self.translation, 0, &most.translation),
+            rotation: raised(self.rotation, 3, &most.rotation),
+        }
+    }
+
     /// Limits of the three axes of translation and the three of rotation for a plan from `velocity` along `way`, such
     /// that even all axes at their limits at once stay inside the budgets of the norms.
     pub(crate) fn axes(&self, translation: &Leg, rotation: &Leg) -> [AxisLimits; 6] {
@@ -75,6 +104,38 @@ impl Budget {
             }
         })
     }
+}
+
+/// Time in which a motion that leaves its budget, or is to stop, can be brought to rest, `[s]`. A stop from the default
+/// joint velocities within the default joint accelerations takes as long.
+const STOP_TIME: f64 = 0.25;
+
+/// Time in which the acceleration of that stop is built up or taken back, `[s]`.
+const RAMP_TIME: f64 = 0.025;
+
+/// `limits`, with acceleration and jerk raised as far as it takes to stop from `velocity` and `acceleration` in about
+/// [`STOP_TIME`], up to the robot's `most`.
+///
+/// A goal may come, with a budget of its own, while the arm moves faster than that budget allows. Its small acceleration
+/// would then brake over a distance that nobody has asked for, and its small jerk would first let the acceleration of the
+/// motion before it run on.
+pub(crate) fn able_to_stop(
+    limits: AxisLimits,
+    velocity: f64,
+    acceleration: f64,
+    most: AxisLimits,
+) -> AxisLimits {
+    let needed = (velocity.abs() / STOP_TIME).max(acceleration.abs());
+    AxisLimits {
+        velocity: limits.velocity,
+        acceleration: limits.acceleration.max(needed.min(most.acceleration)),
+        jerk: limits.jerk.max((needed / RAMP_TIME).min(most.jerk)),
+    }
+}
+
+/// Whether a motion at `velocity` and `acceleration` keeps `limits`, to one per cent.
+pub(crate) fn keeps(limits: &AxisLimits, velocity: f64, acceleration: f64) -> bool {
+    velocity.abs() <= 1.01 * limits.velocity && acceleration.abs() <= 1.01 * limits.acceleration
 }
 
 /// The way that three axes have to go, and how they move where they begin it.
@@ -155,6 +216,24 @@ mod tests {
         assert!(along_z.z > 0.99);
         let across = leg([0.0, 0.0, 0.05], [0.3, 0.0, 0.0]).shares();
         assert!(across.x > 0.5 && across.z > 0.7);
+    }
+
+    #[test]
+    fn a_slow_budget_can_still_stop_a_fast_motion() {
+        let most = AxisLimits {
+            velocity: 2.62,
+            acceleration: 10.0,
+            jerk: 5000.0,
+        };
+        let slow = AxisLimits {
+            velocity: 0.05,
+            acceleration: 0.02,
+            jerk: 1.0,
+        };
+        assert_eq!(able_to_stop(slow, 0.0, 0.0, most), slow);
+        let raised = able_to_stop(slow, -0.5, 1.0, most);
+        assert_eq!((raised.acceleration, raised.jerk), (2.0, 80.0));
+        assert_eq!(able_to_stop(slow, 9.0, 0.0, most).acceleration, 10.0);
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! The course that the reference takes: over the joints, or over the pose of the end effector.
 
+use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, GRAVITY_EARTH, JointVector, Load, Model};
 
 use crate::law::hybrid::Reference;
-use crate::otg::{Generator, Limits, PlanError, State};
+use crate::otg::{AxisLimits, Generator, Limits, PlanError, State};
 use crate::session::pose::{PoseGenerator, PoseState};
-use crate::session::{Budget, Goal, Target, kinematics, rigid};
+use crate::session::{Budget, Goal, Target, budget, kinematics, rigid};
 
 /// What moves the reference.
 #[derive(Debug)]
@@ -40,10 +41,11 @@ impl Course {
             }
             (Target::Pose(pose), Self::Rest | Self::Joints(_)) => {
                 let start = end_effector(model, ee, reference);
-                PoseGenerator::new(&start, pose, goal.budget).map(Self::Pose)
+                PoseGenerator::new(&start, pose, goal.budget, model.cartesian_limits())
+                    .map(Self::Pose)
             }
-            (Target::Joints(target), _) => joints(reference, Some(target), &goal.budget),
-            (Target::Rest, _) => joints(reference, None, &goal.budget),
+            (Target::Joints(target), _) => joints(model, reference, Some(target), &goal.budget),
+            (Target::Rest, _) => joints(model, reference, None, &goal.budget),
         };
         match planned {
             Ok(course) => *self = course,
@@ -95,6 +97,7 @@ impl Course {
 
 /// A course over the joints from the reference to `target`, or to rest.
 fn joints(
+    model: &Model,
     reference: &Reference,
     target: Option<[f64; 7]>,
     budget: &Budget,
@@ -104,12 +107,55 @@ fn joints(
         velocity: reference.dq.into(),
         acceleration: reference.ddq.into(),
     };
+    let limits = core::array::from_fn(|i| {
+        limits_of_joint(
+            i,
+            model.joint_limits(),
+            reference,
+            budget.joints[i],
+            target.is_none(),
+        )
+    });
     // Without a target a generator comes to rest in the least time.
-    let mut generator = Generator::new(state, Limits::per_axis(budget.joints)?)?;
+    let mut generator = Generator::new(state, Limits::per_axis(limits)?)?;
     if let Some(target) = target {
         generator.set_target(&target)?;
     }
     Ok(Course::Joints(generator))
+}
+
+/// The limits of one joint's plan: those of the budget, unless the joint moves and is only to stop, keeps another budget
+/// than this one, or would stop too late for the end of its range.
+fn limits_of_joint(
+    i: usize,
+    robot: &JointLimits,
+    reference: &Reference,
+    limits: AxisLimits,
+    stop: bool,
+) -> AxisLimits {
+    let (q, dq, ddq) = (reference.q[i], reference.dq[i], reference.ddq[i]);
+    let most = AxisLimits {
+        velocity: robot.velocity[i],
+        acceleration: robot.acceleration[i],
+        jerk: robot.jerk[i],
+    };
+    let room = if dq > 0.0 {
+        robot.upper[i] - q
+    } else {
+        q - robot.lower[i]
+    };
+    // Twice the even deceleration to the end of the range: part of the way goes by while it is built up.
+    let last_moment = dq * dq > limits.acceleration * room;
+    if stop || last_moment || !budget::keeps(&limits, dq, ddq) {
+        let deceleration = if last_moment {
+            dq * dq / room.max(f64::MIN_POSITIVE)
+        } else {
+            0.0
+        };
+        budget::able_to_stop(limits, dq, ddq.abs().max(deceleration), most)
+    } else {
+        limits
+    }
 }
 
 /// The end effector of a moving reference.

@@ -21,6 +21,8 @@ mod landing;
 mod leash;
 mod pose;
 
+use core::time::Duration;
+
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model, transform};
 use franka_proto::RobotState;
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
@@ -42,6 +44,10 @@ use landing::{Landing, Release, Verdict};
 
 /// Cycles over which the gains go from those of one goal to those of the next.
 const CROSS_FADE: u32 = 300;
+
+/// Time for which something may hold the arm at the length of the leash. An arm that has not got on by then is braked and
+/// lands where it is.
+pub const STALL_TIMEOUT: Duration = SETTLE_TIMEOUT;
 
 /// What a session reports of its goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +97,8 @@ struct Active {
     reference: Reference,
     gains: Fade,
     stage: Stage,
+    /// Cycles in a row in which the leash has bound.
+    leashed: u64,
 }
 
 /// What the session does about its goal.
@@ -207,6 +215,7 @@ impl Active {
                 cycle: CROSS_FADE,
             },
             stage: Stage::UnderWay,
+            leashed: 0,
             since: state.message_id,
             posture: q,
             reference,
@@ -228,6 +237,7 @@ impl Active {
         self.goal = goal;
         self.gains.towards(goal.gains);
         self.stage = Stage::UnderWay;
+        self.leashed = 0;
         self.course
             .head_for(model, &self.ee, &self.reference, &goal);
     }
@@ -246,21 +256,22 @@ impl Active {
         bindings.set(Guard::InverseKinematics, bound);
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         let event = self.advance_stage(model, &q, &measured, at_rest, state.message_id);
-        bindings.set(
-            Guard::Leash,
-            leash::hold(&mut self.course, &mut self.reference, &q, &measured),
-        );
+        let leashed = leash::hold(&mut self.course, &mut self.reference, &q, &measured);
+        bindings.set(Guard::Leash, leashed);
+        self.leashed = if leashed { self.leashed + 1 } else { 0 };
 
         self.gains.cycle = self.gains.cycle.saturating_add(1);
         let last = JointVector::from(state.tau_J_d);
         let (tau, clamped) =
             hybrid::torques(&self.gains.now(), &self.reference, &q, &dq, &dynamics);
+        // The Coriolis torques come on top of the clamped ones, which leave them little room.
+        let (tau, full) = shaping::clamp(&tau, &model.joint_limits().torque);
         let (tau, slowed) = shaping::limit_rate(
             &shaping::low_pass(&tau, &last),
             &last,
             &model.joint_limits().torque_rate,
         );
-        bindings.set(Guard::TorqueClamp, clamped);
+        bindings.set(Guard::TorqueClamp, clamped || full);
         bindings.set(Guard::TorqueRate, slowed);
 
         record.goal = self.goal.id.0;
@@ -286,7 +297,16 @@ impl Active {
     ) -> Option<SessionEvent> {
         match &mut self.stage {
             Stage::UnderWay => {
-                if self.goal.then == Then::Finish && self.course.is_done() {
+                let stalled = u128::from(self.leashed) >= STALL_TIMEOUT.as_millis();
+                if self.goal.then == Then::Finish && (self.course.is_done() || stalled) {
+                    if stalled && self.goal.target != Target::Rest {
+                        let rest = Goal {
+                            target: Target::Rest,
+                            ..self.goal
+                        };
+                        self.course
+                            .head_for(model, &self.ee, &self.reference, &rest);
+                    }
                     let target = match self.goal.target {
                         Target::Rest => None,
                         Target::Pose(pose) => Some(pose),

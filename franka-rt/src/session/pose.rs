@@ -6,6 +6,7 @@
 //! acceleration either. So a plan that begins in motion is seeded exactly by re-anchoring the chart where it begins.
 
 use franka_model::Twist;
+use franka_model::limits::CartesianLimits;
 use franka_model::rotation;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -31,10 +32,13 @@ pub(crate) struct PoseGenerator {
     anchor: UnitQuaternion<f64>,
     target: Isometry3<f64>,
     budget: Budget,
+    /// What the robot allows at most.
+    most: &'static CartesianLimits,
 }
 
 impl PoseGenerator {
-    /// Begins at `start` and heads for `target`.
+    /// Begins at `start` and heads for `target` within `budget`. A start that moves faster than the budget allows is braked
+    /// with more than the budget's acceleration, up to the robot's `most`.
     ///
     /// # Errors
     /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause one.
@@ -42,13 +46,19 @@ impl PoseGenerator {
         start: &PoseState,
         target: Isometry3<f64>,
         budget: Budget,
+        most: &'static CartesianLimits,
     ) -> Result<Self, PlanError> {
-        let axes = plan(start, &target, &budget)?;
+        let axes = plan(
+            start,
+            &target,
+            &budget.able_to_stop(&start.twist, &start.acceleration, most),
+        )?;
         Ok(Self {
             axes,
             anchor: start.pose.rotation,
             target,
             budget,
+            most,
         })
     }
 
@@ -62,7 +72,7 @@ impl PoseGenerator {
         budget: Budget,
     ) -> Result<(), PlanError> {
         if target != self.target || budget != self.budget {
-            *self = Self::new(&self.state(), target, budget)?;
+            *self = Self::new(&self.state(), target, budget, self.most)?;
         }
         Ok(())
     }
@@ -79,6 +89,7 @@ impl PoseGenerator {
             },
             self.target,
             self.budget,
+            self.most,
         )?;
         Ok(())
     }
