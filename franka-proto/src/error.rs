@@ -1,13 +1,16 @@
 //! What can be wrong with bytes, requests, replies and peers: got and expected.
 
+use core::fmt;
+
 use crate::framing::Message;
+use crate::protocol::ServiceCommand;
 use crate::service::{Command, CommandId};
 use crate::version::Version;
 
-/// Bytes that have no meaning.
+/// Bytes that have no meaning. `C` is what can be asked of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum DecodeError {
+pub enum DecodeError<C: ServiceCommand = Command> {
     /// A datagram is shorter than its struct.
     #[error("libfranka: incorrect object size")]
     DatagramSize {
@@ -30,7 +33,7 @@ pub enum DecodeError {
         /// The number in the header.
         number: u32,
         /// The version of the session.
-        version: Version,
+        version: u16,
     },
     /// An enumerator in a request is none of the version's.
     #[error("{field} {value} has no meaning")]
@@ -40,17 +43,17 @@ pub enum DecodeError {
         /// Its value.
         value: u32,
     },
-    /// A status byte in a reply is none of the version's.
-    #[error("libfranka: Unexpected response while handling {command} command!")]
+    /// A status in a reply is none of the version's.
+    #[error("{}", Unexpected(*command))]
     UnknownStatus {
         /// The command that is answered.
-        command: Command,
-        /// The status byte.
-        status: u8,
+        command: C,
+        /// The number of the status.
+        status: u16,
     },
 }
 
-impl DecodeError {
+impl<C: ServiceCommand> DecodeError<C> {
     pub(crate) fn datagram<T>(bytes: &[u8]) -> Self {
         Self::DatagramSize {
             got: bytes.len(),
@@ -61,8 +64,17 @@ impl DecodeError {
     pub(crate) fn message<T>(message: &Message<'_>) -> Self {
         Self::MessageSize {
             got: message.size(),
-            expected: crate::framing::Header::SIZE + size_of::<T>(),
+            expected: message.size().saturating_sub(message.payload.len()) + size_of::<T>(),
         }
+    }
+}
+
+/// libfranka's text about a reply to this command whose status has no meaning.
+struct Unexpected<C>(C);
+
+impl<C: ServiceCommand> fmt::Display for Unexpected<C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.unexpected_response(f)
     }
 }
 
@@ -115,7 +127,7 @@ pub enum RequestError {
 /// A reply that the server session does not send. Nothing of it has been encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum ReplyError {
+pub enum ReplyError<C: ServiceCommand = Command> {
     /// No request of this id waits for a reply.
     #[error("no request {id} waits for a reply")]
     NotPending {
@@ -128,7 +140,7 @@ pub enum ReplyError {
         /// The id.
         id: CommandId,
         /// What was asked for.
-        command: Command,
+        command: C,
     },
     /// A `Move` has got its first answer already.
     #[error("the motion of request {id} has been reported as started")]
@@ -156,19 +168,19 @@ pub enum ReplyError {
 /// A peer that left the protocol. No caller can cause it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Violation {
+pub enum Violation<C: ServiceCommand = Command> {
     /// The handshake's answer is neither yes nor no.
     #[error("libfranka: Protocol error during connection attempt")]
     ConnectStatus {
-        /// The status byte.
-        status: u8,
+        /// The number of the status.
+        status: u16,
     },
-    /// The robot agreed to our version and reports another one as its own.
-    #[error("the robot accepts protocol {announced} and reports {reported} as its own")]
+    /// The device agreed to our version and reports another one as its own.
+    #[error("the device accepts protocol {announced} and reports {reported} as its own")]
     ForeignVersion {
         /// The version that the client announced.
         announced: u16,
-        /// The version that the robot reports.
+        /// The version that the device reports.
         reported: u16,
     },
     /// The answer to a request cannot be read. The request has ended with this.
@@ -177,7 +189,7 @@ pub enum Violation {
         /// The request.
         id: CommandId,
         /// What is wrong with the answer.
-        error: DecodeError,
+        error: DecodeError<C>,
     },
     /// A motion is reported as started for the second time. It is still on.
     #[error("libfranka: Move received unexpected motion started message.")]
@@ -191,13 +203,13 @@ pub enum Violation {
         /// The id in the message.
         id: CommandId,
         /// What is wrong with it.
-        error: DecodeError,
+        error: DecodeError<C>,
     },
     /// A client's first message is not `Connect`.
     #[error("the first message is {got}, expected Connect")]
     NotConnect {
         /// What it is.
-        got: Command,
+        got: C,
     },
     /// A client sends `Connect` in an open session.
     #[error("a second Connect in one session")]
@@ -216,7 +228,7 @@ pub enum Violation {
     },
 }
 
-impl Violation {
+impl<C: ServiceCommand> Violation<C> {
     /// The request that has ended, or in one case goes on, with this violation.
     #[must_use]
     pub fn id(&self) -> Option<CommandId> {

@@ -1,7 +1,8 @@
 //! Stream bytes in, whole messages out.
 //!
 //! Every message on the robot's TCP stream is a 12-byte [`Header`] and a payload; the header's
-//! `size` counts both.
+//! `size` counts both. The end effectors have 10 bytes there: see
+//! [`gripper::next_message`](crate::gripper::next_message).
 //!
 //! ```
 //! use franka_proto::framing::{Header, next_message};
@@ -19,7 +20,7 @@ use zerocopy::byteorder::little_endian::U32;
 use zerocopy::{FromBytes, IntoBytes};
 
 use crate::service::CommandId;
-use crate::wire;
+use crate::wire::{self, CommandNumber};
 
 /// The longest message that [`next_message`] waits for, in bytes: 8 MiB.
 ///
@@ -46,8 +47,8 @@ pub struct Header {
 }
 
 impl Header {
-    /// Length of a header in bytes.
-    pub const SIZE: usize = size_of::<wire::CommandHeader>();
+    /// Length of a header on the robot's stream in bytes.
+    pub const SIZE: usize = size_of::<wire::CommandHeader<U32>>();
 
     /// The request that the message is or answers.
     #[must_use]
@@ -55,17 +56,20 @@ impl Header {
         CommandId(self.command_id)
     }
 
-    /// Bytes for the stream.
+    /// Bytes for the robot's stream.
     #[must_use]
     pub fn to_bytes(self) -> [u8; Self::SIZE] {
         let mut bytes = [0; Self::SIZE];
-        let wire = wire::CommandHeader {
-            command: U32::new(self.command),
-            command_id: U32::new(self.command_id),
-            size: U32::new(self.size),
-        };
-        bytes.copy_from_slice(wire.as_bytes());
+        bytes.copy_from_slice(self.to_wire::<U32>().as_bytes());
         bytes
+    }
+
+    pub(crate) fn to_wire<N: CommandNumber>(self) -> wire::CommandHeader<N> {
+        wire::CommandHeader {
+            command: N::new(self.command),
+            command_id: self.command_id.into(),
+            size: self.size.into(),
+        }
     }
 }
 
@@ -82,7 +86,7 @@ impl Message<'_> {
     /// Length of the whole message in bytes: how far to advance in the stream.
     #[must_use]
     pub fn size(&self) -> usize {
-        Header::SIZE + self.payload.len()
+        self.header.size as usize
     }
 }
 
@@ -123,7 +127,15 @@ pub fn next_message_within(
     received: &[u8],
     limit: usize,
 ) -> Result<Option<Message<'_>>, FrameError> {
-    let Ok((wire, rest)) = wire::CommandHeader::read_from_prefix(received) else {
+    next_message_of::<U32>(received, limit)
+}
+
+/// [`next_message_within`] for a stream whose headers number the commands with `N`.
+pub(crate) fn next_message_of<N: CommandNumber>(
+    received: &[u8],
+    limit: usize,
+) -> Result<Option<Message<'_>>, FrameError> {
+    let Ok((wire, rest)) = wire::CommandHeader::<N>::read_from_prefix(received) else {
         return Ok(None);
     };
     let header = Header {
@@ -132,7 +144,7 @@ pub fn next_message_within(
         size: wire.size.get(),
     };
     let size = header.size as usize;
-    let Some(length) = size.checked_sub(Header::SIZE) else {
+    let Some(length) = size.checked_sub(size_of::<wire::CommandHeader<N>>()) else {
         return Err(FrameError::TooShort { got: header.size });
     };
     if size > limit {

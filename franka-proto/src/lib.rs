@@ -23,6 +23,7 @@
 //! | [`framing`] | stream bytes in, whole messages out, with a bound |
 //! | [`Request`], [`Reply`] | the messages as meaning |
 //! | [`client`], [`server`] | the two sides of a connection as state machines |
+//! | [`gripper`], [`vacuum`] | the protocols of the Franka Hand and of the vacuum gripper |
 //! | [`Refusal`], [`ControlFailure`], [`IncompatibleVersion`] | libfranka's texts, to the byte |
 //!
 //! # Example
@@ -72,15 +73,19 @@ extern crate std;
 pub mod client;
 mod command;
 mod control_error;
+mod end_effector;
 mod error;
 mod errors;
 pub mod framing;
+pub mod gripper;
 mod modes;
 mod outgoing;
 mod pending;
+mod protocol;
 pub mod server;
 mod service;
 mod state;
+pub mod vacuum;
 mod version;
 pub mod wire;
 
@@ -90,6 +95,7 @@ pub use error::{DecodeError, EncodeError, ReplyError, RequestError, Violation};
 pub use errors::{Errors, RobotError};
 pub use modes::{ControllerMode, MotionGeneratorMode, RobotMode};
 pub use outgoing::Outgoing;
+pub use protocol::{FieldDevice, Progress, Protocol, ServiceCommand};
 pub use service::{
     Architecture, CollisionBehavior, Command, CommandId, ConnectStatus, Deviation, Filters,
     LibraryStatus, Load, ModelStatus, MoveControllerMode, MoveGeneratorMode, MoveRequest,
@@ -97,4 +103,4 @@ pub use service::{
     VirtualWall,
 };
 pub use state::{RobotState, TotalLoad};
-pub use version::{IncompatibleVersion, Version};
+pub use version::{Explanation, IncompatibleVersion, Version};

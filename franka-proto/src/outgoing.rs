@@ -2,10 +2,12 @@
 
 use core::fmt;
 
+use zerocopy::byteorder::little_endian::U32;
 use zerocopy::{Immutable, IntoBytes};
 
 use crate::framing::Header;
 use crate::service::CommandId;
+use crate::wire::{self, CommandNumber};
 
 /// One TCP message to send with one write: header and payload.
 ///
@@ -23,7 +25,7 @@ impl Outgoing {
     /// Size of the inline buffer in bytes: room for the longest fixed message.
     pub const CAPACITY: usize = 440;
 
-    /// A header followed by `payload`; `extra` bytes that the caller sends behind it count in the
+    /// A message of the robot's service: a header followed by `payload`; `extra` bytes that the caller sends behind it count in the
     /// header's size.
     pub(crate) fn new<P: IntoBytes + Immutable + ?Sized>(
         command: u32,
@@ -31,8 +33,19 @@ impl Outgoing {
         payload: &P,
         extra: usize,
     ) -> Self {
+        Self::with_header::<U32, P>(command, id, payload, extra)
+    }
+
+    /// [`Outgoing::new`] for a service whose headers number the commands with `N`.
+    pub(crate) fn with_header<N: CommandNumber, P: IntoBytes + Immutable + ?Sized>(
+        command: u32,
+        id: CommandId,
+        payload: &P,
+        extra: usize,
+    ) -> Self {
         let payload = payload.as_bytes();
-        let len = Header::SIZE + payload.len();
+        let header_len = size_of::<wire::CommandHeader<N>>();
+        let len = header_len + payload.len();
         let mut bytes = [0; Self::CAPACITY];
         let header = Header {
             command,
@@ -40,8 +53,8 @@ impl Outgoing {
             // Callers bound `extra` by `framing::MAX_MESSAGE_SIZE`, far below 2^32.
             size: (len + extra) as u32,
         };
-        bytes[..Header::SIZE].copy_from_slice(&header.to_bytes());
-        bytes[Header::SIZE..len].copy_from_slice(payload);
+        bytes[..header_len].copy_from_slice(header.to_wire::<N>().as_bytes());
+        bytes[header_len..len].copy_from_slice(payload);
         Self { bytes, len, id }
     }
 

@@ -1,6 +1,6 @@
 //! The requests that wait for a reply, by command id.
 
-use crate::service::{Command, CommandId};
+use crate::service::CommandId;
 
 /// Requests of one session that may wait for replies at the same time.
 ///
@@ -10,20 +10,20 @@ pub(crate) const LIMIT: usize = 32;
 
 /// A request that waits for a reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Entry {
+pub(crate) struct Entry<C> {
     pub(crate) id: CommandId,
-    pub(crate) command: Command,
+    pub(crate) command: C,
     /// Whether the first of two answers has been given.
     pub(crate) started: bool,
 }
 
 /// The table: a bounded set of entries, in no order.
 #[derive(Clone, Debug)]
-pub(crate) struct Pending {
-    entries: [Option<Entry>; LIMIT],
+pub(crate) struct Pending<C> {
+    entries: [Option<Entry<C>>; LIMIT],
 }
 
-impl Pending {
+impl<C: Copy> Pending<C> {
     pub(crate) const fn new() -> Self {
         Self {
             entries: [None; LIMIT],
@@ -39,7 +39,7 @@ impl Pending {
     }
 
     /// Adds a request; false, and no change, if the table is full.
-    pub(crate) fn insert(&mut self, id: CommandId, command: Command) -> bool {
+    pub(crate) fn insert(&mut self, id: CommandId, command: C) -> bool {
         let free = self.entries.iter_mut().find(|entry| entry.is_none());
         let Some(free) = free else { return false };
         *free = Some(Entry {
@@ -50,7 +50,7 @@ impl Pending {
         true
     }
 
-    pub(crate) fn get(&self, id: CommandId) -> Option<Entry> {
+    pub(crate) fn get(&self, id: CommandId) -> Option<Entry<C>> {
         self.entries.iter().flatten().find(|e| e.id == id).copied()
     }
 
@@ -74,6 +74,7 @@ impl Pending {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::service::Command;
 
     #[test]
     fn the_table_is_bounded_and_places_are_used_again() {

@@ -460,7 +460,7 @@ fn padded_replies_are_accepted() {
 
 #[test]
 fn pending_requests_are_bounded_on_both_sides() {
-    let limit = client::Session::PENDING_LIMIT;
+    let limit = <client::Session>::PENDING_LIMIT;
     let mut pair = Pair::connected(Version::V10);
     for _ in 0..limit {
         pair.request(&Request::AutomaticErrorRecovery);
@@ -470,7 +470,7 @@ fn pending_requests_are_bounded_on_both_sides() {
 
     let id = CommandId(1000);
     let one_more = Request::StopMove.encode(Version::V10, id).unwrap();
-    let limit = server::Session::PENDING_LIMIT;
+    let limit = <server::Session>::PENDING_LIMIT;
     let error = pair.deliver(&one_more).unwrap_err();
     assert_eq!(error, Violation::TooManyPending { limit });
     // An answer makes room on both sides.

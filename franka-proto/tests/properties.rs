@@ -224,7 +224,7 @@ proptest! {
                     prop_assert!(reply.suits(command));
                 }
             }
-            prop_assert!(client.pending() <= client::Session::PENDING_LIMIT);
+            prop_assert!(client.pending() <= <client::Session>::PENDING_LIMIT);
         }
     }
 }

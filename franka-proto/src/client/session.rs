@@ -3,17 +3,19 @@
 use crate::error::{DecodeError, RequestError, Violation};
 use crate::framing::Message;
 use crate::outgoing::Outgoing;
-use crate::pending::{self, Entry, Pending};
-use crate::service::{Command, CommandId, ConnectStatus, MoveStatus, Reply, Request};
+use crate::pending::{self, Pending};
+use crate::protocol::{Progress, Protocol, ServiceCommand};
+use crate::service::{CommandId, ConnectStatus};
 use crate::version::{IncompatibleVersion, Version};
 
-/// One connection to a robot, from its first byte to its last.
+/// One connection to a device, from its first byte to its last: to a robot, unless `P` says
+/// otherwise.
 #[derive(Clone, Debug)]
-pub struct Session {
-    version: Version,
+pub struct Session<P: Protocol = Version> {
+    version: P,
     phase: Phase,
     next_id: u32,
-    pending: Pending,
+    pending: Pending<P::Command>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,29 +25,29 @@ enum Phase {
     Open,
 }
 
-/// What a message of the robot means.
+/// What a message of the device means.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Event<'a> {
+pub enum Event<'a, P: Protocol = Version> {
     /// The handshake succeeded; requests may follow.
     Connected {
         /// The version of the session.
-        version: Version,
+        version: P,
     },
-    /// The robot speaks another version. The connection is of no more use: open another one, with
-    /// the robot's version if [`Version::from_number`] knows it.
-    Incompatible(IncompatibleVersion),
+    /// The device speaks another version. The connection is of no more use: open another one, with
+    /// a robot's version if [`Version::from_number`] knows it.
+    Incompatible(IncompatibleVersion<P>),
     /// The answer to a request.
     ///
-    /// [`MoveStatus::MotionStarted`] is the first of two answers; every other one is the last under
-    /// its id.
+    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted) is the first of two answers;
+    /// every other one is the last under its id.
     Reply {
         /// The request.
         id: CommandId,
         /// What it asked for.
-        command: Command,
+        command: P::Command,
         /// The answer.
-        reply: Reply<'a>,
+        reply: P::Reply<'a>,
     },
     /// An answer that nobody waits for, such as the late one of an abandoned request. It changes
     /// nothing.
@@ -55,13 +57,13 @@ pub enum Event<'a> {
     },
 }
 
-impl Session {
+impl<P: Protocol> Session<P> {
     /// Requests that may wait for replies at the same time.
     pub const PENDING_LIMIT: usize = pending::LIMIT;
 
     /// A session that will announce `version`.
     #[must_use]
-    pub fn new(version: Version) -> Self {
+    pub fn new(version: P) -> Self {
         Self {
             version,
             phase: Phase::Closed,
@@ -72,7 +74,7 @@ impl Session {
 
     /// The version of the session.
     #[must_use]
-    pub fn version(&self) -> Version {
+    pub fn version(&self) -> P {
         self.version
     }
 
@@ -96,20 +98,18 @@ impl Session {
         *self = Self::new(self.version);
         self.phase = Phase::Connecting;
         let id = self.take_id();
-        self.pending.insert(id, Command::Connect);
-        let version = self.version.number();
-        Request::Connect { version, udp_port }
-            .encode(self.version, id)
-            .expect("every version has Connect")
+        self.pending.insert(id, P::Command::CONNECT);
+        let hello = self.version.connect(udp_port);
+        let hello = self.version.encode_request(&hello, id);
+        hello.expect("every version has Connect")
     }
 
     /// The message of a request, under the next id.
     ///
     /// # Errors
     /// [`RequestError`]; the session is then as before.
-    pub fn request(&mut self, request: &Request) -> Result<Outgoing, RequestError> {
-        let command = request.command();
-        if command == Command::Connect {
+    pub fn request(&mut self, request: &P::Request) -> Result<Outgoing, RequestError> {
+        if P::handshake(request).is_some() {
             return Err(RequestError::Handshake);
         }
         if self.phase != Phase::Open {
@@ -120,9 +120,10 @@ impl Session {
                 limit: Self::PENDING_LIMIT,
             });
         }
-        let outgoing = request.encode(self.version, CommandId(self.next_id))?;
-        let id = self.take_id();
-        self.pending.insert(id, command);
+        let id = CommandId(self.next_id);
+        let outgoing = self.version.encode_request(request, id)?;
+        self.take_id();
+        self.pending.insert(id, P::command_of(request));
         Ok(outgoing)
     }
 
@@ -132,55 +133,55 @@ impl Session {
         self.pending.remove(id)
     }
 
-    /// What a message of the robot means.
+    /// What a message of the device means.
     ///
     /// # Errors
     /// [`Violation`]; [`Violation::is_fatal`] says whether the connection is of no more use.
-    pub fn on_message<'a>(&mut self, message: Message<'a>) -> Result<Event<'a>, Violation> {
+    pub fn on_message<'a>(
+        &mut self,
+        message: Message<'a>,
+    ) -> Result<Event<'a, P>, Violation<P::Command>> {
         let id = message.header.id();
         let Some(entry) = self.pending.get(id) else {
             return Ok(Event::Unmatched { id });
         };
-        let Entry {
-            command, started, ..
-        } = entry;
-        let reply = match Reply::decode(self.version, command, &message) {
+        let command = entry.command;
+        let reply = match self.version.decode_reply(command, &message) {
             Ok(reply) => reply,
             Err(error) => {
                 self.pending.remove(id);
                 return Err(match error {
-                    DecodeError::UnknownStatus {
-                        command: Command::Connect,
-                        status,
-                    } => Violation::ConnectStatus { status },
+                    DecodeError::UnknownStatus { command, status }
+                        if command == P::Command::CONNECT =>
+                    {
+                        Violation::ConnectStatus { status }
+                    }
                     error => Violation::Reply { id, error },
                 });
             }
         };
-        match reply {
-            Reply::Move(MoveStatus::MotionStarted) if started => {
-                Err(Violation::SecondMotionStarted { id })
-            }
-            Reply::Move(MoveStatus::MotionStarted) => {
+        match P::progress(&reply) {
+            Progress::Started if entry.started => Err(Violation::SecondMotionStarted { id }),
+            Progress::Started => {
                 self.pending.start(id);
                 Ok(Event::Reply { id, command, reply })
             }
-            Reply::Connect { status, version } => {
+            Progress::Handshake(status, version) => {
                 self.pending.remove(id);
                 self.on_handshake(status, version)
             }
-            reply => {
+            Progress::Ended => {
                 self.pending.remove(id);
                 Ok(Event::Reply { id, command, reply })
             }
         }
     }
 
-    fn on_handshake(
+    fn on_handshake<'a>(
         &mut self,
         status: ConnectStatus,
         reported: u16,
-    ) -> Result<Event<'static>, Violation> {
+    ) -> Result<Event<'a, P>, Violation<P::Command>> {
         self.phase = Phase::Closed;
         let announced = self.version.number();
         match status {

@@ -4,17 +4,17 @@ use crate::error::{DecodeError, ReplyError, Violation};
 use crate::framing::{Header, MAX_MESSAGE_SIZE, Message};
 use crate::outgoing::Outgoing;
 use crate::pending::{self, Pending};
-use crate::service::{
-    Command, CommandId, ConnectStatus, LibraryStatus, ModelStatus, MoveStatus, Reply, Request,
-};
+use crate::protocol::{Progress, Protocol, ServiceCommand};
+use crate::service::{CommandId, ConnectStatus, LibraryStatus, ModelStatus, Reply};
 use crate::version::Version;
 
-/// One connection of a client, from its first byte to its last.
+/// One connection of a client, from its first byte to its last: a client of a robot, unless `P`
+/// says otherwise.
 #[derive(Clone, Debug)]
-pub struct Session {
-    version: Version,
+pub struct Session<P: Protocol = Version> {
+    version: P,
     phase: Phase,
-    pending: Pending,
+    pending: Pending<P::Command>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ enum Phase {
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Event {
+pub enum Event<P: Protocol = Version> {
     /// A client of the same version is there. Send `reply`; states go to `udp_port` from then on.
     Connect {
         /// The id of the handshake.
@@ -45,12 +45,13 @@ pub enum Event {
         /// The answer that the session gives.
         reply: Outgoing,
     },
-    /// A request to act on, and to answer with [`Session::reply`] or [`Session::model_header`].
+    /// A request to act on, and to answer with [`Session::reply`] (or, of a model,
+    /// `Session::model_header`).
     Request {
         /// The id to answer to.
         id: CommandId,
         /// What is asked for.
-        request: Request,
+        request: P::Request,
     },
     /// A request with an enumerator that does not exist, such as a `Move` with an unknown mode. A
     /// robot answers it as an invalid argument. Send `reply`; the request is done.
@@ -58,19 +59,19 @@ pub enum Event {
         /// The id of the request.
         id: CommandId,
         /// What is wrong with it.
-        error: DecodeError,
+        error: DecodeError<P::Command>,
         /// The answer that the session gives.
         reply: Outgoing,
     },
 }
 
-impl Session {
+impl<P: Protocol> Session<P> {
     /// Requests that may wait for replies at the same time.
     pub const PENDING_LIMIT: usize = pending::LIMIT;
 
-    /// A session of a robot that speaks `version`.
+    /// A session of a device that speaks `version`.
     #[must_use]
-    pub fn new(version: Version) -> Self {
+    pub fn new(version: P) -> Self {
         Self {
             version,
             phase: Phase::Listening,
@@ -78,9 +79,9 @@ impl Session {
         }
     }
 
-    /// The version of the robot.
+    /// The version of the device.
     #[must_use]
-    pub fn version(&self) -> Version {
+    pub fn version(&self) -> P {
         self.version
     }
 
@@ -94,32 +95,22 @@ impl Session {
     ///
     /// # Errors
     /// [`Violation`]: the client is to be disconnected.
-    pub fn on_message(&mut self, message: Message<'_>) -> Result<Event, Violation> {
+    pub fn on_message(&mut self, message: Message<'_>) -> Result<Event<P>, Violation<P::Command>> {
         let id = message.header.id();
-        let request = match Request::decode(self.version, &message) {
+        let request = match self.version.decode_request(&message) {
             Ok(request) => request,
-            Err(error) => {
-                let command = self.version.command_from_number(message.header.command);
-                return match (error, command.and_then(Reply::to_unknown_value)) {
-                    (DecodeError::UnknownValue { .. }, Some(reply))
-                        if self.phase == Phase::Open =>
-                    {
-                        self.reject(id, reply, error)
-                    }
-                    _ => Err(Violation::Request { id, error }),
-                };
-            }
+            Err(error) => return self.on_unreadable(&message, error),
         };
-        match (self.phase, request) {
-            (Phase::Listening, Request::Connect { version, udp_port }) => {
+        match (self.phase, P::handshake(&request)) {
+            (Phase::Listening, Some((version, udp_port))) => {
                 Ok(self.on_connect(id, version, udp_port))
             }
-            (Phase::Listening, request) => Err(Violation::NotConnect {
-                got: request.command(),
+            (Phase::Listening, None) => Err(Violation::NotConnect {
+                got: P::command_of(&request),
             }),
-            (Phase::Open, Request::Connect { .. }) => Err(Violation::SecondConnect),
-            (Phase::Open, request) => {
-                self.remember(id, request.command())?;
+            (Phase::Open, Some(_)) => Err(Violation::SecondConnect),
+            (Phase::Open, None) => {
+                self.remember(id, P::command_of(&request))?;
                 Ok(Event::Request { id, request })
             }
         }
@@ -127,20 +118,99 @@ impl Session {
 
     /// The message that answers a request.
     ///
-    /// A `Move` is answered twice: [`MoveStatus::MotionStarted`], then how it ended; or once, with
-    /// a refusal. A model is answered with [`Session::model_header`] instead, unless it is refused.
+    /// A `Move` of a robot is answered twice:
+    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted), then how it ended; or once,
+    /// with a refusal. A model is answered with [`Session::model_header`] or
+    /// [`Session::library_header`] instead, unless it is refused.
     ///
     /// # Errors
     /// [`ReplyError`]; the session is then as before.
-    pub fn reply(&mut self, id: CommandId, reply: Reply<'_>) -> Result<Outgoing, ReplyError> {
-        if let Reply::Model { text: tail, .. } | Reply::ModelLibrary { library: tail, .. } = reply
-            && !tail.is_empty()
-        {
-            return Err(ReplyError::TextLength { len: tail.len() });
-        }
+    pub fn reply(
+        &mut self,
+        id: CommandId,
+        reply: P::Reply<'_>,
+    ) -> Result<Outgoing, ReplyError<P::Command>> {
         self.answer(id, &reply, 0)
     }
 
+    fn answer(
+        &mut self,
+        id: CommandId,
+        reply: &P::Reply<'_>,
+        extra: usize,
+    ) -> Result<Outgoing, ReplyError<P::Command>> {
+        let entry = self.pending.get(id).ok_or(ReplyError::NotPending { id })?;
+        let outgoing = self.version.encode_reply(entry.command, id, reply, extra)?;
+        match P::progress(reply) {
+            Progress::Started if entry.started => return Err(ReplyError::AlreadyStarted { id }),
+            Progress::Started => self.pending.start(id),
+            _ => {
+                self.pending.remove(id);
+            }
+        }
+        Ok(outgoing)
+    }
+
+    fn on_connect(&mut self, id: CommandId, version: u16, udp_port: u16) -> Event<P> {
+        let device = self.version;
+        let reply = |status| {
+            device
+                .encode_reply(P::Command::CONNECT, id, &device.answer_handshake(status), 0)
+                .expect("every version has Connect and both its statuses")
+        };
+        if version == device.number() {
+            self.phase = Phase::Open;
+            let reply = reply(ConnectStatus::Success);
+            Event::Connect {
+                id,
+                udp_port,
+                reply,
+            }
+        } else {
+            let reply = reply(ConnectStatus::IncompatibleLibraryVersion);
+            Event::Incompatible { version, reply }
+        }
+    }
+
+    /// An enumerator without a meaning has an answer; what else cannot be read has none.
+    fn on_unreadable(
+        &mut self,
+        message: &Message<'_>,
+        error: DecodeError<P::Command>,
+    ) -> Result<Event<P>, Violation<P::Command>> {
+        let id = message.header.id();
+        let unknown_value = matches!(error, DecodeError::UnknownValue { .. });
+        let rejection = self.version.rejection(message);
+        match rejection.filter(|_| unknown_value && self.phase == Phase::Open) {
+            Some((command, reply)) => {
+                self.remember(id, command)?;
+                // A version that has the command has this status, and the request is noted.
+                let reply = self.reply(id, reply);
+                let reply = reply.expect("a pending request can be rejected");
+                Ok(Event::Rejected { id, error, reply })
+            }
+            None => Err(Violation::Request { id, error }),
+        }
+    }
+
+    fn remember(
+        &mut self,
+        id: CommandId,
+        command: P::Command,
+    ) -> Result<(), Violation<P::Command>> {
+        if self.pending.get(id).is_some() {
+            return Err(Violation::RepeatedId { id });
+        }
+        if !self.pending.insert(id, command) {
+            return Err(Violation::TooManyPending {
+                limit: Self::PENDING_LIMIT,
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Session {
     /// The beginning of the message that answers `GetRobotModel`: the caller sends `text_len` bytes
     /// of text right behind it.
     ///
@@ -178,72 +248,5 @@ impl Session {
             return Err(ReplyError::TextLength { len });
         }
         self.answer(id, reply, len)
-    }
-
-    fn answer(
-        &mut self,
-        id: CommandId,
-        reply: &Reply<'_>,
-        extra: usize,
-    ) -> Result<Outgoing, ReplyError> {
-        let entry = self.pending.get(id).ok_or(ReplyError::NotPending { id })?;
-        let outgoing = reply.encode(self.version, entry.command, id, extra)?;
-        match reply {
-            Reply::Move(MoveStatus::MotionStarted) if entry.started => {
-                return Err(ReplyError::AlreadyStarted { id });
-            }
-            Reply::Move(MoveStatus::MotionStarted) => self.pending.start(id),
-            _ => {
-                self.pending.remove(id);
-            }
-        }
-        Ok(outgoing)
-    }
-
-    fn on_connect(&mut self, id: CommandId, version: u16, udp_port: u16) -> Event {
-        let reply = |status| {
-            let version = self.version.number();
-            Reply::Connect { status, version }
-                .encode(self.version, Command::Connect, id, 0)
-                .expect("every version has Connect and both its statuses")
-        };
-        if version == self.version.number() {
-            self.phase = Phase::Open;
-            let reply = reply(ConnectStatus::Success);
-            Event::Connect {
-                id,
-                udp_port,
-                reply,
-            }
-        } else {
-            let reply = reply(ConnectStatus::IncompatibleLibraryVersion);
-            Event::Incompatible { version, reply }
-        }
-    }
-
-    fn reject(
-        &mut self,
-        id: CommandId,
-        (command, reply): (Command, Reply<'_>),
-        error: DecodeError,
-    ) -> Result<Event, Violation> {
-        self.remember(id, command)?;
-        // A version that has the command has this status, and the request has just been noted.
-        let reply = self
-            .reply(id, reply)
-            .expect("a pending request can be rejected");
-        Ok(Event::Rejected { id, error, reply })
-    }
-
-    fn remember(&mut self, id: CommandId, command: Command) -> Result<(), Violation> {
-        if self.pending.get(id).is_some() {
-            return Err(Violation::RepeatedId { id });
-        }
-        if !self.pending.insert(id, command) {
-            return Err(Violation::TooManyPending {
-                limit: Self::PENDING_LIMIT,
-            });
-        }
-        Ok(())
     }
 }

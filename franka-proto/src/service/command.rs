@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::protocol::ServiceCommand;
+
 /// Counter of a client's requests on one connection: 0 for `Connect`, then one more for each.
 /// Replies are matched by it and by nothing else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -96,5 +98,18 @@ impl Command {
 impl fmt::Display for Command {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.display_name())
+    }
+}
+
+impl ServiceCommand for Command {
+    const CONNECT: Self = Self::Connect;
+    const SERVICE: &'static str = "libfranka";
+
+    fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let service = Self::SERVICE;
+        write!(
+            f,
+            "{service}: Unexpected response while handling {self} command!"
+        )
     }
 }

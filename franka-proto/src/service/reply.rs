@@ -109,7 +109,8 @@ impl<'a> Reply<'a> {
     }
 
     /// The message that carries this reply to the request `id` for `command`; `extra` bytes of a
-    /// model are sent behind it and count in the header's size.
+    /// model are sent behind it and count in the header's size. What is in `self` of the model would
+    /// not fit: it has to be empty.
     pub(crate) fn encode(
         &self,
         version: Version,
@@ -117,6 +118,11 @@ impl<'a> Reply<'a> {
         id: CommandId,
         extra: usize,
     ) -> Result<Outgoing, ReplyError> {
+        if let Self::Model { text: tail, .. } | Self::ModelLibrary { library: tail, .. } = *self
+            && !tail.is_empty()
+        {
+            return Err(ReplyError::TextLength { len: tail.len() });
+        }
         let number = version
             .command_number(command)
             .filter(|_| self.suits(command));
@@ -159,11 +165,14 @@ impl<'a> Reply<'a> {
         message: &Message<'a>,
     ) -> Result<Self, DecodeError> {
         let table = version.table();
-        let &status = payload::<u8>(message)?;
-        let unknown = DecodeError::UnknownStatus { command, status };
+        let &status = payload::<u8, _>(message)?;
+        let unknown = DecodeError::UnknownStatus {
+            command,
+            status: status.into(),
+        };
         Ok(match command {
             Command::Connect => {
-                let payload: &wire::service::ConnectResponse = payload(message)?;
+                let payload: &wire::service::ConnectResponse<u8> = payload(message)?;
                 Self::Connect {
                     status: meaning(table.connect, status).ok_or(unknown)?,
                     version: payload.version.get(),

@@ -9,6 +9,7 @@ use super::{
 use crate::error::{DecodeError, RequestError};
 use crate::framing::Message;
 use crate::outgoing::Outgoing;
+use crate::protocol::ServiceCommand;
 use crate::version::Version;
 use crate::wire::{self, from_wire, to_wire};
 
@@ -186,7 +187,10 @@ impl Request {
         let number = message.header.command;
         let command = version
             .command_from_number(number)
-            .ok_or(DecodeError::UnknownCommand { number, version })?;
+            .ok_or(DecodeError::UnknownCommand {
+                number,
+                version: version.number(),
+            })?;
         Ok(match command {
             Command::Connect => {
                 let payload: &wire::service::ConnectRequest = payload(message)?;
@@ -245,9 +249,9 @@ impl Request {
 }
 
 /// The fixed struct at the start of a message's payload.
-pub(crate) fn payload<'a, T: FromBytes + Immutable + KnownLayout + Unaligned>(
+pub(crate) fn payload<'a, T: FromBytes + Immutable + KnownLayout + Unaligned, C: ServiceCommand>(
     message: &Message<'a>,
-) -> Result<&'a T, DecodeError> {
+) -> Result<&'a T, DecodeError<C>> {
     let (payload, _) =
         T::ref_from_prefix(message.payload).map_err(|_| DecodeError::message::<T>(message))?;
     Ok(payload)

@@ -9,6 +9,11 @@ pub enum ConnectStatus {
     IncompatibleLibraryVersion,
 }
 
+impl ConnectStatus {
+    /// By number, in all versions of all protocols.
+    pub(crate) const ALL: [Self; 2] = [Self::Success, Self::IncompatibleLibraryVersion];
+}
+
 /// Answer to `Move`: [`MoveStatus::MotionStarted`] first, then one of the others when the motion
 /// ends; or one of the others at once if it does not start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

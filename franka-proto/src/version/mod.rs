@@ -1,9 +1,12 @@
 //! Protocol versions: what differs between them is asked for here and nowhere else.
 
+mod incompatible;
+mod protocol;
 mod table;
 
 use core::fmt;
 
+pub use incompatible::{Explanation, IncompatibleVersion};
 pub(crate) use table::Table;
 
 use crate::service::{Command, MoveGeneratorMode};
@@ -115,36 +118,9 @@ impl fmt::Display for Version {
     }
 }
 
-/// The robot speaks another version than the client announced.
-///
-/// `Display` is the text of the libfranka that speaks the client's version: 0.21 for 10, 0.9 for 5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct IncompatibleVersion {
-    /// The robot's version.
-    pub server_version: u16,
-    /// The version that the client announced.
-    pub library_version: Version,
-}
-
-impl fmt::Display for IncompatibleVersion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (server, library) = (self.server_version, self.library_version);
-        let [updates, images] = library.table().incompatible_advice;
-        write!(
-            f,
-            "libfranka: Incompatible library version (server version: {server}, library version: \
-             {library}). Please check {updates} or choose a libfranka version that uses the server \
-             version {server} from the table at {images} ."
-        )
-    }
-}
-
-impl core::error::Error for IncompatibleVersion {}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::string::ToString;
 
     #[test]
     fn versions_are_found_by_their_number_alone() {
@@ -188,24 +164,5 @@ mod tests {
             assert_eq!(version.command_from_number(14), None);
             assert_eq!(version.command_from_number(u32::MAX), None);
         }
-    }
-
-    #[test]
-    fn the_incompatible_text_is_that_of_the_versions_libfranka() {
-        let text = |library_version, server_version| {
-            let error = IncompatibleVersion {
-                server_version,
-                library_version,
-            };
-            error.to_string()
-        };
-        assert_eq!(
-            text(Version::V10, 5),
-            "libfranka: Incompatible library version (server version: 5, library version: 10). Please check https://frankarobotics.github.io for system updates or choose a libfranka version that uses the server version 5 from the table at https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html ."
-        );
-        assert_eq!(
-            text(Version::V5, 10),
-            "libfranka: Incompatible library version (server version: 10, library version: 5). Please check https://frankaemika.github.io for Panda system updates or choose a libfranka version that uses the server version 10 from the table at https://frankaemika.github.io/docs/compatibility.html ."
-        );
     }
 }

@@ -60,7 +60,7 @@ pub(crate) static V5: Table = Table {
         Command::AutomaticErrorRecovery,
         Command::LoadModelLibrary,
     ],
-    connect: CONNECT,
+    connect: &ConnectStatus::ALL,
     moves: &[
         MoveStatus::Success,
         MoveStatus::MotionStarted,
@@ -125,7 +125,7 @@ pub(crate) static V10: Table = Table {
         Command::AutomaticErrorRecovery,
         Command::GetRobotModel,
     ],
-    connect: CONNECT,
+    connect: &ConnectStatus::ALL,
     moves: &[
         MoveStatus::Success,
         MoveStatus::MotionStarted,
@@ -180,11 +180,6 @@ pub(crate) static V10: Table = Table {
         "https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html",
     ],
 };
-
-const CONNECT: &[ConnectStatus] = &[
-    ConnectStatus::Success,
-    ConnectStatus::IncompatibleLibraryVersion,
-];
 
 /// The motion generators in a state of protocol 5.
 struct GeneratorsV5;

@@ -1,18 +1,61 @@
-//! What precedes every message on the robot's TCP stream.
+//! What precedes every message on a TCP stream.
 
-use zerocopy::byteorder::little_endian::U32;
+use zerocopy::byteorder::little_endian::{U16, U32};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
-/// `CommandHeader` of `research_interface/robot/service_types.h`, protocols 5 and 10.
+/// `CommandHeader` of the vendor's `service_types.h`, for the robot and for its end effectors.
+///
+/// `N` is the number of the command: [`U32`] for the robot, [`U16`] for the Hand and the vacuum
+/// gripper.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
-pub struct CommandHeader {
+pub struct CommandHeader<N> {
     /// Number of the command, by version.
-    pub command: U32,
+    pub command: N,
     /// Counter of the client's requests.
     pub command_id: U32,
     /// Length of the message in bytes, with this header.
     pub size: U32,
 }
 
-assert_layout!(CommandHeader, size: 12, { command: 0, command_id: 4, size: 8 });
+/// The number of a command in a header, as wide as the service has it.
+pub trait CommandNumber:
+    Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
+{
+    /// The number.
+    fn get(self) -> u32;
+
+    /// The number of the wire. What does not fit is cut off; no service has so many commands.
+    fn new(number: u32) -> Self;
+}
+
+impl CommandNumber for U32 {
+    fn get(self) -> u32 {
+        U32::get(self)
+    }
+
+    fn new(number: u32) -> Self {
+        U32::new(number)
+    }
+}
+
+impl CommandNumber for U16 {
+    fn get(self) -> u32 {
+        U16::get(self).into()
+    }
+
+    fn new(number: u32) -> Self {
+        U16::new(number as u16)
+    }
+}
+
+mod sealed {
+    use super::{U16, U32};
+
+    pub trait Sealed {}
+    impl Sealed for U16 {}
+    impl Sealed for U32 {}
+}
+
+assert_layout!(CommandHeader<U32>, size: 12, { command: 0, command_id: 4, size: 8 });
+assert_layout!(CommandHeader<U16>, size: 10, { command: 0, command_id: 2, size: 6 });

@@ -1,4 +1,4 @@
-//! The structs of the wire: little-endian, packed, declared once for both versions.
+//! The structs of the wire: little-endian, packed, declared once for all versions and services.
 //!
 //! What differs between the versions is a type parameter: the width of a state's numbers
 //! ([`Real`]), and the parts that protocol 10 appended and protocol 5 fills with `()`. The field
@@ -19,12 +19,14 @@ macro_rules! assert_layout {
 }
 
 mod command;
+pub mod gripper;
 mod header;
 mod real;
 pub mod service;
 mod state;
+pub mod vacuum;
 
 pub use command::{ControllerCommand, MotionGeneratorCommand, RobotCommand};
-pub use header::CommandHeader;
+pub use header::{CommandHeader, CommandNumber};
 pub use real::{F32, F64, Real, from_wire, to_wire};
 pub use state::{Accelerometers, RobotState};

@@ -13,15 +13,16 @@ pub struct ConnectRequest {
     pub udp_port: U16,
 }
 
-/// `Connect::Response`.
+/// `Connect::Response`. `S` is the status: a byte for the robot, [`U16`] for its end effectors.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
-pub struct ConnectResponse {
+pub struct ConnectResponse<S> {
     /// Whether the version suits.
-    pub status: u8,
-    /// Protocol version of the robot.
+    pub status: S,
+    /// Protocol version of the device.
     pub version: U16,
 }
 
 assert_layout!(ConnectRequest, size: 4, { version: 0, udp_port: 2 });
-assert_layout!(ConnectResponse, size: 3, { status: 0, version: 1 });
+assert_layout!(ConnectResponse<u8>, size: 3, { status: 0, version: 1 });
+assert_layout!(ConnectResponse<U16>, size: 4, { status: 0, version: 2 });

@@ -1,0 +1,193 @@
+//! What can be asked of the Hand.
+
+use core::fmt;
+
+use super::Version;
+use crate::end_effector::{Draft, EndEffector};
+use crate::error::DecodeError;
+use crate::framing::Message;
+use crate::outgoing::Outgoing;
+use crate::protocol::{ServiceCommand, sealed};
+use crate::service::payload;
+use crate::wire;
+
+/// What can be asked of the Hand. Each has one reply, given when the action has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Command {
+    /// Opens a session.
+    Connect,
+    /// Opens and closes the fingers to find their range.
+    Homing,
+    /// Closes or opens the fingers on an object.
+    Grasp,
+    /// Moves the fingers to a width.
+    Move,
+    /// Stops the fingers.
+    Stop,
+}
+
+/// A request with its parameters. Nothing here is checked for range: the Hand does that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Request {
+    /// Opens a session: the client's version and the port where it expects states.
+    Connect {
+        /// Protocol version of the client.
+        version: u16,
+        /// UDP port of the client.
+        udp_port: u16,
+    },
+    /// Opens and closes the fingers to find their range; needed after a change of fingers.
+    Homing,
+    /// Grasps an object.
+    Grasp(Grasp),
+    /// Moves the fingers.
+    Move(Move),
+    /// Stops the fingers. The action that runs is answered as aborted.
+    Stop,
+}
+
+/// How to grasp an object. It is grasped if the fingers end at a distance `d` with
+/// `width - epsilon_inner < d < width + epsilon_outer`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grasp {
+    /// Width of the object `[m]`.
+    pub width: f64,
+    /// How much narrower than the object the fingers may end `[m]`.
+    pub epsilon_inner: f64,
+    /// How much wider than the object the fingers may end `[m]`.
+    pub epsilon_outer: f64,
+    /// Speed of the fingers `[m/s]`.
+    pub speed: f64,
+    /// Force of the grasp `[N]`.
+    pub force: f64,
+}
+
+impl Grasp {
+    /// libfranka's default of both tolerances `[m]`.
+    pub const EPSILON: f64 = 0.005;
+
+    /// A grasp with libfranka's tolerances: width `[m]`, speed `[m/s]`, force `[N]`.
+    #[must_use]
+    pub fn new(width: f64, speed: f64, force: f64) -> Self {
+        Self {
+            width,
+            epsilon_inner: Self::EPSILON,
+            epsilon_outer: Self::EPSILON,
+            speed,
+            force,
+        }
+    }
+}
+
+/// Where to move the fingers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    /// Distance of the fingers to reach `[m]`.
+    pub width: f64,
+    /// Speed of the fingers `[m/s]`.
+    pub speed: f64,
+}
+
+impl fmt::Display for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Connect => "Connect",
+            Self::Homing => "Homing",
+            Self::Grasp => "Grasp",
+            Self::Move => "Move",
+            Self::Stop => "Stop",
+        })
+    }
+}
+
+impl ServiceCommand for Command {
+    const CONNECT: Self = Self::Connect;
+    const SERVICE: &'static str = "libfranka gripper";
+}
+
+impl sealed::Sealed for Version {}
+
+impl EndEffector for Version {
+    type Command = Command;
+    type Request = Request;
+
+    const NUMBER: &'static [u16; 1] = &[3];
+    const COMMANDS: &'static [Command] = &[
+        Command::Connect,
+        Command::Homing,
+        Command::Grasp,
+        Command::Move,
+        Command::Stop,
+    ];
+    const DEVICE: &'static str = "Franka Hand";
+
+    fn hello(version: u16, udp_port: u16) -> Request {
+        Request::Connect { version, udp_port }
+    }
+
+    fn announced(request: &Request) -> Option<(u16, u16)> {
+        match *request {
+            Request::Connect { version, udp_port } => Some((version, udp_port)),
+            _ => None,
+        }
+    }
+
+    fn command(request: &Request) -> Command {
+        match request {
+            Request::Connect { .. } => Command::Connect,
+            Request::Homing => Command::Homing,
+            Request::Grasp(_) => Command::Grasp,
+            Request::Move(_) => Command::Move,
+            Request::Stop => Command::Stop,
+        }
+    }
+
+    fn encode(request: &Request, draft: Draft) -> Outgoing {
+        match *request {
+            Request::Connect { version, udp_port } => draft.handshake(version, udp_port),
+            Request::Homing | Request::Stop => draft.with(&()),
+            Request::Grasp(grasp) => draft.with(&wire::gripper::Grasp {
+                width: grasp.width.into(),
+                epsilon: wire::gripper::GraspEpsilon {
+                    inner: grasp.epsilon_inner.into(),
+                    outer: grasp.epsilon_outer.into(),
+                },
+                speed: grasp.speed.into(),
+                force: grasp.force.into(),
+            }),
+            Request::Move(motion) => draft.with(&wire::gripper::Move {
+                width: motion.width.into(),
+                speed: motion.speed.into(),
+            }),
+        }
+    }
+
+    fn decode(command: Command, message: &Message<'_>) -> Result<Request, DecodeError<Command>> {
+        Ok(match command {
+            Command::Connect => {
+                let payload: &wire::service::ConnectRequest = payload(message)?;
+                Self::hello(payload.version.get(), payload.udp_port.get())
+            }
+            Command::Homing => Request::Homing,
+            Command::Grasp => {
+                let payload: &wire::gripper::Grasp = payload(message)?;
+                Request::Grasp(Grasp {
+                    width: payload.width.get(),
+                    epsilon_inner: payload.epsilon.inner.get(),
+                    epsilon_outer: payload.epsilon.outer.get(),
+                    speed: payload.speed.get(),
+                    force: payload.force.get(),
+                })
+            }
+            Command::Move => {
+                let payload: &wire::gripper::Move = payload(message)?;
+                Request::Move(Move {
+                    width: payload.width.get(),
+                    speed: payload.speed.get(),
+                })
+            }
+            Command::Stop => Request::Stop,
+        })
+    }
+}

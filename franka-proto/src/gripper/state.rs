@@ -1,0 +1,54 @@
+//! The datagram of the Hand.
+
+use zerocopy::FromBytes;
+
+use crate::error::DecodeError;
+use crate::wire::gripper::GripperState;
+
+/// Everything that the Hand says in one datagram.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State {
+    /// The Hand's clock `[ms]`.
+    pub message_id: u32,
+    /// Distance of the fingers `[m]`.
+    pub width: f64,
+    /// Distance of the open fingers `[m]`, estimated by homing.
+    pub max_width: f64,
+    /// Whether the hand holds an object of the width that was asked for.
+    pub is_grasped: bool,
+    /// Temperature of the hand `[deg C]`.
+    pub temperature: u16,
+}
+
+impl State {
+    /// Length of the datagram in bytes.
+    pub const SIZE: usize = size_of::<GripperState>();
+
+    /// Reads a datagram of the Hand. Bytes beyond the struct are ignored.
+    ///
+    /// # Errors
+    /// [`DecodeError::DatagramSize`] if there are fewer than [`State::SIZE`] bytes.
+    pub fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
+        let (wire, _) = GripperState::ref_from_prefix(bytes)
+            .map_err(|_| DecodeError::datagram::<GripperState>(bytes))?;
+        Ok(Self {
+            message_id: wire.message_id.get(),
+            width: wire.width.get(),
+            max_width: wire.max_width.get(),
+            is_grasped: wire.is_grasped != 0,
+            temperature: wire.temperature.get(),
+        })
+    }
+
+    /// The datagram for a client.
+    #[must_use]
+    pub fn encode(&self) -> [u8; Self::SIZE] {
+        zerocopy::transmute!(GripperState {
+            message_id: self.message_id.into(),
+            width: self.width.into(),
+            max_width: self.max_width.into(),
+            is_grasped: u8::from(self.is_grasped),
+            temperature: self.temperature.into(),
+        })
+    }
+}

@@ -1,0 +1,32 @@
+//! The protocol of the vacuum gripper: TCP port 1339, version 1, the same on both robots.
+//!
+//! It works like that of the [Hand](crate::gripper): one reply to each request, given when the
+//! action has ended, and a [`State`] by UDP.
+
+mod request;
+mod state;
+
+use crate::{client, server};
+
+pub use crate::end_effector::{Failure, Reply, Status, next_message};
+pub use request::{Command, Profile, Request, Vacuum};
+pub use state::{DeviceStatus, State};
+
+/// A version of the vacuum gripper's protocol. There is one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Version {
+    /// The version of all vacuum grippers on protocols 5 and 10 of the robot.
+    #[default]
+    V1,
+}
+
+impl Version {
+    /// TCP port of the vacuum gripper.
+    pub const TCP_PORT: u16 = 1339;
+}
+
+/// The client's side of a connection to a vacuum gripper.
+pub type Client = client::Session<Version>;
+
+/// The vacuum gripper's side of a connection.
+pub type Server = server::Session<Version>;

@@ -1,0 +1,183 @@
+//! What can be asked of the vacuum gripper.
+
+use core::fmt;
+
+use super::Version;
+use crate::end_effector::{Draft, EndEffector};
+use crate::error::DecodeError;
+use crate::framing::Message;
+use crate::outgoing::Outgoing;
+use crate::protocol::{ServiceCommand, sealed};
+use crate::service::payload;
+use crate::wire;
+
+/// What can be asked of the vacuum gripper. Each has one reply, given when the action has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Command {
+    /// Opens a session.
+    Connect,
+    /// Sucks an object on.
+    Vacuum,
+    /// Drops the object.
+    DropOff,
+    /// Stops the action that runs.
+    Stop,
+}
+
+/// A request with its parameters. Nothing here is checked for range: the gripper does that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Request {
+    /// Opens a session: the client's version and the port where it expects states.
+    Connect {
+        /// Protocol version of the client.
+        version: u16,
+        /// UDP port of the client.
+        udp_port: u16,
+    },
+    /// Sucks an object on.
+    Vacuum(Vacuum),
+    /// Drops the object.
+    DropOff {
+        /// How long it may take `[ms]`.
+        timeout: i64,
+    },
+    /// Stops the action that runs, which is answered as aborted.
+    Stop,
+}
+
+/// How to suck an object on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Vacuum {
+    /// Vacuum to reach, in units of 10 mbar.
+    pub vacuum: u8,
+    /// Production set-up profile of the device.
+    pub profile: Profile,
+    /// How long it may take `[ms]`.
+    pub timeout: i64,
+}
+
+/// A production set-up profile of the device; the first is libfranka's default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Profile {
+    /// Profile 0.
+    #[default]
+    P0,
+    /// Profile 1.
+    P1,
+    /// Profile 2.
+    P2,
+    /// Profile 3.
+    P3,
+}
+
+impl Profile {
+    /// The profile of a wire byte. For others libfranka says `Vacuum Gripper: Vacuum profile not
+    /// defined!` without sending anything.
+    #[must_use]
+    pub fn from_byte(byte: u8) -> Option<Self> {
+        let all = [Self::P0, Self::P1, Self::P2, Self::P3];
+        all.get(usize::from(byte)).copied()
+    }
+
+    /// The wire byte of this profile.
+    #[must_use]
+    pub fn byte(self) -> u8 {
+        self as u8
+    }
+}
+
+impl fmt::Display for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Connect => "Connect",
+            Self::Vacuum => "Vacuum",
+            Self::DropOff => "Drop Off",
+            Self::Stop => "Stop",
+        })
+    }
+}
+
+impl ServiceCommand for Command {
+    const CONNECT: Self = Self::Connect;
+    const SERVICE: &'static str = "libfranka vacuum gripper";
+}
+
+impl sealed::Sealed for Version {}
+
+impl EndEffector for Version {
+    type Command = Command;
+    type Request = Request;
+
+    const NUMBER: &'static [u16; 1] = &[1];
+    const COMMANDS: &'static [Command] = &[
+        Command::Connect,
+        Command::Vacuum,
+        Command::DropOff,
+        Command::Stop,
+    ];
+    const DEVICE: &'static str = "vacuum gripper";
+
+    fn hello(version: u16, udp_port: u16) -> Request {
+        Request::Connect { version, udp_port }
+    }
+
+    fn announced(request: &Request) -> Option<(u16, u16)> {
+        match *request {
+            Request::Connect { version, udp_port } => Some((version, udp_port)),
+            _ => None,
+        }
+    }
+
+    fn command(request: &Request) -> Command {
+        match request {
+            Request::Connect { .. } => Command::Connect,
+            Request::Vacuum(_) => Command::Vacuum,
+            Request::DropOff { .. } => Command::DropOff,
+            Request::Stop => Command::Stop,
+        }
+    }
+
+    fn encode(request: &Request, draft: Draft) -> Outgoing {
+        match *request {
+            Request::Connect { version, udp_port } => draft.handshake(version, udp_port),
+            Request::Vacuum(vacuum) => draft.with(&wire::vacuum::Vacuum {
+                vacuum: vacuum.vacuum,
+                profile: vacuum.profile.byte(),
+                timeout: vacuum.timeout.into(),
+            }),
+            Request::DropOff { timeout } => {
+                let timeout = timeout.into();
+                draft.with(&wire::vacuum::DropOff { timeout })
+            }
+            Request::Stop => draft.with(&()),
+        }
+    }
+
+    fn decode(command: Command, message: &Message<'_>) -> Result<Request, DecodeError<Command>> {
+        Ok(match command {
+            Command::Connect => {
+                let payload: &wire::service::ConnectRequest = payload(message)?;
+                Self::hello(payload.version.get(), payload.udp_port.get())
+            }
+            Command::Vacuum => {
+                let payload: &wire::vacuum::Vacuum = payload(message)?;
+                let unknown = DecodeError::UnknownValue {
+                    field: "profile",
+                    value: payload.profile.into(),
+                };
+                Request::Vacuum(Vacuum {
+                    vacuum: payload.vacuum,
+                    profile: Profile::from_byte(payload.profile).ok_or(unknown)?,
+                    timeout: payload.timeout.get(),
+                })
+            }
+            Command::DropOff => {
+                let payload: &wire::vacuum::DropOff = payload(message)?;
+                let timeout = payload.timeout.get();
+                Request::DropOff { timeout }
+            }
+            Command::Stop => Request::Stop,
+        })
+    }
+}

@@ -1,0 +1,130 @@
+//! The datagram of the vacuum gripper.
+
+use core::fmt;
+
+use zerocopy::FromBytes;
+
+use crate::error::DecodeError;
+use crate::wire::vacuum::VacuumGripperState;
+
+/// Everything that the vacuum gripper says in one datagram.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct State {
+    /// The gripper's clock `[ms]`.
+    pub message_id: u32,
+    /// Whether the vacuum is inside its range.
+    pub in_control_range: bool,
+    /// Whether the object has been dropped off.
+    pub part_detached: bool,
+    /// Whether the gripper holds an object.
+    pub part_present: bool,
+    /// Light of the device.
+    pub device_status: DeviceStatus,
+    /// Power of the pump `[%]`. libfranka narrows it to 16 bits without a sign.
+    pub actual_power: i32,
+    /// Vacuum `[mbar]`. libfranka narrows it to 16 bits without a sign.
+    pub vacuum: i32,
+}
+
+/// The light of a vacuum gripper, by which it tells how it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum DeviceStatus {
+    /// It works.
+    #[default]
+    Green,
+    /// It works, with warnings.
+    Yellow,
+    /// It works, with severe warnings.
+    Orange,
+    /// It does not work.
+    Red,
+    /// A byte that the protocol gives no meaning.
+    Unknown(u8),
+}
+
+impl DeviceStatus {
+    /// The status of a wire byte.
+    #[must_use]
+    pub fn from_byte(byte: u8) -> Self {
+        match byte {
+            0 => Self::Green,
+            1 => Self::Yellow,
+            2 => Self::Orange,
+            3 => Self::Red,
+            unknown => Self::Unknown(unknown),
+        }
+    }
+
+    /// The wire byte of this status.
+    #[must_use]
+    pub fn byte(self) -> u8 {
+        match self {
+            Self::Green => 0,
+            Self::Yellow => 1,
+            Self::Orange => 2,
+            Self::Red => 3,
+            Self::Unknown(byte) => byte,
+        }
+    }
+}
+
+impl fmt::Display for DeviceStatus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Green => "Green",
+            Self::Yellow => "Yellow",
+            Self::Orange => "Orange",
+            Self::Red => "Red",
+            Self::Unknown(_) => "Unknown",
+        })
+    }
+}
+
+impl State {
+    /// Length of the datagram in bytes.
+    pub const SIZE: usize = size_of::<VacuumGripperState>();
+
+    /// Reads a datagram of the vacuum gripper. Bytes beyond the struct are ignored.
+    ///
+    /// # Errors
+    /// [`DecodeError::DatagramSize`] if there are fewer than [`State::SIZE`] bytes.
+    pub fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
+        let (wire, _) = VacuumGripperState::ref_from_prefix(bytes)
+            .map_err(|_| DecodeError::datagram::<VacuumGripperState>(bytes))?;
+        Ok(Self {
+            message_id: wire.message_id.get(),
+            in_control_range: wire.in_control_range != 0,
+            part_detached: wire.part_detached != 0,
+            part_present: wire.part_present != 0,
+            device_status: DeviceStatus::from_byte(wire.device_status),
+            actual_power: wire.actual_power.get(),
+            vacuum: wire.vacuum.get(),
+        })
+    }
+
+    /// The datagram for a client.
+    #[must_use]
+    pub fn encode(&self) -> [u8; Self::SIZE] {
+        zerocopy::transmute!(VacuumGripperState {
+            message_id: self.message_id.into(),
+            in_control_range: u8::from(self.in_control_range),
+            part_detached: u8::from(self.part_detached),
+            part_present: u8::from(self.part_present),
+            device_status: self.device_status.byte(),
+            actual_power: self.actual_power.into(),
+            vacuum: self.vacuum.into(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn device_status_bytes_survive_even_when_unknown() {
+        for byte in 0..=u8::MAX {
+            assert_eq!(DeviceStatus::from_byte(byte).byte(), byte);
+        }
+    }
+}
