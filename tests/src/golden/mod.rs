@@ -23,6 +23,7 @@
 //! # assert_eq!(check(&Node::root(&value)).unwrap().passed(), 1);
 //! ```
 
+mod analytic_ik;
 mod model;
 mod node;
 mod otg;
@@ -30,6 +31,7 @@ mod report;
 mod run;
 mod wire;
 mod wire_datagrams;
+mod wire_end_effectors;
 mod wire_table;
 
 pub use node::{Malformed, Node};
@@ -45,6 +47,14 @@ pub const SUITES: &[Suite] = &[
     Suite {
         file: "wire_v5.json",
         check: wire_table::headers,
+    },
+    Suite {
+        file: "wire_gripper.json",
+        check: wire_end_effectors::gripper_headers,
+    },
+    Suite {
+        file: "wire_vacuum_gripper.json",
+        check: wire_end_effectors::vacuum_headers,
     },
     Suite {
         file: "wire_golden.json",
@@ -65,6 +75,10 @@ pub const SUITES: &[Suite] = &[
     Suite {
         file: "model/velocity_limit_vectors_fr3.json",
         check: model::velocity_envelope,
+    },
+    Suite {
+        file: "model/ik_vectors.json",
+        check: analytic_ik::all,
     },
     Suite {
         file: "otg/single_axis.json",

@@ -8,7 +8,7 @@ use franka_proto::{
 };
 
 use super::wire_datagrams::{command, state};
-use super::{Malformed, Node, Report};
+use super::{Malformed, Node, Report, wire_end_effectors};
 
 /// Checks `wire_golden.json`: bytes made by the compiled protocol headers.
 pub(super) fn messages(root: &Node<'_>) -> Result<Report, Malformed> {
@@ -18,6 +18,7 @@ pub(super) fn messages(root: &Node<'_>) -> Result<Report, Malformed> {
             check_message(&mut report, version, &node)?;
         }
     }
+    wire_end_effectors::messages(&mut report, root)?;
     for node in root.get("control_exception_suffixes")?.list()? {
         let rate = node.get("second_to_last_success_rate")?.number()?;
         let lost = node.get("lost_packets")?.integer()?;
