@@ -20,7 +20,8 @@
 //! | [`rotation`] | rotation vectors: exponential, logarithm, angular velocity and acceleration |
 //! | [`transform`] | column-major arrays and 4×4 matrices to isometries and back |
 //! | [`differential_ik`] | joint velocities for a twist, exactly inside a box |
-//! | [`inverse_kinematics`] | joint positions for a pose |
+//! | [`inverse_kinematics`] | joint positions for a pose, by iteration |
+//! | [`analytic_ik`] | every joint position for a pose and an angle of joint 7 |
 //! | [`elbow`] | the vendor's elbow parameter |
 //!
 //! # Conventions
@@ -70,6 +71,7 @@ mod merge;
 mod model;
 mod scalar;
 
+pub mod analytic_ik;
 pub mod differential_ik;
 pub mod elbow;
 pub mod frame;
