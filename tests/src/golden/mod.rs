@@ -24,6 +24,7 @@
 //! ```
 
 mod analytic_ik;
+mod analytic_ik;
 mod model;
 mod node;
 mod otg;
@@ -75,6 +76,10 @@ pub const SUITES: &[Suite] = &[
     Suite {
         file: "model/velocity_limit_vectors_fr3.json",
         check: model::velocity_envelope,
+    },
+    Suite {
+        file: "model/ik_vectors.json",
+        check: analytic_ik::all,
     },
     Suite {
         file: "model/ik_vectors.json",
