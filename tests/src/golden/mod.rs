@@ -24,7 +24,6 @@
 //! ```
 
 mod analytic_ik;
-mod analytic_ik;
 mod model;
 mod node;
 mod otg;
@@ -76,10 +75,6 @@ pub const SUITES: &[Suite] = &[
     Suite {
         file: "model/velocity_limit_vectors_fr3.json",
         check: model::velocity_envelope,
-    },
-    Suite {
-        file: "model/ik_vectors.json",
-        check: analytic_ik::all,
     },
     Suite {
         file: "model/ik_vectors.json",
