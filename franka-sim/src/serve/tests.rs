@@ -3,38 +3,41 @@ use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
 use franka_proto::framing::next_message;
-use franka_proto::{RobotMode, RobotState, Version, client};
+use franka_proto::{Request, RobotMode, RobotState, Version, client};
 
 use super::*;
 
 /// A plain blocking client.
 struct Client {
-    /// Open for as long as the client lives.
-    _stream: TcpStream,
+    stream: TcpStream,
+    session: client::Session,
     socket: UdpSocket,
 }
 
 impl Client {
     fn connect(address: SocketAddr) -> Self {
+        Self::try_connect(address).expect("a handshake")
+    }
+
+    fn try_connect(address: SocketAddr) -> std::io::Result<Self> {
         let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
         let wait = Some(Duration::from_secs(2));
         socket.set_read_timeout(wait).expect("a timeout");
-        let mut stream = TcpStream::connect(address).expect("a listener");
-        stream.set_read_timeout(wait).expect("a timeout");
+        let mut stream = TcpStream::connect(address)?;
+        stream.set_read_timeout(wait)?;
         let mut session = client::Session::new(Version::V10);
         let port = socket.local_addr().expect("an address").port();
-        stream
-            .write_all(session.connect(port).as_bytes())
-            .expect("an open stream");
+        stream.write_all(session.connect(port).as_bytes())?;
         let mut reply = [0; 15];
-        stream.read_exact(&mut reply).expect("an answer");
+        stream.read_exact(&mut reply)?;
         let message = next_message(&reply).expect("whole").expect("complete");
         session.on_message(message).expect("an answer");
         assert!(session.is_connected());
-        Self {
-            _stream: stream,
+        Ok(Self {
+            stream,
+            session,
             socket,
-        }
+        })
     }
 
     fn state(&self) -> RobotState {
@@ -100,6 +103,41 @@ fn garbage_closes_the_connection_and_the_robot_stays() {
     stream.write_all(&[0xff; 100]).expect("an open stream");
     assert_eq!(stream.read(&mut [0; 1]).expect("an orderly end"), 0);
     Client::connect(sim.addr()).state();
+}
+
+#[test]
+fn a_client_that_does_not_read_makes_room_for_the_next() {
+    let runtime = runtime();
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
+    let mut deaf = Client::connect(sim.addr());
+    let patience = Some(Duration::from_millis(200));
+    deaf.stream.set_write_timeout(patience).expect("a timeout");
+    deaf.socket.set_read_timeout(patience).expect("a timeout");
+    deaf.stream.set_nodelay(true).expect("an option");
+    // The description is long: its copies fill every buffer on the way. A few per state, for
+    // a burst would be cut off at once.
+    for n in 0..4000 {
+        let request = deaf
+            .session
+            .request(&Request::GetRobotModel)
+            .expect("a request");
+        deaf.session.abandon(request.id());
+        if deaf.stream.write_all(request.as_bytes()).is_err() {
+            break;
+        }
+        // Without states, it has been given up.
+        if n % 4 == 0 && deaf.socket.recv(&mut []).is_err() {
+            break;
+        }
+    }
+    let deadline = Instant::now() + Duration::from_secs(5);
+    let next = loop {
+        match Client::try_connect(sim.addr()) {
+            Ok(client) => break client,
+            Err(error) => assert!(Instant::now() < deadline, "kept out: {error}"),
+        }
+    };
+    next.state();
 }
 
 #[test]
