@@ -178,6 +178,6 @@ async fn a_kind_that_is_not_simulated_is_refused() {
         ..Config::default()
     };
     let refused = Sim::new(config).start().await;
-    let error = refused.err().expect("no such simulation");
+    let error = refused.expect_err("no such simulation");
     assert_eq!(error.kind(), io::ErrorKind::Unsupported);
 }
