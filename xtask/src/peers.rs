@@ -28,7 +28,7 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     workspace.run(&mut build)?;
 
     let address = loopback_address(std::process::id());
-    let mut simulator = simulator(&workspace.target().join("debug").join("franka-sim"));
+    let mut simulator = real_time(&workspace.target().join("debug").join("franka-sim"));
     simulator.args(["--bind", &address, "--port", PORT]);
     simulator.env("NO_COLOR", "1");
     let _simulator = Running::start(simulator)?;
@@ -61,10 +61,9 @@ fn loopback_address(process: u32) -> String {
     format!("127.1.{high}.{low}")
 }
 
-/// The simulator's command line. A robot sends a state every millisecond whatever else happens; a simulator on a busy
-/// machine does only if the kernel prefers it. Where this user may not ask for that, the simulator is told to wait for
-/// late commands, which on a robot would be lost.
-fn simulator(program: &Path) -> Command {
+/// The simulator under real-time scheduling where this user may ask for it, as it is otherwise. A robot sends a state every
+/// millisecond whatever else happens; a simulator on a busy machine does only if the kernel prefers it.
+fn real_time(program: &Path) -> Command {
     let chrt = |program: &Path| {
         let mut command = Command::new("chrt");
         command.args(["--fifo", "10"]).arg(program);
@@ -75,10 +74,8 @@ fn simulator(program: &Path) -> Command {
     if probe.status().is_ok_and(|status| status.success()) {
         return chrt(program);
     }
-    println!("real-time scheduling is not granted: the simulator waits for late commands");
-    let mut command = Command::new(program);
-    command.arg("--no-enforce-communication");
-    command
+    println!("real-time scheduling is not granted: commands may come late on a busy machine");
+    Command::new(program)
 }
 
 /// A simulator that is ready to serve; it ends with this value.
