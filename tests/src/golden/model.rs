@@ -14,9 +14,9 @@ const MASS: f64 = 1e-13;
 const TORQUE: f64 = 1e-12;
 /// How far the realisable FER may be from the vendor's without a load: what its description
 /// says, rounded up.
-const FIT_MASS: f64 = 0.0185;
-const FIT_GRAVITY: f64 = 0.0135;
-const FIT_CORIOLIS: f64 = 0.0835;
+const FIT_MASS: f64 = 0.02;
+const FIT_GRAVITY: f64 = 0.02;
+const FIT_CORIOLIS: f64 = 0.09;
 /// Totals of the loads, made of the same few operations.
 const TOTALS: f64 = 1e-15;
 
