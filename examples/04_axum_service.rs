@@ -14,9 +14,9 @@ use axum::{Json, Router};
 use clap::Parser;
 use franka_async::{MotionError, Pose, Robot, RobotState};
 use franka_examples::Connection;
-use futures::{Stream, StreamExt};
 use serde_json::{Value, json};
-use tokio_stream::wrappers::IntervalStream;
+use tokio_stream::wrappers::WatchStream;
+use tokio_stream::{Stream, StreamExt};
 
 #[derive(Parser)]
 struct Arguments {
@@ -42,30 +42,25 @@ async fn main() -> anyhow::Result<()> {
         .with_state(robot.clone());
     let listener = tokio::net::TcpListener::bind(&arguments.listen).await?;
     println!("listening on {}", listener.local_addr()?);
-    tokio::select! {
-        served = axum::serve(listener, app) => served?,
-        interrupted = tokio::signal::ctrl_c() => interrupted?,
-    }
-    robot.shutdown().await; // brakes whatever moves
-    Ok(())
+    let quit = async move {
+        tokio::signal::ctrl_c().await.expect("Ctrl-C can be heard");
+        robot.shutdown().await; // brakes whatever moves; requests and streams under way end with it
+    };
+    let serving = axum::serve(listener, app).with_graceful_shutdown(quit);
+    Ok(serving.await?)
 }
 
 /// Takes a step along the axes of the base, `[m]`, and answers when the arm has arrived. A client that hangs up drops
 /// the motion, which brakes the arm.
 async fn move_to(robot: State<Robot>, Json([x, y, z]): Json<[f64; 3]>) -> Result<String, Refused> {
-    let target = Pose::translation(x, y, z) * robot.pose();
-    let report = robot.move_to(target).await.map_err(refuse)?;
-    Ok(format!(
-        "arrived after {:.2} s\n",
-        report.duration.as_secs_f64()
-    ))
+    let moving = robot.move_to(Pose::translation(x, y, z) * robot.pose());
+    let report = moving.await.map_err(refuse)?;
+    Ok(format!("arrived after {:.2?}\n", report.duration))
 }
 
 async fn events(robot: State<Robot>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
-    let states = robot.states();
-    let ticks = IntervalStream::new(tokio::time::interval(Duration::from_millis(50)));
-    let newest = ticks.map(move |_| view(*states.borrow()).to_string());
-    Sse::new(newest.map(|text| Ok(Event::default().data(text))))
+    let newest = WatchStream::new(robot.states()).throttle(Duration::from_millis(50));
+    Sse::new(newest.map(|state| Ok(Event::default().data(view(state).to_string()))))
 }
 
 fn view(state: RobotState) -> Value {
