@@ -36,10 +36,13 @@ impl Connection {
                 Realtime::Enforce
             };
             let robot = Robot::builder(address).realtime(realtime).connect().await;
-            return Ok((
-                robot.with_context(|| format!("connecting to {address}"))?,
-                None,
-            ));
+            let robot = robot.with_context(|| match realtime {
+                Realtime::Enforce => format!(
+                    "connecting to {address} (a simulator needs no real-time kernel: --ignore-realtime)"
+                ),
+                Realtime::Ignore => format!("connecting to {address}"),
+            })?;
+            return Ok((robot, None));
         }
         let sim = Sim::fr3().start().await.context("starting the simulator")?;
         let robot = Robot::builder(sim.addr())
