@@ -1,12 +1,12 @@
 //! The course that the reference takes: over the joints, or over the pose of the end effector.
 
 use franka_model::limits::JointLimits;
-use franka_model::{EndEffector, GRAVITY_EARTH, JointVector, Load, Model};
+use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 
 use crate::law::hybrid::Reference;
 use crate::otg::{AxisLimits, Generator, Limits, PlanError, State};
 use crate::session::pose::{PoseGenerator, PoseState};
-use crate::session::{Budget, Goal, Target, budget, kinematics, rigid};
+use crate::session::{Budget, Goal, Target, budget, kinematics, leash, rigid};
 
 /// What moves the reference.
 #[derive(Debug)]
@@ -19,6 +19,16 @@ pub(super) enum Course {
     Rest,
     Joints(Generator<7>),
     Pose(PoseGenerator),
+}
+
+/// What a course does in one cycle.
+#[derive(Debug)]
+pub(super) struct Step {
+    pub(super) reference: Reference,
+    /// Whether inverse kinematics held a joint back.
+    pub(super) bounded: bool,
+    /// Whether the pose had to wait for joints that were held back.
+    pub(super) held: bool,
 }
 
 impl Course {
@@ -53,34 +63,46 @@ impl Course {
         }
     }
 
-    /// The reference one nominal millisecond on, and whether inverse kinematics had to hold it back.
+    /// One nominal millisecond on.
     pub(super) fn step(
         &mut self,
         model: &Model,
         ee: &EndEffector,
         posture: &JointVector,
         reference: &Reference,
-    ) -> (Reference, bool) {
+    ) -> Step {
+        let free = |reference| Step {
+            reference,
+            bounded: false,
+            held: false,
+        };
         match self {
-            Self::Rest => (Reference::at_rest(reference.q), false),
+            Self::Rest => free(Reference::at_rest(reference.q)),
             Self::Joints(generator) => {
                 let State {
                     position,
                     velocity,
                     acceleration,
                 } = *generator.step();
-                (
-                    Reference {
-                        q: position.into(),
-                        dq: velocity.into(),
-                        ddq: acceleration.into(),
-                    },
-                    false,
-                )
+                free(Reference {
+                    q: position.into(),
+                    dq: velocity.into(),
+                    ddq: acceleration.into(),
+                })
             }
             Self::Pose(generator) => {
                 let next = generator.step();
-                kinematics::follow(model, ee, posture, reference, &next)
+                let (reference, bounded) =
+                    kinematics::follow(model, ee, posture, reference, &next, generator.budget());
+                let held = bounded && {
+                    let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
+                    leash::tether(generator, &reached)
+                };
+                Step {
+                    reference,
+                    bounded,
+                    held,
+                }
             }
         }
     }

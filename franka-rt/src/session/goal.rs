@@ -164,7 +164,7 @@ mod tests {
                 id: GoalId(77),
                 target,
                 then,
-                budget: Budget::of(&Model::fr3().joint_limits()).scaled(0.37),
+                budget: Budget::of(Model::fr3().joint_limits()).scaled(0.37),
                 gains: Gains::joint(),
                 tolerance: Tolerance {
                     translation: 2e-3,

@@ -7,6 +7,7 @@ use nalgebra::{Isometry3, Translation3};
 use crate::law::hybrid::Reference;
 use crate::otg::State;
 use crate::session::course::Course;
+use crate::session::pose::PoseGenerator;
 
 /// Longest distance from the measured end effector to its reference, `[m]`.
 pub const TRANSLATION_LEASH: f64 = 0.025;
@@ -16,6 +17,13 @@ pub const ROTATION_LEASH: f64 = 0.15;
 
 /// Largest distance of a joint from its reference, `[rad]`.
 pub const JOINT_LEASH: f64 = 0.1;
+
+/// Longest distance from the joint reference's end effector to the pose that it follows, `[m]`. Half a millimetre to
+/// five make little difference; this is the tolerance of a goal.
+const TRANSLATION_TETHER: f64 = 1e-3;
+
+/// Largest angle between the two, `[rad]`.
+const ROTATION_TETHER: f64 = 5e-3;
 
 /// Holds course and reference within the leash of the measured arm; tells whether that moved them.
 ///
@@ -36,7 +44,12 @@ pub(super) fn hold(
             position: held.into(),
             ..*generator.state()
         }),
-        Course::Pose(generator) => match within(&generator.pose(), measured) {
+        Course::Pose(generator) => match within(
+            &generator.pose(),
+            measured,
+            TRANSLATION_LEASH,
+            ROTATION_LEASH,
+        ) {
             Some(pose) => {
                 bound = true;
                 generator.reanchor(pose)
@@ -50,19 +63,43 @@ pub(super) fn hold(
     bound
 }
 
-/// The pose nearest to `pose` within the leash of `measured`, if that is another one.
-fn within(pose: &Isometry3<f64>, measured: &Isometry3<f64>) -> Option<Isometry3<f64>> {
-    let ahead = pose.translation.vector - measured.translation.vector;
-    let turned = rotation::error(&pose.rotation, &measured.rotation);
-    let (distance, angle) = (ahead.norm(), turned.norm());
-    if distance <= TRANSLATION_LEASH && angle <= ROTATION_LEASH {
+/// Holds a pose that runs ahead of the joints that are to follow it, where their bounds keep them from `reached`, the pose
+/// of the joint reference; tells whether that moved it.
+///
+/// Without it the pose would go on to its target, and the joints would chase it off the line, all of them at their
+/// bounds.
+pub(super) fn tether(generator: &mut PoseGenerator, reached: &Isometry3<f64>) -> bool {
+    let Some(pose) = within(
+        &generator.pose(),
+        reached,
+        TRANSLATION_TETHER,
+        ROTATION_TETHER,
+    ) else {
+        return false;
+    };
+    let planned = generator.reanchor(pose);
+    debug_assert!(planned.is_ok(), "{planned:?}");
+    true
+}
+
+/// The pose nearest to `pose` within a leash of `anchor`, metres and radians long, if that is another one.
+pub(super) fn within(
+    pose: &Isometry3<f64>,
+    anchor: &Isometry3<f64>,
+    translation: f64,
+    angle: f64,
+) -> Option<Isometry3<f64>> {
+    let ahead = pose.translation.vector - anchor.translation.vector;
+    let turned = rotation::error(&pose.rotation, &anchor.rotation);
+    let (distance, turn) = (ahead.norm(), turned.norm());
+    if distance <= translation && turn <= angle {
         return None;
     }
-    let ahead = ahead * (TRANSLATION_LEASH / distance.max(TRANSLATION_LEASH));
-    let turned = turned * (ROTATION_LEASH / angle.max(ROTATION_LEASH));
+    let ahead = ahead * (translation / distance.max(translation));
+    let turned = turned * (angle / turn.max(angle));
     Some(Isometry3::from_parts(
-        Translation3::from(measured.translation.vector + ahead),
-        rotation::exp(&turned) * measured.rotation,
+        Translation3::from(anchor.translation.vector + ahead),
+        rotation::exp(&turned) * anchor.rotation,
     ))
 }
 
@@ -83,10 +120,14 @@ mod tests {
             Translation3::from(measured.translation.vector + way),
             rotation::exp(&turn) * measured.rotation,
         );
-        let held = within(&pose, &measured).expect("50 mm is longer than the leash");
+        let held = within(&pose, &measured, TRANSLATION_LEASH, ROTATION_LEASH)
+            .expect("50 mm is longer than the leash");
         assert!((held.translation.vector - measured.translation.vector - way / 2.0).norm() < 1e-15);
         let turned = rotation::error(&held.rotation, &measured.rotation);
         assert!((turned - turn / 2.0).norm() < 1e-12);
-        assert_eq!(within(&measured, &measured), None);
+        assert_eq!(
+            within(&measured, &measured, TRANSLATION_LEASH, ROTATION_LEASH),
+            None
+        );
     }
 }

@@ -45,8 +45,8 @@ use landing::{Landing, Release, Verdict};
 /// Cycles over which the gains go from those of one goal to those of the next.
 const CROSS_FADE: u32 = 300;
 
-/// Time for which something may hold the arm at the length of the leash. An arm that has not got on by then is braked and
-/// lands where it is.
+/// Time for which something may hold the course back: an obstacle by the leash, or the joints' bounds. A goal that is to
+/// finish and has not got on by then is braked, and lands where it is.
 pub const STALL_TIMEOUT: Duration = SETTLE_TIMEOUT;
 
 /// What a session reports of its goals.
@@ -97,8 +97,8 @@ struct Active {
     reference: Reference,
     gains: Fade,
     stage: Stage,
-    /// Cycles in a row in which the leash has bound.
-    leashed: u64,
+    /// Cycles in which the course was held back, less those since in which it was not.
+    held_back: u64,
 }
 
 /// What the session does about its goal.
@@ -215,7 +215,7 @@ impl Active {
                 cycle: CROSS_FADE,
             },
             stage: Stage::UnderWay,
-            leashed: 0,
+            held_back: 0,
             since: state.message_id,
             posture: q,
             reference,
@@ -237,7 +237,7 @@ impl Active {
         self.goal = goal;
         self.gains.towards(goal.gains);
         self.stage = Stage::UnderWay;
-        self.leashed = 0;
+        self.held_back = 0;
         self.course
             .head_for(model, &self.ee, &self.reference, &goal);
     }
@@ -249,16 +249,24 @@ impl Active {
         let measured = rigid(&dynamics.pose);
         let mut bindings = Bindings::default();
 
-        let (reference, bound) = self
+        let course::Step {
+            reference,
+            bounded,
+            held,
+        } = self
             .course
             .step(model, &self.ee, &self.posture, &self.reference);
         self.reference = reference;
-        bindings.set(Guard::InverseKinematics, bound);
+        bindings.set(Guard::InverseKinematics, bounded);
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         let event = self.advance_stage(model, &q, &measured, at_rest, state.message_id);
         let leashed = leash::hold(&mut self.course, &mut self.reference, &q, &measured);
         bindings.set(Guard::Leash, leashed);
-        self.leashed = if leashed { self.leashed + 1 } else { 0 };
+        self.held_back = if leashed || held {
+            self.held_back + 1
+        } else {
+            self.held_back.saturating_sub(1)
+        };
 
         self.gains.cycle = self.gains.cycle.saturating_add(1);
         let last = JointVector::from(state.tau_J_d);
@@ -297,7 +305,7 @@ impl Active {
     ) -> Option<SessionEvent> {
         match &mut self.stage {
             Stage::UnderWay => {
-                let stalled = u128::from(self.leashed) >= STALL_TIMEOUT.as_millis();
+                let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
                 if self.goal.then == Then::Finish && (self.course.is_done() || stalled) {
                     if stalled && self.goal.target != Target::Rest {
                         let rest = Goal {

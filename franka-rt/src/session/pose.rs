@@ -105,6 +105,11 @@ impl PoseGenerator {
         self.state().pose
     }
 
+    /// How fast the target may be approached.
+    pub(crate) fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
     /// Whether the pose rests at the target.
     pub(crate) fn is_done(&self) -> bool {
         self.axes.is_done()
