@@ -1,5 +1,8 @@
 //! Motions in lockstep: no sockets, no sleeps, every run the same.
 
+mod awkward_poses;
 mod endings;
 mod goals;
 mod random_targets;
+mod schedules;
+mod taking_over;

@@ -3,6 +3,7 @@
 use franka_model::Model;
 use franka_proto::{RobotCommand, RobotState};
 use franka_rt::driver::Record;
+use franka_rt::session::Guard;
 
 /// Length of a cycle, `[s]`.
 const CYCLE: f64 = 1e-3;
@@ -17,14 +18,27 @@ pub(super) struct CommandGuard {
 struct Last {
     time: u64,
     goal: u64,
+    leashed: bool,
     tau: [f64; 7],
+    q_ref: [f64; 7],
     dq_ref: [f64; 7],
+    ddq_ref: [f64; 7],
 }
 
 impl CommandGuard {
+    /// Checks a command, and the reference behind it. `over_joints` tells that a generator over the joints moves the
+    /// reference, so that its jerk is bounded too; inverse kinematics bounds only its acceleration.
+    ///
     /// # Panics
-    /// If the command violates a limit of the FR3.
-    pub(super) fn check(&mut self, command: &RobotCommand, state: &RobotState, record: &Record) {
+    /// If the command violates a limit of the FR3, or the reference is not continuous.
+    pub(super) fn check(
+        &mut self,
+        command: &RobotCommand,
+        state: &RobotState,
+        record: &Record,
+        over_joints: bool,
+    ) {
+        let leashed = record.bindings.contains(Guard::Leash);
         assert_eq!(
             command.message_id, state.message_id,
             "a command answers the state it was made for"
@@ -76,14 +90,40 @@ impl CommandGuard {
                     step <= most,
                     "{at}: reference of joint {joint} steps by {step} rad/s^2"
                 );
+                // The leash moves the reference with the arm, which may be pushed.
+                if !(leashed || last.leashed) {
+                    let step = (record.q_ref[i] - last.q_ref[i]).abs();
+                    let most = limits.velocity[i] * CYCLE * 1.001;
+                    assert!(
+                        step <= most,
+                        "{at}: reference of joint {joint} steps by {step} rad"
+                    );
+                }
+                if over_joints {
+                    let jerk = (record.ddq_ref[i] - last.ddq_ref[i]).abs() / CYCLE;
+                    let most = limits.jerk[i] * 1.001;
+                    assert!(
+                        jerk <= most,
+                        "{at}: reference of joint {joint} at {jerk} rad/s^3"
+                    );
+                }
             }
         }
-        let Record { goal, dq_ref, .. } = *record;
+        let Record {
+            goal,
+            q_ref,
+            dq_ref,
+            ddq_ref,
+            ..
+        } = *record;
         self.last = Some(Last {
             time: at,
             goal,
+            leashed,
             tau: command.tau_J_d,
+            q_ref,
             dq_ref,
+            ddq_ref,
         });
     }
 }

@@ -15,17 +15,17 @@ mod guard;
 mod link;
 mod wander;
 
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::time::Duration;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, transform};
 use franka_proto::client::{Event, Session};
 use franka_proto::framing::next_message;
-use franka_proto::{CommandId, Reply, Request, RobotCommand, RobotState, Version};
+use franka_proto::{CommandId, Reply, Request, RobotCommand, RobotState, Version, Violation};
 use franka_rt::driver::{Driver, MotionId, Record};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output};
-use franka_rt::session::{Budget, Goal, GoalId, Target, Then, Tolerance};
+use franka_rt::session::{Budget, Goal, GoalError, GoalId, Target, Then, Tolerance};
 use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
 
@@ -57,6 +57,8 @@ pub struct Lockstep {
     from_robot: Vec<u8>,
     outcomes: BTreeMap<GoalId, Outcome>,
     guard: CommandGuard,
+    /// Goals whose way is planned over the joints.
+    joint_goals: HashSet<GoalId>,
     goals: u64,
     milliseconds: u64,
     heard: u64,
@@ -82,6 +84,7 @@ impl Lockstep {
             from_robot: Vec::new(),
             outcomes: BTreeMap::new(),
             guard: CommandGuard::default(),
+            joint_goals: HashSet::new(),
             goals: 0,
             milliseconds: 0,
             heard: 0,
@@ -148,7 +151,9 @@ impl Lockstep {
                     let command = &command[..size];
                     let decoded =
                         RobotCommand::decode(version, command).expect("a command of this version");
-                    self.guard.check(&decoded, &state, &self.record);
+                    let over_joints = self.joint_goals.contains(&GoalId(self.record.goal));
+                    self.guard
+                        .check(&decoded, &state, &self.record, over_joints);
                     if self.link.passes_command() {
                         self.robot.command(command);
                     }
@@ -195,6 +200,9 @@ impl Lockstep {
     /// As the lifecycle.
     pub fn submit(&mut self, goal: Goal) -> Result<GoalId, MotionError> {
         let state = self.state;
+        if !matches!(goal.target, Target::Pose(_)) {
+            self.joint_goals.insert(goal.id);
+        }
         let submitted = self.lifecycle.submit(goal, &state, self.time());
         self.carry_out();
         submitted.map(|()| goal.id)
@@ -213,9 +221,50 @@ impl Lockstep {
     pub fn stop(&mut self) -> Option<GoalId> {
         self.goals += 1;
         let id = GoalId(self.goals);
+        self.joint_goals.insert(id);
         let stopping = self.lifecycle.stop(id, self.time());
         self.carry_out();
         stopping.then_some(id)
+    }
+
+    /// Takes a goal back, as dropping its future does.
+    pub fn cancel(&mut self, goal: GoalId) {
+        self.joint_goals.insert(goal);
+        self.lifecycle.cancel(goal);
+        self.carry_out();
+    }
+
+    /// Moves the target of a goal that is held; returns whether it still is.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn update(&mut self, goal: GoalId, target: Target) -> Result<bool, GoalError> {
+        if matches!(target, Target::Pose(_)) {
+            self.joint_goals.remove(&goal);
+        }
+        let state = self.state;
+        self.lifecycle.update(goal, target, &state)
+    }
+
+    /// Has the newest motion's command connection bring a reply that cannot be read.
+    ///
+    /// # Panics
+    /// If there was no motion yet.
+    pub fn violate(&mut self) {
+        let (&id, &motion) = self
+            .motions
+            .iter()
+            .max_by_key(|(_, motion)| **motion)
+            .expect("a motion has begun");
+        let violation = Violation::SecondMotionStarted { id };
+        self.lifecycle
+            .on_move_violation(motion, violation, self.time());
+        self.carry_out();
+    }
+
+    /// Goals that have been resolved so far.
+    pub fn resolved(&self) -> usize {
+        self.outcomes.len()
     }
 
     /// How a goal turned out, if it has.

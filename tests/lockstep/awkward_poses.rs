@@ -1,0 +1,118 @@
+//! Poses whose straight way leads through singular postures or out of the joints' ranges.
+
+use std::time::Duration;
+
+use franka_model::{EndEffector, JointVector, Model, Wrench};
+use franka_proto::{CollisionBehavior, Request, RobotMode};
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::{Guard, SETTLE_TIMEOUT, STALL_TIMEOUT, Target, Then};
+use franka_tests::lockstep::{Lockstep, pose_of};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+/// Times that a joint may turn round on one way. A law that chatters turns round tens of times a second.
+const MOST_TURNS: u32 = 15;
+
+#[test]
+fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
+    let start = Lockstep::ready().true_pose();
+    let turned = |x, z, angle| {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angle);
+        Isometry3::from_parts(
+            Translation3::from(start.translation.vector + Vector3::new(x, 0.0, z)),
+            turn * start.rotation,
+        )
+    };
+    for (case, target) in [
+        // Tilted upwards on the spot, and a little further off.
+        turned(0.0, 0.0, -1.4),
+        turned(0.1, 0.2, -1.2),
+        // Nearly stretched.
+        turned(0.42, -0.05, 0.0),
+        turned(0.45, 0.05, -0.6),
+        // Straight through the axis of the base.
+        turned(-0.6, 0.0, 0.0),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut lockstep = Lockstep::ready();
+        let goal = lockstep.begin(Target::Pose(target));
+        let (mut turns, mut last) = ([0; 7], [0.0; 7]);
+        while lockstep.outcome(goal).is_none() {
+            lockstep.tick();
+            assert!(lockstep.now() < 30_000, "case {case}");
+            for (i, dq) in lockstep.record.dq_ref.into_iter().enumerate() {
+                if dq.abs() > 0.02 {
+                    turns[i] += u32::from(dq * last[i] < 0.0);
+                    last[i] = dq;
+                }
+            }
+        }
+        let outcome = lockstep.outcome(goal).unwrap();
+        assert!(outcome.is_ok(), "case {case}: {outcome:?}");
+        assert!(
+            turns.iter().all(|&turns| turns <= MOST_TURNS),
+            "case {case}: {turns:?}"
+        );
+    }
+}
+
+#[test]
+fn a_pose_far_away_is_reached_or_reported_short() {
+    let seed = 3;
+    let mut random = SmallRng::seed_from_u64(seed);
+    let limits = Model::fr3().joint_limits();
+    let hand = EndEffector {
+        f_t_ee: franka_sim::Tool::hand().f_t_ne,
+        ..EndEffector::default()
+    };
+    let (mut reached, mut short) = (0, 0);
+    for case in 0..40 {
+        // No straight line leads there in general: joints come to their bounds on the way, and the arm folds.
+        let posture = JointVector::from_fn(|i, _| {
+            random.random_range(limits.lower[i] + 0.2..limits.upper[i] - 0.2)
+        });
+        let mut lockstep = Lockstep::ready();
+        let goal = lockstep.goal(Target::Pose(pose_of(&posture, &hand)), Then::Finish);
+        let Ok(id) = lockstep.submit(goal) else {
+            continue;
+        };
+        match lockstep.until_resolved(id, 40_000) {
+            Ok(_) => reached += 1,
+            Err(MotionError::Short(_)) => short += 1,
+            other => panic!("seed {seed}, case {case}: {other:?}"),
+        }
+    }
+    println!("seed {seed}: {reached} reached, {short} short");
+    assert!(reached > 25);
+}
+
+#[test]
+fn an_arm_held_at_the_length_of_its_leash_is_given_up_in_time() {
+    let mut lockstep = Lockstep::ready();
+    let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
+    lockstep.request(&Request::SetCollisionBehavior(tolerant));
+    lockstep.run(5);
+    // A soft ceiling, 5 cm above the hand, on the way to 20 cm above it.
+    let start = lockstep.true_pose();
+    let ceiling = start.translation.z + 0.05;
+    let goal = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.2) * start));
+    let mut leashed = 0;
+    while lockstep.outcome(goal).is_none() {
+        let pressed = (lockstep.true_pose().translation.z - ceiling).max(0.0);
+        lockstep.robot.let_go();
+        lockstep
+            .robot
+            .push_end_effector(Wrench::new(0.0, 0.0, -3000.0 * pressed, 0.0, 0.0, 0.0), 2);
+        lockstep.tick();
+        leashed += u64::from(lockstep.record.bindings.contains(Guard::Leash));
+        let most = STALL_TIMEOUT + SETTLE_TIMEOUT + Duration::from_secs(3);
+        assert!(lockstep.now() < most.as_millis() as u64, "{leashed}");
+    }
+    assert!(leashed > 3000, "{leashed}");
+    let error = lockstep.outcome(goal).unwrap().clone().unwrap_err();
+    assert!(matches!(error, MotionError::Short(_)), "{error:?}");
+    assert_eq!(lockstep.state.robot_mode, RobotMode::Idle);
+}
