@@ -12,6 +12,7 @@ use crate::wire::{self, from_wire, to_wire};
 /// Only the fields of the active generator and controller count; the rest stays zero. The robot
 /// reads every field of the half that it runs and ignores the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotCommand {
     /// `message_id` of the state that this command answers.
     pub message_id: u64,

@@ -10,6 +10,7 @@ use crate::service::{MoveStatus, Refusal, Status};
 /// `Display` is the message of libfranka's `ControlException`: the refusal's text, and after a
 /// reflex the errors and the success rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ControlFailure {
     /// How the robot answered the `Move`.
     pub refusal: Refusal,
@@ -46,6 +47,7 @@ impl core::error::Error for ControlFailure {}
 /// assert_eq!(rate.to_string(), "\ncontrol_command_success_rate: 0.7469 packets lost in a row in the last sample: 3");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SuccessRate {
     /// Share of commands that arrived, 0 to 1.
     pub rate: f64,

@@ -87,6 +87,12 @@ impl RobotError {
         Self::ALL.get(index).copied()
     }
 
+    /// The error with libfranka's name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|error| error.name() == name)
+    }
+
     fn bit(self) -> u64 {
         1 << self.index()
     }
@@ -228,11 +234,13 @@ mod tests {
     fn an_error_sits_at_its_index() {
         for (index, error) in RobotError::ALL.into_iter().enumerate() {
             assert_eq!(error.index(), index);
+            assert_eq!(RobotError::from_name(error.name()), Some(error));
             let mut flags = [0; 41];
             flags[index] = 0x80;
             assert_eq!(Errors::from_flags(&flags), Errors::from(error));
         }
         assert_eq!(RobotError::from_index(41), None);
+        assert_eq!(RobotError::from_name("tau_j_range_violation"), None);
     }
 
     #[test]

@@ -60,6 +60,11 @@
 //! and what was expected. Lengths are checked before anything is read, and a message that announces
 //! more than [`framing::MAX_MESSAGE_SIZE`] is refused before it is collected.
 //!
+//! # Features
+//!
+//! `serde` (off by default, needs no allocator): states, modes, commands, statuses and parameters
+//! can be serialised. Fields have the vendor's names; errors are lists of libfranka's names.
+//!
 //! # What is not here
 //!
 //! Sockets and deadlines; which state to accept and when to answer it (that is the cycle); limits
@@ -82,6 +87,8 @@ mod modes;
 mod outgoing;
 mod pending;
 mod protocol;
+#[cfg(feature = "serde")]
+mod serde_names;
 pub mod server;
 mod service;
 mod state;

@@ -7,6 +7,7 @@ use core::fmt;
 /// Numbers 0 to 6 on the wire, in this order; other numbers read as [`RobotMode::Other`], as in
 /// libfranka 0.21.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RobotMode {
     /// None of the others: in practice the brakes are closed or the robot is not ready.
     #[default]
@@ -73,6 +74,7 @@ impl fmt::Display for RobotMode {
 /// [`MoveGeneratorMode`](crate::MoveGeneratorMode), whose
 /// [`in_state`](crate::MoveGeneratorMode::in_state) gives the value to wait for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MotionGeneratorMode {
     /// No motion.
     #[default]
@@ -104,6 +106,7 @@ impl MotionGeneratorMode {
 
 /// The controller that a state reports, in the numbering of states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ControllerMode {
     /// The robot's joint impedance controller.
     JointImpedance,

@@ -6,6 +6,7 @@ use crate::service::ConnectStatus;
 
 /// How the action of an end effector ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// It did what was asked.
     Success,

@@ -13,6 +13,7 @@ use crate::wire;
 
 /// What can be asked of the Hand. Each has one reply, given when the action has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
     /// Opens a session.
     Connect,
@@ -50,6 +51,7 @@ pub enum Request {
 /// How to grasp an object. It is grasped if the fingers end at a distance `d` with
 /// `width - epsilon_inner < d < width + epsilon_outer`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Grasp {
     /// Width of the object `[m]`.
     pub width: f64,
@@ -82,6 +84,7 @@ impl Grasp {
 
 /// Where to move the fingers.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Move {
     /// Distance of the fingers to reach `[m]`.
     pub width: f64,

@@ -7,6 +7,7 @@ use crate::wire::gripper::GripperState;
 
 /// Everything that the Hand says in one datagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// The Hand's clock `[ms]`.
     pub message_id: u32,

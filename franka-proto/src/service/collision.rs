@@ -21,6 +21,7 @@ macro_rules! for_thresholds {
 /// Thresholds of contact (lower) and collision (upper), while accelerating and at constant velocity
 /// (nominal).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CollisionBehavior {
     /// Contact, joint torques while accelerating `[N m]`.
     pub lower_torque_thresholds_acceleration: [f64; 7],

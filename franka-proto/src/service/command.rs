@@ -18,6 +18,7 @@ impl fmt::Display for CommandId {
 /// The commands of all versions. Which number one has, and whether a version has it at all, is in
 /// the version table: see [`Version::command_number`](crate::Version::command_number).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
     /// Opens a session.
     Connect,

@@ -5,6 +5,7 @@ use crate::wire::service::SetFilters;
 /// Cutoff frequencies of the robot's own low-pass filters, documented as 1 to 1000 Hz, where 1000
 /// switches a filter off. Protocol 5 only, and deprecated there: filter on the client's side.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Filters {
     /// Of commanded joint positions `[Hz]`.
     pub joint_position_filter_frequency: f64,

@@ -13,6 +13,7 @@ use crate::wire::{self, from_wire, to_wire};
 
 /// The parameters of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MoveRequest {
     /// Who controls the joints.
     pub controller: MoveControllerMode,
@@ -43,6 +44,7 @@ impl MoveRequest {
 
 /// How far the robot may be from where it should be.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Deviation {
     /// Of the position `[m]`.
     pub translation: f64,
@@ -79,6 +81,7 @@ impl Deviation {
 
 /// The controller of a `Move`, in the numbering of requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MoveControllerMode {
     /// The robot's joint impedance controller.
     JointImpedance,
@@ -108,6 +111,7 @@ impl MoveControllerMode {
 
 /// The motion generator of a `Move`, in the numbering of requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MoveGeneratorMode {
     /// Joint positions.
     JointPosition,

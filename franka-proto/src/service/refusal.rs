@@ -25,6 +25,7 @@ use crate::modes::RobotMode;
 /// );
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Refusal {
     command: Command,
     status: Status,

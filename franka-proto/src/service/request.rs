@@ -74,6 +74,7 @@ pub enum Request {
 
 /// What the end effector carries. The end effector itself is set up in Desk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Load {
     /// Mass `[kg]`.
     pub m_load: f64,

@@ -2,6 +2,7 @@
 
 /// Answer to `Connect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ConnectStatus {
     /// The session is open.
     Success,
@@ -17,6 +18,7 @@ impl ConnectStatus {
 /// Answer to `Move`: [`MoveStatus::MotionStarted`] first, then one of the others when the motion
 /// ends; or one of the others at once if it does not start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MoveStatus {
     /// The motion ended as the client asked.
     Success,
@@ -46,6 +48,7 @@ pub enum MoveStatus {
 
 /// Answer to `StopMove`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum StopStatus {
     /// The arm stops.
     Success,
@@ -63,6 +66,7 @@ pub enum StopStatus {
 
 /// Answer to every setter, and to `GetCartesianLimit`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SetterStatus {
     /// The value holds from now on.
     Success,
@@ -76,6 +80,7 @@ pub enum SetterStatus {
 
 /// Answer to `AutomaticErrorRecovery`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RecoveryStatus {
     /// The errors are cleared.
     Success,
@@ -95,6 +100,7 @@ pub enum RecoveryStatus {
 
 /// Answer to `GetRobotModel`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ModelStatus {
     /// The description follows.
     Success,
@@ -106,6 +112,7 @@ pub enum ModelStatus {
 
 /// Answer to `LoadModelLibrary`; protocol 5 only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum LibraryStatus {
     /// The library follows.
     Success,
@@ -115,6 +122,7 @@ pub enum LibraryStatus {
 
 /// The status of any command but `Connect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// Of `Move`.
     Move(MoveStatus),

@@ -5,6 +5,7 @@ use crate::wire::{from_wire, to_wire};
 
 /// A cuboid that the robot does not leave, set up in Desk. Protocol 5 only.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VirtualWall {
     /// Corner of the cuboid in its own frame `[m]`.
     pub object_world_size: [f64; 3],

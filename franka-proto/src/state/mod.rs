@@ -21,6 +21,7 @@ use crate::wire;
 ///
 /// [`Default`] has identities for poses, [`ControllerMode::Other`], and zero everywhere else.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotState {
     /// The robot's clock: milliseconds, one more with each cycle.
     pub message_id: u64,

@@ -5,6 +5,7 @@ use super::RobotState;
 
 /// Mass, centre of mass and inertia of end effector and load together.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TotalLoad {
     /// Mass `[kg]`.
     pub m_total: f64,

@@ -13,6 +13,7 @@ use crate::wire;
 
 /// What can be asked of the vacuum gripper. Each has one reply, given when the action has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
     /// Opens a session.
     Connect,
@@ -48,6 +49,7 @@ pub enum Request {
 
 /// How to suck an object on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Vacuum {
     /// Vacuum to reach, in units of 10 mbar.
     pub vacuum: u8,
@@ -59,6 +61,7 @@ pub struct Vacuum {
 
 /// A production set-up profile of the device; the first is libfranka's default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Profile {
     /// Profile 0.
     #[default]

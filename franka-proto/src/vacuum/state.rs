@@ -9,6 +9,7 @@ use crate::wire::vacuum::VacuumGripperState;
 
 /// Everything that the vacuum gripper says in one datagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// The gripper's clock `[ms]`.
     pub message_id: u32,
@@ -28,6 +29,7 @@ pub struct State {
 
 /// The light of a vacuum gripper, by which it tells how it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DeviceStatus {
     /// It works.
     #[default]

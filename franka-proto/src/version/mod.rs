@@ -15,6 +15,7 @@ use crate::service::{Command, MoveGeneratorMode};
 ///
 /// `Display` is the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Version {
     /// Franka Emika Robot (Panda), system image 4.2.1 and later.
     V5,
