@@ -1,0 +1,250 @@
+//! What holds for any bytes, one function per fuzz target.
+//!
+//! The targets in `fuzz/` and the test beside this file call the same functions. A finding is a
+//! panic: one of the crate's, or an assertion in here.
+// Public in the library of `fuzz/`, which has these sources too.
+#![allow(unreachable_pub)]
+
+use franka_proto::framing::{
+    FrameError, MAX_REQUEST_SIZE, Message, next_message, next_message_within,
+};
+use franka_proto::{
+    Architecture, CollisionBehavior, CommandId, Filters, MoveControllerMode, MoveGeneratorMode,
+    MoveRequest, MoveStatus, Outgoing, Protocol, Reply, Request, RobotCommand, RobotState,
+    SetterStatus, StopStatus, System, Version, client, gripper, server, vacuum,
+};
+
+/// A target: its name and what it does with bytes.
+pub type Target = (&'static str, fn(&[u8]));
+
+/// All targets. Names are those of the binaries in `fuzz/fuzz_targets/`.
+pub const TARGETS: [Target; 7] = [
+    ("stream", stream),
+    ("robot_state", robot_state),
+    ("robot_command", robot_command),
+    ("client_replies", client_replies),
+    ("server_requests", server_requests),
+    ("gripper", gripper),
+    ("vacuum", vacuum),
+];
+
+type Cut = fn(&[u8]) -> Result<Option<Message<'_>>, FrameError>;
+
+fn next_request(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
+    next_message_within(received, MAX_REQUEST_SIZE)
+}
+
+/// Cuts a stream into messages, with both headers.
+pub fn stream(bytes: &[u8]) {
+    for (cut, header) in [(next_message as Cut, 12), (gripper::next_message, 10)] {
+        let mut rest = bytes;
+        while let Ok(Some(message)) = cut(rest) {
+            assert_eq!(message.size(), header + message.payload.len());
+            assert_eq!(&rest[header..message.size()], message.payload);
+            // What is missing one byte is not there yet.
+            assert_eq!(cut(&rest[..message.size() - 1]), Ok(None));
+            rest = &rest[message.size()..];
+        }
+    }
+}
+
+/// Reads a state in every version and writes it again.
+pub fn robot_state(bytes: &[u8]) {
+    for version in Version::ALL {
+        let state = RobotState::decode(version, bytes);
+        assert_eq!(state.is_ok(), bytes.len() >= version.state_size());
+        let Ok(state) = state else { continue };
+        let _ = state.total_load();
+        let text = format!(
+            "{} {} {}",
+            state.errors, state.reflex_reason, state.robot_mode
+        );
+        assert!(text.starts_with('['));
+        // Bits may be lost on the way to meaning (a flag of 7 is true), and then no more.
+        let write = |state: &RobotState| {
+            let mut bytes = [0; RobotState::MAX_SIZE];
+            let size = state.encode(version, &mut bytes).expect("it was read");
+            bytes[..size].to_vec()
+        };
+        let once = write(&state);
+        let again = RobotState::decode(version, &once).expect("it is long enough");
+        assert_eq!(write(&again), once);
+    }
+}
+
+/// Reads a command in every version and writes it again.
+pub fn robot_command(bytes: &[u8]) {
+    for version in Version::ALL {
+        let command = RobotCommand::decode(version, bytes);
+        assert_eq!(command.is_ok(), bytes.len() >= version.command_size());
+        let Ok(command) = command else { continue };
+        let write = |command: &RobotCommand| {
+            let mut bytes = [0; RobotCommand::MAX_SIZE];
+            let size = command.encode(version, &mut bytes).expect("it was read");
+            bytes[..size].to_vec()
+        };
+        let once = write(&command);
+        let again = RobotCommand::decode(version, &once).expect("it is long enough");
+        assert_eq!(write(&again), once);
+    }
+}
+
+/// Gives a client of the robot a stream of replies. The first byte chooses the version.
+pub fn client_replies(bytes: &[u8]) {
+    let Some((&version, stream)) = bytes.split_first() else {
+        return;
+    };
+    let version = Version::ALL[usize::from(version) % Version::ALL.len()];
+    client(version, &requests(version), next_message, stream);
+}
+
+/// Gives a robot a stream of requests. The first byte chooses the version.
+pub fn server_requests(bytes: &[u8]) {
+    let Some((&version, stream)) = bytes.split_first() else {
+        return;
+    };
+    let version = Version::ALL[usize::from(version) % Version::ALL.len()];
+    let replies = [
+        Reply::Move(MoveStatus::MotionStarted),
+        Reply::Move(MoveStatus::Success),
+        Reply::StopMove(StopStatus::Success),
+        Reply::Setter(SetterStatus::Success),
+    ];
+    device(version, &replies, next_request, stream);
+}
+
+/// Gives the bytes to a client of a Hand, to a Hand, and to the reader of its states.
+pub fn gripper(bytes: &[u8]) {
+    let state = gripper::State::decode(bytes);
+    assert_eq!(state.is_ok(), bytes.len() >= gripper::State::SIZE);
+    if let Ok(state) = state {
+        let once = state.encode();
+        let again = gripper::State::decode(&once).expect("it is long enough");
+        assert_eq!(again.encode(), once);
+    }
+    let requests = [
+        gripper::Request::Homing,
+        gripper::Request::Grasp(gripper::Grasp::new(0.02, 0.1, 10.0)),
+        gripper::Request::Stop,
+    ];
+    let version = gripper::Version::V3;
+    client(version, &requests, gripper::next_message, bytes);
+    device(version, &DONE, gripper::next_message, bytes);
+}
+
+/// Gives the bytes to a client of a vacuum gripper, to one, and to the reader of its states.
+pub fn vacuum(bytes: &[u8]) {
+    let state = vacuum::State::decode(bytes);
+    assert_eq!(state.is_ok(), bytes.len() >= vacuum::State::SIZE);
+    if let Ok(state) = state {
+        assert_eq!(vacuum::State::decode(&state.encode()), Ok(state));
+    }
+    let requests = [
+        vacuum::Request::DropOff { timeout: 10 },
+        vacuum::Request::Stop,
+    ];
+    let version = vacuum::Version::V1;
+    client(version, &requests, vacuum::next_message, bytes);
+    device(version, &DONE, vacuum::next_message, bytes);
+}
+
+const DONE: [gripper::Reply; 1] = [gripper::Reply::Done(gripper::Status::Unsuccessful)];
+
+/// One request of every kind that the version has.
+fn requests(version: Version) -> Vec<Request> {
+    let (torque, force) = ([1.0; 7], [1.0; 6]);
+    let thresholds = CollisionBehavior::uniform(torque, torque, force, force);
+    let mut requests = vec![
+        Request::Move(MoveRequest::new(
+            MoveControllerMode::JointImpedance,
+            MoveGeneratorMode::JointPosition,
+        )),
+        Request::StopMove,
+        Request::SetCollisionBehavior(thresholds),
+        Request::AutomaticErrorRecovery,
+        Request::GetRobotModel,
+        Request::GetCartesianLimit { id: 1 },
+        Request::SetFilters(Filters::uniform(100.0)),
+        Request::LoadModelLibrary {
+            architecture: Architecture::X64,
+            system: System::Linux,
+        },
+    ];
+    requests.retain(|request| version.supports(request.command()));
+    requests
+}
+
+/// Client and device with the handshake done.
+fn connected<P: Protocol>(version: P, cut: Cut) -> (client::Session<P>, server::Session<P>) {
+    let mut client = client::Session::new(version);
+    let mut device = server::Session::new(version);
+    let hello = client.connect(1);
+    let event = device.on_message(whole(cut, &hello)).expect("a handshake");
+    let server::Event::Connect { reply, .. } = event else {
+        panic!("{event:?}");
+    };
+    client.on_message(whole(cut, &reply)).expect("a handshake");
+    (client, device)
+}
+
+fn whole(cut: Cut, outgoing: &Outgoing) -> Message<'_> {
+    let message = cut(outgoing.as_bytes()).expect("well-formed");
+    message.expect("sent whole")
+}
+
+/// Feeds a client that waits for its handshake, and one that waits for answers to `requests`.
+fn client<P: Protocol>(version: P, requests: &[P::Request], cut: Cut, stream: &[u8]) {
+    let mut connecting = client::Session::new(version);
+    connecting.connect(1);
+    let (mut open, _) = connected(version, cut);
+    for request in requests {
+        open.request(request).expect("the version has it");
+    }
+    for mut session in [connecting, open] {
+        let mut rest = stream;
+        while let Ok(Some(message)) = cut(rest) {
+            let before = session.pending();
+            let event = session.on_message(message);
+            assert!(session.pending() <= before);
+            if event.is_err_and(|violation| violation.is_fatal()) {
+                break;
+            }
+            rest = &rest[message.size()..];
+        }
+    }
+}
+
+/// Feeds a device that waits for a handshake, and one that has had it. Every request is answered
+/// with each of `replies`, whether they suit or not.
+fn device<P: Protocol>(version: P, replies: &[P::Reply<'_>], cut: Cut, stream: &[u8]) {
+    let (_, open) = connected(version, cut);
+    for mut session in [server::Session::new(version), open] {
+        let mut rest = stream;
+        while let Ok(Some(message)) = cut(rest) {
+            match session.on_message(message) {
+                Ok(server::Event::Request { id, request }) => {
+                    assert_eq!(id, message.header.id());
+                    comes_back(version, &request, id, cut);
+                    for &reply in replies {
+                        let _ = session.reply(id, reply);
+                    }
+                }
+                Ok(_) => {}
+                Err(violation) => {
+                    assert!(violation.is_fatal());
+                    break;
+                }
+            }
+            rest = &rest[message.size()..];
+        }
+    }
+}
+
+/// A request that was read can be written, and reads as the same bytes again. Values cannot be
+/// compared: some are no numbers.
+fn comes_back<P: Protocol>(version: P, request: &P::Request, id: CommandId, cut: Cut) {
+    let once = version.encode_request(request, id).expect("it was read");
+    let again = version.decode_request(&whole(cut, &once));
+    let again = again.expect("it was written");
+    assert_eq!(version.encode_request(&again, id), Ok(once));
+}
