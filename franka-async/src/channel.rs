@@ -163,7 +163,7 @@ impl Channel {
         answered.await.unwrap_or_else(|_| Err(self.closed()))
     }
 
-    /// Sends a request on behalf of a motion, ahead of all others. Replies to a `Move` come as [`Report`]s; a closed
+    /// Sends a request on behalf of a motion, past all that wait for room. Replies to a `Move` come as [`Report`]s; a closed
     /// channel has said so in a report of its own.
     pub(crate) fn send(&self, motion: MotionId, request: Request) {
         let waiter = match request {

@@ -90,7 +90,7 @@ pub enum CommandError {
     /// Robot: it refused, or gave up.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Caller: the protocol version has no such command, or too many wait for their answers. Nothing was sent.
+    /// Caller: the protocol version has no such command. Nothing was sent.
     #[error(transparent)]
     Request(#[from] RequestError),
     /// Robot or link: no answer in time. The robot may carry the command out all the same.

@@ -1,6 +1,7 @@
 //! A robot that leaves the protocol, or says nothing: errors that name it, motions that resolve, and a next connection.
 
 use std::net::UdpSocket;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use franka_async::{CommandError, Load, MotionError, Pose};
@@ -121,6 +122,44 @@ async fn a_status_that_does_not_exist_is_named_and_the_connection_lives() {
         );
     }
     robot.set_joint_impedance([3000.0; 7]).await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_motion_whose_start_cannot_be_read_is_stopped() {
+    static GARBLED: AtomicBool = AtomicBool::new(false);
+    let _alone = alone();
+    let peer = Peer::start(Manners {
+        reply: |mut reply| {
+            let started = reply[0] == 1 && reply[Header::SIZE] == 1;
+            if started && !GARBLED.swap(true, Ordering::Relaxed) {
+                reply[Header::SIZE] = 200;
+            }
+            reply
+        },
+        ..Manners::default()
+    });
+    let robot = peer.connect().await;
+    let error = long_way(&robot).await.unwrap_err();
+    assert!(matches!(error, MotionError::Violation(_)), "{error:?}");
+    let still = timeout(SOON, async {
+        while robot.state().motion_running() {
+            sleep(Duration::from_millis(5)).await;
+        }
+    });
+    still.await.expect("the robot was told to stop");
+    // A motion that is asked for at once may meet the end of the abandoned one; it resolves, and another one arrives.
+    let arrived = timeout(Duration::from_secs(20), async {
+        while let Err(error) = robot.move_to(robot.pose()).await {
+            assert!(
+                !matches!(error, MotionError::ConnectionClosed { .. }),
+                "{error}"
+            );
+            // Refused while the arm still brakes.
+            let _ = robot.recover().await;
+        }
+    });
+    arrived.await.expect("the connection is still of use");
     robot.shutdown().await;
 }
 
