@@ -19,8 +19,14 @@ use franka_sim::{Running, Sim, Tool};
 /// Held by each test, so that they do not disturb each other's clocks.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-fn alone() -> MutexGuard<'static, ()> {
-    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+/// Held across every await of a test, which is its purpose: each test blocks a runtime of its own.
+struct Alone {
+    _guard: MutexGuard<'static, ()>,
+}
+
+fn alone() -> Alone {
+    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    Alone { _guard }
 }
 
 /// A simulated FR3 with a hand, and a handle on it.
