@@ -109,5 +109,5 @@ pub use service::{
     MoveStatus, RecoveryStatus, Refusal, Reply, Request, SetterStatus, Status, StopStatus, System,
     VirtualWall,
 };
-pub use state::{RobotState, TotalLoad};
+pub use state::{RobotState, StateText, TotalLoad};
 pub use version::{Explanation, IncompatibleVersion, Version};

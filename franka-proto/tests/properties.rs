@@ -152,6 +152,8 @@ proptest! {
         let mut again = [0xaa; RobotState::MAX_SIZE];
         let size = state.encode(version, &mut again).unwrap();
         prop_assert_eq!(&again[..size], &bytes[..]);
+        let text = state.text(version).to_string();
+        prop_assert_eq!(text.split(' ').next(), Some("{\"O_T_EE\":"));
         prop_assert!(again[size..].iter().all(|&byte| byte == 0xaa));
     }
 

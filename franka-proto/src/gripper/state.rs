@@ -1,7 +1,10 @@
 //! The datagram of the Hand.
 
+use core::fmt;
+
 use zerocopy::FromBytes;
 
+use crate::control_error::General;
 use crate::error::DecodeError;
 use crate::wire::gripper::GripperState;
 
@@ -51,5 +54,21 @@ impl State {
             is_grasped: u8::from(self.is_grasped),
             temperature: self.temperature.into(),
         })
+    }
+}
+
+/// libfranka's text: an object of JSON on one line. The time is in seconds, and truth a number.
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{{\"width\": {}, \"max_width\": {}, \"is_grasped\": {}, \"temperature\": {}, \
+             \"time\": {}}}",
+            General(self.width),
+            General(self.max_width),
+            u8::from(self.is_grasped),
+            self.temperature,
+            General(f64::from(self.message_id) * 1e-3)
+        )
     }
 }

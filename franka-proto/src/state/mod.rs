@@ -2,9 +2,11 @@
 #![allow(non_snake_case)]
 
 mod codec;
+mod text;
 mod total_load;
 
 pub(crate) use codec::{AccelerometerBlock, GeneratorModes, StateCodec};
+pub use text::StateText;
 pub use total_load::TotalLoad;
 
 use crate::error::{DecodeError, EncodeError};

@@ -4,6 +4,7 @@ use core::fmt;
 
 use zerocopy::FromBytes;
 
+use crate::control_error::General;
 use crate::error::DecodeError;
 use crate::wire::vacuum::VacuumGripperState;
 
@@ -116,6 +117,24 @@ impl State {
             actual_power: self.actual_power.into(),
             vacuum: self.vacuum.into(),
         })
+    }
+}
+
+/// libfranka's text: an object of JSON on one line. The time is in seconds, and truth a number.
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{{\"in_control_range\": {}, \"part_detached\": {}, \"part_present\": {}, \
+             \"device_status\": \"{}\", \"actual_power\": {}, \"vacuum\": {}, \"time\": {}}}",
+            u8::from(self.in_control_range),
+            u8::from(self.part_detached),
+            u8::from(self.part_present),
+            self.device_status,
+            self.actual_power as u16,
+            self.vacuum as u16,
+            General(f64::from(self.message_id) * 1e-3)
+        )
     }
 }
 
