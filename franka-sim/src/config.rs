@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 /// ready pose, as strict as a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
-    /// Which arm; only the Franka Research 3 yet.
+    /// Which arm, and with it which protocol version.
     pub kind: RobotKind,
     /// Joint positions at the start, `[rad]`.
     pub q: JointVector,

@@ -9,7 +9,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`serve`] | the robot on sockets: [`Sim::fr3`]`().start().await` |
+//! | [`serve`] | the robot on sockets: [`Sim::fr3`]`().start().await`, [`Sim::fer`] |
 //! | [`robot`] | the robot as a value, without clock and sockets: what tests in virtual time drive |
 //! | [`plant`] | the physics of the arm |
 //! | [`config`] | what a robot is like: pose, tool, load, noise, strictness |
@@ -35,7 +35,8 @@
 //!
 //! # What it does not do
 //!
-//! - The robot: protocol 10 with the FR3 only. No Hand, no hand guiding, no safety functions.
+//! - The robot: no Hand, no hand guiding, no safety functions. Protocol 5 (FER): filters are accepted
+//!   and have no effect, no virtual wall is ever active, and there is no model library to load.
 //! - Errors that never come: self-collision, virtual walls, power limit, instability, and those of
 //!   the force controller, of Desk's own motions and of the base's acceleration.
 //! - Physics: rigid links and joints. Nothing stands in the arm's way, itself included.
@@ -47,6 +48,7 @@ mod brake;
 pub mod config;
 mod estimate;
 mod generator;
+mod kind;
 mod law;
 mod noise;
 pub mod plant;

@@ -4,13 +4,14 @@ use std::io::IsTerminal;
 use std::net::{IpAddr, SocketAddr};
 use std::process::ExitCode;
 
-use clap::Parser;
-use franka_model::{JointVector, Load};
+use clap::{Parser, ValueEnum};
+use franka_model::{JointVector, Load, RobotKind};
 use franka_sim::{Config, Noise, Sim, Tool};
 use nalgebra::{Matrix3, Vector3};
 use tokio::signal::unix::{SignalKind, signal};
 
-/// Simulates a Franka Research 3 (protocol 10) until it is interrupted.
+/// Simulates a Franka Research 3 (protocol 10) or a Franka Emika Robot (protocol 5) until it is
+/// interrupted.
 ///
 /// Point a client at the address that is printed once the robot is ready, for example
 /// libfranka's `franka::Robot robot("127.0.0.1")` or pylibfranka's
@@ -19,6 +20,10 @@ use tokio::signal::unix::{SignalKind, signal};
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
+    /// Which robot, and with it which protocol version.
+    #[arg(long, value_enum, default_value_t = Kind::Fr3)]
+    robot: Kind,
+
     /// Address to listen on; 0.0.0.0 for all interfaces.
     #[arg(long, default_value = "127.0.0.1")]
     bind: IpAddr,
@@ -62,9 +67,28 @@ struct Arguments {
     no_enforce_communication: bool,
 }
 
+/// The kinds of robot by their short names.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Kind {
+    /// Franka Research 3
+    Fr3,
+    /// Franka Emika Robot, known as Panda
+    Fer,
+}
+
+impl From<Kind> for RobotKind {
+    fn from(kind: Kind) -> Self {
+        match kind {
+            Kind::Fr3 => Self::Fr3,
+            Kind::Fer => Self::Fer,
+        }
+    }
+}
+
 impl Arguments {
     fn config(&self) -> Config {
         let mut config = Config {
+            kind: self.robot.into(),
             seed: self.seed,
             enforce_limits: !self.no_enforce_limits,
             enforce_communication: !self.no_enforce_communication,
@@ -173,6 +197,9 @@ mod tests {
         assert!(config.enforce_limits && config.enforce_communication);
         let config = parse(&["--no-enforce-limits"]).expect("valid").config();
         assert!(!config.enforce_limits);
+        assert_eq!(config.kind, RobotKind::Fr3);
+        let config = parse(&["--robot", "fer"]).expect("valid").config();
+        assert_eq!(config.kind, RobotKind::Fer);
     }
 
     #[test]

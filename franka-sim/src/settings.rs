@@ -1,7 +1,7 @@
 //! What a client may set: frames, load, stiffnesses, thresholds.
 
 use franka_model::{EndEffector, JointVector, Load, Twist, joint_vector, transform};
-use franka_proto::{CollisionBehavior, Request, SetterStatus};
+use franka_proto::{CollisionBehavior, Filters, Request, SetterStatus};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use crate::config::Tool;
@@ -54,8 +54,8 @@ impl Settings {
         self.tool.load.combine(&self.load)
     }
 
-    /// Applies a setter, or says why not. Guiding modes are accepted and have no effect: no hand
-    /// guides the arm.
+    /// Applies a setter, or says why not. Guiding modes and filters are accepted and have no effect:
+    /// no hand guides the arm, and commands are taken as they come.
     pub(crate) fn apply(&mut self, request: &Request) -> SetterStatus {
         let applied = match request {
             Request::SetCollisionBehavior(thresholds) => {
@@ -74,6 +74,7 @@ impl Settings {
                 self.ne_t_ee = m;
                 self.frames.f_t_ee = self.tool.f_t_ne * m;
             }),
+            Request::SetFilters(filters) => are_filters(filters).then_some(()),
             Request::SetLoad(load) => physical(load).map(|load| self.load = load),
             _ => None,
         };
@@ -86,6 +87,18 @@ impl Settings {
 
 fn all_within(values: &[f64], lower: f64, upper: f64) -> bool {
     values.iter().all(|value| (lower..=upper).contains(value))
+}
+
+/// Cutoff frequencies have a documented range, `[Hz]`.
+fn are_filters(filters: &Filters) -> bool {
+    let frequencies = [
+        filters.joint_position_filter_frequency,
+        filters.joint_velocity_filter_frequency,
+        filters.cartesian_position_filter_frequency,
+        filters.cartesian_velocity_filter_frequency,
+        filters.controller_filter_frequency,
+    ];
+    all_within(&frequencies, 1.0, 1000.0)
 }
 
 /// Thresholds are finite and not negative. Upper ones below the lower ones are allowed: then the
@@ -173,6 +186,23 @@ mod tests {
             let (l, a) = (linear, angular);
             let request = Request::SetCartesianImpedance([l, l, l, a, a, a]);
             assert_eq!(settings.apply(&request), status);
+        }
+    }
+
+    #[test]
+    fn filters_have_the_documented_range() {
+        let mut settings = Settings::new(Tool::NONE);
+        for (frequency, status) in [
+            (1.0, SetterStatus::Success),
+            (1000.0, SetterStatus::Success),
+            (0.9, INVALID),
+            (1000.1, INVALID),
+            (f64::NAN, INVALID),
+        ] {
+            let mut filters = Filters::uniform(100.0);
+            filters.controller_filter_frequency = frequency;
+            let request = Request::SetFilters(filters);
+            assert_eq!(settings.apply(&request), status, "{frequency}");
         }
     }
 

@@ -7,6 +7,8 @@
 use franka_model::{JointVector, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
 
+use crate::kind::Precision;
+
 /// Duration of a control cycle, `[s]`.
 pub(crate) const CYCLE: f64 = 1e-3;
 
@@ -59,12 +61,13 @@ impl JointSignal {
         }
     }
 
-    /// What a client knows of this signal: the state carries it in single precision.
-    pub(crate) fn published(self) -> Self {
+    /// What a client knows of this signal, read from a state of this precision.
+    pub(crate) fn published(self, precision: Precision) -> Self {
+        let read = |value| precision.round(value);
         Self {
-            q: self.q.map(single),
-            dq: self.dq.map(single),
-            ddq: self.ddq.map(single),
+            q: self.q.map(read),
+            dq: self.dq.map(read),
+            ddq: self.ddq.map(read),
         }
     }
 }
@@ -120,14 +123,15 @@ impl CartesianSignal {
         }
     }
 
-    /// What a client knows of this signal: the state carries it in single precision.
-    pub(crate) fn published(self) -> Self {
-        let rounded = transform::array(&self.pose).map(single);
+    /// What a client knows of this signal, read from a state of this precision.
+    pub(crate) fn published(self, precision: Precision) -> Self {
+        let read = |value| precision.round(value);
+        let rounded = transform::array(&self.pose).map(read);
         Self {
-            // Rounding moves a rotation matrix by 1e-7, far from where this fails.
+            // Single precision moves a rotation matrix by 1e-7, far from where this fails.
             pose: transform::isometry_from_array(&rounded).unwrap_or(self.pose),
-            twist: self.twist.map(single),
-            acceleration: self.acceleration.map(single),
+            twist: self.twist.map(read),
+            acceleration: self.acceleration.map(read),
         }
     }
 }
@@ -174,12 +178,13 @@ impl ElbowSignal {
         }
     }
 
-    /// What a client knows of this signal: the state carries it in single precision.
-    pub(crate) fn published(self) -> Self {
+    /// What a client knows of this signal, read from a state of this precision.
+    pub(crate) fn published(self, precision: Precision) -> Self {
+        let read = |value| precision.round(value);
         Self {
-            angle: single(self.angle),
-            velocity: single(self.velocity),
-            acceleration: single(self.acceleration),
+            angle: read(self.angle),
+            velocity: read(self.velocity),
+            acceleration: read(self.acceleration),
         }
     }
 }
@@ -205,10 +210,6 @@ fn moved(pose: &Isometry3<f64>, twist: &Twist) -> Isometry3<f64> {
     // Thousands of products would otherwise let the quaternion's length drift.
     rotation.renormalize_fast();
     Isometry3::from_parts((pose.translation.vector + linear * CYCLE).into(), rotation)
-}
-
-fn single(value: f64) -> f64 {
-    f64::from(value as f32)
 }
 
 #[cfg(test)]
@@ -243,11 +244,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_published_is_single_precision() {
-        let signal = JointSignal::resting(JointVector::repeat(0.1)).published();
+    fn what_is_published_has_the_precision_of_the_state() {
+        let signal = JointSignal::resting(JointVector::repeat(0.1)).published(Precision::Single);
         assert_eq!(signal.q[0], f64::from(0.1_f32));
+        let signal = JointSignal::resting(JointVector::repeat(0.1));
+        assert_eq!(signal.published(Precision::Double), signal);
         let pose = Isometry3::new(Vector3::new(0.3, 0.1, 0.5), Vector3::new(3.0, 0.2, -0.1));
-        let published = CartesianSignal::resting(pose).published();
+        let published = CartesianSignal::resting(pose).published(Precision::Single);
         assert_eq!(published.pose.translation.vector.x, f64::from(0.3_f32));
         assert!(rotation::error(&published.pose.rotation, &pose.rotation).norm() < 1e-6);
     }

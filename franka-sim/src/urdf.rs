@@ -16,11 +16,11 @@ use core::fmt::Write;
 use franka_model::geometry::{FLANGE, JOINT_ORIGINS};
 use franka_model::{Model, RigidBody};
 
-/// The URDF text of a robot that a client shall believe to be `model`.
+/// The URDF text of a robot called `name` that a client shall believe to be `model`.
 ///
 /// The element of the velocity envelope is left out for a model that has none.
-pub(crate) fn text(model: &Model) -> String {
-    let mut text = String::from("<?xml version=\"1.0\" ?>\n<robot name=\"fr3\">\n");
+pub(crate) fn text(name: &str, model: &Model) -> String {
+    let mut text = format!("<?xml version=\"1.0\" ?>\n<robot name=\"{name}\">\n");
     write_robot(&mut text, model).expect("writing to a string cannot fail");
     text
 }
@@ -99,7 +99,7 @@ mod tests {
     use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
     fn text() -> String {
-        super::text(Model::fr3())
+        super::text("fr3", Model::fr3())
     }
 
     /// The numbers of attribute `name` in the first `<element` after `start`.

@@ -60,10 +60,10 @@ impl Broken {
 
 /// Judges a step from the exact history and, if that fails, from the published one.
 ///
-/// The state carries the history in single precision. A client that limits its commands against
-/// the state is exact there and, at 3 rad, up to 240 rad/s³ off from the exact history; a client
-/// with a generator of its own is the other way round. Robots refuse neither, so a bound counts as
-/// broken only if it is broken from both.
+/// The state of some kinds carries the history in single precision. A client that limits its
+/// commands against the state is exact there and, at 3 rad, up to 240 rad/s³ off from the exact
+/// history; a client with a generator of its own is the other way round. Robots refuse neither, so
+/// a bound counts as broken only if it is broken from both.
 fn judge<S: Copy>(
     exact: &S,
     published: impl Fn(S) -> S,
@@ -83,10 +83,14 @@ pub(super) fn joints(
     arm: &Arm<'_>,
     step: impl Fn(JointSignal) -> (JointSignal, JointVector),
 ) -> (JointSignal, Broken) {
-    judge(from, JointSignal::published, |from| {
-        let (next, jerk) = step(*from);
-        (next, joint_bounds(from, &next, &jerk, arm))
-    })
+    judge(
+        from,
+        |from| from.published(arm.kind.precision),
+        |from| {
+            let (next, jerk) = step(*from);
+            (next, joint_bounds(from, &next, &jerk, arm))
+        },
+    )
 }
 
 /// What a step of the joints breaks.
@@ -116,15 +120,19 @@ pub(super) fn cartesian(
     step: impl Fn(CartesianSignal) -> (CartesianSignal, Twist),
 ) -> (CartesianSignal, Broken) {
     let limits = arm.model.cartesian_limits();
-    judge(from, CartesianSignal::published, |from| {
-        let (next, jerk) = step(*from);
-        let (v, w) = halves(&next.twist);
-        let (a, alpha) = halves(&next.acceleration);
-        let (j, zeta) = halves(&jerk);
-        let translation = bounds(&limits.translation, v.norm(), a.norm(), j.norm());
-        let rotation = bounds(&limits.rotation, w.norm(), alpha.norm(), zeta.norm());
-        (next, translation.or(rotation))
-    })
+    judge(
+        from,
+        |from| from.published(arm.kind.precision),
+        |from| {
+            let (next, jerk) = step(*from);
+            let (v, w) = halves(&next.twist);
+            let (a, alpha) = halves(&next.acceleration);
+            let (j, zeta) = halves(&jerk);
+            let translation = bounds(&limits.translation, v.norm(), a.norm(), j.norm());
+            let rotation = bounds(&limits.rotation, w.norm(), alpha.norm(), zeta.norm());
+            (next, translation.or(rotation))
+        },
+    )
 }
 
 /// One cycle of the elbow: where `step` leads, and what that breaks.
@@ -134,16 +142,20 @@ pub(super) fn elbow(
     step: impl Fn(ElbowSignal) -> (ElbowSignal, f64),
 ) -> (ElbowSignal, Broken) {
     let limits = &arm.model.cartesian_limits().elbow;
-    judge(from, ElbowSignal::published, |from| {
-        let (next, jerk) = step(*from);
-        let broken = bounds(
-            limits,
-            next.velocity.abs(),
-            next.acceleration.abs(),
-            jerk.abs(),
-        );
-        (next, broken)
-    })
+    judge(
+        from,
+        |from| from.published(arm.kind.precision),
+        |from| {
+            let (next, jerk) = step(*from);
+            let broken = bounds(
+                limits,
+                next.velocity.abs(),
+                next.acceleration.abs(),
+                jerk.abs(),
+            );
+            (next, broken)
+        },
+    )
 }
 
 /// Whether the elbow angle is in the range of joint 3.
@@ -152,13 +164,12 @@ pub(super) fn elbow_in_range(elbow: &ElbowSignal, arm: &Arm<'_>) -> bool {
     (limits.hard_lower[2]..=limits.hard_upper[2]).contains(&elbow.angle)
 }
 
-/// The error of desired joint positions outside their range. The FR3 reports it by one name
-/// whatever was commanded (FCI documentation, since system 5.7.2).
-pub(super) fn range(joints: &JointSignal, arm: &Arm<'_>) -> Option<RobotError> {
+/// `error` if desired joint positions are outside their range.
+pub(super) fn range(joints: &JointSignal, arm: &Arm<'_>, error: RobotError) -> Option<RobotError> {
     let limits = arm.model.joint_limits();
     let outside =
         (0..7).any(|i| joints.q[i] < limits.hard_lower[i] || joints.q[i] > limits.hard_upper[i]);
-    outside.then_some(RobotError::JointPositionLimitsViolation)
+    outside.then_some(error)
 }
 
 fn bounds(limits: &MotionLimits, velocity: f64, acceleration: f64, jerk: f64) -> Broken {

@@ -88,10 +88,12 @@ const STEP_MAX: f64 = 0.5;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_model::{EndEffector, Model, READY, transform};
+    use crate::kind::Description;
+    use franka_model::{EndEffector, Model, READY, RobotKind, transform};
 
     fn arm(frames: &EndEffector) -> Arm<'_> {
         Arm {
+            kind: Description::of(RobotKind::Fr3),
             model: Model::fr3(),
             frames,
         }

@@ -18,6 +18,7 @@ pub(crate) use point_to_point::PointToPoint;
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, elbow, rotation, transform};
 use franka_proto::{Errors, MoveGeneratorMode, RobotCommand, RobotError};
 
+use crate::kind::{Description, Precision};
 use crate::signal::{CartesianSignal, ElbowSignal, JointSignal};
 
 /// What the controllers follow and the state publishes as desired and commanded.
@@ -48,14 +49,14 @@ impl Desired {
     /// A motion begins here, because a client begins with what it has read. Otherwise the rounding
     /// of the state would count as acceleration (0.1 rad/s²), and over some lost commands be
     /// extrapolated to a jump.
-    pub(crate) fn as_published(&self) -> Self {
+    pub(crate) fn as_published(&self, precision: Precision) -> Self {
         let pose = CartesianSignal::resting(self.cartesian.pose)
-            .published()
+            .published(precision)
             .pose;
         Self {
-            joints: JointSignal::resting(self.joints.published().q),
+            joints: JointSignal::resting(self.joints.published(precision).q),
             cartesian: CartesianSignal::resting(pose),
-            elbow: ElbowSignal::resting(self.elbow.published().angle),
+            elbow: ElbowSignal::resting(self.elbow.published(precision).angle),
         }
     }
 
@@ -69,6 +70,7 @@ impl Desired {
 /// Kinematics and limits of the arm with the frames that the client has set.
 #[derive(Clone, Copy)]
 pub(crate) struct Arm<'a> {
+    pub(crate) kind: &'static Description,
     pub(crate) model: &'static Model,
     pub(crate) frames: &'a EndEffector,
 }
@@ -155,7 +157,7 @@ fn joint_position(
         E::JointMotionGeneratorVelocityDiscontinuity,
         E::JointMotionGeneratorAccelerationDiscontinuity,
     );
-    errors.extend(checks::range(&joints, arm));
+    errors.extend(checks::range(&joints, arm, arm.kind.range.joint_position));
     Ok((following(joints, arm), errors))
 }
 
@@ -176,7 +178,7 @@ fn joint_velocity(
         E::JointMotionGeneratorAccelerationDiscontinuity,
         E::JointMotionGeneratorAccelerationDiscontinuity,
     );
-    errors.extend(checks::range(&joints, arm));
+    errors.extend(checks::range(&joints, arm, arm.kind.range.joint_velocity));
     Ok((following(joints, arm), errors))
 }
 
@@ -312,7 +314,7 @@ fn complete(
             )
             .iter(),
     );
-    errors.extend(checks::range(&joints, arm));
+    errors.extend(checks::range(&joints, arm, arm.kind.range.cartesian));
     let desired = Desired {
         joints,
         cartesian,

@@ -45,6 +45,16 @@ impl Friction {
         compensated: 0.95,
     };
 
+    /// The arm of the Franka Emika Robot.
+    ///
+    /// Viscous values: `mujoco_menagerie`, `franka_emika_panda`, which has no Coulomb friction; those
+    /// are taken to be the [`FR3`](Self::FR3)'s, an arm of the same build. Smoothing and compensation
+    /// are choices of this simulator.
+    pub const FER: Self = Self {
+        viscous: joint_vector([1.0; 7]),
+        ..Self::FR3
+    };
+
     /// Torque at joint velocities `dq`, and its derivative by velocity; both oppose motion, so
     /// subtract them.
     pub(super) fn at(&self, dq: &JointVector) -> (JointVector, JointVector) {

@@ -11,6 +11,11 @@ use super::{EndStops, Friction, Plant};
 /// with which a torque client's damping above 0.24 N·m·s/rad is unstable at 1 kHz.
 const ARMATURE_FR3: JointVector = joint_vector([0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074]);
 
+/// Rotor inertia of the joints of a Franka Emika Robot, felt at the joint, `[kg·m²]`.
+///
+/// Source: `mujoco_menagerie`, `franka_emika_panda`.
+const ARMATURE_FER: JointVector = joint_vector([0.1; 7]);
+
 /// What a [`RigidArm`] is made of besides the links of its [`Model`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct RigidParameters {
@@ -31,6 +36,17 @@ impl RigidParameters {
         Self {
             armature: ARMATURE_FR3,
             friction: Friction::FR3,
+            stops: EndStops::around(&limits.hard_lower, &limits.hard_upper),
+            gravity_earth: franka_model::GRAVITY_EARTH,
+        }
+    }
+
+    /// A Franka Emika Robot standing upright.
+    pub fn fer() -> Self {
+        let limits = Model::fer().joint_limits();
+        Self {
+            armature: ARMATURE_FER,
+            friction: Friction::FER,
             stops: EndStops::around(&limits.hard_lower, &limits.hard_upper),
             gravity_earth: franka_model::GRAVITY_EARTH,
         }

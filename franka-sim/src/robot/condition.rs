@@ -111,7 +111,7 @@ impl Robot {
         }
         self.reflex_reason = Errors::NONE;
         self.command = None;
-        self.desired = self.desired.as_published();
+        self.desired = self.desired.as_published(self.kind.precision);
         let limits = self.model.joint_limits();
         self.activity = Activity::Moving(Motion::new(id, request, self.clock + 1, limits));
     }
@@ -213,6 +213,7 @@ impl Robot {
         let brake = Brake::from(&start, &limits.acceleration, &limits.jerk);
         self.desired.joints = start;
         self.desired.follow_joints(&Arm {
+            kind: self.kind,
             model: self.model,
             frames: &self.settings.frames,
         });
@@ -228,6 +229,7 @@ impl Robot {
             return;
         };
         let arm = Arm {
+            kind: self.kind,
             model: self.model,
             frames: &self.settings.frames,
         };

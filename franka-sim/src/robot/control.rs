@@ -41,6 +41,7 @@ impl Robot {
         if let Activity::Braking(brake) = &mut self.activity {
             self.desired.joints = brake.advance(CYCLE);
             let arm = Arm {
+                kind: self.kind,
                 model: self.model,
                 frames: &self.settings.frames,
             };
@@ -68,6 +69,7 @@ impl Robot {
             // Nothing generates a motion: what is desired is what happens.
             self.desired.joints = self.measured_signal();
             let arm = Arm {
+                kind: self.kind,
                 model: self.model,
                 frames: &self.settings.frames,
             };
@@ -150,6 +152,7 @@ impl Robot {
         };
         let model: &'static Model = self.model;
         let arm = Arm {
+            kind: self.kind,
             model,
             frames: &self.settings.frames,
         };

@@ -57,6 +57,7 @@ impl Robot {
         self.activity = Activity::Holding;
         self.refresh_dynamics();
         let arm = crate::generator::Arm {
+            kind: self.kind,
             model: self.model,
             frames: &self.settings.frames,
         };

@@ -25,15 +25,16 @@ pub use session::SessionError;
 use std::collections::VecDeque;
 
 use bytes::Bytes;
-use franka_model::{Dynamics, JointVector, Model, RobotKind};
+use franka_model::{Dynamics, JointVector, Model};
 use franka_proto::{CommandId, Errors, MoveRequest, RobotCommand, RobotState, Version};
 
 use crate::brake::Brake;
 use crate::config::Config;
 use crate::estimate::Estimate;
 use crate::generator::{Arm, Desired};
+use crate::kind::Description;
 use crate::noise::Random;
-use crate::plant::{Plant, RigidArm, RigidParameters};
+use crate::plant::{Plant, RigidArm};
 use crate::settings::Settings;
 use crate::signal::JointSignal;
 use condition::Recovery;
@@ -45,10 +46,11 @@ use session::Client;
 /// A simulated robot; see the [module](self).
 pub struct Robot {
     config: Config,
-    version: Version,
+    kind: &'static Description,
+    /// The arm as it is, which is also what the robot's controllers believe.
     model: &'static Model,
     plant: Box<dyn Plant>,
-    description: String,
+    description: Option<String>,
     settings: Settings,
 
     client: Option<Client>,
@@ -103,14 +105,10 @@ pub struct Datagram<'a> {
 
 impl Robot {
     /// A robot at rest, with the rigid-body plant.
-    ///
-    /// # Panics
-    /// If the kind of robot is not the Franka Research 3: no other speaks here yet.
     pub fn new(config: Config) -> Self {
-        let model = Model::of(config.kind);
         let plant = RigidArm::new(
-            model,
-            RigidParameters::fr3(),
+            Model::realisable(config.kind),
+            (Description::of(config.kind).arm)(),
             config.q,
             config.tool.load.combine(&config.payload),
         );
@@ -118,16 +116,13 @@ impl Robot {
     }
 
     /// A robot at rest where `plant` is, whose controllers believe in the arm of `config.kind`.
-    ///
-    /// # Panics
-    /// Like [`new`](Self::new).
     pub fn with_plant(config: Config, plant: Box<dyn Plant>) -> Self {
-        let kind = config.kind;
-        assert_eq!(kind, RobotKind::Fr3, "this kind is not simulated yet");
-        let model = Model::of(config.kind);
+        let kind = Description::of(config.kind);
+        let model = Model::realisable(config.kind);
         let settings = Settings::new(config.tool);
         let q = *plant.q();
         let arm = Arm {
+            kind,
             model,
             frames: &settings.frames,
         };
@@ -140,9 +135,9 @@ impl Robot {
             &franka_model::GRAVITY_EARTH,
         );
         let mut robot = Self {
-            version: Version::V10,
+            kind,
             model,
-            description: crate::urdf::text(model),
+            description: kind.urdf_name.map(|name| crate::urdf::text(name, model)),
             client: None,
             replies: VecDeque::new(),
             command: None,
@@ -175,7 +170,7 @@ impl Robot {
     /// It counts if it answers the newest state and is the first to do so; everything else is
     /// dropped, as is a datagram that is no command.
     pub fn command(&mut self, datagram: &[u8]) {
-        let Ok(command) = RobotCommand::decode(self.version, datagram) else {
+        let Ok(command) = RobotCommand::decode(self.version(), datagram) else {
             return;
         };
         let Activity::Moving(motion) = &self.activity else {
@@ -196,7 +191,8 @@ impl Robot {
         self.publish(&torque);
         let port = self.client.as_ref()?.udp_port()?;
         // The buffer has room for every version, and no state uses what its version lacks.
-        let length = self.state.encode(self.version, &mut self.datagram).ok()?;
+        let version = self.version();
+        let length = self.state.encode(version, &mut self.datagram).ok()?;
         Some(Datagram {
             port,
             bytes: &self.datagram[..length],
@@ -213,13 +209,19 @@ impl Robot {
         &self.config
     }
 
-    /// The description that clients fetch, a URDF text.
-    pub fn description(&self) -> &str {
-        &self.description
+    /// The protocol version that the robot speaks.
+    pub fn version(&self) -> Version {
+        self.kind.version
+    }
+
+    /// The description that clients fetch, a URDF text; `None` for a kind that serves none.
+    pub fn description(&self) -> Option<&str> {
+        self.description.as_deref()
     }
 
     fn arm(&self) -> Arm<'_> {
         Arm {
+            kind: self.kind,
             model: self.model,
             frames: &self.settings.frames,
         }

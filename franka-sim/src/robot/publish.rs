@@ -77,7 +77,9 @@ impl Robot {
         state.O_dP_EE_c = desired.cartesian.twist.into();
         state.O_ddP_EE_c = desired.cartesian.acceleration.into();
         state.O_ddP_O = franka_model::GRAVITY_EARTH.into();
-        (state.accelerometer_top, state.accelerometer_bottom) = accelerometers(self.model, &q);
+        if self.kind.version.has_accelerometers() {
+            (state.accelerometer_top, state.accelerometer_bottom) = accelerometers(self.model, &q);
+        }
 
         state.motion_generator_mode = generator;
         state.controller_mode = controller;

@@ -4,7 +4,8 @@ use bytes::Bytes;
 use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, next_message_within};
 use franka_proto::server::{Event, Session};
 use franka_proto::{
-    CommandId, MoveStatus, Reply, Request, RobotMode, SetterStatus, Version, Violation,
+    CommandId, LibraryStatus, MoveStatus, Reply, Request, RobotMode, SetterStatus, Version,
+    Violation, VirtualWall,
 };
 
 use super::{Activity, Robot};
@@ -50,7 +51,7 @@ impl Robot {
             return false;
         }
         self.replies.clear();
-        self.client = Some(Client::new(self.version));
+        self.client = Some(Client::new(self.version()));
         true
     }
 
@@ -129,6 +130,8 @@ impl Robot {
             Request::StopMove => self.request_stop(id),
             Request::AutomaticErrorRecovery => self.request_recovery(id),
             Request::GetRobotModel => self.send_description(id),
+            Request::GetCartesianLimit { .. } => self.reply(id, NO_WALL),
+            Request::LoadModelLibrary { .. } => self.reply(id, NO_LIBRARY),
             setter => {
                 let status = if self.robot_mode() == RobotMode::Move {
                     SetterStatus::CommandNotPossibleRejected
@@ -146,6 +149,7 @@ impl Robot {
         self.refresh_dynamics();
         if !self.is_moving() {
             let arm = crate::generator::Arm {
+                kind: self.kind,
                 model: self.model,
                 frames: &self.settings.frames,
             };
@@ -169,7 +173,8 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        let text = self.description.as_bytes();
+        // A version without the request never gets here.
+        let text = self.description.as_deref().unwrap_or_default().as_bytes();
         if let Ok(header) = client.session.model_header(id, text.len()) {
             let mut message = header.as_bytes().to_vec();
             message.extend_from_slice(text);
@@ -187,3 +192,21 @@ impl Robot {
         self.activity = Activity::Holding;
     }
 }
+
+/// Whatever wall a client asks for: it is not active. There is no Desk to set one up.
+const NO_WALL: Reply<'static> = Reply::CartesianLimit {
+    status: SetterStatus::Success,
+    wall: VirtualWall {
+        object_world_size: [0.0; 3],
+        object_frame: [
+            1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+        ],
+        object_activation: false,
+    },
+};
+
+/// The vendor's model library is not ours to give.
+const NO_LIBRARY: Reply<'static> = Reply::ModelLibrary {
+    status: LibraryStatus::Error,
+    library: &[],
+};

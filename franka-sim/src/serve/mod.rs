@@ -49,6 +49,14 @@ impl Sim {
         Self::new(Config::default())
     }
 
+    /// A Franka Emika Robot (Panda) with a bare flange in the ready pose, on a free port of 127.0.0.1.
+    pub fn fer() -> Self {
+        Self::new(Config {
+            kind: RobotKind::Fer,
+            ..Config::default()
+        })
+    }
+
     /// A robot of this make-up, on a free port of 127.0.0.1.
     pub fn new(config: Config) -> Self {
         Self {
@@ -109,17 +117,11 @@ impl Sim {
     /// number of robots may run in one process.
     ///
     /// # Errors
-    /// `Unsupported` for a kind of robot that is not simulated yet, and those of binding the sockets
-    /// and of starting the thread.
+    /// Those of binding the sockets and of starting the thread.
     ///
     /// # Cancel safety
     /// Dropping the future before it completes leaves nothing behind.
     pub async fn start(self) -> io::Result<Running> {
-        if self.config.kind != RobotKind::Fr3 {
-            let kind = self.config.kind;
-            let text = format!("{kind:?} is not simulated yet, only Fr3");
-            return Err(io::Error::new(io::ErrorKind::Unsupported, text));
-        }
         let listener = TcpListener::bind(self.bind).await?;
         let address = listener.local_addr()?;
         let socket = UdpSocket::bind(SocketAddr::new(address.ip(), 0))?;

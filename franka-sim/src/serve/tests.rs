@@ -170,14 +170,3 @@ fn robots_share_a_process() {
         assert_eq!(client.state().robot_mode, RobotMode::Idle);
     }
 }
-
-#[tokio::test]
-async fn a_kind_that_is_not_simulated_is_refused() {
-    let config = Config {
-        kind: RobotKind::Fer,
-        ..Config::default()
-    };
-    let refused = Sim::new(config).start().await;
-    let error = refused.expect_err("no such simulation");
-    assert_eq!(error.kind(), io::ErrorKind::Unsupported);
-}

@@ -2,16 +2,17 @@
 
 mod checks;
 mod contact;
+mod fer;
 mod motions;
 mod session;
 mod torques;
 
-use franka_model::JointVector;
+use franka_model::{JointVector, RobotKind};
 use franka_proto::framing::next_message;
 use franka_proto::{
     CommandId, ControllerMode, Errors, MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode,
     MoveRequest, MoveStatus, Request, RobotCommand, RobotError, RobotMode, RobotState, Status,
-    Version, client,
+    client,
 };
 
 use super::Robot;
@@ -35,8 +36,8 @@ impl Pair {
         let mut robot = Robot::new(config);
         assert!(robot.connect());
         let mut pair = Self {
+            client: client::Session::new(robot.version()),
             robot,
-            client: client::Session::new(Version::V10),
             stream: Vec::new(),
             state: RobotState::default(),
             answers: Vec::new(),
@@ -49,7 +50,14 @@ impl Pair {
     }
 
     fn fr3() -> Self {
-        Self::connected(Config::default())
+        Self::of(RobotKind::Fr3)
+    }
+
+    fn of(kind: RobotKind) -> Self {
+        Self::connected(Config {
+            kind,
+            ..Config::default()
+        })
     }
 
     /// Sends stream bytes, and reads what the robot answers at once.
@@ -93,14 +101,16 @@ impl Pair {
         let datagram = self.robot.tick().expect("a client is there");
         assert_eq!(datagram.port, PORT);
         let last = self.state.message_id;
-        self.state = RobotState::decode(Version::V10, datagram.bytes).expect("a state");
+        self.state = RobotState::decode(self.client.version(), datagram.bytes).expect("a state");
         assert!(last == 0 || self.state.message_id == last + 1);
         self.read();
     }
 
     fn datagram(&mut self, command: &RobotCommand) {
         let mut bytes = [0; RobotCommand::MAX_SIZE];
-        let length = command.encode(Version::V10, &mut bytes).expect("room");
+        let length = command
+            .encode(self.client.version(), &mut bytes)
+            .expect("room");
         self.robot.command(&bytes[..length]);
     }
 
@@ -130,10 +140,8 @@ impl Pair {
     }
 
     fn start_torques(&mut self) -> CommandId {
-        self.start(
-            MoveControllerMode::ExternalController,
-            MoveGeneratorMode::None,
-        )
+        let generator = self.client.version().torque_generator();
+        self.start(MoveControllerMode::ExternalController, generator)
     }
 
     fn start_joints(&mut self) -> CommandId {

@@ -10,6 +10,12 @@ const CONTROLLERS: [MoveControllerMode; 2] = [
     MoveControllerMode::CartesianImpedance,
 ];
 
+fn kinds_and_controllers() -> impl Iterator<Item = (RobotKind, MoveControllerMode)> {
+    RobotKind::ALL
+        .into_iter()
+        .flat_map(|kind| CONTROLLERS.map(|controller| (kind, controller)))
+}
+
 fn finished(command: RobotCommand) -> RobotCommand {
     RobotCommand {
         motion_generation_finished: true,
@@ -19,8 +25,8 @@ fn finished(command: RobotCommand) -> RobotCommand {
 
 #[test]
 fn joint_positions_are_followed_and_echoed() {
-    for controller in CONTROLLERS {
-        let mut pair = Pair::fr3();
+    for (kind, controller) in kinds_and_controllers() {
+        let mut pair = Pair::of(kind);
         let id = pair.start(controller, MoveGeneratorMode::JointPosition);
         let offset = JointVector::from([0.1, -0.1, 0.1, 0.1, -0.1, 0.1, 0.2]);
         let mut q_c = READY;
@@ -66,8 +72,8 @@ fn joint_velocities_integrate() {
 
 #[test]
 fn cartesian_poses_are_followed_and_echoed() {
-    for controller in CONTROLLERS {
-        let mut pair = Pair::fr3();
+    for (kind, controller) in kinds_and_controllers() {
+        let mut pair = Pair::of(kind);
         let start = transform::isometry_from_array(&pair.state.O_T_EE_c).expect("a pose");
         let id = pair.start(controller, MoveGeneratorMode::CartesianPosition);
         let mut command = RobotCommand::default();

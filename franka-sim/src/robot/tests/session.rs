@@ -2,7 +2,7 @@
 
 use franka_model::READY;
 use franka_proto::framing::Header;
-use franka_proto::{RecoveryStatus, SetterStatus, StopStatus};
+use franka_proto::{RecoveryStatus, SetterStatus, StopStatus, Version};
 
 use super::super::SessionError;
 use super::*;
@@ -39,17 +39,25 @@ fn only_one_client_at_a_time() {
 
 #[test]
 fn a_client_of_another_version_learns_the_robots() {
-    let mut robot = Robot::new(Config::default());
-    robot.connect();
-    let mut client = client::Session::new(Version::V5);
-    robot
-        .receive(client.connect(PORT).as_bytes())
-        .expect("a client of an older robot");
-    let reply = robot.take_reply().expect("an answer");
-    let message = next_message(&reply).expect("whole").expect("complete");
-    let event = client.on_message(message).expect("an answer");
-    assert!(matches!(event, client::Event::Incompatible(v) if v.server_version == 10));
-    assert!(robot.tick().is_none());
+    for (kind, version, other) in [
+        (RobotKind::Fr3, 10, Version::V5),
+        (RobotKind::Fer, 5, Version::V10),
+    ] {
+        let mut robot = Robot::new(Config {
+            kind,
+            ..Config::default()
+        });
+        robot.connect();
+        let mut client = client::Session::new(other);
+        robot
+            .receive(client.connect(PORT).as_bytes())
+            .expect("a client of another robot");
+        let reply = robot.take_reply().expect("an answer");
+        let message = next_message(&reply).expect("whole").expect("complete");
+        let event = client.on_message(message).expect("an answer");
+        assert!(matches!(event, client::Event::Incompatible(v) if v.server_version == version));
+        assert!(robot.tick().is_none());
+    }
 }
 
 #[test]

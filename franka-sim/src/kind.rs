@@ -1,0 +1,94 @@
+//! What a simulated robot of one kind is, besides what [`franka_model`] says of it: the one place
+//! that tells the kinds apart.
+
+use franka_model::RobotKind;
+use franka_proto::{RobotError, Version};
+
+use crate::plant::RigidParameters;
+
+/// One kind of robot.
+pub(crate) struct Description {
+    kind: RobotKind,
+    /// The protocol that it speaks.
+    pub(crate) version: Version,
+    /// How its description names it; `None` if it serves none.
+    pub(crate) urdf_name: Option<&'static str>,
+    /// Rotors, friction and stops of its arm.
+    pub(crate) arm: fn() -> RigidParameters,
+    /// Precision in which its states carry numbers.
+    pub(crate) precision: Precision,
+    /// Errors of desired joint positions outside their range.
+    pub(crate) range: RangeErrors,
+}
+
+/// The precision of the numbers in a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Precision {
+    Single,
+    Double,
+}
+
+impl Precision {
+    /// The number that a client reads.
+    pub(crate) fn round(self, value: f64) -> f64 {
+        match self {
+            Self::Single => f64::from(value as f32),
+            Self::Double => value,
+        }
+    }
+}
+
+/// What desired joint positions outside their range are reported as, by what was commanded.
+pub(crate) struct RangeErrors {
+    pub(crate) joint_position: RobotError,
+    pub(crate) joint_velocity: RobotError,
+    pub(crate) cartesian: RobotError,
+}
+
+impl Description {
+    /// The description of a kind.
+    pub(crate) fn of(kind: RobotKind) -> &'static Self {
+        [&FR3, &FER]
+            .into_iter()
+            .find(|description| description.kind == kind)
+            .expect("every kind is described")
+    }
+}
+
+static FR3: Description = Description {
+    kind: RobotKind::Fr3,
+    version: Version::V10,
+    urdf_name: Some("fr3"),
+    arm: RigidParameters::fr3,
+    precision: Precision::Single,
+    // One name whatever was commanded (FCI documentation, since system 5.7.2).
+    range: RangeErrors {
+        joint_position: RobotError::JointPositionLimitsViolation,
+        joint_velocity: RobotError::JointPositionLimitsViolation,
+        cartesian: RobotError::JointPositionLimitsViolation,
+    },
+};
+
+static FER: Description = Description {
+    kind: RobotKind::Fer,
+    version: Version::V5,
+    urdf_name: None,
+    arm: RigidParameters::fer,
+    precision: Precision::Double,
+    range: RangeErrors {
+        joint_position: RobotError::JointMotionGeneratorPositionLimitsViolation,
+        joint_velocity: RobotError::JointPositionLimitsViolation,
+        cartesian: RobotError::CartesianMotionGeneratorJointPositionLimitsViolation,
+    },
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_has_a_description_and_a_version_of_its_own() {
+        let versions = RobotKind::ALL.map(|kind| Description::of(kind).version);
+        assert_eq!(versions, [Version::V10, Version::V5]);
+    }
+}
