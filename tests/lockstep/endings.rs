@@ -39,7 +39,7 @@ fn a_cancelled_goal_brakes_at_any_moment_of_its_life() {
         if lockstep.outcome(goal).is_some() {
             break;
         }
-        lockstep.lifecycle.cancel(goal);
+        lockstep.cancel(goal);
         let outcome = lockstep.until_resolved(goal, 4000);
         // A goal that had settled before is no longer cancelled.
         assert!(

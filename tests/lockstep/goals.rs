@@ -1,6 +1,6 @@
 //! What a goal does when nothing goes wrong.
 
-use franka_model::{EndEffector, READY};
+use franka_model::{EndEffector, Model, READY};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{PoseError, Target, Then};
@@ -164,4 +164,20 @@ fn a_followed_target_may_step_as_it_likes() {
     lockstep.lifecycle.close(id);
     lockstep.until_resolved(id, 8000).unwrap();
     assert_near(&lockstep, &last);
+}
+
+#[test]
+fn joints_are_reached_close_to_the_ends_of_their_ranges() {
+    // Nearer than about 0.01 rad the robot's velocity envelope allows no motion outwards at all.
+    let limits = Model::fr3().joint_limits();
+    for i in 0..7 {
+        for end in [limits.lower[i] + 0.02, limits.upper[i] - 0.02] {
+            let mut q: [f64; 7] = READY.into();
+            q[i] = end;
+            let mut lockstep = Lockstep::ready();
+            let goal = lockstep.begin(Target::Joints(q));
+            let outcome = lockstep.until_resolved(goal, 20_000);
+            assert!(outcome.is_ok(), "joint {} to {end}: {outcome:?}", i + 1);
+        }
+    }
 }

@@ -61,11 +61,7 @@ impl Wander {
             if self.random.random_bool(0.5) {
                 self.submit(Target::Pose(pose));
             } else {
-                let state = self.lockstep.state;
-                let updated = self
-                    .lockstep
-                    .lifecycle
-                    .update(self.goal, Target::Pose(pose), &state);
+                let updated = self.lockstep.update(self.goal, Target::Pose(pose));
                 assert_eq!(updated, Ok(true), "the goal is being followed");
             }
         }
