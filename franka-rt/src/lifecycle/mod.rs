@@ -208,7 +208,7 @@ impl Lifecycle {
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
 
-    /// Takes back a goal: an arm on its way to it is braked within its budget, and the goal resolves as
+    /// Takes back a goal: an arm on its way to it is braked as by a stop, and the goal resolves as
     /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest.
     pub fn cancel(&mut self, id: GoalId) {
         if let Some(next) = self.next.take_if(|next| next.goal.id == id) {

@@ -7,6 +7,10 @@ use nalgebra::Vector3;
 use crate::otg::AxisLimits;
 
 /// Limits of the reference: how fast the goal is approached.
+///
+/// A stop, and a goal that comes while the arm moves faster than its budget allows, may use more acceleration and jerk
+/// than the budget has, up to the robot's limits. On the way to a pose each joint may use thrice its velocity, and the
+/// robot's acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Per joint, `[rad/s, rad/s^2, rad/s^3]`.

@@ -14,7 +14,8 @@ pub struct GoalId(pub u64);
 /// Where to go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// To rest, as soon as the joint limits of the goal's budget allow.
+    /// To rest, over the joints, in about a quarter of a second and under the robot's jerk limit, however gentle the goal's
+    /// budget is.
     Rest,
     /// To joint positions, `[rad]`.
     Joints([f64; 7]),

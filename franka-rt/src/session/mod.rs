@@ -8,7 +8,7 @@
 //! for braking, over three axes of translation and three of rotation for poses. When the kind of goal changes, the new
 //! course starts from the position, velocity and acceleration of the reference, so nothing steps.
 //!
-//! A goal that is to finish passes through the stages of [`Stage`]: under way, landing, releasing, finished. A newer
+//! A goal that is to finish passes through the stages of `Stage`: under way, landing, releasing, finished. A newer
 //! goal takes the session back under way from any of them but the last.
 
 mod binding;
