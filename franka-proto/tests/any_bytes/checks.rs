@@ -55,16 +55,11 @@ pub fn robot_state(bytes: &[u8]) {
         assert_eq!(state.is_ok(), bytes.len() >= version.state_size());
         let Ok(state) = state else { continue };
         let _ = state.total_load();
-        let text = format!(
-            "{} {} {}",
-            state.errors, state.reflex_reason, state.robot_mode
-        );
-        assert!(text.starts_with('['));
         // Bits may be lost on the way to meaning (a flag of 7 is true), and then no more.
         let write = |state: &RobotState| {
             let mut bytes = [0; RobotState::MAX_SIZE];
-            let size = state.encode(version, &mut bytes).expect("it was read");
-            bytes[..size].to_vec()
+            state.encode(version, &mut bytes).expect("it was read");
+            bytes
         };
         let once = write(&state);
         let again = RobotState::decode(version, &once).expect("it is long enough");
@@ -80,8 +75,8 @@ pub fn robot_command(bytes: &[u8]) {
         let Ok(command) = command else { continue };
         let write = |command: &RobotCommand| {
             let mut bytes = [0; RobotCommand::MAX_SIZE];
-            let size = command.encode(version, &mut bytes).expect("it was read");
-            bytes[..size].to_vec()
+            command.encode(version, &mut bytes).expect("it was read");
+            bytes
         };
         let once = write(&command);
         let again = RobotCommand::decode(version, &once).expect("it is long enough");
