@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use franka_proto::client::{Event, Session};
 use franka_proto::{
-    Command, CommandId, MoveStatus, Refusal, Reply, Request, RobotState, Violation,
+    Command, CommandId, MoveStatus, Refusal, Reply, Request, RobotState, Violation, VirtualWall,
 };
 use franka_rt::driver::MotionId;
 use futures::{SinkExt, StreamExt};
@@ -94,6 +94,7 @@ pub(crate) enum Answer {
     Done,
     /// The robot's description, URDF.
     Model(Vec<u8>),
+    Wall(VirtualWall),
 }
 
 #[derive(Debug)]
@@ -377,6 +378,7 @@ impl Task {
         let outcome = match (Refusal::from_reply(command, reply, mode), reply) {
             (Some(refusal), _) => Err(refusal.into()),
             (None, Reply::Model { text, .. }) => Ok(Answer::Model(text.to_vec())),
+            (None, Reply::CartesianLimit { wall, .. }) => Ok(Answer::Wall(*wall)),
             (None, _) => Ok(Answer::Done),
         };
         let _ = answer.send(outcome);

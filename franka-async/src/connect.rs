@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use franka_model::Model;
+use franka_model::{Model, RobotKind};
 use franka_proto::client::{Event, Session};
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::Driver;
@@ -97,7 +97,7 @@ async fn open_with(
     address: SocketAddr,
     builder: &Builder,
 ) -> Result<Opened, ConnectError> {
-    let model = model_of(version)?;
+    let model = Model::of(kind_of(version));
     let tcp = dial(address, builder.connect_timeout).await?;
     let udp = exchange::bind()?;
     let port = udp.local_addr()?.port();
@@ -131,14 +131,11 @@ async fn open_with(
     })
 }
 
-/// The model of the robot that speaks `version`.
-fn model_of(version: Version) -> Result<&'static Model, ConnectError> {
-    if version == Version::V10 {
-        Ok(Model::fr3())
-    } else {
-        Err(ConnectError::NoModel {
-            version: version.number(),
-        })
+/// The robot that speaks `version`: a version belongs to one kind.
+fn kind_of(version: Version) -> RobotKind {
+    match version {
+        Version::V5 => RobotKind::Fer,
+        Version::V10 => RobotKind::Fr3,
     }
 }
 

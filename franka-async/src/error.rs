@@ -38,12 +38,6 @@ pub enum ConnectError {
     /// Peer: it speaks another protocol version.
     #[error(transparent)]
     IncompatibleVersion(#[from] IncompatibleVersion),
-    /// Peer: its protocol version is known, and this crate has no model of the robot that speaks it.
-    #[error("the robot speaks protocol {version}, for which there is no robot model")]
-    NoModel {
-        /// The version.
-        version: u16,
-    },
     /// Link: the connection ended during the handshake, or a datagram could not be read.
     #[error("{reason}")]
     Link {

@@ -53,7 +53,9 @@ pub use motion::{Canceller, Motion, Moving};
 pub use robot::Robot;
 
 pub use franka_model::{JointVector, Model};
-pub use franka_proto::{CollisionBehavior, Errors, Load, RobotMode, RobotState, Version};
+pub use franka_proto::{
+    CollisionBehavior, Errors, Filters, Load, RobotMode, RobotState, Version, VirtualWall,
+};
 pub use franka_rt::driver::Record;
 pub use franka_rt::law::Gains;
 pub use franka_rt::lifecycle::{MotionReport, Reflex};

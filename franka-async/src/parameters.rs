@@ -5,7 +5,7 @@
 use std::time::Duration;
 
 use franka_model::transform;
-use franka_proto::{CollisionBehavior, Load, Request};
+use franka_proto::{CollisionBehavior, Filters, Load, Request, VirtualWall};
 
 use crate::channel::Answer;
 use crate::{CommandError, Pose, Robot};
@@ -129,7 +129,35 @@ impl Robot {
     pub async fn urdf(&self) -> Result<String, CommandError> {
         match self.channel().call(Request::GetRobotModel, ANSWER).await? {
             Answer::Model(text) => Ok(String::from_utf8_lossy(&text).into_owned()),
-            Answer::Done => unreachable!("the session matches replies to the commands they answer"),
+            _ => unreachable!("the session matches replies to the commands they answer"),
+        }
+    }
+
+    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz; 1000 switches a filter off.
+    /// Protocol 5 only (Franka Emika Robot), and deprecated by the vendor: filter on this side.
+    ///
+    /// # Errors
+    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
+    ///
+    /// # Cancel safety
+    /// See [`Self::set_collision_behavior`].
+    pub async fn set_filters(&self, filters: Filters) -> Result<(), CommandError> {
+        self.set(Request::SetFilters(filters)).await
+    }
+
+    /// Reads the virtual wall `id` as it is set up in Desk (libfranka's `getVirtualWall`). Protocol 5 only (Franka Emika
+    /// Robot).
+    ///
+    /// # Errors
+    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
+    ///
+    /// # Cancel safety
+    /// Nothing is lost but the answer.
+    pub async fn virtual_wall(&self, id: i32) -> Result<VirtualWall, CommandError> {
+        let request = Request::GetCartesianLimit { id };
+        match self.channel().call(request, ANSWER).await? {
+            Answer::Wall(wall) => Ok(wall),
+            _ => unreachable!("the session matches replies to the commands they answer"),
         }
     }
 

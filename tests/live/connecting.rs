@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-use franka_async::{ConnectError, Realtime, Robot, VersionPolicy};
+use franka_async::{ConnectError, Realtime, Robot};
 use franka_proto::Version;
 use franka_proto::framing::next_message;
 use franka_proto::server::{Event, Session};
@@ -129,28 +129,6 @@ async fn another_version_is_named() {
         "libfranka: Incompatible library version (server version: 9, library version: 10). Please check \
          https://frankarobotics.github.io for system updates or choose a libfranka version that uses the server \
          version 9 from the table at https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html ."
-    );
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn an_older_robot_is_recognised_unless_the_version_is_pinned() {
-    let _alone = alone();
-    let address = server(|stream| async move {
-        handshake(stream, Version::V5).await;
-    })
-    .await;
-    let error = refused(address).await;
-    assert!(
-        matches!(error, ConnectError::NoModel { version: 5 }),
-        "{error:?}"
-    );
-    let pinned = Robot::builder(address)
-        .realtime(Realtime::Ignore)
-        .version(VersionPolicy::Exact(Version::V10));
-    let error = pinned.connect().await.expect_err("refused");
-    assert!(
-        matches!(error, ConnectError::IncompatibleVersion(_)),
-        "{error:?}"
     );
 }
 

@@ -1,0 +1,151 @@
+//! The Franka Emika Robot: the same programs, over the protocol that negotiation finds.
+
+use std::time::Duration;
+
+use franka_async::{
+    CommandError, ConnectError, Filters, Pose, PoseError, Realtime, Robot, Version, VersionPolicy,
+};
+use franka_model::RobotKind;
+use franka_proto::RequestError;
+use franka_sim::{Running, Sim, Tool};
+use tokio::sync::watch;
+
+use crate::{alone, connect, simulated};
+
+/// A simulated FER with a hand, and a handle on it.
+async fn fer() -> (Robot, Running) {
+    let sim = Sim::fer().tool(Tool::hand());
+    let sim = sim.start().await.expect("a simulator starts");
+    let robot = connect(&sim).await;
+    (robot, sim)
+}
+
+fn assert_near(robot: &Robot, target: &Pose) {
+    let error = PoseError::between(&robot.pose(), target);
+    assert!(
+        error.translation < 1e-3 && error.rotation < 2e-3,
+        "{error:?}"
+    );
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_version_is_negotiated_and_a_pose_and_joints_are_reached() {
+    let _alone = alone();
+    let (robot, _sim) = fer().await;
+    assert_eq!(robot.version(), Version::V5);
+    assert_eq!(robot.model().kind(), RobotKind::Fer);
+    let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
+    robot.move_to(up).await.unwrap();
+    assert_near(&robot, &up);
+    let mut q = robot.state().q;
+    q[0] += 0.2;
+    q[6] -= 0.3;
+    robot.move_joints(q).await.unwrap();
+    assert_near(&robot, &robot.pose_at(q));
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_watch_is_followed_and_a_motion_stopped() {
+    let _alone = alone();
+    let (robot, _sim) = fer().await;
+    let start = robot.pose();
+    let (sender, targets) = watch::channel(start);
+    let following = tokio::spawn(robot.follow(targets).into_future());
+    let mut last = start;
+    for step in 1..=10_u32 {
+        last = Pose::translation(0.0, 0.004 * f64::from(step), 0.0) * start;
+        sender.send(last).unwrap();
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    drop(sender);
+    following.await.unwrap().unwrap();
+    assert_near(&robot, &last);
+
+    let moving = tokio::spawn(crate::long_way(&robot).into_future());
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    robot.stop().await.unwrap();
+    assert!(moving.await.unwrap().is_err(), "stopped");
+    assert!(!robot.state().motion_running());
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_only_protocol_5_has_is_there_and_what_it_lacks_is_refused_here() {
+    let _alone = alone();
+    let (robot, _sim) = fer().await;
+    robot.set_filters(Filters::uniform(100.0)).await.unwrap();
+    let refused = robot.set_filters(Filters::uniform(0.5)).await.unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "libfranka: Set Filters command rejected: invalid argument!"
+    );
+    let wall = robot.virtual_wall(0).await.unwrap();
+    assert!(!wall.object_activation);
+    let lacking = robot.urdf().await.unwrap_err();
+    assert_eq!(
+        lacking.to_string(),
+        "protocol 5 (Franka Emika Robot) has no Get Robot Model"
+    );
+    robot.shutdown().await;
+
+    let (robot, _sim) = simulated().await;
+    assert_eq!(robot.version(), Version::V10);
+    for (error, what) in [
+        (
+            robot
+                .set_filters(Filters::uniform(100.0))
+                .await
+                .unwrap_err(),
+            "Set Filters",
+        ),
+        (
+            robot.virtual_wall(0).await.unwrap_err(),
+            "Get Cartesian Limit",
+        ),
+    ] {
+        let version = Version::V10;
+        let lacking = CommandError::Request(RequestError::Unsupported { what, version });
+        assert_eq!(error, lacking);
+    }
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_pinned_version_is_the_only_one_that_connects() {
+    let _alone = alone();
+    let sim = Sim::fer().start().await.expect("a simulator starts");
+    let pinned = |version| {
+        Robot::builder(sim.addr())
+            .realtime(Realtime::Ignore)
+            .version(VersionPolicy::Exact(version))
+            .connect()
+    };
+    let error = pinned(Version::V10).await.expect_err("refused");
+    let ConnectError::IncompatibleVersion(incompatible) = &error else {
+        panic!("{error:?}")
+    };
+    assert_eq!(incompatible.server_version, 5);
+    assert_eq!(
+        error.to_string(),
+        "libfranka: Incompatible library version (server version: 5, library version: 10). Please check \
+         https://frankarobotics.github.io for system updates or choose a libfranka version that uses the server \
+         version 5 from the table at https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html ."
+    );
+    let robot = pinned(Version::V5).await.expect("its own version");
+    robot.shutdown().await;
+
+    let sim = Sim::fr3().start().await.expect("a simulator starts");
+    let error = Robot::builder(sim.addr())
+        .realtime(Realtime::Ignore)
+        .version(VersionPolicy::Exact(Version::V5))
+        .connect()
+        .await
+        .expect_err("refused");
+    assert_eq!(
+        error.to_string(),
+        "libfranka: Incompatible library version (server version: 10, library version: 5). Please check \
+         https://frankaemika.github.io for Panda system updates or choose a libfranka version that uses the server \
+         version 10 from the table at https://frankaemika.github.io/docs/compatibility.html ."
+    );
+}
