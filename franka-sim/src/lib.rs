@@ -11,6 +11,7 @@
 //! |---|---|
 //! | [`serve`] | the robot on sockets: [`Sim::fr3`]`().start().await`, [`Sim::fer`] |
 //! | [`robot`] | the robot as a value, without clock and sockets: what tests in virtual time drive |
+//! | [`end_effector`] | the Franka Hand and the vacuum gripper as values, with servers of their own |
 //! | [`plant`] | the physics of the arm |
 //! | [`config`] | what a robot is like: pose, tool, load, noise, strictness |
 //!
@@ -35,17 +36,20 @@
 //!
 //! # What it does not do
 //!
-//! - The robot: no Hand, no hand guiding, no safety functions. Protocol 5 (FER): filters are accepted
-//!   and have no effect, no virtual wall is ever active, and there is no model library to load.
+//! - The robot: no hand guiding, no safety functions. Protocol 5 (FER): filters are accepted and have
+//!   no effect, no virtual wall is ever active, and there is no model library to load.
 //! - Errors that never come: self-collision, virtual walls, power limit, instability, and those of
 //!   the force controller, of Desk's own motions and of the base's acceleration.
 //! - Physics: rigid links and joints. Nothing stands in the arm's way, itself included.
+//! - The end effectors: kinematics. They and the arm know nothing of each other; what they hold has
+//!   neither mass nor pose.
 //! - What a robot keeps to itself (start tolerances, thresholds by default, gains of its own
 //!   controllers, the filter of its force estimate) has values chosen here; each says so where it
 //!   stands. None has been measured on a robot.
 
 mod brake;
 pub mod config;
+pub mod end_effector;
 mod estimate;
 mod generator;
 mod kind;
@@ -60,5 +64,6 @@ mod signal;
 mod urdf;
 
 pub use config::{Config, Noise, Tool};
+pub use end_effector::{Fingers, Hand, Suction, VacuumGripper};
 pub use robot::{Datagram, Robot, SessionError};
-pub use serve::{Pace, Running, Sim, Stopped};
+pub use serve::{Pace, Running, Service, Sim, Stopped};

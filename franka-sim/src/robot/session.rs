@@ -4,8 +4,8 @@ use bytes::Bytes;
 use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, next_message_within};
 use franka_proto::server::{Event, Session};
 use franka_proto::{
-    CommandId, LibraryStatus, MoveStatus, Reply, Request, RobotMode, SetterStatus, Version,
-    Violation, VirtualWall,
+    Command, CommandId, LibraryStatus, MoveStatus, Reply, Request, RobotMode, ServiceCommand,
+    SetterStatus, Version, Violation, VirtualWall,
 };
 
 use super::{Activity, Robot};
@@ -32,16 +32,16 @@ impl Client {
     }
 }
 
-/// Why a client is disconnected.
+/// Why a client is disconnected; `C` is what it could have asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum SessionError {
+pub enum SessionError<C: ServiceCommand = Command> {
     /// Its bytes are no messages.
     #[error("{0}")]
     Frame(FrameError),
     /// Its messages are not allowed.
     #[error("{0}")]
-    Violation(Violation),
+    Violation(Violation<C>),
 }
 
 impl Robot {

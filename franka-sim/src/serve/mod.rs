@@ -2,29 +2,33 @@
 //!
 //! ```text
 //!  Tokio: listener ── bytes, hands ──> queue ──> cycle thread: Robot, UDP socket, 1 kHz
-//!            └──────── replies <────── queue <──────┘
+//!            └──────── replies <────── queue <──────┘           (and Hand, VacuumGripper)
 //! ```
 //!
 //! The thread owns robot and UDP socket and keeps the millisecond; whatever blocks the Tokio
-//! runtime delays requests and replies, and no state.
+//! runtime delays requests and replies, and no state. A hand and a vacuum gripper have listeners,
+//! queues and sockets of their own and share thread and clock.
 
 mod cycle;
+mod device;
+mod seat;
+mod service;
 mod tcp;
 
 pub use cycle::Pace;
+pub use service::{Service, Stopped};
 
 use std::io;
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 
 use franka_model::{JointVector, Load, RobotKind};
 use franka_proto::RobotState;
-use tokio::net::TcpListener;
-use tokio::sync::{mpsc, oneshot};
-use tokio::task::JoinHandle;
+use tokio::sync::oneshot;
 
 use crate::config::{Config, Noise, Tool};
+use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
 use crate::robot::Robot;
-use cycle::{Cycle, Order};
+use cycle::Cycle;
 
 /// A robot to be simulated: configure, then [`start`](Self::start).
 ///
@@ -41,6 +45,8 @@ use cycle::{Cycle, Order};
 pub struct Sim {
     config: Config,
     bind: SocketAddr,
+    hand: Option<(Fingers, u16)>,
+    vacuum_gripper: Option<(Suction, u16)>,
 }
 
 impl Sim {
@@ -62,6 +68,8 @@ impl Sim {
         Self {
             config,
             bind: SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0),
+            hand: None,
+            vacuum_gripper: None,
         }
     }
 
@@ -80,6 +88,20 @@ impl Sim {
     /// Mounts a tool that the robot knows of.
     pub fn tool(mut self, tool: Tool) -> Self {
         self.config.tool = tool;
+        self
+    }
+
+    /// Serves a Franka Hand beside the robot, on this TCP port; 0 takes a free one. Hands listen on
+    /// 1338. Its mass and frame are those of [`Tool::hand`], to be mounted with [`tool`](Self::tool).
+    pub fn hand(mut self, fingers: Fingers, port: u16) -> Self {
+        self.hand = Some((fingers, port));
+        self
+    }
+
+    /// Serves a vacuum gripper beside the robot, on this TCP port; 0 takes a free one. Vacuum
+    /// grippers listen on 1339.
+    pub fn vacuum_gripper(mut self, suction: Suction, port: u16) -> Self {
+        self.vacuum_gripper = Some((suction, port));
         self
     }
 
@@ -122,13 +144,29 @@ impl Sim {
     /// # Cancel safety
     /// Dropping the future before it completes leaves nothing behind.
     pub async fn start(self) -> io::Result<Running> {
-        let listener = TcpListener::bind(self.bind).await?;
-        let address = listener.local_addr()?;
-        let socket = UdpSocket::bind(SocketAddr::new(address.ip(), 0))?;
-        socket.set_nonblocking(true)?;
-        let (orders, inbox) = mpsc::channel(QUEUE);
+        let (robot, seat) = service::open(self.bind, Robot::new(self.config)).await?;
+        let beside = |port| SocketAddr::new(self.bind.ip(), port);
+        let (hand, hand_seat) = match self.hand {
+            Some((fingers, port)) => {
+                let (hand, seat) = service::open(beside(port), Hand::new(fingers)).await?;
+                (Some(hand), Some(seat))
+            }
+            None => (None, None),
+        };
+        let (vacuum_gripper, vacuum_seat) = match self.vacuum_gripper {
+            Some((suction, port)) => {
+                let gripper = VacuumGripper::new(suction);
+                let (gripper, seat) = service::open(beside(port), gripper).await?;
+                (Some(gripper), Some(seat))
+            }
+            None => (None, None),
+        };
+        let cycle = Cycle {
+            robot: seat,
+            hand: hand_seat,
+            vacuum: vacuum_seat,
+        };
         let (done, finished) = oneshot::channel();
-        let cycle = Cycle::new(Robot::new(self.config), socket, inbox);
         std::thread::Builder::new()
             .name("franka-sim".into())
             .spawn(move || {
@@ -136,11 +174,10 @@ impl Sim {
                 // Nobody may be waiting for it.
                 let _ = done.send(());
             })?;
-        let server = tokio::spawn(tcp::serve(listener, orders.clone()));
         Ok(Running {
-            address,
-            orders,
-            server,
+            robot,
+            hand,
+            vacuum_gripper,
             finished,
         })
     }
@@ -150,42 +187,40 @@ impl Sim {
 /// closes its sockets.
 #[derive(Debug)]
 pub struct Running {
-    address: SocketAddr,
-    orders: mpsc::Sender<Order>,
-    server: JoinHandle<()>,
+    robot: Service<Robot>,
+    hand: Option<Service<Hand>>,
+    vacuum_gripper: Option<Service<VacuumGripper>>,
     finished: oneshot::Receiver<()>,
 }
 
-/// The simulation has ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the simulated robot has stopped")]
-pub struct Stopped;
-
 impl Running {
-    /// Where clients connect to.
+    /// Where the robot's clients connect to.
     pub fn addr(&self) -> SocketAddr {
-        self.address
+        self.robot.addr()
     }
 
-    /// Does something with the robot between two milliseconds: push it, read it, press its stop.
-    /// `hands` runs on the thread that keeps the cycle, so it should not take long.
+    /// The hand, if there is one: see [`Sim::hand`].
+    pub fn hand(&self) -> Option<&Service<Hand>> {
+        self.hand.as_ref()
+    }
+
+    /// The vacuum gripper, if there is one: see [`Sim::vacuum_gripper`].
+    pub fn vacuum_gripper(&self) -> Option<&Service<VacuumGripper>> {
+        self.vacuum_gripper.as_ref()
+    }
+
+    /// [`Service::with`] of the robot: push it, read it, press its stop.
     ///
     /// # Errors
-    /// [`Stopped`] if the simulation has ended, which only a panic in another `hands` brings about.
+    /// As [`Service::with`].
     ///
     /// # Cancel safety
-    /// Once polled, `hands` may run although the future is dropped.
+    /// As [`Service::with`].
     pub async fn with<R: Send + 'static>(
         &self,
         hands: impl FnOnce(&mut Robot) -> R + Send + 'static,
     ) -> Result<R, Stopped> {
-        let (answer, result) = oneshot::channel();
-        let order = Order::Hands(Box::new(move |robot| {
-            // Whoever asked may have gone.
-            let _ = answer.send(hands(robot));
-        }));
-        self.orders.send(order).await.map_err(|_| Stopped)?;
-        result.await.map_err(|_| Stopped)
+        self.robot.with(hands).await
     }
 
     /// The newest state, in full precision.
@@ -207,36 +242,31 @@ impl Running {
     /// # Cancel safety
     /// Dropping the future has no effect.
     pub async fn pace(&self) -> Result<Pace, Stopped> {
-        let (answer, pace) = oneshot::channel();
-        let order = Order::Pace(answer);
-        self.orders.send(order).await.map_err(|_| Stopped)?;
-        pace.await.map_err(|_| Stopped)
+        self.robot.pace().await
     }
 
     /// Stops the simulation, disconnects its client, and returns once thread and sockets are gone.
     ///
     /// # Cancel safety
     /// Dropping the future stops the simulation all the same, without waiting for it.
-    pub async fn stop(mut self) {
-        self.server.abort();
-        // An aborted task ends with an error, the intended one.
-        let _ = (&mut self.server).await;
-        // The thread ends when the last sender is gone, or at once if it has died already.
-        let (closed, _) = mpsc::channel(1);
-        self.orders = closed;
-        let _ = (&mut self.finished).await;
+    pub async fn stop(self) {
+        let Self {
+            robot,
+            hand,
+            vacuum_gripper,
+            finished,
+        } = self;
+        if let Some(hand) = hand {
+            hand.close().await;
+        }
+        if let Some(gripper) = vacuum_gripper {
+            gripper.close().await;
+        }
+        // The thread ends when nobody can give orders to the robot, or has died already.
+        robot.close().await;
+        let _ = finished.await;
     }
 }
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.server.abort();
-    }
-}
-
-/// Orders that may wait for the thread: portions of stream bytes and hands. It takes all of them
-/// every millisecond.
-const QUEUE: usize = 64;
 
 #[cfg(test)]
 mod tests;

@@ -8,7 +8,8 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::mpsc;
 use tokio::time::timeout;
 
-use super::cycle::Order;
+use super::device::Device;
+use super::seat::Order;
 
 /// Replies that may wait for a client that does not read.
 const REPLIES: usize = 64;
@@ -24,14 +25,18 @@ const HANDOVER: Duration = Duration::from_millis(50);
 const RETRY: Duration = Duration::from_millis(100);
 
 /// Serves clients until the thread has gone or the task is aborted.
-pub(super) async fn serve(listener: TcpListener, orders: mpsc::Sender<Order>) {
+pub(super) async fn serve<D: Device>(
+    listener: TcpListener,
+    orders: mpsc::Sender<Order<D>>,
+    name: &'static str,
+) {
     let mut next = None;
     while !orders.is_closed() {
         let stream = match next.take() {
             Some(stream) => stream,
             None => accept(&listener).await,
         };
-        let mut session = std::pin::pin!(session(stream, orders.clone()));
+        let mut session = std::pin::pin!(session(stream, orders.clone(), name));
         loop {
             tokio::select! {
                 biased;
@@ -61,13 +66,13 @@ async fn accept(listener: &TcpListener) -> TcpStream {
 }
 
 /// One client from first byte to last.
-async fn session(stream: TcpStream, orders: mpsc::Sender<Order>) {
+async fn session<D: Device>(stream: TcpStream, orders: mpsc::Sender<Order<D>>, name: &str) {
     let Ok(peer) = stream.peer_addr() else {
         return;
     };
     // Replies are small and their delay is felt; without it, they are only slower.
     let _ = stream.set_nodelay(true);
-    tracing::info!(%peer, "client connected");
+    tracing::info!(%peer, "client of the {name} connected");
     let (sender, replies) = mpsc::channel(REPLIES);
     let connect = Order::Connect {
         peer: peer.ip(),
@@ -78,13 +83,13 @@ async fn session(stream: TcpStream, orders: mpsc::Sender<Order>) {
         // If the thread has gone, so has the robot.
         let _ = orders.send(Order::Disconnect).await;
     }
-    tracing::info!(%peer, "client gone");
+    tracing::info!(%peer, "client of the {name} gone");
 }
 
 /// Moves bytes both ways until either side is done.
-async fn transfer(
+async fn transfer<D: Device>(
     mut stream: TcpStream,
-    orders: &mpsc::Sender<Order>,
+    orders: &mpsc::Sender<Order<D>>,
     mut replies: mpsc::Receiver<Bytes>,
 ) {
     let (mut read, mut write) = stream.split();

@@ -1,0 +1,271 @@
+//! The two fingers of a Franka Hand, as kinematics.
+
+use bytes::Bytes;
+use franka_proto::gripper::{Grasp, Move, Request, State, Status, Version};
+
+use super::{Mechanism, towards};
+
+/// Two fingers that move at the speed they are told and stop at what is between them.
+///
+/// What is known of real hands stands with the methods of libfranka; the rest are choices made here,
+/// marked as such, and none has been measured.
+///
+/// * Until a homing, `max_width` is 0 and every width above is refused.
+/// * A move that an object blocks goes on trying, and fails after [`Fingers::BLOCKED_MS`].
+/// * A grasp closes until something stops the fingers, and squeezes from then on, whether or not it
+///   found the width that was asked for. One that begins while an object is held is unsuccessful.
+/// * An object that is lost lets the fingers close further.
+#[derive(Debug, Clone)]
+pub struct Fingers {
+    width: f64,
+    max_width: f64,
+    is_grasped: bool,
+    temperature: u16,
+    object: Option<f64>,
+    activity: Activity,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Activity {
+    /// The fingers stand, and exert no force.
+    Idle,
+    /// Homing, on its way to whatever stops the fingers.
+    HomingClosed,
+    /// Homing, on its way back.
+    HomingOpen,
+    /// `since` counts the milliseconds in which an object has been in the way.
+    Moving { motion: Move, blocked: u32 },
+    /// Closing until something stops the fingers.
+    Grasping(Grasp),
+    /// What follows a grasp: closing with this speed and force.
+    Squeezing { speed: f64, force: f64 },
+}
+
+impl Fingers {
+    /// Distance of the open fingers `[m]`. Source: Franka Hand, technical data.
+    pub const STROKE: f64 = 0.08;
+
+    /// The fastest that the width changes `[m/s]`: 0.05 for each finger. Source: Franka Hand,
+    /// technical data. Faster requests are carried out at this speed, which is a choice made here.
+    pub const MAX_SPEED: f64 = 0.1;
+
+    /// Speed of the width during a homing `[m/s]`, a choice made here.
+    pub const HOMING_SPEED: f64 = 0.05;
+
+    /// The least and the largest force of a squeeze `[N]`. The least is reported by users of real
+    /// hands, whatever they ask for; the largest is that of the technical data.
+    pub const FORCE: [f64; 2] = [30.0, 140.0];
+
+    /// How long a move tries to pass an object `[ms]`. Users report 100 s to 120 s.
+    pub const BLOCKED_MS: u32 = 110_000;
+
+    /// Open fingers with nothing between them, before their first homing.
+    pub fn new() -> Self {
+        Self {
+            width: Self::STROKE,
+            max_width: 0.0,
+            is_grasped: false,
+            temperature: 25,
+            object: None,
+            activity: Activity::Idle,
+        }
+    }
+
+    /// With an object of this width between the fingers `[m]`.
+    ///
+    /// # Panics
+    /// If the object does not fit: see [`place_object`](Self::place_object).
+    #[must_use]
+    pub fn with_object(mut self, width: f64) -> Self {
+        assert!(
+            self.place_object(width),
+            "an object of {width} m does not fit"
+        );
+        self
+    }
+
+    /// With this temperature `[deg C]`; 25 otherwise.
+    #[must_use]
+    pub fn with_temperature(mut self, temperature: u16) -> Self {
+        self.temperature = temperature;
+        self
+    }
+
+    /// Puts an object between the fingers, in place of what is there. False, and nothing changes, if
+    /// its width `[m]` is not positive or wider than the fingers are open.
+    pub fn place_object(&mut self, width: f64) -> bool {
+        let fits = width > 0.0 && width <= self.width;
+        if fits {
+            self.object = Some(width);
+        }
+        fits
+    }
+
+    /// Takes the object away: its width `[m]`, if there was one. A grasp of it is lost.
+    pub fn take_object(&mut self) -> Option<f64> {
+        self.object.take()
+    }
+
+    /// The force that the fingers exert on what is between them `[N]`.
+    pub fn force(&self) -> f64 {
+        match self.activity {
+            Activity::Squeezing { force, .. } if self.width <= self.contact() => {
+                force.clamp(Self::FORCE[0], Self::FORCE[1])
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Where closing fingers are stopped `[m]`.
+    fn contact(&self) -> f64 {
+        self.object.unwrap_or(0.0)
+    }
+
+    /// One millisecond towards `target` as far as the object allows. True at the target.
+    fn approach(&mut self, target: f64, speed: f64) -> bool {
+        let step = speed.min(Self::MAX_SPEED) * 1e-3;
+        let reachable = target.max(self.contact());
+        self.width = towards(self.width, reachable, step);
+        self.width == target
+    }
+
+    fn accepts(&self, width: f64, speed: f64) -> bool {
+        (0.0..=self.max_width).contains(&width) && speed.is_finite() && speed > 0.0
+    }
+
+    fn is_in_tolerance(&self, grasp: &Grasp) -> bool {
+        let least = grasp.width - grasp.epsilon_inner;
+        let largest = grasp.width + grasp.epsilon_outer;
+        least < self.width && self.width < largest
+    }
+
+    fn begin_grasp(&mut self, grasp: Grasp) -> Option<Status> {
+        let tolerances = [grasp.epsilon_inner, grasp.epsilon_outer];
+        let makes_sense = grasp.force.is_finite()
+            && grasp.force > 0.0
+            && tolerances.iter().all(|tolerance| *tolerance >= 0.0);
+        if !makes_sense || !self.accepts(grasp.width, grasp.speed) {
+            return Some(Status::Fail);
+        }
+        if self.is_grasped {
+            return Some(Status::Unsuccessful);
+        }
+        self.activity = Activity::Grasping(grasp);
+        None
+    }
+}
+
+impl Default for Fingers {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Mechanism for Fingers {
+    type Protocol = Version;
+    type State = State;
+
+    fn is_stop(request: &Request) -> bool {
+        matches!(request, Request::Stop)
+    }
+
+    fn begin(&mut self, request: &Request) -> Option<Status> {
+        match *request {
+            Request::Grasp(grasp) if self.is_grasped => self.begin_grasp(grasp),
+            Request::Grasp(grasp) => {
+                self.halt();
+                self.begin_grasp(grasp)
+            }
+            Request::Homing => {
+                self.halt();
+                self.activity = Activity::HomingClosed;
+                None
+            }
+            Request::Move(motion) => {
+                self.halt();
+                if !self.accepts(motion.width, motion.speed) {
+                    return Some(Status::Fail);
+                }
+                let blocked = 0;
+                self.activity = Activity::Moving { motion, blocked };
+                None
+            }
+            _ => Some(Status::Fail),
+        }
+    }
+
+    fn halt(&mut self) {
+        self.activity = Activity::Idle;
+        self.is_grasped = false;
+    }
+
+    fn tick(&mut self) -> Option<Status> {
+        match self.activity {
+            Activity::Idle => None,
+            Activity::HomingClosed => {
+                let target = self.contact();
+                if self.approach(target, Self::HOMING_SPEED) {
+                    self.activity = Activity::HomingOpen;
+                }
+                None
+            }
+            Activity::HomingOpen => {
+                let done = self.approach(Self::STROKE, Self::HOMING_SPEED);
+                done.then(|| {
+                    self.max_width = Self::STROKE;
+                    self.activity = Activity::Idle;
+                    Status::Success
+                })
+            }
+            Activity::Moving { motion, blocked } => {
+                let before = self.width;
+                let status = if self.approach(motion.width, motion.speed) {
+                    Status::Success
+                } else if blocked >= Self::BLOCKED_MS {
+                    Status::Fail
+                } else {
+                    let blocked = if self.width == before { blocked + 1 } else { 0 };
+                    self.activity = Activity::Moving { motion, blocked };
+                    return None;
+                };
+                self.activity = Activity::Idle;
+                Some(status)
+            }
+            Activity::Grasping(grasp) => {
+                let Grasp { speed, force, .. } = grasp;
+                let target = self.contact();
+                self.approach(target, speed).then(|| {
+                    self.is_grasped = self.is_in_tolerance(&grasp);
+                    self.activity = Activity::Squeezing { speed, force };
+                    match self.is_grasped {
+                        true => Status::Success,
+                        false => Status::Unsuccessful,
+                    }
+                })
+            }
+            Activity::Squeezing { speed, .. } => {
+                let target = self.contact();
+                if self.width > target {
+                    // What it held has gone.
+                    self.is_grasped = false;
+                    self.approach(target, speed);
+                }
+                None
+            }
+        }
+    }
+
+    fn state(&self, message_id: u32) -> State {
+        State {
+            message_id,
+            width: self.width,
+            max_width: self.max_width,
+            is_grasped: self.is_grasped,
+            temperature: self.temperature,
+        }
+    }
+
+    fn encode(state: &State) -> Bytes {
+        Bytes::copy_from_slice(&state.encode())
+    }
+}

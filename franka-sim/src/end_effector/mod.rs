@@ -1,0 +1,258 @@
+//! What hangs on the flange and has a server of its own, as values: bytes in, bytes out, one
+//! millisecond per [`EndEffector::tick`].
+//!
+//! ```text
+//! TCP bytes ── receive() ──> session ──> requests ──> Mechanism ──> take_reply(): when it is done
+//!                                                        tick() ──> states by UDP, 50 a second
+//! ```
+//!
+//! There is no clock, socket or thread in here. [`Hand`] and [`VacuumGripper`] differ in their
+//! [`Mechanism`] and in nothing else.
+//!
+//! One action runs at a time. A new one aborts it, and so does a stop; both answer it as aborted. A
+//! client that goes while its action runs stops it; what is held by then stays held.
+
+mod fingers;
+mod suction;
+#[cfg(test)]
+mod tests;
+
+pub use fingers::Fingers;
+pub use suction::Suction;
+
+use std::collections::VecDeque;
+
+use bytes::Bytes;
+use franka_proto::gripper::{Reply, Status, next_message};
+use franka_proto::server::{Event, Session};
+use franka_proto::{CommandId, Protocol};
+
+use crate::robot::{Datagram, SessionError};
+
+/// A Franka Hand and its server.
+pub type Hand = EndEffector<Fingers>;
+
+/// A vacuum gripper and its server.
+pub type VacuumGripper = EndEffector<Suction>;
+
+/// Time between two states `[ms]`. The vendor publishes no rate; clients wait for a second at most.
+pub const STATE_PERIOD: u32 = 20;
+
+/// What an end effector does with its requests, apart from all messages.
+pub trait Mechanism {
+    /// The protocol of its server.
+    type Protocol: for<'a> Protocol<Reply<'a> = Reply> + Default;
+    /// What it says of itself.
+    type State;
+
+    /// Whether a request asks for nothing but the end of the action that runs.
+    fn is_stop(request: &<Self::Protocol as Protocol>::Request) -> bool;
+
+    /// Begins what is asked for, in place of what runs. The answer, if that is all.
+    fn begin(&mut self, request: &<Self::Protocol as Protocol>::Request) -> Option<Status>;
+
+    /// Ends the action that runs, and lets go.
+    fn halt(&mut self);
+
+    /// Advances by one millisecond. The answer, if the action has ended with it.
+    fn tick(&mut self) -> Option<Status>;
+
+    /// What it says of itself at `message_id`, in milliseconds.
+    fn state(&self, message_id: u32) -> Self::State;
+
+    /// The datagram of a state.
+    fn encode(state: &Self::State) -> Bytes;
+}
+
+/// A mechanism and its server; see the [module](self).
+pub struct EndEffector<M: Mechanism> {
+    mechanism: M,
+    client: Option<Client<M::Protocol>>,
+    replies: VecDeque<Bytes>,
+    /// The request whose action runs.
+    running: Option<CommandId>,
+    /// Whether an action has ended since the last state.
+    ended: bool,
+    clock: u32,
+    datagram: Bytes,
+}
+
+struct Client<P: Protocol> {
+    session: Session<P>,
+    received: Vec<u8>,
+    udp_port: Option<u16>,
+}
+
+impl<M: Mechanism> EndEffector<M> {
+    /// A server for `mechanism`, without a client.
+    pub fn new(mechanism: M) -> Self {
+        Self {
+            mechanism,
+            client: None,
+            replies: VecDeque::new(),
+            running: None,
+            ended: false,
+            clock: 0,
+            datagram: Bytes::new(),
+        }
+    }
+
+    /// Takes a client in. False if another one is there: there is one client at a time.
+    pub fn connect(&mut self) -> bool {
+        if self.client.is_some() {
+            return false;
+        }
+        self.replies.clear();
+        self.client = Some(Client {
+            session: Session::new(M::Protocol::default()),
+            received: Vec::new(),
+            udp_port: None,
+        });
+        true
+    }
+
+    /// Takes leave of the client. Its action ends; what the end effector holds, it goes on holding.
+    pub fn disconnect(&mut self) {
+        if self.running.take().is_some() {
+            self.mechanism.halt();
+        }
+        self.client = None;
+        self.replies.clear();
+    }
+
+    /// Whether a client is there.
+    pub fn is_connected(&self) -> bool {
+        self.client.is_some()
+    }
+
+    /// Takes bytes from the client's stream, in any portions.
+    ///
+    /// # Errors
+    /// [`SessionError`] if the client left the protocol. It is then disconnected, after the replies
+    /// that are still to be sent.
+    pub fn receive(
+        &mut self,
+        bytes: &[u8],
+    ) -> Result<(), SessionError<<M::Protocol as Protocol>::Command>> {
+        let Some(client) = &mut self.client else {
+            return Ok(());
+        };
+        client.received.extend_from_slice(bytes);
+        let result = self.take_messages();
+        if result.is_err() {
+            let replies = std::mem::take(&mut self.replies);
+            self.disconnect();
+            self.replies = replies;
+        }
+        result
+    }
+
+    /// The next message for the client's stream, to be written whole.
+    pub fn take_reply(&mut self) -> Option<Bytes> {
+        self.replies.pop_front()
+    }
+
+    /// Advances by one millisecond and returns the state to send, if a client is there and it is
+    /// time: every [`STATE_PERIOD`], and when an action has ended.
+    pub fn tick(&mut self) -> Option<Datagram<'_>> {
+        self.clock = self.clock.wrapping_add(1);
+        if let Some(status) = self.mechanism.tick()
+            && let Some(id) = self.running.take()
+        {
+            self.reply(id, status);
+        }
+        let due = self.clock.is_multiple_of(STATE_PERIOD);
+        if !std::mem::take(&mut self.ended) && !due {
+            return None;
+        }
+        let port = self.client.as_ref()?.udp_port?;
+        self.datagram = M::encode(&self.state());
+        Some(Datagram {
+            port,
+            bytes: &self.datagram,
+        })
+    }
+
+    /// What it says of itself now.
+    pub fn state(&self) -> M::State {
+        self.mechanism.state(self.clock)
+    }
+
+    /// What the server serves.
+    pub fn mechanism(&self) -> &M {
+        &self.mechanism
+    }
+
+    /// What the server serves, to put things into its way.
+    pub fn mechanism_mut(&mut self) -> &mut M {
+        &mut self.mechanism
+    }
+
+    fn take_messages(&mut self) -> Result<(), SessionError<<M::Protocol as Protocol>::Command>> {
+        while let Some(client) = &mut self.client {
+            let message = next_message(&client.received).map_err(SessionError::Frame)?;
+            let Some(message) = message else {
+                break;
+            };
+            let size = message.size();
+            let event = client
+                .session
+                .on_message(message)
+                .map_err(SessionError::Violation)?;
+            client.received.drain(..size);
+            match event {
+                Event::Connect {
+                    udp_port, reply, ..
+                } => {
+                    client.udp_port = Some(udp_port);
+                    self.queue(reply.as_bytes());
+                }
+                Event::Incompatible { reply, .. } | Event::Rejected { reply, .. } => {
+                    self.queue(reply.as_bytes());
+                }
+                Event::Request { id, request } => self.answer(id, &request),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn answer(&mut self, id: CommandId, request: &<M::Protocol as Protocol>::Request) {
+        if let Some(aborted) = self.running.take() {
+            self.reply(aborted, Status::Aborted);
+        }
+        if M::is_stop(request) {
+            self.mechanism.halt();
+            self.reply(id, Status::Success);
+        } else if let Some(status) = self.mechanism.begin(request) {
+            self.reply(id, status);
+        } else {
+            self.running = Some(id);
+        }
+    }
+
+    fn reply(&mut self, id: CommandId, status: Status) {
+        let Some(client) = &mut self.client else {
+            return;
+        };
+        self.ended = true;
+        // The session refuses replies to what it has not been asked, and none is made up here.
+        if let Ok(message) = client.session.reply(id, Reply::Done(status)) {
+            self.queue(message.as_bytes());
+        }
+    }
+
+    fn queue(&mut self, message: &[u8]) {
+        self.replies.push_back(Bytes::copy_from_slice(message));
+    }
+}
+
+/// `value`, brought nearer to `target` by `step` at most; `target` itself once that is enough.
+fn towards(value: f64, target: f64, step: f64) -> f64 {
+    let way = target - value;
+    if way.abs() <= step {
+        target
+    } else {
+        value + step.copysign(way)
+    }
+}

@@ -1,0 +1,197 @@
+//! The pump, valve and cup of a vacuum gripper.
+
+use bytes::Bytes;
+use franka_proto::vacuum::{DeviceStatus, Request, State, Status, Vacuum, Version};
+
+use super::{Mechanism, towards};
+
+/// A pump that builds up a vacuum on an object and a valve that lets air in again.
+///
+/// All figures are choices made here; none has been measured. The four profiles of the device make
+/// no difference.
+///
+/// * A vacuum is reached on an object only, up to [`Suction::MAX_VACUUM`]; the request is
+///   unsuccessful when its time is up.
+/// * A vacuum that was reached is held. A stop turns the pump off, after which it leaks away.
+/// * An object that is lost takes the vacuum with it.
+#[derive(Debug, Clone)]
+pub struct Suction {
+    object: bool,
+    /// `[mbar]`.
+    vacuum: f64,
+    part_detached: bool,
+    activity: Activity,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Activity {
+    /// The pump is off and the valve is shut.
+    Idle,
+    /// Pumping up to `target`; `left` milliseconds to go.
+    Pumping { target: f64, left: i64 },
+    /// The pump keeps what has been reached.
+    Holding { target: f64 },
+    /// The valve is open; `left` milliseconds to go.
+    Venting { left: i64 },
+}
+
+impl Suction {
+    /// The deepest vacuum `[mbar]`.
+    pub const MAX_VACUUM: f64 = 750.0;
+
+    /// How fast the pump builds it up `[mbar/s]`.
+    pub const PUMP_RATE: f64 = 1000.0;
+
+    /// How fast the open valve, or a cup without an object, lets it go `[mbar/s]`.
+    pub const VENT_RATE: f64 = 4000.0;
+
+    /// How fast it leaks away on an object while the pump is off `[mbar/s]`.
+    pub const LEAK_RATE: f64 = 20.0;
+
+    /// The vacuum from which on an object counts as held `[mbar]`.
+    pub const PART_PRESENT: f64 = 100.0;
+
+    /// A gripper without an object in front of it.
+    pub fn new() -> Self {
+        Self {
+            object: false,
+            vacuum: 0.0,
+            part_detached: false,
+            activity: Activity::Idle,
+        }
+    }
+
+    /// With an object in front of the cup.
+    #[must_use]
+    pub fn with_object(mut self) -> Self {
+        self.place_object();
+        self
+    }
+
+    /// Puts an object in front of the cup.
+    pub fn place_object(&mut self) {
+        self.object = true;
+    }
+
+    /// Takes the object away. False if there was none.
+    pub fn take_object(&mut self) -> bool {
+        std::mem::take(&mut self.object)
+    }
+
+    fn lose(&mut self, rate: f64) {
+        self.vacuum = towards(self.vacuum, 0.0, rate * 1e-3);
+    }
+
+    fn pump(&mut self, target: f64) {
+        if self.object {
+            let reachable = target.min(Self::MAX_VACUUM);
+            self.vacuum = towards(self.vacuum, reachable, Self::PUMP_RATE * 1e-3);
+        } else {
+            self.lose(Self::VENT_RATE);
+        }
+    }
+}
+
+impl Default for Suction {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Mechanism for Suction {
+    type Protocol = Version;
+    type State = State;
+
+    fn is_stop(request: &Request) -> bool {
+        matches!(request, Request::Stop)
+    }
+
+    fn begin(&mut self, request: &Request) -> Option<Status> {
+        let (activity, timeout) = match *request {
+            Request::Vacuum(Vacuum {
+                vacuum, timeout, ..
+            }) => {
+                let target = f64::from(vacuum) * 10.0;
+                let left = timeout;
+                (Activity::Pumping { target, left }, timeout)
+            }
+            Request::DropOff { timeout } => (Activity::Venting { left: timeout }, timeout),
+            _ => return Some(Status::Fail),
+        };
+        if timeout <= 0 {
+            return Some(Status::Fail);
+        }
+        self.part_detached = false;
+        self.activity = activity;
+        None
+    }
+
+    fn halt(&mut self) {
+        self.activity = Activity::Idle;
+    }
+
+    fn tick(&mut self) -> Option<Status> {
+        match self.activity {
+            Activity::Idle => {
+                self.lose(match self.object {
+                    true => Self::LEAK_RATE,
+                    false => Self::VENT_RATE,
+                });
+                None
+            }
+            Activity::Pumping { target, left } => {
+                self.pump(target);
+                if self.object && self.vacuum >= target {
+                    self.activity = Activity::Holding { target };
+                    return Some(Status::Success);
+                }
+                let left = left - 1;
+                self.activity = Activity::Pumping { target, left };
+                (left <= 0).then(|| {
+                    self.halt();
+                    Status::Unsuccessful
+                })
+            }
+            Activity::Holding { target } => {
+                self.pump(target);
+                None
+            }
+            Activity::Venting { left } => {
+                self.lose(Self::VENT_RATE);
+                if self.vacuum == 0.0 {
+                    self.part_detached = true;
+                    self.halt();
+                    return Some(Status::Success);
+                }
+                let left = left - 1;
+                self.activity = Activity::Venting { left };
+                (left <= 0).then(|| {
+                    self.halt();
+                    Status::Unsuccessful
+                })
+            }
+        }
+    }
+
+    fn state(&self, message_id: u32) -> State {
+        let (in_control_range, actual_power) = match self.activity {
+            Activity::Pumping { .. } => (false, 100),
+            Activity::Holding { target } => (self.vacuum >= target, 30),
+            Activity::Idle | Activity::Venting { .. } => (false, 0),
+        };
+        State {
+            message_id,
+            in_control_range,
+            part_detached: self.part_detached,
+            part_present: self.object && self.vacuum >= Self::PART_PRESENT,
+            device_status: DeviceStatus::Green,
+            actual_power,
+            // At most 750.
+            vacuum: self.vacuum.round() as i32,
+        }
+    }
+
+    fn encode(state: &State) -> Bytes {
+        Bytes::copy_from_slice(&state.encode())
+    }
+}

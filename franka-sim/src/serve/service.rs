@@ -1,0 +1,113 @@
+//! One device of a simulation, as seen from outside.
+
+use std::fmt;
+use std::io;
+use std::net::{SocketAddr, UdpSocket};
+
+use tokio::net::TcpListener;
+use tokio::sync::{mpsc, oneshot};
+use tokio::task::JoinHandle;
+
+use super::cycle::Pace;
+use super::device::Device;
+use super::seat::{Order, Seat};
+use super::tcp;
+
+/// A device that is being served. Dropping it closes its sockets.
+pub struct Service<D> {
+    address: SocketAddr,
+    orders: mpsc::Sender<Order<D>>,
+    server: JoinHandle<()>,
+}
+
+/// The simulation has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the simulated robot has stopped")]
+pub struct Stopped;
+
+/// Opens the sockets of a device. Its seat is for the thread. Errors name the address, since there
+/// are several.
+pub(super) async fn open<D: Device>(
+    bind: SocketAddr,
+    device: D,
+) -> io::Result<(Service<D>, Seat<D>)> {
+    let listener = TcpListener::bind(bind)
+        .await
+        .map_err(|error| io::Error::new(error.kind(), format!("{bind}: {error}")))?;
+    let address = listener.local_addr()?;
+    let socket = UdpSocket::bind(SocketAddr::new(address.ip(), 0))?;
+    socket.set_nonblocking(true)?;
+    let (orders, inbox) = mpsc::channel(QUEUE);
+    let server = tokio::spawn(tcp::serve(listener, orders.clone(), device.name()));
+    let service = Service {
+        address,
+        orders,
+        server,
+    };
+    Ok((service, Seat::new(device, socket, inbox)))
+}
+
+impl<D: 'static> Service<D> {
+    /// Where clients connect to.
+    pub fn addr(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Does something with the device between two milliseconds. `hands` runs on the thread that
+    /// keeps the cycle, so it should not take long.
+    ///
+    /// # Errors
+    /// [`Stopped`] if the simulation has ended, which only a panic in another `hands` brings about.
+    ///
+    /// # Cancel safety
+    /// Once polled, `hands` may run although the future is dropped.
+    pub async fn with<R: Send + 'static>(
+        &self,
+        hands: impl FnOnce(&mut D) -> R + Send + 'static,
+    ) -> Result<R, Stopped> {
+        self.ask(|device, _| hands(device)).await
+    }
+
+    /// How well the thread has kept the millisecond so far.
+    pub(super) async fn pace(&self) -> Result<Pace, Stopped> {
+        self.ask(|_, pace| pace).await
+    }
+
+    async fn ask<R: Send + 'static>(
+        &self,
+        hands: impl FnOnce(&mut D, Pace) -> R + Send + 'static,
+    ) -> Result<R, Stopped> {
+        let (answer, result) = oneshot::channel();
+        let order = Order::Hands(Box::new(move |device: &mut D, pace| {
+            // Whoever asked may have gone.
+            let _ = answer.send(hands(device, pace));
+        }));
+        self.orders.send(order).await.map_err(|_| Stopped)?;
+        result.await.map_err(|_| Stopped)
+    }
+
+    /// Closes the sockets of the stream, and returns when that is done and nobody can give orders.
+    pub(super) async fn close(mut self) {
+        self.server.abort();
+        // An aborted task ends with an error, the intended one.
+        let _ = (&mut self.server).await;
+    }
+}
+
+impl<D> fmt::Debug for Service<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut service = f.debug_struct("Service");
+        service.field("address", &self.address);
+        service.finish_non_exhaustive()
+    }
+}
+
+impl<D> Drop for Service<D> {
+    fn drop(&mut self) {
+        self.server.abort();
+    }
+}
+
+/// Orders that may wait for the thread: portions of stream bytes and hands. It takes all of them
+/// every millisecond.
+const QUEUE: usize = 64;
