@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use franka_model::{JointVector, Load, RobotKind};
-use franka_sim::{Config, Noise, Sim, Tool};
+use franka_sim::{Config, Fingers, Noise, Sim, Suction, Tool};
 use nalgebra::{Matrix3, Vector3};
 use tokio::signal::unix::{SignalKind, signal};
 
@@ -36,7 +36,17 @@ struct Arguments {
     #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
     q: Option<[f64; 7]>,
 
-    /// Mounts the Franka Hand's mass and frame on the flange (its fingers are not simulated).
+    /// Serves neither a Franka Hand nor a vacuum gripper. Without this, they listen on the two ports
+    /// that follow the robot's, as on a robot: 1338 and 1339. On port 0 all three are free ones.
+    #[arg(long)]
+    no_gripper: bool,
+
+    /// Puts an object of this width between the Hand's fingers and in front of the vacuum gripper,
+    /// in metres.
+    #[arg(long, value_name = "M", value_parser = object_width, conflicts_with = "no_gripper")]
+    gripper_object_width: Option<f64>,
+
+    /// Mounts the Franka Hand's mass and frame on the flange.
     #[arg(long)]
     hand: bool,
 
@@ -112,6 +122,27 @@ impl Arguments {
         }
         config
     }
+
+    fn sim(&self) -> Sim {
+        let sim = Sim::new(self.config()).bind(SocketAddr::new(self.bind, self.port));
+        if self.no_gripper {
+            return sim;
+        }
+        let (fingers, suction) = match self.gripper_object_width {
+            Some(width) => (
+                Fingers::new().with_object(width),
+                Suction::new().with_object(),
+            ),
+            None => (Fingers::new(), Suction::new()),
+        };
+        // Port 0 takes a free one; beyond the last port there are only those.
+        let beside = |n| match self.port {
+            0 => 0,
+            port => port.checked_add(n).unwrap_or(0),
+        };
+        sim.hand(fingers, beside(1))
+            .vacuum_gripper(suction, beside(2))
+    }
 }
 
 /// `N` finite numbers, separated by commas.
@@ -127,6 +158,16 @@ fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     values
         .try_into()
         .map_err(|_| format!("{N} numbers expected, {count} given"))
+}
+
+/// The width of an object that fits between the fingers.
+fn object_width(text: &str) -> Result<f64, String> {
+    let [width] = numbers::<1>(text)?;
+    if Fingers::new().place_object(width) {
+        Ok(width)
+    } else {
+        Err(format!("between 0 and {} m fit", Fingers::STROKE))
+    }
 }
 
 /// A mass that a load can have.
@@ -149,8 +190,7 @@ async fn main() -> ExitCode {
     match run(&arguments).await {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            let address = SocketAddr::new(arguments.bind, arguments.port);
-            eprintln!("franka-sim: cannot listen on {address}: {error}");
+            eprintln!("franka-sim: cannot listen on {error}");
             ExitCode::FAILURE
         }
     }
@@ -159,11 +199,14 @@ async fn main() -> ExitCode {
 async fn run(arguments: &Arguments) -> std::io::Result<()> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
-    let sim = Sim::new(arguments.config())
-        .bind(SocketAddr::new(arguments.bind, arguments.port))
-        .start()
-        .await?;
+    let sim = arguments.sim().start().await?;
     println!("listening on {}", sim.addr());
+    if let Some(hand) = sim.hand() {
+        println!("Franka Hand on {}", hand.addr());
+    }
+    if let Some(gripper) = sim.vacuum_gripper() {
+        println!("vacuum gripper on {}", gripper.addr());
+    }
     tokio::select! {
         _ = interrupt.recv() => {}
         _ = terminate.recv() => {}
@@ -209,6 +252,8 @@ mod tests {
             ["--q", "nan,0,0,0,0,0,0"],
             ["--payload", "-1"],
             ["--payload-com", "0,0"],
+            ["--gripper-object-width", "0.09"],
+            ["--gripper-object-width", "nan"],
         ] {
             assert!(parse(&wrong).is_err(), "{wrong:?}");
         }
