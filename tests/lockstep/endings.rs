@@ -5,11 +5,11 @@ use franka_proto::{CollisionBehavior, MoveStatus, Request, RobotError, RobotMode
 use franka_rt::driver::LINK_TIMEOUT;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{GoalError, Guard, Target, Then};
-use franka_tests::lockstep::{Link, Lockstep};
+use franka_tests::lockstep::{Link, Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
-fn moving() -> (Lockstep, franka_rt::session::GoalId) {
-    let mut lockstep = Lockstep::ready();
+fn moving(ready: &dyn Fn() -> Lockstep) -> (Lockstep, franka_rt::session::GoalId) {
+    let mut lockstep = ready();
     let target = Translation3::new(0.0, 0.0, 0.12) * lockstep.true_pose();
     let goal = lockstep.begin(Target::Pose(target));
     lockstep.run(500);
@@ -19,133 +19,143 @@ fn moving() -> (Lockstep, franka_rt::session::GoalId) {
 
 #[test]
 fn a_stop_brakes_and_says_so_to_both() {
-    let (mut lockstep, goal) = moving();
-    let stop = lockstep.stop().expect("something moves");
-    assert_eq!(lockstep.outcome(goal), Some(&Err(MotionError::Stopped)));
-    let report = lockstep.until_resolved(stop, 3000).unwrap();
-    assert_eq!(report.final_error, None);
-    assert!(lockstep.robot.dq().amax() < 0.01);
-    assert_eq!(lockstep.robot.state().robot_mode, RobotMode::Idle);
-    assert_eq!(lockstep.stop(), None, "nothing moves any more");
+    for_each_robot(|ready| {
+        let (mut lockstep, goal) = moving(ready);
+        let stop = lockstep.stop().expect("something moves");
+        assert_eq!(lockstep.outcome(goal), Some(&Err(MotionError::Stopped)));
+        let report = lockstep.until_resolved(stop, 3000).unwrap();
+        assert_eq!(report.final_error, None);
+        assert!(lockstep.robot.dq().amax() < 0.01);
+        assert_eq!(lockstep.robot.state().robot_mode, RobotMode::Idle);
+        assert_eq!(lockstep.stop(), None, "nothing moves any more");
+    });
 }
 
 #[test]
 fn a_cancelled_goal_brakes_at_any_moment_of_its_life() {
-    for after in (0..1600).step_by(37) {
-        let mut lockstep = Lockstep::ready();
-        let target = Translation3::new(0.05, 0.0, 0.05) * lockstep.true_pose();
-        let goal = lockstep.begin(Target::Pose(target));
-        lockstep.run(after);
-        if lockstep.outcome(goal).is_some() {
-            break;
+    for_each_robot(|ready| {
+        for after in (0..1600).step_by(37) {
+            let mut lockstep = ready();
+            let target = Translation3::new(0.05, 0.0, 0.05) * lockstep.true_pose();
+            let goal = lockstep.begin(Target::Pose(target));
+            lockstep.run(after);
+            if lockstep.outcome(goal).is_some() {
+                break;
+            }
+            lockstep.cancel(goal);
+            let outcome = lockstep.until_resolved(goal, 4000);
+            // A goal that had settled before is no longer cancelled.
+            assert!(
+                matches!(outcome, Err(MotionError::Stopped) | Ok(_)),
+                "after {after} ms: {outcome:?}"
+            );
+            assert!(lockstep.robot.dq().amax() < 0.01);
+            assert!(lockstep.lifecycle.is_idle());
         }
-        lockstep.cancel(goal);
-        let outcome = lockstep.until_resolved(goal, 4000);
-        // A goal that had settled before is no longer cancelled.
-        assert!(
-            matches!(outcome, Err(MotionError::Stopped) | Ok(_)),
-            "after {after} ms: {outcome:?}"
-        );
-        assert!(lockstep.robot.dq().amax() < 0.01);
-        assert!(lockstep.lifecycle.is_idle());
-    }
+    });
 }
 
 #[test]
 fn a_reflex_ends_the_motion_with_its_name_and_recovery_allows_the_next() {
-    let (mut lockstep, goal) = moving();
-    lockstep.robot.trip(RobotError::CartesianReflex);
-    let error = lockstep.until_resolved(goal, 3000).unwrap_err();
-    let MotionError::Reflex(reflex) = &error else {
-        panic!("{error:?}")
-    };
-    assert!(
-        reflex
-            .failure
-            .reflex_reason
-            .contains(RobotError::CartesianReflex)
-    );
-    let text = error.to_string();
-    assert!(
-        text.starts_with(
-            r#"libfranka: Move command aborted: motion aborted by reflex! ["cartesian_reflex"]"#
-        ),
-        "{text}"
-    );
-    assert!(text.contains("\ncontrol_command_success_rate: 1"), "{text}");
+    for_each_robot(|ready| {
+        let (mut lockstep, goal) = moving(ready);
+        lockstep.robot.trip(RobotError::CartesianReflex);
+        let error = lockstep.until_resolved(goal, 3000).unwrap_err();
+        let MotionError::Reflex(reflex) = &error else {
+            panic!("{error:?}")
+        };
+        assert!(
+            reflex
+                .failure
+                .reflex_reason
+                .contains(RobotError::CartesianReflex)
+        );
+        let text = error.to_string();
+        assert!(
+            text.starts_with(
+                r#"libfranka: Move command aborted: motion aborted by reflex! ["cartesian_reflex"]"#
+            ),
+            "{text}"
+        );
+        assert!(text.contains("\ncontrol_command_success_rate: 1"), "{text}");
 
-    // Until recovery the robot refuses.
-    let refused = lockstep.begin(Target::Joints(READY.into()));
-    let error = lockstep.until_resolved(refused, 3000).unwrap_err();
-    let MotionError::Rejected(refusal) = &error else {
-        panic!("{error:?}")
-    };
-    assert_eq!(
-        refusal.status(),
-        Status::Move(MoveStatus::CommandNotPossibleRejected)
-    );
-    assert_eq!(
-        error.to_string(),
-        r#"libfranka: Move command rejected: command not possible in the current mode ("Reflex")!"#
-    );
+        // Until recovery the robot refuses.
+        let refused = lockstep.begin(Target::Joints(READY.into()));
+        let error = lockstep.until_resolved(refused, 3000).unwrap_err();
+        let MotionError::Rejected(refusal) = &error else {
+            panic!("{error:?}")
+        };
+        assert_eq!(
+            refusal.status(),
+            Status::Move(MoveStatus::CommandNotPossibleRejected)
+        );
+        assert_eq!(
+            error.to_string(),
+            r#"libfranka: Move command rejected: command not possible in the current mode ("Reflex")!"#
+        );
 
-    lockstep.run(500);
-    lockstep.request(&Request::AutomaticErrorRecovery);
-    lockstep.run(1500);
-    assert_eq!(lockstep.state.robot_mode, RobotMode::Idle);
-    let again = lockstep.begin(Target::Joints(READY.into()));
-    lockstep.until_resolved(again, 8000).unwrap();
+        lockstep.run(500);
+        lockstep.request(&Request::AutomaticErrorRecovery);
+        lockstep.run(1500);
+        assert_eq!(lockstep.state.robot_mode, RobotMode::Idle);
+        let again = lockstep.begin(Target::Joints(READY.into()));
+        lockstep.until_resolved(again, 8000).unwrap();
+    });
 }
 
 #[test]
 fn the_user_stop_ends_the_motion() {
-    let (mut lockstep, goal) = moving();
-    lockstep.robot.press_user_stop(true);
-    let error = lockstep.until_resolved(goal, 3000).unwrap_err();
-    assert!(matches!(error, MotionError::Aborted { .. }), "{error:?}");
-    assert_eq!(
-        error.to_string(),
-        "libfranka: Move command aborted: User Stop pressed!"
-    );
+    for_each_robot(|ready| {
+        let (mut lockstep, goal) = moving(ready);
+        lockstep.robot.press_user_stop(true);
+        let error = lockstep.until_resolved(goal, 3000).unwrap_err();
+        assert!(matches!(error, MotionError::Aborted { .. }), "{error:?}");
+        assert_eq!(
+            error.to_string(),
+            "libfranka: Move command aborted: User Stop pressed!"
+        );
+    });
 }
 
 #[test]
 fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
-    let (mut lockstep, goal) = moving();
-    let timeout = LINK_TIMEOUT.as_millis() as u64;
-    lockstep.link.drop_states(timeout + 200);
-    lockstep.run(timeout - 1);
-    assert_eq!(lockstep.outcome(goal), None);
-    lockstep.run(3);
-    let outcome = lockstep
-        .outcome(goal)
-        .expect("resolved at the timeout")
-        .clone();
-    let error = outcome.unwrap_err();
-    assert!(matches!(error, MotionError::LinkLost { .. }), "{error:?}");
-    assert!(
-        error
-            .to_string()
-            .starts_with("libfranka: UDP receive: Timeout")
-    );
+    for_each_robot(|ready| {
+        let (mut lockstep, goal) = moving(ready);
+        let timeout = LINK_TIMEOUT.as_millis() as u64;
+        lockstep.link.drop_states(timeout + 200);
+        lockstep.run(timeout - 1);
+        assert_eq!(lockstep.outcome(goal), None);
+        lockstep.run(3);
+        let outcome = lockstep
+            .outcome(goal)
+            .expect("resolved at the timeout")
+            .clone();
+        let error = outcome.unwrap_err();
+        assert!(matches!(error, MotionError::LinkLost { .. }), "{error:?}");
+        assert!(
+            error
+                .to_string()
+                .starts_with("libfranka: UDP receive: Timeout")
+        );
 
-    // The robot has stopped itself meanwhile. Once the link is back, it can be recovered and moved.
-    lockstep.run(1000);
-    assert!(
-        lockstep
-            .state
-            .errors
-            .contains(RobotError::CommunicationConstraintsViolation)
-    );
-    lockstep.request(&Request::AutomaticErrorRecovery);
-    lockstep.run(1500);
-    let again = lockstep.begin(Target::Joints(READY.into()));
-    lockstep.until_resolved(again, 8000).unwrap();
+        // The robot has stopped itself meanwhile. Once the link is back, it can be recovered and moved.
+        lockstep.run(1000);
+        assert!(
+            lockstep
+                .state
+                .errors
+                .contains(RobotError::CommunicationConstraintsViolation)
+        );
+        lockstep.request(&Request::AutomaticErrorRecovery);
+        lockstep.run(1500);
+        let again = lockstep.begin(Target::Joints(READY.into()));
+        lockstep.until_resolved(again, 8000).unwrap();
+    });
 }
 
 #[test]
 fn a_lost_connection_resolves_everything_and_takes_nothing_more() {
-    let (mut lockstep, goal) = moving();
+    let (mut lockstep, goal) = moving(&Lockstep::ready);
     lockstep
         .lifecycle
         .on_connection_closed("libfranka: server closed connection");
@@ -166,24 +176,26 @@ fn a_lost_connection_resolves_everything_and_takes_nothing_more() {
 
 #[test]
 fn losses_that_the_robot_tolerates_do_not_end_a_motion() {
-    for seed in 1..=10 {
-        let mut lockstep = Lockstep::ready();
-        lockstep.link = Link::lossy(seed, 0.02, 0.02);
-        let target = Translation3::new(0.05, 0.05, -0.05) * lockstep.true_pose();
-        let goal = lockstep.begin(Target::Pose(target));
-        let report = lockstep
-            .until_resolved(goal, 8000)
-            .unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-        assert!(report.lost_states > 0, "seed {seed}");
-        // While fewer than a hundred cycles have passed, one loss weighs more than one per cent.
-        assert!(report.success_rate_min < 1.0, "seed {seed}: {report:?}");
-        assert!(report.success_rate_avg > 0.9, "seed {seed}: {report:?}");
-    }
+    for_each_robot(|ready| {
+        for seed in 1..=10 {
+            let mut lockstep = ready();
+            lockstep.link = Link::lossy(seed, 0.02, 0.02);
+            let target = Translation3::new(0.05, 0.05, -0.05) * lockstep.true_pose();
+            let goal = lockstep.begin(Target::Pose(target));
+            let report = lockstep
+                .until_resolved(goal, 8000)
+                .unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+            assert!(report.lost_states > 0, "seed {seed}");
+            // While fewer than a hundred cycles have passed, one loss weighs more than one per cent.
+            assert!(report.success_rate_min < 1.0, "seed {seed}: {report:?}");
+            assert!(report.success_rate_avg > 0.9, "seed {seed}: {report:?}");
+        }
+    });
 }
 
 /// A robot whose collision thresholds let a hand push.
-fn tolerant() -> Lockstep {
-    let mut lockstep = Lockstep::ready();
+fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
+    let mut lockstep = ready();
     let behavior = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
     lockstep.request(&Request::SetCollisionBehavior(behavior));
     lockstep.run(5);
@@ -196,42 +208,46 @@ fn downward(newtons: f64) -> Wrench {
 
 #[test]
 fn an_arm_that_is_held_short_is_reported_and_let_go_without_a_step() {
-    let mut lockstep = tolerant();
-    let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
-    let goal = lockstep.begin(Target::Pose(target));
-    lockstep.robot.push_end_effector(downward(12.0), 1_000_000);
-    let error = lockstep.until_resolved(goal, 20_000).unwrap_err();
-    let MotionError::Short(error) = error else {
-        panic!("{error:?}")
-    };
-    // 12 N against 750 N/m and what the joint springs add to it.
-    assert!((0.008..0.016).contains(&error.translation), "{error:?}");
-    assert_eq!(
-        lockstep.state.robot_mode,
-        RobotMode::Idle,
-        "ended without a reflex"
-    );
+    for_each_robot(|ready| {
+        let mut lockstep = tolerant(ready);
+        let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
+        let goal = lockstep.begin(Target::Pose(target));
+        lockstep.robot.push_end_effector(downward(12.0), 1_000_000);
+        let error = lockstep.until_resolved(goal, 20_000).unwrap_err();
+        let MotionError::Short(error) = error else {
+            panic!("{error:?}")
+        };
+        // 12 N against 750 N/m and what the joint springs add to it.
+        assert!((0.008..0.016).contains(&error.translation), "{error:?}");
+        assert_eq!(
+            lockstep.state.robot_mode,
+            RobotMode::Idle,
+            "ended without a reflex"
+        );
+    });
 }
 
 #[test]
 fn an_arm_that_is_pushed_away_stays_on_the_leash_and_comes_back() {
-    let mut lockstep = tolerant();
-    let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
-    let goal = lockstep.begin(Target::Pose(target));
-    lockstep.run(300);
-    lockstep.robot.push_end_effector(downward(40.0), 250);
-    let mut bound = 0;
-    for _ in 0..250 {
-        lockstep.tick();
-        bound += u32::from(lockstep.record.bindings.contains(Guard::Leash));
-    }
-    assert!(bound > 100, "the leash bound in {bound} of 250 cycles");
-    lockstep.until_resolved(goal, 8000).unwrap();
+    for_each_robot(|ready| {
+        let mut lockstep = tolerant(ready);
+        let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
+        let goal = lockstep.begin(Target::Pose(target));
+        lockstep.run(300);
+        lockstep.robot.push_end_effector(downward(40.0), 250);
+        let mut bound = 0;
+        for _ in 0..250 {
+            lockstep.tick();
+            bound += u32::from(lockstep.record.bindings.contains(Guard::Leash));
+        }
+        assert!(bound > 100, "the leash bound in {bound} of 250 cycles");
+        lockstep.until_resolved(goal, 8000).unwrap();
+    });
 }
 
 #[test]
 fn bad_goals_are_named_and_change_nothing() {
-    let (mut lockstep, goal) = moving();
+    let (mut lockstep, goal) = moving(&Lockstep::ready);
     let mut beyond: [f64; 7] = READY.into();
     beyond[3] = 0.5;
     let mut nan: [f64; 7] = READY.into();

@@ -1,6 +1,7 @@
 //! Random reachable targets, one after the other.
 
-use franka_model::{EndEffector, JointVector, Model};
+use franka_model::limits::JointLimits;
+use franka_model::{EndEffector, JointVector, RobotKind};
 use franka_rt::session::{PoseError, Target};
 use franka_tests::lockstep::{Lockstep, pose_of};
 use rand::rngs::SmallRng;
@@ -11,10 +12,19 @@ const MARGIN: f64 = 0.3;
 
 #[test]
 fn two_hundred_random_targets_are_reached_within_a_millimetre() {
+    two_hundred_random_targets(RobotKind::Fr3);
+}
+
+#[test]
+fn a_panda_reaches_them_as_well() {
+    two_hundred_random_targets(RobotKind::Fer);
+}
+
+fn two_hundred_random_targets(kind: RobotKind) {
     let seed = 20;
     let mut random = SmallRng::seed_from_u64(seed);
-    let limits = Model::fr3().joint_limits();
-    let mut lockstep = Lockstep::ready();
+    let limits = JointLimits::of(kind);
+    let mut lockstep = Lockstep::ready_of(kind);
     let hand = EndEffector {
         f_t_ee: franka_sim::Tool::hand().f_t_ne,
         ..EndEffector::default()
@@ -41,18 +51,18 @@ fn two_hundred_random_targets_are_reached_within_a_millimetre() {
         let goal = lockstep.begin(goal);
         let report = lockstep
             .until_resolved(goal, 30_000)
-            .unwrap_or_else(|error| panic!("seed {seed}, case {case}: {error}"));
+            .unwrap_or_else(|error| panic!("{kind:?}, seed {seed}, case {case}: {error}"));
         let error = PoseError::between(&lockstep.true_pose(), &target);
         assert!(
             error.translation < 1e-3 && error.rotation < 2e-3,
-            "seed {seed}, case {case}: {error:?} after {:?}",
+            "{kind:?}, seed {seed}, case {case}: {error:?} after {:?}",
             report.duration
         );
         worst.translation = worst.translation.max(error.translation);
         worst.rotation = worst.rotation.max(error.rotation);
     }
     println!(
-        "seed {seed}: worst {:.3} mm, {:.3} mrad",
+        "{kind:?}, seed {seed}: worst {:.3} mm, {:.3} mrad",
         worst.translation * 1e3,
         worst.rotation * 1e3
     );

@@ -1,6 +1,6 @@
 //! Holds every command against the limits of the robot, independently of the code that made it.
 
-use franka_model::Model;
+use franka_model::limits::JointLimits;
 use franka_proto::{RobotCommand, RobotState};
 use franka_rt::driver::Record;
 use franka_rt::session::Guard;
@@ -9,8 +9,9 @@ use franka_rt::session::Guard;
 const CYCLE: f64 = 1e-3;
 
 /// Remembers the command before, for rates.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct CommandGuard {
+    limits: &'static JointLimits,
     last: Option<Last>,
 }
 
@@ -26,11 +27,16 @@ struct Last {
 }
 
 impl CommandGuard {
+    /// For a robot with these limits.
+    pub(super) fn new(limits: &'static JointLimits) -> Self {
+        Self { limits, last: None }
+    }
+
     /// Checks a command, and the reference behind it. `over_joints` tells that a generator over the joints moves the
     /// reference, so that its jerk is bounded too; inverse kinematics bounds only its acceleration.
     ///
     /// # Panics
-    /// If the command violates a limit of the FR3, or the reference is not continuous.
+    /// If the command violates a limit of the robot, or the reference is not continuous.
     pub(super) fn check(
         &mut self,
         command: &RobotCommand,
@@ -43,7 +49,7 @@ impl CommandGuard {
             command.message_id, state.message_id,
             "a command answers the state it was made for"
         );
-        let limits = Model::fr3().joint_limits();
+        let limits = self.limits;
         let at = state.message_id;
         for i in 0..7 {
             let joint = i + 1;
@@ -52,7 +58,7 @@ impl CommandGuard {
                 tau.is_finite() && tau.abs() <= limits.torque[i],
                 "{at}: joint {joint} gets {tau} N m"
             );
-            // The robot holds a command against the last one that it took, which it echoes as `f32`.
+            // The robot holds a command against the last one that it took, which an FR3 echoes as `f32`.
             let rate = (tau - state.tau_J_d[i]).abs() / CYCLE;
             assert!(
                 rate <= limits.torque_rate[i] + 0.01,
@@ -77,8 +83,9 @@ impl CommandGuard {
             for i in 0..7 {
                 let joint = i + 1;
                 // Against the unrounded command, where no command was lost in between.
-                if f64::from(last.tau[i] as f32) == state.tau_J_d[i] {
-                    let rate = (command.tau_J_d[i] - last.tau[i]).abs() / CYCLE;
+                let sent = last.tau[i];
+                if [sent, f64::from(sent as f32)].contains(&state.tau_J_d[i]) {
+                    let rate = (command.tau_J_d[i] - sent).abs() / CYCLE;
                     assert!(
                         rate <= limits.torque_rate[i],
                         "{at}: joint {joint} at {rate} N m/s"

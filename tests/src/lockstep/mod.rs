@@ -18,7 +18,7 @@ mod wander;
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::time::Duration;
 
-use franka_model::{EndEffector, Frame, JointVector, Model, transform};
+use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
 use franka_proto::client::{Event, Session};
 use franka_proto::framing::next_message;
 use franka_proto::{CommandId, Reply, Request, RobotCommand, RobotState, Version, Violation};
@@ -51,6 +51,7 @@ pub struct Lockstep {
     pub record: Record,
     /// The newest state that reached the client.
     pub state: RobotState,
+    model: &'static Model,
     session: Session,
     motions: HashMap<CommandId, MotionId>,
     to_robot: VecDeque<Vec<u8>>,
@@ -70,20 +71,23 @@ impl Lockstep {
     /// # Panics
     /// If the handshake fails or no state comes.
     pub fn new(config: Config) -> Self {
-        let version = Version::V10;
+        let model = Model::of(config.kind);
+        let robot = Robot::new(config);
+        let version = robot.version();
         let mut this = Self {
-            robot: Robot::new(config),
+            robot,
             link: Link::perfect(),
             driver: Driver::new(version),
-            lifecycle: Lifecycle::new(Model::fr3(), version),
+            lifecycle: Lifecycle::new(model, version),
             record: Record::default(),
             state: RobotState::default(),
+            model,
             session: Session::new(version),
             motions: HashMap::new(),
             to_robot: VecDeque::new(),
             from_robot: Vec::new(),
             outcomes: BTreeMap::new(),
-            guard: CommandGuard::default(),
+            guard: CommandGuard::new(model.joint_limits()),
             joint_goals: HashSet::new(),
             goals: 0,
             milliseconds: 0,
@@ -100,7 +104,13 @@ impl Lockstep {
 
     /// A Franka Research 3 in the ready pose with its hand, strict about limits.
     pub fn ready() -> Self {
+        Self::ready_of(RobotKind::Fr3)
+    }
+
+    /// A robot of this kind in the ready pose with its hand, strict about limits.
+    pub fn ready_of(kind: RobotKind) -> Self {
         Self::new(Config {
+            kind,
             tool: franka_sim::Tool::hand(),
             ..Config::default()
         })
@@ -185,7 +195,7 @@ impl Lockstep {
             id: GoalId(self.goals),
             target,
             then,
-            budget: Budget::of(Model::fr3().joint_limits()),
+            budget: Budget::of(self.model.joint_limits()),
             gains: match target {
                 Target::Joints(_) => Gains::joint(),
                 Target::Pose(_) | Target::Rest => Gains::cartesian(),
@@ -385,7 +395,15 @@ fn cycle(
     (state, size)
 }
 
-/// Pose of the end effector of an FR3 at `q`.
+/// Runs `test` for every kind of robot, each time with what makes one: see [`Lockstep::ready_of`].
+pub fn for_each_robot(test: impl Fn(&dyn Fn() -> Lockstep)) {
+    for kind in RobotKind::ALL {
+        println!("{kind:?}");
+        test(&|| Lockstep::ready_of(kind));
+    }
+}
+
+/// Pose of the end effector at `q`, of any kind of robot: their geometry is the same.
 pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
     transform::isometry(&pose).expect("a rigid end effector")
