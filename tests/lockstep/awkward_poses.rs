@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use franka_model::{EndEffector, JointVector, Model, Wrench};
+use franka_model::{EndEffector, JointVector, Model, READY, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Guard, SETTLE_TIMEOUT, STALL_TIMEOUT, Target, Then};
+use franka_rt::session::{GoalError, Guard, SETTLE_TIMEOUT, STALL_TIMEOUT, Target, Then};
 use franka_tests::lockstep::{Lockstep, pose_of};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
@@ -115,4 +115,44 @@ fn an_arm_held_at_the_length_of_its_leash_is_given_up_in_time() {
     let error = lockstep.outcome(goal).unwrap().clone().unwrap_err();
     assert!(matches!(error, MotionError::Short(_)), "{error:?}");
     assert_eq!(lockstep.state.robot_mode, RobotMode::Idle);
+}
+
+/// The robot allows less and less speed towards the end of a joint's range; a plan has to arrive there inside that.
+#[test]
+fn joints_arrive_at_the_ends_of_their_ranges_at_any_pace() {
+    let limits = Model::fr3().joint_limits();
+    for speed in [0.5, 1.0, 1.5] {
+        for joint in 0..7 {
+            for upper in [false, true] {
+                let mut lockstep = Lockstep::ready();
+                let mut q: [f64; 7] = READY.into();
+                q[joint] = if upper {
+                    limits.upper[joint]
+                } else {
+                    limits.lower[joint]
+                };
+                let mut goal = lockstep.goal(Target::Joints(q), Then::Finish);
+                goal.budget = goal.budget.scaled(speed);
+                // The very end is refused, and the refusal says how far the joint may go.
+                let error = lockstep.submit(goal).unwrap_err();
+                let MotionError::Goal(GoalError::OutOfRange {
+                    lower: least,
+                    upper: most,
+                    ..
+                }) = error
+                else {
+                    panic!("{error:?}");
+                };
+                q[joint] = if upper { most } else { least };
+                goal.target = Target::Joints(q);
+                let goal = lockstep.submit(goal).expect("as far as the refusal says");
+                let outcome = lockstep.until_resolved(goal, 30_000);
+                assert!(
+                    outcome.is_ok(),
+                    "joint {}, upper {upper}, speed {speed}: {outcome:?}",
+                    joint + 1
+                );
+            }
+        }
+    }
 }

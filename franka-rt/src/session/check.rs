@@ -5,7 +5,7 @@ use franka_proto::RobotState;
 
 use crate::law::GainError;
 use crate::otg::AxisLimits;
-use crate::session::{Budget, Goal, Target};
+use crate::session::{Budget, Goal, Target, approach};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -15,7 +15,7 @@ pub enum GoalError {
     #[error("the target holds a number that is not finite")]
     NotFinite,
     /// A joint position lies outside the joint's range.
-    #[error("joint {joint}: {got} rad, expected between {lower} and {upper}")]
+    #[error("joint {joint}: {got} rad, expected between {lower:.4} and {upper:.4}")]
     OutOfRange {
         /// The joint, from 1.
         joint: usize,
@@ -78,7 +78,7 @@ impl Goal {
         let ee = super::end_effector_of(state).ok_or(GoalError::EndEffector)?;
         match self.target {
             Target::Rest => Ok(()),
-            Target::Joints(q) => check_joints(&q, model),
+            Target::Joints(q) => check_joints(&q, model, state),
             Target::Pose(pose) => {
                 let p = pose.translation.vector;
                 if !(p
@@ -100,13 +100,16 @@ impl Goal {
     }
 }
 
-fn check_joints(q: &[f64; 7], model: &Model) -> Result<(), GoalError> {
+fn check_joints(q: &[f64; 7], model: &Model, state: &RobotState) -> Result<(), GoalError> {
     let limits = model.joint_limits();
     for (i, &got) in q.iter().enumerate() {
         if !got.is_finite() {
             return Err(GoalError::NotFinite);
         }
-        let (lower, upper) = (limits.lower[i], limits.upper[i]);
+        // An arm that stands nearer to the end of its range than it could go may stay there, or leave.
+        let (lower, upper) = approach::range(i, limits);
+        let stands = state.q[i].clamp(limits.lower[i], limits.upper[i]);
+        let (lower, upper) = (lower.min(stands), upper.max(stands));
         if !(lower..=upper).contains(&got) {
             return Err(GoalError::OutOfRange {
                 joint: i + 1,

@@ -6,7 +6,7 @@ use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 use crate::law::hybrid::Reference;
 use crate::otg::{AxisLimits, Generator, Limits, PlanError, State};
 use crate::session::pose::{PoseGenerator, PoseState};
-use crate::session::{Budget, Goal, Target, budget, kinematics, leash, rigid};
+use crate::session::{Budget, Goal, Target, approach, budget, kinematics, leash, rigid};
 
 /// What moves the reference.
 #[derive(Debug)]
@@ -129,14 +129,13 @@ fn joints(
         velocity: reference.dq.into(),
         acceleration: reference.ddq.into(),
     };
+    let robot = model.joint_limits();
     let limits = core::array::from_fn(|i| {
-        limits_of_joint(
-            i,
-            model.joint_limits(),
-            reference,
-            budget.joints[i],
-            target.is_none(),
-        )
+        let limits = limits_of_joint(i, robot, reference, budget.joints[i], target.is_none());
+        match target {
+            Some(target) => approach::limits(i, robot, reference.q[i], target[i], limits),
+            None => limits,
+        }
     });
     // Without a target a generator comes to rest in the least time.
     let mut generator = Generator::new(state, Limits::per_axis(limits)?)?;

@@ -11,6 +11,7 @@
 //! A goal that is to finish passes through the stages of `Stage`: under way, landing, releasing, finished. A newer
 //! goal takes the session back under way from any of them but the last.
 
+mod approach;
 mod binding;
 mod budget;
 mod check;

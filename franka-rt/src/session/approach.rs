@@ -1,0 +1,141 @@
+//! How a joint may approach a target near the end of its range.
+//!
+//! Towards the end of a joint's range the robot allows less and less speed: the braking parabola of its velocity
+//! envelope, less an offset. A plan that brakes evenly into a target at a distance `room` from that end keeps inside the
+//! envelope if, at every speed `v` of its braking,
+//!
+//! ```text
+//! (v + offset)^2 / (2 envelope deceleration)  <=  v^2 / (2 plan acceleration) + room
+//! ```
+//!
+//! which is what the envelope needs to stop on the left, and what the plan has on the right. A plan that does not keep to
+//! it brakes more gently: with `acceleration <= deceleration - offset^2 / (2 room)` it holds at every speed. Within some
+//! milliradians of the end of the range no acceleration does.
+
+use franka_model::limits::JointLimits;
+
+use crate::otg::AxisLimits;
+
+/// Speed kept from the envelope, `[rad/s]`: the measured velocity is not quite that of the plan.
+const MARGIN: f64 = 0.02;
+
+/// Least acceleration of a plan, `[rad/s^2]`. A target that asks for a gentler approach is not accepted.
+const GENTLEST: f64 = 0.3;
+
+/// The limits of a plan from `q` to `target`, made gentle enough for the end of the joint's range.
+pub(super) fn limits(
+    i: usize,
+    robot: &JointLimits,
+    q: f64,
+    target: f64,
+    plan: AxisLimits,
+) -> AxisLimits {
+    let Some(envelope) = &robot.envelope else {
+        return plan;
+    };
+    let room = if target >= q {
+        robot.hard_upper[i] - target
+    } else {
+        target - robot.hard_lower[i]
+    };
+    let (deceleration, offset) = (envelope.deceleration[i], envelope.offset[i] + MARGIN);
+    if keeps(deceleration, offset, room, &plan) {
+        return plan;
+    }
+    let gentle = deceleration - 0.5 * offset * offset / room.max(f64::MIN_POSITIVE);
+    AxisLimits {
+        acceleration: plan.acceleration.min(gentle.max(GENTLEST)),
+        ..plan
+    }
+}
+
+/// The range of targets, `[rad]`, that plans can approach: the joint's own, less a few milliradians.
+pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
+    let room = robot.envelope.as_ref().map_or(0.0, |envelope| {
+        let offset = envelope.offset[i] + MARGIN;
+        0.5 * offset * offset / (envelope.deceleration[i] - GENTLEST)
+    });
+    (
+        robot.lower[i].max(robot.hard_lower[i] + room),
+        robot.upper[i].min(robot.hard_upper[i] - room),
+    )
+}
+
+/// Whether the braking of `plan` keeps inside the envelope at every speed up to the plan's.
+fn keeps(deceleration: f64, offset: f64, room: f64, plan: &AxisLimits) -> bool {
+    let excess = |v: f64| {
+        0.5 * (v + offset) * (v + offset) / deceleration - 0.5 * v * v / plan.acceleration - room
+    };
+    // The excess is a parabola in the speed. It is greatest at an end of the interval or, if it opens downwards, here.
+    let closest = offset * plan.acceleration / (deceleration - plan.acceleration);
+    let inside = closest > 0.0 && closest < plan.velocity;
+    excess(0.0) <= 0.0 && excess(plan.velocity) <= 0.0 && !(inside && excess(closest) > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_model::{Model, READY};
+
+    /// How close the braking of a plan into `target` comes to the envelope, `[rad/s]`; negative beyond it.
+    fn clearance(i: usize, target: f64, plan: &AxisLimits) -> f64 {
+        let limits = Model::fr3().joint_limits();
+        let top = plan.velocity.min(limits.velocity[i] - MARGIN);
+        let at = |step: i32| {
+            let v = top * f64::from(step) / 1000.0;
+            let mut q = READY;
+            q[i] = target - v * v / (2.0 * plan.acceleration);
+            limits.velocity_envelope(&q, MARGIN).1[i] - v
+        };
+        (0..=1000).map(at).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn braking_keeps_inside_the_envelope_and_is_made_no_gentler_than_that_takes() {
+        let robot = Model::fr3().joint_limits();
+        let mut gentler = 0;
+        for i in 0..7 {
+            for acceleration in [0.5, 2.0, 10.0] {
+                for velocity in [0.3, 2.0] {
+                    for room in [0.02, 0.05, 0.2, 1.0] {
+                        let target = robot.hard_upper[i] - room;
+                        let plan = AxisLimits {
+                            velocity,
+                            acceleration,
+                            jerk: 1000.0,
+                        };
+                        let made = limits(i, robot, READY[i], target, plan);
+                        let case = (i + 1, plan, room, made);
+                        assert!(clearance(i, target, &made) > -1e-9, "{case:?}");
+                        if made != plan {
+                            gentler += 1;
+                            assert!(clearance(i, target, &plan) < 0.0, "{case:?}");
+                        }
+                    }
+                }
+            }
+        }
+        assert!(gentler > 20, "{gentler} plans were too fast");
+    }
+
+    #[test]
+    fn a_few_milliradians_of_the_range_are_lost_and_none_where_the_envelope_is_flat() {
+        let robot = Model::fr3().joint_limits();
+        for i in 0..7 {
+            let (lower, upper) = range(i, robot);
+            assert!(robot.upper[i] - upper < 0.012 && lower - robot.lower[i] < 0.012);
+            let plan = AxisLimits {
+                velocity: 0.5,
+                acceleration: 2.0,
+                jerk: 1000.0,
+            };
+            for end in [lower, upper] {
+                let made = limits(i, robot, READY[i], end, plan);
+                assert!(made.acceleration >= GENTLEST);
+            }
+            assert!(clearance(i, upper, &limits(i, robot, READY[i], upper, plan)) > -1e-9);
+        }
+        let flat = Model::fer().joint_limits();
+        assert_eq!(range(0, flat), (flat.lower[0], flat.upper[0]));
+    }
+}
