@@ -1,7 +1,7 @@
 //! What the examples share: a robot at the address given, or a simulated one in this process.
 
 use anyhow::Context;
-use clap::{Args, Parser};
+use clap::{Args, Parser, ValueEnum};
 use franka_async::{Realtime, Robot};
 use franka_sim::{Running, Sim};
 
@@ -10,9 +10,21 @@ use franka_sim::{Running, Sim};
 pub struct Connection {
     /// Address of a robot or simulator, `host` or `host:port`; without it a simulator starts in this process.
     pub address: Option<String>,
+    /// Which robot to simulate. A real one says itself which it is.
+    #[arg(long, value_enum, default_value_t = Simulated::Fr3, conflicts_with = "address")]
+    pub sim: Simulated,
     /// Go on without a real-time kernel when driving a robot. A simulator never asks for one.
     #[arg(long)]
     pub ignore_realtime: bool,
+}
+
+/// The robots that can be simulated.
+#[derive(ValueEnum, Clone, Copy, Debug)]
+pub enum Simulated {
+    /// Franka Research 3
+    Fr3,
+    /// Franka Emika Robot, known as Panda
+    Fer,
 }
 
 /// Command line of the examples without options of their own.
@@ -44,7 +56,11 @@ impl Connection {
             })?;
             return Ok((robot, None));
         }
-        let sim = Sim::fr3().start().await.context("starting the simulator")?;
+        let sim = match self.sim {
+            Simulated::Fr3 => Sim::fr3(),
+            Simulated::Fer => Sim::fer(),
+        };
+        let sim = sim.start().await.context("starting the simulator")?;
         let robot = Robot::builder(sim.addr())
             .realtime(Realtime::Ignore)
             .connect()
