@@ -9,6 +9,7 @@
 //!
 //! * [`Robot`]: a cheap, cloneable handle, fit for the state of a web service. [`Builder`] connects it.
 //! * [`Motion`]: `move_to`, `move_joints`: built, then awaited. [`Follow`]: targets from a `watch` at their own rate.
+//! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
 //! * [`error`]: what can go wrong, grouped by who can act on it.
 //!
 //! ```no_run
@@ -27,7 +28,7 @@
 //! # Cancel safety
 //!
 //! Every future of this crate may be dropped at any point. A request that was sent is carried out by the robot all the
-//! same; its answer is then discarded. **Dropping a motion brakes it** within its budget: the arm is still moving when
+//! same; its answer is then discarded. **Dropping a motion brakes it** within the robot's limits: the arm is still moving when
 //! `drop` returns, and rests soon after. What else a method has to say stands in its own section.
 //!
 //! # What it does not do
@@ -40,19 +41,26 @@ mod builder;
 mod channel;
 mod codec;
 mod connect;
+mod end_effector;
 pub mod error;
 mod follow;
+mod gripper;
 mod motion;
 mod parameters;
 mod robot;
+mod vacuum;
 
 pub use builder::{Builder, Endpoint, VersionPolicy};
-pub use error::{CommandError, ConnectError, MotionError};
+pub use error::{ActionError, CommandError, ConnectError, MotionError};
 pub use follow::Follow;
+pub use gripper::{Gripper, GripperError};
 pub use motion::{Canceller, Motion, Moving};
 pub use robot::Robot;
+pub use vacuum::{VacuumGripper, VacuumGripperError};
 
 pub use franka_model::{JointVector, Model};
+pub use franka_proto::gripper::{Grasp, State as GripperState};
+pub use franka_proto::vacuum::{Profile, State as VacuumGripperState, Vacuum};
 pub use franka_proto::{
     CollisionBehavior, Errors, Filters, Load, RobotMode, RobotState, Version, VirtualWall,
 };
@@ -74,6 +82,8 @@ const _: () = {
     const fn shared<T: Clone + Send + Sync + 'static>() {}
     const fn spawned<T: Send + 'static>() {}
     shared::<Robot>();
+    shared::<Gripper>();
+    shared::<VacuumGripper>();
     shared::<Canceller>();
     shared::<Motion>();
     shared::<Follow>();

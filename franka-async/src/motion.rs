@@ -129,7 +129,7 @@ impl Canceller {
 /// controlled; or with the reason why not.
 ///
 /// # Cancel safety
-/// Dropping it brakes the arm within the motion's budget, in the background.
+/// Dropping it brakes the arm, in the background: within about a quarter of a second and the robot's limits.
 ///
 /// # Panics
 /// When polled after it has resolved, as futures may.

@@ -15,6 +15,7 @@
 //! connection, the thread and the clock); effects come out of [`Lifecycle::poll`]. No clock, socket or task in here:
 //! `now` is an argument, counted from any fixed moment.
 
+mod active;
 mod outcome;
 
 use core::time::Duration;
@@ -22,16 +23,14 @@ use std::collections::VecDeque;
 
 use franka_model::Model;
 use franka_proto::{
-    Command, ControlFailure, MoveControllerMode, MoveRequest, MoveStatus, Refusal, Request,
-    RobotState, Status, Version, Violation,
+    MoveControllerMode, MoveRequest, MoveStatus, Request, RobotState, Version, Violation,
 };
 
-use crate::driver::{Ended, Ending, Event, Modes, MotionId, MotionStatistics, Order, Program};
-use crate::session::{
-    Goal, GoalError, GoalId, SessionEvent, Settlement, Target, TargetSession, Then,
-};
-use crate::slot::{self, SlotWriter};
+use crate::driver::{Ending, Event, Modes, MotionId, MotionStatistics, Order, Program};
+use crate::session::{Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then};
+use crate::slot;
 
+use active::{Active, CommandSide, Settled, ThreadSide, Waiting};
 pub use outcome::{MotionError, MotionReport, Reflex};
 
 /// Time for the robot to answer a `Move`, and to show the motion's modes after that.
@@ -84,54 +83,6 @@ enum Phase {
     Active(Box<Active>),
     /// The connection is gone, for this reason; nothing starts any more.
     Closed(String),
-}
-
-/// A goal, and whether its owner has taken it back.
-#[derive(Clone, Copy, Debug)]
-struct Waiting {
-    goal: Goal,
-    cancelled: bool,
-}
-
-/// One motion: what the two sides have said so far.
-#[derive(Debug)]
-struct Active {
-    motion: MotionId,
-    slot: SlotWriter<Goal>,
-    current: Waiting,
-    settled: Option<Settled>,
-    bad_end_effector: bool,
-    command: CommandSide,
-    thread: ThreadSide,
-    deadline: Option<Duration>,
-}
-
-/// What the session said of the goal it settled.
-#[derive(Clone, Copy, Debug)]
-struct Settled {
-    goal: GoalId,
-    settlement: Settlement,
-    duration_ms: u64,
-    statistics: MotionStatistics,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum CommandSide {
-    /// The `Move` is out.
-    Requested,
-    /// The robot has started the motion.
-    Started,
-    /// It did not end in time; a `StopMove` is out.
-    Cancelled,
-    /// The robot has said how it ended, or why it did not begin.
-    Ended(MoveStatus),
-}
-
-#[derive(Debug)]
-enum ThreadSide {
-    Armed,
-    Running,
-    Ended(Ended),
 }
 
 impl Lifecycle {
@@ -506,7 +457,7 @@ impl Lifecycle {
             slot: writer,
             current: waiting,
             settled: None,
-            bad_end_effector: false,
+            bad_tool: false,
             command: CommandSide::Requested,
             thread: ThreadSide::Armed,
             deadline: Some(now + START_TIMEOUT),
@@ -535,7 +486,7 @@ impl Lifecycle {
                     statistics,
                 });
             }
-            SessionEvent::BadEndEffector => active.bad_end_effector = true,
+            SessionEvent::BadTool => active.bad_tool = true,
         }
     }
 
@@ -622,100 +573,4 @@ impl Lifecycle {
         };
         self.resolve(waiting.goal.id, result);
     }
-}
-
-impl Active {
-    /// Has the thread come to rest and finish, whatever it was doing: nobody waits for this motion any more.
-    fn brake(&mut self) {
-        self.slot.write(&Goal {
-            target: Target::Rest,
-            then: Then::Finish,
-            ..self.current.goal
-        });
-    }
-
-    /// Whether the motion ended well with an older goal than the current one.
-    fn came_too_late(&self, ended: &Ended) -> bool {
-        let Program::Target(session) = &ended.program;
-        ended.ending == Ending::Finished
-            && self.command == CommandSide::Ended(MoveStatus::Success)
-            && session
-                .last_goal()
-                .is_some_and(|last| last != self.current.goal.id)
-    }
-
-    /// How the current goal turned out, both sides having ended.
-    fn verdict(&self, ended: &Ended) -> Result<MotionReport, MotionError> {
-        let status = match (ended.ending, self.command) {
-            (Ending::LinkLost { silence }, _) => return Err(MotionError::LinkLost { silence }),
-            (Ending::Refused, _) => {
-                return Err(MotionError::Protocol {
-                    what: "another motion was under way",
-                });
-            }
-            (_, CommandSide::Ended(status)) => status,
-            (_, CommandSide::Requested | CommandSide::Started | CommandSide::Cancelled) => {
-                return Err(MotionError::Protocol {
-                    what: "the robot never showed the modes of the motion",
-                });
-            }
-        };
-        let refusal = Refusal::new(Command::Move, Status::Move(status), ended.robot_mode);
-        match (refusal, ended.ending, &self.settled) {
-            (Some(refusal), ending, _) if status == MoveStatus::ReflexAborted => {
-                Err(MotionError::Reflex(Reflex {
-                    failure: ControlFailure {
-                        refusal,
-                        reflex_reason: ended.reflex_reason,
-                        success_rate: ended.statistics.success_rate_at_the_end(),
-                    },
-                    while_finishing: ending == Ending::Finished,
-                }))
-            }
-            (Some(refusal), Ending::Disarmed, _) if is_rejection(status) => {
-                Err(MotionError::Rejected(refusal))
-            }
-            (None, Ending::Finished, _) if self.bad_end_effector => {
-                Err(GoalError::EndEffector.into())
-            }
-            (Some(refusal), _, _) => Err(MotionError::Aborted {
-                refusal,
-                errors: ended.errors,
-            }),
-            (None, Ending::Finished, Some(settled)) if settled.goal == self.current.goal.id => {
-                settled.result(self.current.cancelled)
-            }
-            // libfranka, `robot_impl.cpp`, has this text for it.
-            (None, _, _) => Err(MotionError::Protocol {
-                what: "Unexpected reply to a Move command",
-            }),
-        }
-    }
-}
-
-impl Settled {
-    fn result(&self, cancelled: bool) -> Result<MotionReport, MotionError> {
-        let final_error = match self.settlement {
-            Settlement::Arrived(error) => Some(error),
-            Settlement::AtRest if cancelled => return Err(MotionError::Stopped),
-            Settlement::AtRest => None,
-            Settlement::Short(error) => return Err(MotionError::Short(error)),
-        };
-        Ok(MotionReport::new(
-            &self.statistics,
-            self.duration_ms,
-            final_error,
-        ))
-    }
-}
-
-/// Whether the robot did not let the motion begin, rather than ended it before the thread saw it run.
-fn is_rejection(status: MoveStatus) -> bool {
-    matches!(
-        status,
-        MoveStatus::CommandNotPossibleRejected
-            | MoveStatus::CommandRejectedDueToActivatedSafetyFunctions
-            | MoveStatus::StartAtSingularPoseRejected
-            | MoveStatus::InvalidArgumentRejected
-    )
 }

@@ -57,9 +57,9 @@ pub enum GoalError {
         /// The value given.
         got: f64,
     },
-    /// The robot's state names an end effector that is not a rigid transformation.
-    #[error("F_T_EE of the robot's state is not a rigid transformation")]
-    EndEffector,
+    /// The robot's state names an end effector that is not a rigid transformation, or a load that is not finite.
+    #[error("the robot's state names an end effector or a load that cannot be")]
+    Tool,
 }
 
 impl Goal {
@@ -75,7 +75,8 @@ impl Goal {
                 return Err(GoalError::Tolerance { got });
             }
         }
-        let ee = super::end_effector_of(state).ok_or(GoalError::EndEffector)?;
+        let ee = super::end_effector_of(state).ok_or(GoalError::Tool)?;
+        super::load_of(state).ok_or(GoalError::Tool)?;
         match self.target {
             Target::Rest => Ok(()),
             Target::Joints(q) => check_joints(&q, model, state),

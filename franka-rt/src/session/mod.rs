@@ -62,8 +62,9 @@ pub enum SessionEvent {
         /// Time from the first cycle that saw the goal to the arrival, `[ms]` of the robot's clock.
         duration_ms: u64,
     },
-    /// The robot's state names an end effector that is not a rigid transformation; the session ends without a torque.
-    BadEndEffector,
+    /// The robot's state names an end effector that is not a rigid transformation, or a load that is not finite; the
+    /// session ends without a torque.
+    BadTool,
 }
 
 /// How a goal came to its end.
@@ -176,7 +177,7 @@ impl TargetSession {
             (none, Some(goal)) => match Active::begin(self.model, goal, state) {
                 Some(active) => none.insert(active),
                 None => {
-                    let event = Some(SessionEvent::BadEndEffector);
+                    let event = Some(SessionEvent::BadTool);
                     return Step {
                         command: Command::Torques([0.0; 7]),
                         finished: true,
@@ -202,12 +203,7 @@ impl Active {
         let q = JointVector::from(state.q);
         let reference = Reference::at_rest(q);
         let ee = end_effector_of(state)?;
-        let total = state.total_load();
-        let load = Load {
-            mass: total.m_total,
-            com: total.F_x_Ctotal.into(),
-            inertia: nalgebra::Matrix3::from_column_slice(&total.I_total),
-        };
+        let load = load_of(state)?;
         let mut this = Self {
             course: Course::Rest,
             gains: Fade {
@@ -363,6 +359,18 @@ fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
     Some(EndEffector {
         f_t_ee: rigid(&state.F_T_EE)?,
         ee_t_k: rigid(&state.EE_T_K)?,
+    })
+}
+
+/// The load of end effector and payload together that a state names. `None` if a number of it is not finite.
+fn load_of(state: &RobotState) -> Option<Load> {
+    let total = state.total_load();
+    let numbers = [&[total.m_total][..], &total.F_x_Ctotal, &total.I_total];
+    let finite = numbers.into_iter().flatten().all(|x| x.is_finite());
+    finite.then(|| Load {
+        mass: total.m_total,
+        com: total.F_x_Ctotal.into(),
+        inertia: nalgebra::Matrix3::from_column_slice(&total.I_total),
     })
 }
 
