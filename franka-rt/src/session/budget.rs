@@ -189,7 +189,7 @@ impl Leg {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_model::Model;
+    use franka_model::{Model, RobotKind};
 
     fn leg(way: [f64; 3], velocity: [f64; 3]) -> Leg {
         Leg {
@@ -238,6 +238,27 @@ mod tests {
         let raised = able_to_stop(slow, -0.5, 1.0, most);
         assert_eq!((raised.acceleration, raised.jerk), (2.0, 80.0));
         assert_eq!(able_to_stop(slow, 9.0, 0.0, most).acceleration, 10.0);
+    }
+
+    #[test]
+    fn the_default_budget_is_within_the_limits_of_either_robot() {
+        for kind in RobotKind::ALL {
+            let (joints, hand) = (JointLimits::of(kind), CartesianLimits::of(kind));
+            let budget = Budget::of(joints);
+            for i in 0..7 {
+                assert_eq!(budget.joints[i].velocity, 0.2 * joints.velocity[i]);
+                assert_eq!(budget.joints[i].acceleration, 0.2 * joints.acceleration[i]);
+                assert_eq!(budget.joints[i].jerk, 0.2 * joints.jerk[i]);
+            }
+            for (budget, most) in [
+                (budget.translation, hand.translation),
+                (budget.rotation, hand.rotation),
+            ] {
+                assert!(budget.velocity < most.velocity);
+                assert!(budget.acceleration < most.acceleration);
+                assert!(budget.jerk < most.jerk);
+            }
+        }
     }
 
     #[test]
