@@ -10,13 +10,14 @@ use tokio_util::sync::CancellationToken;
 use crate::connect;
 use crate::{ConnectError, Robot};
 
-/// Where a robot listens: a host, and a port that is 1337 unless given.
+/// Where a device listens: a host, and a port that is the usual one of the device unless given: 1337 of a robot, 1338 of a
+/// Franka Hand, 1339 of a vacuum gripper.
 ///
 /// Made from `"172.16.0.2"`, `"robot.lan"`, `"127.0.0.1:40123"`, an [`IpAddr`] or a [`SocketAddr`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Endpoint {
     pub(crate) host: String,
-    pub(crate) port: u16,
+    pub(crate) port: Option<u16>,
 }
 
 impl From<&str> for Endpoint {
@@ -27,11 +28,11 @@ impl From<&str> for Endpoint {
         match parts {
             Some((host, port)) if !host.contains(':') => Self {
                 host: host.to_owned(),
-                port,
+                port: Some(port),
             },
             _ => Self {
                 host: text.to_owned(),
-                port: Version::TCP_PORT,
+                port: None,
             },
         }
     }
@@ -53,7 +54,7 @@ impl From<IpAddr> for Endpoint {
     fn from(ip: IpAddr) -> Self {
         Self {
             host: ip.to_string(),
-            port: Version::TCP_PORT,
+            port: None,
         }
     }
 }
@@ -62,7 +63,7 @@ impl From<SocketAddr> for Endpoint {
     fn from(address: SocketAddr) -> Self {
         Self {
             host: address.ip().to_string(),
-            port: address.port(),
+            port: Some(address.port()),
         }
     }
 }
@@ -103,7 +104,7 @@ impl Builder {
 
     /// The TCP port; 1337 by default, as on a robot.
     pub fn port(mut self, port: u16) -> Self {
-        self.endpoint.port = port;
+        self.endpoint.port = Some(port);
         self
     }
 
@@ -177,21 +178,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_endpoint_takes_the_port_of_a_robot_unless_one_is_given() {
+    fn an_endpoint_leaves_the_port_to_the_device_unless_one_is_given() {
         let of = |text: &str| {
             let Endpoint { host, port } = text.into();
             (host, port)
         };
-        assert_eq!(of("172.16.0.2"), ("172.16.0.2".into(), 1337));
-        assert_eq!(of("robot.lan"), ("robot.lan".into(), 1337));
-        assert_eq!(of("127.0.0.1:40123"), ("127.0.0.1".into(), 40123));
-        assert_eq!(of("robot.lan:http"), ("robot.lan:http".into(), 1337));
+        assert_eq!(of("172.16.0.2"), ("172.16.0.2".into(), None));
+        assert_eq!(of("robot.lan"), ("robot.lan".into(), None));
+        assert_eq!(of("127.0.0.1:40123"), ("127.0.0.1".into(), Some(40123)));
+        assert_eq!(of("robot.lan:http"), ("robot.lan:http".into(), None));
         let address: SocketAddr = "10.0.0.7:99".parse().unwrap();
         assert_eq!(
             Endpoint::from(address),
             Endpoint {
                 host: "10.0.0.7".into(),
-                port: 99
+                port: Some(99)
             }
         );
     }

@@ -13,7 +13,7 @@ use franka_proto::{
     Command, CommandId, MoveStatus, Refusal, Reply, Request, RobotState, Violation, VirtualWall,
 };
 use franka_rt::driver::MotionId;
-use futures::{SinkExt, StreamExt};
+use futures::StreamExt;
 use tokio::net::TcpStream;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::JoinHandle;
@@ -21,11 +21,8 @@ use tokio::time::Instant;
 use tokio_util::codec::Framed;
 use tokio_util::sync::CancellationToken;
 
-use crate::codec::{Frame, MessageCodec, StreamError, reason};
+use crate::codec::{self, Frame, MessageCodec};
 use crate::error::CommandError;
-
-/// Time in which a request has to leave. Source: `SO_SNDTIMEO` of libfranka's command socket.
-const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Requests that may wait for the task. A caller beyond that waits for room.
 const CAPACITY: usize = 32;
@@ -34,13 +31,13 @@ const CAPACITY: usize = 32;
 const CALLS: usize = <Session>::PENDING_LIMIT - 2;
 
 /// What libfranka says when it finds the connection closed.
-const CLOSED_BY_PEER: &str = "libfranka: server closed connection";
+pub(crate) const CLOSED_BY_PEER: &str = "libfranka: server closed connection";
 
 /// What callers hear after the connection was closed from this side.
 pub(crate) const CLOSED_BY_US: &str = "the robot's handles were closed";
 
 /// What callers hear when nobody was left to say why the connection ended.
-const RUNTIME_ENDED: &str = "the runtime that served the connection has ended";
+pub(crate) const RUNTIME_ENDED: &str = "the runtime that served the connection has ended";
 
 /// The way to the task. Clones share it.
 #[derive(Clone, Debug)]
@@ -307,14 +304,7 @@ impl Task {
                 self.wait(id, command, waiter, Some(Instant::now() + deadline));
             }
         }
-        match tokio::time::timeout(SEND_TIMEOUT, self.stream.send(outgoing)).await {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(StreamError::Io(error))) => {
-                Err(format!("libfranka: TCP send bytes: {}", reason(&error)))
-            }
-            Ok(Err(StreamError::Frame(error))) => Err(error.to_string()),
-            Err(_) => Err("libfranka: TCP send bytes: Timeout".to_owned()),
-        }
+        codec::send(&mut self.stream, outgoing).await
     }
 
     fn wait(&mut self, id: CommandId, command: Command, waiter: Waiter, until: Option<Instant>) {

@@ -1,24 +1,64 @@
 //! Messages on the command stream.
 
+use std::time::Duration;
+
 use bytes::{Bytes, BytesMut};
 use franka_proto::Outgoing;
-use franka_proto::framing::{FrameError, Message, next_message};
-use tokio_util::codec::{Decoder, Encoder};
+use franka_proto::framing::{self, FrameError, Header, Message};
+use franka_proto::gripper;
+use futures::SinkExt;
+use tokio::net::TcpStream;
+use tokio_util::codec::{Decoder, Encoder, Framed};
+
+/// Time in which a request has to leave. Source: `SO_SNDTIMEO` of libfranka's command socket.
+const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Cuts the stream into messages, and writes requests to it.
 #[derive(Debug)]
-pub(crate) struct MessageCodec;
+pub(crate) struct MessageCodec {
+    next: fn(&[u8]) -> Result<Option<Message<'_>>, FrameError>,
+}
+
+impl MessageCodec {
+    /// The robot's stream.
+    pub(crate) const ROBOT: Self = Self {
+        next: framing::next_message,
+    };
+
+    /// The stream of an end effector: its headers are shorter.
+    pub(crate) const END_EFFECTOR: Self = Self {
+        next: gripper::next_message,
+    };
+}
 
 /// One whole message.
 #[derive(Debug)]
-pub(crate) struct Frame(Bytes);
+pub(crate) struct Frame {
+    header: Header,
+    payload: Bytes,
+}
 
 impl Frame {
     pub(crate) fn message(&self) -> Message<'_> {
-        match next_message(&self.0) {
-            Ok(Some(message)) => message,
-            _ => unreachable!("the decoder has cut exactly one message"),
+        Message {
+            header: self.header,
+            payload: &self.payload,
         }
+    }
+}
+
+/// Sends a request. An error says why the connection is of no more use.
+pub(crate) async fn send(
+    stream: &mut Framed<TcpStream, MessageCodec>,
+    request: Outgoing,
+) -> Result<(), String> {
+    match tokio::time::timeout(SEND_TIMEOUT, stream.send(request)).await {
+        Ok(Ok(())) => Ok(()),
+        Ok(Err(StreamError::Io(error))) => {
+            Err(format!("libfranka: TCP send bytes: {}", reason(&error)))
+        }
+        Ok(Err(StreamError::Frame(error))) => Err(error.to_string()),
+        Err(_) => Err("libfranka: TCP send bytes: Timeout".to_owned()),
     }
 }
 
@@ -36,11 +76,13 @@ impl Decoder for MessageCodec {
     type Error = StreamError;
 
     fn decode(&mut self, received: &mut BytesMut) -> Result<Option<Frame>, StreamError> {
-        let Some(message) = next_message(received)? else {
+        let Some(message) = (self.next)(received)? else {
             return Ok(None);
         };
-        let size = message.header.size as usize;
-        Ok(Some(Frame(received.split_to(size).freeze())))
+        let (header, size) = (message.header, message.size());
+        let start = size - message.payload.len();
+        let payload = received.split_to(size).freeze().slice(start..);
+        Ok(Some(Frame { header, payload }))
     }
 
     /// A stream may end within a message: that is the end of the stream all the same, and no failure to read it.
@@ -78,7 +120,6 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_proto::framing::Header;
 
     #[test]
     fn cuts_messages_out_of_pieces_of_any_size() {
@@ -100,7 +141,7 @@ mod tests {
             let mut seen = Vec::new();
             for bytes in stream.chunks(piece) {
                 buffer.extend_from_slice(bytes);
-                while let Some(frame) = MessageCodec.decode(&mut buffer).unwrap() {
+                while let Some(frame) = MessageCodec::ROBOT.decode(&mut buffer).unwrap() {
                     seen.push((
                         frame.message().header.command_id,
                         frame.message().payload.to_vec(),
@@ -121,17 +162,22 @@ mod tests {
     #[test]
     fn a_stream_that_ends_within_a_message_ends() {
         let mut buffer = BytesMut::from(&[0, 0, 0, 0, 1, 0, 0, 0, 13, 0, 0, 0][..]);
-        assert!(MessageCodec.decode(&mut buffer).unwrap().is_none());
-        assert!(MessageCodec.decode_eof(&mut buffer).unwrap().is_none());
+        assert!(MessageCodec::ROBOT.decode(&mut buffer).unwrap().is_none());
+        assert!(
+            MessageCodec::ROBOT
+                .decode_eof(&mut buffer)
+                .unwrap()
+                .is_none()
+        );
         assert!(buffer.is_empty());
     }
 
     #[test]
     fn garbage_is_an_error_and_not_a_wait() {
         let mut buffer = BytesMut::from(&b"HTTP/1.1 400 Bad Request\r\n\r\n"[..]);
-        assert!(MessageCodec.decode(&mut buffer).is_err());
+        assert!(MessageCodec::ROBOT.decode(&mut buffer).is_err());
         let mut buffer = BytesMut::from(&[0_u8; 64][..]);
-        let error = MessageCodec.decode(&mut buffer).unwrap_err();
+        let error = MessageCodec::ROBOT.decode(&mut buffer).unwrap_err();
         assert_eq!(error.to_string(), "libfranka: Incorrect TCP message size.");
     }
 }

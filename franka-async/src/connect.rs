@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use franka_model::{Model, RobotKind};
 use franka_proto::client::{Event, Session};
-use franka_proto::{RobotState, Version};
+use franka_proto::{Protocol, RobotState, Version};
 use franka_rt::driver::Driver;
 use franka_rt::exchange;
 use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
@@ -20,7 +20,7 @@ use tokio_util::codec::Framed;
 
 use crate::bridge::{self, Bridge};
 use crate::builder::{Builder, Endpoint, VersionPolicy};
-use crate::channel::Channel;
+use crate::channel::{CLOSED_BY_PEER, Channel};
 use crate::codec::{MessageCodec, StreamError, reason};
 use crate::{ConnectError, Robot};
 
@@ -35,9 +35,12 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let scheduling = builder.scheduling.clone();
     scheduling.probe()?;
 
-    let address = timeout(builder.connect_timeout, resolve(&builder.endpoint))
-        .await
-        .map_err(|_| ConnectError::Timeout)??;
+    let address = timeout(
+        builder.connect_timeout,
+        resolve(&builder.endpoint, Version::TCP_PORT),
+    )
+    .await
+    .unwrap_or(Err(ConnectError::Timeout))?;
     let opened = open(address, &builder).await?;
     let (states, published) = watch::channel(opened.first);
     let (channel, connection, reports) =
@@ -98,17 +101,17 @@ async fn open_with(
     builder: &Builder,
 ) -> Result<Opened, ConnectError> {
     let model = Model::of(kind_of(version));
-    let tcp = dial(address, builder.connect_timeout).await?;
+    let tcp = dial::<Version>(address, builder.connect_timeout).await?;
     let udp = exchange::bind()?;
     let port = udp.local_addr()?.port();
-    let mut stream = Framed::new(tcp, MessageCodec);
+    let mut stream = Framed::new(tcp, MessageCodec::ROBOT);
     let mut session = Session::new(version);
     timeout(
         builder.connect_timeout,
         shake_hands(&mut stream, &mut session, port),
     )
     .await
-    .map_err(|_| ConnectError::HandshakeTimeout)??;
+    .unwrap_or(Err(ConnectError::HandshakeTimeout))?;
 
     let config = ThreadConfig {
         scheduling: builder.scheduling.clone(),
@@ -139,11 +142,16 @@ fn kind_of(version: Version) -> RobotKind {
     }
 }
 
-async fn resolve(endpoint: &Endpoint) -> Result<SocketAddr, ConnectError> {
+/// Finds the host; `port` is that of the device, for an endpoint without one.
+pub(crate) async fn resolve<P: Protocol>(
+    endpoint: &Endpoint,
+    port: u16,
+) -> Result<SocketAddr, ConnectError<P>> {
+    let port = endpoint.port.unwrap_or(port);
     let network = |reason: &str| ConnectError::Network {
         reason: reason.into(),
     };
-    let mut found = tokio::net::lookup_host((endpoint.host.as_str(), endpoint.port))
+    let mut found = tokio::net::lookup_host((endpoint.host.as_str(), port))
         .await
         .map_err(|_| network("Host not found"))?;
     // The robot's datagrams are IPv4.
@@ -152,7 +160,10 @@ async fn resolve(endpoint: &Endpoint) -> Result<SocketAddr, ConnectError> {
         .ok_or_else(|| network("No address found"))
 }
 
-async fn dial(address: SocketAddr, limit: Duration) -> Result<TcpStream, ConnectError> {
+pub(crate) async fn dial<P: Protocol>(
+    address: SocketAddr,
+    limit: Duration,
+) -> Result<TcpStream, ConnectError<P>> {
     let stream = match timeout(limit, TcpStream::connect(address)).await {
         Ok(Ok(stream)) => stream,
         Ok(Err(error)) => {
@@ -180,11 +191,11 @@ async fn dial(address: SocketAddr, limit: Duration) -> Result<TcpStream, Connect
     Ok(stream)
 }
 
-async fn shake_hands(
+pub(crate) async fn shake_hands<P: Protocol>(
     stream: &mut Framed<TcpStream, MessageCodec>,
-    session: &mut Session,
+    session: &mut Session<P>,
     udp_port: u16,
-) -> Result<(), ConnectError> {
+) -> Result<(), ConnectError<P>> {
     stream
         .send(session.connect(udp_port))
         .await
@@ -194,7 +205,7 @@ async fn shake_hands(
             Some(frame) => frame.map_err(broken)?,
             None => {
                 return Err(ConnectError::Link {
-                    reason: "libfranka: server closed connection".into(),
+                    reason: CLOSED_BY_PEER.into(),
                 });
             }
         };
@@ -207,7 +218,7 @@ async fn shake_hands(
     }
 }
 
-fn broken(error: StreamError) -> ConnectError {
+fn broken<P: Protocol>(error: StreamError) -> ConnectError<P> {
     match error {
         StreamError::Frame(error) => error.into(),
         StreamError::Io(_) => ConnectError::Link {

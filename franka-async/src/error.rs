@@ -4,22 +4,27 @@ use std::io;
 use std::time::Duration;
 
 use franka_proto::framing::FrameError;
-use franka_proto::{Command, IncompatibleVersion, Refusal, RequestError, Violation};
+use franka_proto::gripper::Failure;
+use franka_proto::{
+    Command, IncompatibleVersion, Protocol, Refusal, RequestError, ServiceCommand, Version,
+    Violation,
+};
 use franka_rt::sched::SchedError;
 use franka_rt::thread::{LinkFault, StartError};
 
 pub use franka_rt::lifecycle::MotionError;
 pub use franka_rt::session::GoalError;
 
-/// Why there is no connection. Nothing is left behind; connecting again is always possible.
+/// Why there is no connection: to a robot, unless `P` says otherwise. Nothing is left behind; connecting again is always
+/// possible.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum ConnectError {
+pub enum ConnectError<P: Protocol = Version> {
     /// Host: it does not grant what real-time control needs, see [`Builder::realtime`](crate::Builder::realtime).
     #[error(transparent)]
     Realtime(#[from] SchedError),
     /// Host: no thread, socket or descriptor.
-    #[error("the control thread cannot be started: {0}")]
+    #[error("the connection cannot be set up: {0}")]
     System(#[from] io::Error),
     /// Robot: nobody listens there. FCI is off, or it is another machine.
     #[error(
@@ -37,7 +42,7 @@ pub enum ConnectError {
     },
     /// Peer: it speaks another protocol version.
     #[error(transparent)]
-    IncompatibleVersion(#[from] IncompatibleVersion),
+    IncompatibleVersion(#[from] IncompatibleVersion<P>),
     /// Link: the connection ended during the handshake, or a datagram could not be read.
     #[error("{reason}")]
     Link {
@@ -46,7 +51,7 @@ pub enum ConnectError {
     },
     /// Peer: it left the protocol.
     #[error(transparent)]
-    Violation(#[from] Violation),
+    Violation(#[from] Violation<P::Command>),
     /// Peer: its stream cannot be cut into messages.
     #[error(transparent)]
     Frame(#[from] FrameError),
@@ -98,6 +103,27 @@ pub enum CommandError {
     /// Peer: its answer cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation),
+    /// Link: the connection is gone.
+    #[error("{reason}")]
+    ConnectionClosed {
+        /// What ended it.
+        reason: String,
+    },
+}
+
+/// Why an action of an end effector has no result; `C` is what can be asked of it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ActionError<C: ServiceCommand> {
+    /// Device: it could not do it, or something ended it: a stop, or a newer action.
+    #[error(transparent)]
+    Failure(#[from] Failure<C>),
+    /// Caller: too many requests wait for their answers. Nothing was sent.
+    #[error(transparent)]
+    Request(#[from] RequestError),
+    /// Peer: its answer cannot be read.
+    #[error(transparent)]
+    Violation(#[from] Violation<C>),
     /// Link: the connection is gone.
     #[error("{reason}")]
     ConnectionClosed {

@@ -1,0 +1,364 @@
+//! The connection to an end effector: one task that owns both of its sockets.
+//!
+//! An action has one answer, when it has ended, and no deadline: a homing takes seconds, a blocked move minutes. The
+//! task watches whether somebody still waits for the action that runs, and sends a stop once nobody does. States come by
+//! UDP at a leisurely pace; a task of the runtime is good enough for them.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::sync::{Arc, OnceLock};
+
+use franka_proto::client::{Event, Session};
+use franka_proto::gripper::Reply;
+use franka_proto::{CommandId, DecodeError, Protocol, Violation, gripper, vacuum};
+use futures::StreamExt;
+use tokio::net::{TcpStream, UdpSocket};
+use tokio::sync::{mpsc, oneshot, watch};
+use tokio::time::timeout;
+use tokio_util::codec::Framed;
+
+use crate::ConnectError;
+use crate::builder::Endpoint;
+use crate::channel::{CLOSED_BY_PEER, RUNTIME_ENDED};
+use crate::codec::{self, Frame, MessageCodec, reason};
+use crate::connect::{TCP_TIMEOUT, dial, resolve, shake_hands};
+use crate::error::ActionError;
+
+/// What callers hear after the connection was closed from this side.
+const CLOSED_BY_US: &str = "the end effector's handles were closed";
+
+/// States read ahead of an answer, at most.
+const DATAGRAMS: usize = 64;
+
+/// Bytes of the longest datagram that is read.
+const DATAGRAM_SIZE: usize = 64;
+
+/// What differs between the end effectors.
+pub(crate) trait Device: for<'a> Protocol<Reply<'a> = Reply> + Default {
+    /// What it says of itself.
+    type State: Copy + fmt::Debug;
+
+    const TCP_PORT: u16;
+    const STOP: Self::Request;
+
+    fn state(datagram: &[u8]) -> Result<Self::State, DecodeError>;
+
+    /// The device's clock, `[ms]`.
+    fn clock(state: &Self::State) -> u32;
+}
+
+impl Device for gripper::Version {
+    type State = gripper::State;
+
+    const TCP_PORT: u16 = Self::TCP_PORT;
+    const STOP: gripper::Request = gripper::Request::Stop;
+
+    fn state(datagram: &[u8]) -> Result<gripper::State, DecodeError> {
+        gripper::State::decode(datagram)
+    }
+
+    fn clock(state: &gripper::State) -> u32 {
+        state.message_id
+    }
+}
+
+impl Device for vacuum::Version {
+    type State = vacuum::State;
+
+    const TCP_PORT: u16 = Self::TCP_PORT;
+    const STOP: vacuum::Request = vacuum::Request::Stop;
+
+    fn state(datagram: &[u8]) -> Result<vacuum::State, DecodeError> {
+        vacuum::State::decode(datagram)
+    }
+
+    fn clock(state: &vacuum::State) -> u32 {
+        state.message_id
+    }
+}
+
+/// How an action ended, on its way to whoever awaits it.
+type Outcome<D> = Result<bool, ActionError<<D as Protocol>::Command>>;
+
+type Answer<D> = oneshot::Sender<Outcome<D>>;
+
+struct Call<D: Device> {
+    request: D::Request,
+    answer: Answer<D>,
+}
+
+/// The way to the task. Clones share it.
+pub(crate) struct Link<D: Device> {
+    address: SocketAddr,
+    /// Unbounded, and yet bounded: the task takes requests at once, and refuses those for which the session has no place.
+    calls: mpsc::UnboundedSender<Call<D>>,
+    states: watch::Receiver<D::State>,
+    ended: Arc<OnceLock<String>>,
+}
+
+impl<D: Device> Clone for Link<D> {
+    fn clone(&self) -> Self {
+        Self {
+            address: self.address,
+            calls: self.calls.clone(),
+            states: self.states.clone(),
+            ended: self.ended.clone(),
+        }
+    }
+}
+
+impl<D: Device> fmt::Debug for Link<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut link = f.debug_struct("Link");
+        link.field("address", &self.address).finish_non_exhaustive()
+    }
+}
+
+impl<D: Device + Send + Sync + 'static> Link<D>
+where
+    D::Command: Send + Sync,
+    D::Request: Send,
+    D::State: Send + Sync,
+{
+    pub(crate) async fn connect(endpoint: Endpoint) -> Result<Self, ConnectError<D>> {
+        let address = timeout(TCP_TIMEOUT, resolve::<D>(&endpoint, D::TCP_PORT))
+            .await
+            .unwrap_or(Err(ConnectError::Timeout))?;
+        let tcp = dial::<D>(address, TCP_TIMEOUT).await?;
+        let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).await?;
+        let port = socket.local_addr()?.port();
+        let mut stream = Framed::new(tcp, MessageCodec::END_EFFECTOR);
+        let mut session = Session::new(D::default());
+        timeout(TCP_TIMEOUT, shake_hands(&mut stream, &mut session, port))
+            .await
+            .unwrap_or(Err(ConnectError::HandshakeTimeout))?;
+        let first = timeout(TCP_TIMEOUT, first_state::<D>(&socket, address.ip()))
+            .await
+            .unwrap_or(Err(ConnectError::NoState))?;
+
+        let (states, published) = watch::channel(first);
+        let (calls, queue) = mpsc::unbounded_channel();
+        let ended = Arc::new(OnceLock::new());
+        let task = Task {
+            stream,
+            session,
+            socket,
+            peer: address.ip(),
+            states,
+            running: None,
+            waiting: HashMap::new(),
+        };
+        tokio::spawn(task.run(queue, ended.clone()));
+        Ok(Self {
+            address,
+            calls,
+            states: published,
+            ended,
+        })
+    }
+
+    pub(crate) fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    pub(crate) fn states(&self) -> watch::Receiver<D::State> {
+        self.states.clone()
+    }
+
+    /// Sends a request and waits for the end of its action.
+    ///
+    /// # Cancel safety
+    /// The action is stopped, unless a newer one has taken its place.
+    pub(crate) async fn act(&self, request: D::Request) -> Outcome<D> {
+        let (answer, answered) = oneshot::channel();
+        if self.calls.send(Call { request, answer }).is_err() {
+            return Err(self.closed());
+        }
+        answered.await.unwrap_or_else(|_| Err(self.closed()))
+    }
+
+    fn closed(&self) -> ActionError<D::Command> {
+        let reason = self.ended.get().map_or(RUNTIME_ENDED, String::as_str);
+        ActionError::ConnectionClosed {
+            reason: reason.to_owned(),
+        }
+    }
+}
+
+async fn first_state<D: Device>(
+    socket: &UdpSocket,
+    peer: IpAddr,
+) -> Result<D::State, ConnectError<D>> {
+    let mut buffer = [0; DATAGRAM_SIZE];
+    loop {
+        let (length, source) = socket.recv_from(&mut buffer).await?;
+        if source.ip() == peer
+            && let Ok(state) = D::state(&buffer[..length])
+        {
+            return Ok(state);
+        }
+    }
+}
+
+struct Task<D: Device> {
+    stream: Framed<TcpStream, MessageCodec>,
+    session: Session<D>,
+    socket: UdpSocket,
+    peer: IpAddr,
+    states: watch::Sender<D::State>,
+    /// The newest action, until it is answered.
+    running: Option<(CommandId, Answer<D>)>,
+    /// Stops, and actions in whose place others came.
+    waiting: HashMap<CommandId, Answer<D>>,
+}
+
+impl<D: Device> Task<D> {
+    async fn run(
+        mut self,
+        mut calls: mpsc::UnboundedReceiver<Call<D>>,
+        ended: Arc<OnceLock<String>>,
+    ) {
+        let Err(reason) = self.serve(&mut calls).await;
+        // Told before the answers are dropped, so that nobody finds them dropped without a reason.
+        ended.get_or_init(|| reason);
+    }
+
+    /// Serves until the connection ends; the error says why it did.
+    async fn serve(
+        &mut self,
+        calls: &mut mpsc::UnboundedReceiver<Call<D>>,
+    ) -> Result<std::convert::Infallible, String> {
+        let mut buffer = [0; DATAGRAM_SIZE];
+        loop {
+            tokio::select! {
+                received = self.socket.recv_from(&mut buffer) => match received {
+                    Ok((length, source)) => self.on_datagram(&buffer[..length], source),
+                    Err(error) => return Err(format!("libfranka: UDP receive: {}", reason(&error))),
+                },
+                frame = self.stream.next() => match frame {
+                    Some(Ok(frame)) => self.on_frame(&frame).map_err(|error| error.to_string())?,
+                    Some(Err(error)) => return Err(error.to_string()),
+                    None => return Err(CLOSED_BY_PEER.to_owned()),
+                },
+                () = abandoned::<D>(&mut self.running) => self.stop().await?,
+                call = calls.recv() => match call {
+                    Some(call) => self.on_call(call).await?,
+                    None => {
+                        if self.running.is_some() {
+                            self.stop().await?;
+                        }
+                        return Err(CLOSED_BY_US.to_owned());
+                    }
+                },
+            }
+        }
+    }
+
+    async fn on_call(&mut self, Call { request, answer }: Call<D>) -> Result<(), String> {
+        // Nobody waits for it any more; a stop counts all the same.
+        if answer.is_closed() && request != D::STOP {
+            return Ok(());
+        }
+        // A device that does not answer must not use up all places.
+        for (id, _) in self.waiting.extract_if(|_, answer| answer.is_closed()) {
+            self.session.abandon(id);
+        }
+        let outgoing = match self.session.request(&request) {
+            Ok(outgoing) => outgoing,
+            Err(error) => {
+                // A caller who no longer listens has been dropped.
+                let _ = answer.send(Err(error.into()));
+                return Ok(());
+            }
+        };
+        let id = outgoing.id();
+        let replaced = if request == D::STOP {
+            Some((id, answer))
+        } else {
+            self.running.replace((id, answer))
+        };
+        self.waiting.extend(replaced);
+        codec::send(&mut self.stream, outgoing).await
+    }
+
+    /// Stops the action that nobody waits for.
+    async fn stop(&mut self) -> Result<(), String> {
+        if let Some((id, _)) = self.running.take() {
+            self.session.abandon(id);
+        }
+        match self.session.request(&D::STOP) {
+            Ok(stop) => {
+                self.session.abandon(stop.id());
+                codec::send(&mut self.stream, stop).await
+            }
+            // An action that nobody can stop: without the connection, the device stops by itself.
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    /// Publishes a state, unless it is older than the newest one.
+    fn on_datagram(&mut self, datagram: &[u8], source: SocketAddr) {
+        if source.ip() != self.peer {
+            return;
+        }
+        match D::state(datagram) {
+            Ok(state) => {
+                let newest = D::clock(&self.states.borrow());
+                if D::clock(&state).wrapping_sub(newest) <= u32::MAX / 2 {
+                    self.states.send_replace(state);
+                }
+            }
+            Err(error) => tracing::debug!(%error, "a datagram that is no state"),
+        }
+    }
+
+    /// Routes one message. An error ends the connection.
+    fn on_frame(&mut self, frame: &Frame) -> Result<(), Violation<D::Command>> {
+        // The states that were sent before an answer show what it says.
+        let mut buffer = [0; DATAGRAM_SIZE];
+        for _ in 0..DATAGRAMS {
+            match self.socket.try_recv_from(&mut buffer) {
+                Ok((length, source)) => self.on_datagram(&buffer[..length], source),
+                Err(_) => break,
+            }
+        }
+        let (id, outcome) = match self.session.on_message(frame.message()) {
+            Ok(Event::Reply { id, command, reply }) => match reply {
+                Reply::Done(status) => (id, status.result(command).map_err(Into::into)),
+                Reply::Connect { .. } => unreachable!("the session answers its handshake itself"),
+            },
+            Ok(Event::Unmatched { id }) => {
+                tracing::debug!(%id, "a reply that nobody waits for");
+                return Ok(());
+            }
+            Ok(other) => {
+                tracing::warn!(?other, "a message out of place");
+                return Ok(());
+            }
+            Err(violation) => match violation.id().filter(|_| !violation.is_fatal()) {
+                Some(id) => (id, Err(violation.into())),
+                None => return Err(violation),
+            },
+        };
+        let answer = match self.running.take() {
+            Some((running, answer)) if running == id => Some(answer),
+            other => {
+                self.running = other;
+                self.waiting.remove(&id)
+            }
+        };
+        if let Some(answer) = answer {
+            let _ = answer.send(outcome);
+        }
+        Ok(())
+    }
+}
+
+/// Waits until nobody waits for the running action any more.
+async fn abandoned<D: Device>(running: &mut Option<(CommandId, Answer<D>)>) {
+    match running {
+        Some((_, answer)) => answer.closed().await,
+        None => std::future::pending().await,
+    }
+}

@@ -1,0 +1,86 @@
+//! The vacuum gripper.
+
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use franka_proto::vacuum::{Command, Request, State, Vacuum, Version};
+use tokio::sync::watch;
+
+use crate::ConnectError;
+use crate::builder::Endpoint;
+use crate::end_effector::Link;
+use crate::error::ActionError;
+
+/// Why an action of the vacuum gripper has no result.
+pub type VacuumGripperError = ActionError<Command>;
+
+/// A connected vacuum gripper. What [`Gripper`](crate::Gripper) says of handles, actions and their ends holds for it as
+/// well.
+#[derive(Clone, Debug)]
+pub struct VacuumGripper {
+    link: Link<Version>,
+}
+
+impl VacuumGripper {
+    /// Connects to the gripper at `endpoint`: TCP, handshake, first state; each step may take 1 s. The port is 1339 unless
+    /// given.
+    ///
+    /// # Errors
+    /// [`ConnectError`]; nothing is left behind.
+    ///
+    /// # Cancel safety
+    /// Dropping the future closes whatever was opened.
+    pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError<Version>> {
+        let link = Link::connect(endpoint.into()).await?;
+        Ok(Self { link })
+    }
+
+    /// Where the gripper is.
+    pub fn address(&self) -> SocketAddr {
+        self.link.address()
+    }
+
+    /// The newest state.
+    pub fn state(&self) -> State {
+        *self.link.states().borrow()
+    }
+
+    /// The newest state as it changes. Closes when the connection does.
+    pub fn states(&self) -> watch::Receiver<State> {
+        self.link.states()
+    }
+
+    /// Sucks an object on and holds it. True if the vacuum was reached in time.
+    ///
+    /// # Errors
+    /// [`VacuumGripperError`].
+    ///
+    /// # Cancel safety
+    /// Dropping the future stops the pump, unless a newer action has taken over or the future was never polled.
+    pub async fn vacuum(&self, vacuum: Vacuum) -> Result<bool, VacuumGripperError> {
+        self.link.act(Request::Vacuum(vacuum)).await
+    }
+
+    /// Drops the object. True if that was done within `timeout`, which goes out in whole milliseconds.
+    ///
+    /// # Errors
+    /// [`VacuumGripperError`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::vacuum`].
+    pub async fn drop_off(&self, timeout: Duration) -> Result<bool, VacuumGripperError> {
+        let timeout = i64::try_from(timeout.as_millis()).unwrap_or(i64::MAX);
+        self.link.act(Request::DropOff { timeout }).await
+    }
+
+    /// Stops the action that runs, which resolves as aborted. True if it succeeded.
+    ///
+    /// # Errors
+    /// [`VacuumGripperError`].
+    ///
+    /// # Cancel safety
+    /// Once polled, the gripper stops all the same.
+    pub async fn stop(&self) -> Result<bool, VacuumGripperError> {
+        self.link.act(Request::Stop).await
+    }
+}
