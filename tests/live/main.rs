@@ -6,6 +6,7 @@ mod connecting;
 mod dropping;
 mod ending;
 mod failing;
+mod hands;
 mod fer;
 mod misbehaving;
 mod moving;

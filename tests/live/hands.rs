@@ -1,0 +1,351 @@
+//! The end effectors: the driver's handles and the simulated devices over real sockets.
+
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, UdpSocket};
+use std::time::{Duration, Instant};
+
+use franka_async::{
+    ActionError, ConnectError, Grasp, Gripper, GripperState, Profile, Vacuum, VacuumGripper,
+};
+use franka_proto::{gripper, server, vacuum};
+use franka_sim::{Fingers, Running, Sim, Suction};
+use tokio::time::{sleep, timeout};
+
+use crate::{alone, connect, long_way};
+
+/// Time within which whatever is told to end has ended, on a loaded machine too.
+const SOON: Duration = Duration::from_secs(3);
+
+const ABORTED: &str = "libfranka gripper: Command aborted!";
+const FAILED: &str = "libfranka gripper: Command failed!";
+
+/// A robot with a hand that has an object of 5 cm between its fingers and knows its width.
+async fn with_hand() -> (Gripper, Running) {
+    let sim = Sim::fr3().hand(Fingers::new().with_object(0.05), 0);
+    let sim = sim.start().await.expect("a simulator starts");
+    let gripper = hand_of(&sim).await.expect("a hand takes a client");
+    assert_eq!(gripper.state().max_width, 0.0);
+    assert!(gripper.homing().await.expect("a homing"));
+    assert_eq!(gripper.state().max_width, 0.08);
+    (gripper, sim)
+}
+
+async fn hand_of(sim: &Running) -> Result<Gripper, ConnectError<gripper::Version>> {
+    Gripper::connect(sim.hand().expect("a hand").addr()).await
+}
+
+fn object() -> Grasp {
+    Grasp::new(0.05, 0.1, 40.0)
+}
+
+fn slow_grasp() -> Grasp {
+    Grasp::new(0.05, 0.01, 40.0)
+}
+
+/// Waits for a width at which the fingers then stay.
+async fn width_at_rest(gripper: &Gripper) -> f64 {
+    let mut states = gripper.states();
+    let mut last = f64::NAN;
+    let rest = async {
+        let mut still = 0;
+        while still < 5 {
+            states.changed().await.expect("a connection");
+            let width = states.borrow_and_update().width;
+            still = if width == last { still + 1 } else { 0 };
+            last = width;
+        }
+    };
+    timeout(SOON, rest).await.expect("the fingers stop");
+    last
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_hand_moves_grasps_and_lets_go_while_the_arm_moves() {
+    let _alone = alone();
+    let (gripper, sim) = with_hand().await;
+    let robot = connect(&sim).await;
+    let moving = tokio::spawn(long_way(&robot).into_future());
+    assert!(gripper.move_to(0.06, 0.1).await.expect("a move"));
+    assert!((gripper.state().width - 0.06).abs() < 1e-9);
+    let error = gripper.move_to(0.09, 0.1).await.unwrap_err();
+    assert_eq!(error.to_string(), FAILED);
+
+    assert!(
+        !gripper
+            .grasp(Grasp::new(0.03, 0.1, 40.0))
+            .await
+            .expect("no grasp")
+    );
+    assert!(!gripper.state().is_grasped);
+    assert!(gripper.grasp(object()).await.expect("a grasp"));
+    assert!(gripper.state().is_grasped);
+
+    let hand = sim.hand().expect("a hand");
+    let taken = hand.with(|hand| hand.mechanism_mut().take_object()).await;
+    assert_eq!(taken, Ok(Some(0.05)));
+    let mut states = gripper.states();
+    let lost = states.wait_for(|state| !state.is_grasped);
+    timeout(SOON, lost)
+        .await
+        .expect("it shows")
+        .expect("a state");
+    moving.await.expect("no panic").expect("the arm arrives");
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn stop_interrupts_the_action_that_runs() {
+    let _alone = alone();
+    let (gripper, _sim) = with_hand().await;
+    let other = gripper.clone();
+    let moving = tokio::spawn(async move { other.move_to(0.06, 0.01).await });
+    sleep(Duration::from_millis(200)).await;
+    assert!(gripper.stop().await.expect("a stop"));
+    let error = moving.await.expect("no panic").unwrap_err();
+    assert_eq!(error.to_string(), ABORTED);
+    assert!(width_at_rest(&gripper).await > 0.07);
+    // And so does a newer action.
+    let other = gripper.clone();
+    let homing = tokio::spawn(async move { other.homing().await });
+    sleep(Duration::from_millis(200)).await;
+    assert!(gripper.move_to(0.08, 0.1).await.expect("a move"));
+    assert_eq!(homing.await.unwrap().unwrap_err().to_string(), ABORTED);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn dropping_an_action_stops_it_and_nothing_else() {
+    let _alone = alone();
+    let (gripper, _sim) = with_hand().await;
+    for action in 0..3 {
+        assert!(gripper.move_to(0.08, 0.1).await.expect("a move"));
+        let dropped = async {
+            match action {
+                0 => gripper.grasp(slow_grasp()).await,
+                1 => gripper.move_to(0.06, 0.01).await,
+                _ => gripper.homing().await,
+            }
+        };
+        timeout(Duration::from_millis(200), dropped)
+            .await
+            .expect_err("it takes longer");
+        let width = width_at_rest(&gripper).await;
+        assert!(width > 0.06 && width < 0.08, "{action}: {width}");
+        assert!(!gripper.state().is_grasped);
+    }
+    // One whose place a newer one has taken stops nothing.
+    assert!(gripper.move_to(0.08, 0.1).await.expect("a move"));
+    let mut older = Box::pin(gripper.move_to(0.06, 0.001));
+    timeout(Duration::from_millis(100), &mut older)
+        .await
+        .expect_err("it takes longer");
+    let newer = gripper.grasp(Grasp::new(0.05, 0.03, 40.0));
+    let (grasped, ()) = tokio::join!(newer, async {
+        sleep(Duration::from_millis(100)).await;
+        drop(older);
+    });
+    assert!(grasped.expect("a grasp"));
+    assert!(gripper.state().is_grasped);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn one_client_at_a_time_and_one_that_goes_stops_its_action() {
+    let _alone = alone();
+    let (gripper, sim) = with_hand().await;
+    assert!(hand_of(&sim).await.is_err());
+    assert!(gripper.grasp(object()).await.expect("a grasp"));
+    drop(gripper);
+    // The first may be on its way out still.
+    let gripper = eventually(&sim).await;
+    assert!(gripper.state().is_grasped, "a grasp outlasts its client");
+    assert!(gripper.move_to(0.08, 0.1).await.expect("a move"));
+    let moving = tokio::spawn(async move { gripper.move_to(0.06, 0.005).await });
+    sleep(Duration::from_millis(200)).await;
+    moving.abort();
+    let gripper = eventually(&sim).await;
+    assert!(width_at_rest(&gripper).await > 0.07);
+}
+
+async fn eventually(sim: &Running) -> Gripper {
+    let deadline = Instant::now() + SOON;
+    loop {
+        match hand_of(sim).await {
+            Ok(gripper) => return gripper,
+            Err(error) if Instant::now() > deadline => panic!("{error}"),
+            Err(_) => sleep(Duration::from_millis(20)).await,
+        }
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_hand_that_goes_ends_everything_and_says_why() {
+    let _alone = alone();
+    let (gripper, sim) = with_hand().await;
+    let (other, mut states) = (gripper.clone(), gripper.states());
+    let moving = tokio::spawn(async move { other.move_to(0.06, 0.001).await });
+    sleep(Duration::from_millis(100)).await;
+    sim.stop().await;
+    let error = timeout(SOON, moving).await.expect("no hang").unwrap();
+    let text = "libfranka: server closed connection";
+    assert_eq!(error.unwrap_err().to_string(), text);
+    assert_eq!(gripper.stop().await.unwrap_err().to_string(), text);
+    timeout(SOON, async { while states.changed().await.is_ok() {} })
+        .await
+        .expect("listeners hear of the end");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn garbage_costs_a_client_its_connection_and_nobody_else() {
+    let _alone = alone();
+    let sim = Sim::fr3()
+        .hand(Fingers::new(), 0)
+        .start()
+        .await
+        .expect("a simulator");
+    let address = sim.hand().expect("a hand").addr();
+    for garbage in [
+        &[0; 40][..],
+        b"GET / HTTP/1.1\r\n\r\n",
+        &[1, 0, 0, 0, 0, 0, 10, 0, 0, 0],
+    ] {
+        let closed = tokio::task::spawn_blocking(move || {
+            let mut stream = TcpStream::connect(address)?;
+            stream.set_read_timeout(Some(SOON))?;
+            stream.write_all(garbage)?;
+            stream.read(&mut [0; 16])
+        });
+        // An orderly end, or a reset if the hand had not read everything.
+        assert!(!matches!(closed.await.unwrap(), Ok(1..)));
+        let start = Instant::now();
+        drop(eventually(&sim).await);
+        assert!(start.elapsed() < Duration::from_secs(1));
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn nobody_listening_is_a_refused_connection() {
+    let port = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let address = port.local_addr().unwrap();
+    drop(port);
+    let error = Gripper::connect(address).await.unwrap_err();
+    assert!(matches!(error, ConnectError::Refused), "{error}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_vacuum_gripper_holds_drops_and_stops() {
+    let _alone = alone();
+    let sim = Sim::fr3().vacuum_gripper(Suction::new().with_object(), 0);
+    let sim = sim.start().await.expect("a simulator starts");
+    let address = sim.vacuum_gripper().expect("a gripper").addr();
+    let gripper = VacuumGripper::connect(address).await.expect("a session");
+    let suck = |vacuum, timeout| {
+        gripper.vacuum(Vacuum {
+            vacuum,
+            profile: Profile::P0,
+            timeout,
+        })
+    };
+    assert!(suck(50, 2000).await.expect("a vacuum"));
+    assert!(gripper.state().part_present);
+    assert!(
+        gripper
+            .drop_off(Duration::from_secs(1))
+            .await
+            .expect("a drop")
+    );
+    assert!(gripper.state().part_detached && !gripper.state().part_present);
+    assert!(!suck(70, 100).await.expect("not in time"));
+    let (aborted, stopped) = tokio::join!(suck(200, 60_000), async {
+        sleep(Duration::from_millis(100)).await;
+        gripper.stop().await
+    });
+    assert!(stopped.expect("a stop"));
+    let text = "libfranka vacuum gripper: Command aborted!";
+    assert_eq!(aborted.unwrap_err().to_string(), text);
+    let text = "libfranka vacuum gripper: Command failed!";
+    assert_eq!(suck(50, -1).await.unwrap_err().to_string(), text);
+}
+
+/// A device that answers every request with the next of `statuses`, and the port of it.
+fn scripted<P>(version: P, state: Vec<u8>, statuses: Vec<u16>) -> SocketAddr
+where
+    P: franka_proto::Protocol + Send + 'static,
+    P::Command: Send,
+{
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let address = listener.local_addr().unwrap();
+    std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        let mut session = server::Session::new(version);
+        let mut statuses = statuses.into_iter();
+        let mut received = Vec::new();
+        let mut buffer = [0; 256];
+        while let Ok(length @ 1..) = stream.read(&mut buffer) {
+            received.extend_from_slice(&buffer[..length]);
+            while let Ok(Some(message)) = gripper::next_message(&received) {
+                let size = message.size();
+                if let Ok(server::Event::Connect {
+                    udp_port, reply, ..
+                }) = session.on_message(message)
+                {
+                    stream.write_all(reply.as_bytes()).unwrap();
+                    socket
+                        .send_to(&state, (Ipv4Addr::LOCALHOST, udp_port))
+                        .unwrap();
+                } else {
+                    // The header again, with the size of one status.
+                    let mut reply = received[..6].to_vec();
+                    reply.extend(12_u32.to_le_bytes());
+                    reply.extend(statuses.next().expect("a status").to_le_bytes());
+                    stream.write_all(&reply).unwrap();
+                }
+                received.drain(..size);
+            }
+        }
+    });
+    address
+}
+
+/// What libfranka makes of the statuses 0 to 3, and of one that does not exist: scenario 18.
+fn check<C: franka_proto::ServiceCommand>(status: u16, result: Result<bool, ActionError<C>>) {
+    let service = C::SERVICE;
+    let expected = match status {
+        0 => Ok(true),
+        2 => Ok(false),
+        1 => Err(format!("{service}: Command failed!")),
+        3 => Err(format!("{service}: Command aborted!")),
+        _ => Err(format!(
+            "{service}: Unexpected response while handling command!"
+        )),
+    };
+    assert_eq!(result.map_err(|error| error.to_string()), expected);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn conformance_18_every_status_of_every_command() {
+    let statuses = || (0..5).flat_map(|status| [status; 4]).collect::<Vec<u16>>();
+    let state = GripperState::default().encode().to_vec();
+    let address = scripted(gripper::Version::V3, state, statuses());
+    let gripper = Gripper::connect(address).await.expect("a session");
+    for status in 0..5 {
+        check(status, gripper.homing().await);
+        check(status, gripper.move_to(0.05, 0.1).await);
+        check(status, gripper.grasp(object()).await);
+        check(status, gripper.stop().await);
+    }
+
+    let state = vacuum::State::default().encode().to_vec();
+    let statuses = (0..5).flat_map(|status| [status; 3]).collect();
+    let address = scripted(vacuum::Version::V1, state, statuses);
+    let gripper = VacuumGripper::connect(address).await.expect("a session");
+    let request = Vacuum {
+        vacuum: 50,
+        profile: Profile::P3,
+        timeout: 100,
+    };
+    for status in 0..5 {
+        check(status, gripper.vacuum(request).await);
+        check(status, gripper.drop_off(Duration::from_secs(1)).await);
+        check(status, gripper.stop().await);
+    }
+}
