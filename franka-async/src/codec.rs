@@ -121,6 +121,10 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
 mod tests {
     use super::*;
 
+    fn codec() -> MessageCodec {
+        MessageCodec::ROBOT
+    }
+
     #[test]
     fn cuts_messages_out_of_pieces_of_any_size() {
         let mut stream = Vec::new();
@@ -141,7 +145,7 @@ mod tests {
             let mut seen = Vec::new();
             for bytes in stream.chunks(piece) {
                 buffer.extend_from_slice(bytes);
-                while let Some(frame) = MessageCodec::ROBOT.decode(&mut buffer).unwrap() {
+                while let Some(frame) = codec().decode(&mut buffer).unwrap() {
                     seen.push((
                         frame.message().header.command_id,
                         frame.message().payload.to_vec(),
@@ -162,22 +166,17 @@ mod tests {
     #[test]
     fn a_stream_that_ends_within_a_message_ends() {
         let mut buffer = BytesMut::from(&[0, 0, 0, 0, 1, 0, 0, 0, 13, 0, 0, 0][..]);
-        assert!(MessageCodec::ROBOT.decode(&mut buffer).unwrap().is_none());
-        assert!(
-            MessageCodec::ROBOT
-                .decode_eof(&mut buffer)
-                .unwrap()
-                .is_none()
-        );
+        assert!(codec().decode(&mut buffer).unwrap().is_none());
+        assert!(codec().decode_eof(&mut buffer).unwrap().is_none());
         assert!(buffer.is_empty());
     }
 
     #[test]
     fn garbage_is_an_error_and_not_a_wait() {
         let mut buffer = BytesMut::from(&b"HTTP/1.1 400 Bad Request\r\n\r\n"[..]);
-        assert!(MessageCodec::ROBOT.decode(&mut buffer).is_err());
+        assert!(codec().decode(&mut buffer).is_err());
         let mut buffer = BytesMut::from(&[0_u8; 64][..]);
-        let error = MessageCodec::ROBOT.decode(&mut buffer).unwrap_err();
+        let error = codec().decode(&mut buffer).unwrap_err();
         assert_eq!(error.to_string(), "libfranka: Incorrect TCP message size.");
     }
 }
