@@ -28,15 +28,17 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     workspace.run(&mut build)?;
 
     let address = loopback_address(std::process::id());
-    let mut simulator = real_time(&workspace.target().join("debug").join("franka-sim"));
-    simulator.args(["--bind", &address, "--port", PORT]);
-    simulator.env("NO_COLOR", "1");
-    let _simulator = Running::start(simulator)?;
+    for (name, arguments) in SCRIPTS {
+        let mut simulator = real_time(&workspace.target().join("debug").join("franka-sim"));
+        simulator.args(["--bind", &address, "--port", PORT]);
+        simulator.args(arguments).env("NO_COLOR", "1");
+        let _simulator = Running::start(simulator)?;
 
-    let mut script = workspace.program(&interpreter);
-    script.arg(peers.join("pylibfranka_basic.py")).arg(&address);
-    println!("$ python tests/peers/pylibfranka_basic.py {address}");
-    finish(script, SCRIPT_TIME_MAX)?;
+        let mut script = workspace.program(&interpreter);
+        script.arg(peers.join(name)).arg(&address);
+        println!("$ python tests/peers/{name} {address}");
+        finish(script, SCRIPT_TIME_MAX)?;
+    }
     Ok(Outcome::Passed)
 }
 
@@ -145,13 +147,22 @@ fn kill(child: &mut Child) {
     }
 }
 
+/// The scripts, and what their simulators are like.
+const SCRIPTS: [(&str, &[&str]); 2] = [
+    ("pylibfranka_basic.py", &[]),
+    (
+        "pylibfranka_gripper.py",
+        &["--gripper-object-width", "0.05"],
+    ),
+];
+
 /// The port of every FCI server; the vendor's client takes no other.
 const PORT: &str = "1337";
 
 /// A simulator listens within milliseconds; on a machine that is busy building it may take seconds.
 const READY_TIME_MAX: Duration = Duration::from_secs(20);
 
-/// The script takes some 15 s; a few of its motions may be repeated.
+/// The longest script takes some 15 s; a few of its motions may be repeated.
 const SCRIPT_TIME_MAX: Duration = Duration::from_secs(180);
 
 const POLL: Duration = Duration::from_millis(50);
