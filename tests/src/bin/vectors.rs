@@ -20,7 +20,7 @@ fn main() -> ExitCode {
     let bad = outcomes.iter().filter(|outcome| outcome.failed()).count();
     let absent = outcomes.iter().filter(|outcome| outcome.absent()).count();
     let good = outcomes.len() - bad - absent;
-    println!("{good} files passed, {bad} failed, {absent} absent");
+    println!("{good} suites passed, {bad} failed, {absent} absent");
     if golden::failed(&outcomes) {
         return ExitCode::FAILURE;
     }
