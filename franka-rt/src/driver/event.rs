@@ -92,8 +92,6 @@ pub struct MotionStatistics {
     last: [(u64, f64); 2],
     /// Longest time from the receipt of a state to the departure of its command.
     pub worst_turnaround: Duration,
-    /// Whether the finishing command has been sent.
-    pub finish_sent: bool,
 }
 
 impl Default for MotionStatistics {
@@ -106,7 +104,6 @@ impl Default for MotionStatistics {
             success_rate_count: 0,
             last: [(0, 0.0); 2],
             worst_turnaround: Duration::ZERO,
-            finish_sent: false,
         }
     }
 }

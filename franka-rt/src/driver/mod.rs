@@ -175,19 +175,14 @@ impl Driver {
                 self.phase = Phase::Armed(motion);
                 None
             }
-            Phase::Running(mut motion) | Phase::Finishing(mut motion, _)
-                if !motion.modes.shown_by(state) || state.robot_mode != RobotMode::Move =>
-            {
+            Phase::Running(mut motion) if has_left(&motion, state) => {
                 motion.statistics.note(state, skipped);
-                let finished = motion.statistics.finish_sent;
-                self.end(
-                    motion,
-                    if finished {
-                        Ending::Finished
-                    } else {
-                        Ending::Aborted
-                    },
-                );
+                self.end(motion, Ending::Aborted);
+                None
+            }
+            Phase::Finishing(mut motion, _) if has_left(&motion, state) => {
+                motion.statistics.note(state, skipped);
+                self.end(motion, Ending::Finished);
                 None
             }
             Phase::Running(mut motion) if !is_sound(state) => {
@@ -240,7 +235,6 @@ impl Driver {
             });
         }
         self.phase = if step.finished {
-            motion.statistics.finish_sent = true;
             self.record.activity = Activity::Finishing;
             self.events.push(Event::Finishing { motion: motion.id });
             Phase::Finishing(motion, command)
@@ -273,6 +267,11 @@ impl Driver {
             program,
         }));
     }
+}
+
+/// Whether the robot no longer runs the motion.
+fn has_left(motion: &Motion, state: &RobotState) -> bool {
+    !motion.modes.shown_by(state) || state.robot_mode != RobotMode::Move
 }
 
 /// Whether what every program computes with is finite. Anything a program made of other numbers would go to the motors.
