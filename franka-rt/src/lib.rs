@@ -16,6 +16,7 @@
 //!
 //! This crate knows no async runtime, opens no TCP connection and reads no file but the kernel's real-time flag.
 
+pub mod control;
 pub mod driver;
 pub mod exchange;
 pub mod law;

@@ -1,0 +1,100 @@
+//! What a program commands in a cycle, in the robot's own terms.
+
+use franka_proto::{MoveGeneratorMode, RobotCommand};
+
+/// Joint torques without gravity and friction, `[N m]`. The robot adds both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torques(pub [f64; 7]);
+
+/// Joint positions for the robot's own controller, `q_c`, `[rad]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointPositions(pub [f64; 7]);
+
+/// Joint velocities for the robot's own controller, `dq_c`, `[rad/s]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointVelocities(pub [f64; 7]);
+
+/// A pose of the end effector for the robot's own inverse kinematics, in the base frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(non_snake_case)]
+pub struct CartesianPose {
+    /// The pose, column-major, `[m]`.
+    pub O_T_EE: [f64; 16],
+    /// Position of joint 3, `[rad]`, and sign of joint 4, -1 or +1; `None` leaves the elbow to the robot.
+    pub elbow: Option<[f64; 2]>,
+}
+
+/// A twist of the end effector for the robot's own inverse kinematics, in the base frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(non_snake_case)]
+pub struct CartesianVelocities {
+    /// Linear `[m/s]`, then angular velocity `[rad/s]`.
+    pub O_dP_EE: [f64; 6],
+    /// As in [`CartesianPose::elbow`].
+    pub elbow: Option<[f64; 2]>,
+}
+
+/// A command to one of the robot's motion generators.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MotionCommand {
+    /// To the joint position generator.
+    JointPositions(JointPositions),
+    /// To the joint velocity generator.
+    JointVelocities(JointVelocities),
+    /// To the Cartesian position generator.
+    CartesianPose(CartesianPose),
+    /// To the Cartesian velocity generator.
+    CartesianVelocities(CartesianVelocities),
+}
+
+impl MotionCommand {
+    /// The generator that takes it.
+    pub fn generator(&self) -> MoveGeneratorMode {
+        match self {
+            Self::JointPositions(_) => MoveGeneratorMode::JointPosition,
+            Self::JointVelocities(_) => MoveGeneratorMode::JointVelocity,
+            Self::CartesianPose(_) => MoveGeneratorMode::CartesianPosition,
+            Self::CartesianVelocities(_) => MoveGeneratorMode::CartesianVelocity,
+        }
+    }
+
+    /// Writes it into the fields of its generator; all others stay as they are.
+    pub(crate) fn write_to(&self, command: &mut RobotCommand) {
+        match *self {
+            Self::JointPositions(JointPositions(q)) => command.q_c = q,
+            Self::JointVelocities(JointVelocities(dq)) => command.dq_c = dq,
+            Self::CartesianPose(CartesianPose { O_T_EE, elbow }) => {
+                command.O_T_EE_c = O_T_EE;
+                command.elbow_c = elbow;
+            }
+            Self::CartesianVelocities(CartesianVelocities { O_dP_EE, elbow }) => {
+                command.O_dP_EE_c = O_dP_EE;
+                command.elbow_c = elbow;
+            }
+        }
+    }
+}
+
+impl From<JointPositions> for MotionCommand {
+    fn from(command: JointPositions) -> Self {
+        Self::JointPositions(command)
+    }
+}
+
+impl From<JointVelocities> for MotionCommand {
+    fn from(command: JointVelocities) -> Self {
+        Self::JointVelocities(command)
+    }
+}
+
+impl From<CartesianPose> for MotionCommand {
+    fn from(command: CartesianPose) -> Self {
+        Self::CartesianPose(command)
+    }
+}
+
+impl From<CartesianVelocities> for MotionCommand {
+    fn from(command: CartesianVelocities) -> Self {
+        Self::CartesianVelocities(command)
+    }
+}
