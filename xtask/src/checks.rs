@@ -5,9 +5,9 @@ use std::process::{Command, Stdio};
 
 use clap::ValueEnum;
 
-use crate::peers;
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
+use crate::{fuzz, peers};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -24,6 +24,8 @@ pub(crate) enum Check {
     Loom,
     /// Protocol and model without the standard library.
     NoStd,
+    /// Any bytes for the protocol.
+    Fuzz,
     /// Other clients against the simulator.
     Peers,
 }
@@ -50,6 +52,7 @@ impl Check {
             Self::Test => ("test", "all tests and documentation examples"),
             Self::Loom => ("loom", "interleavings of what crosses threads"),
             Self::NoStd => ("no-std", "protocol and model without the standard library"),
+            Self::Fuzz => ("fuzz", "any bytes for the protocol"),
             Self::Peers => ("peers", "other clients against the simulator"),
         }
     }
@@ -70,6 +73,7 @@ impl Check {
             Self::Test => workspace.run(workspace.cargo().args(["test", "--workspace"]))?,
             Self::Loom => loom(workspace)?,
             Self::NoStd => return no_std(workspace),
+            Self::Fuzz => return fuzz::check(workspace),
             Self::Peers => return peers::run(workspace),
         }
         Ok(Outcome::Passed)

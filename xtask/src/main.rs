@@ -1,14 +1,17 @@
-//! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`, `cargo xtask bench`.
+//! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`, `cargo xtask fuzz`,
+//! `cargo xtask bench`.
 //!
 //! | module | task |
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
+//! | [`fuzz`] | the fuzz targets, for a moment as a step or for as long as one likes |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | the virtual environment of that step |
 //! | [`step`] | steps with headers, times and a summary |
 //! | [`workspace`] | where things are, and running a program |
 
 mod checks;
+mod fuzz;
 mod peers;
 mod python;
 mod step;
@@ -43,6 +46,12 @@ enum Task {
         /// Directory of the vectors; without it the project's own.
         dir: Option<PathBuf>,
     },
+    /// Run the fuzz targets one after the other and print a line per target.
+    Fuzz {
+        /// Executions of each target.
+        #[arg(long, default_value_t = 10_000_000)]
+        runs: u64,
+    },
     /// Measure the work of one control cycle and write `target/bench.json`.
     Bench {
         /// Rounds; each runs every benchmark once.
@@ -71,6 +80,7 @@ fn run(task: Task) -> anyhow::Result<()> {
             let dir = dir.map(std::path::absolute).transpose()?;
             workspace.run(workspace.cargo_release_binary("vectors").args(dir))
         }
+        Task::Fuzz { runs } => fuzz::run(&workspace, runs),
         Task::Bench { rounds } => {
             let output = workspace.target().join("bench.json");
             let mut command = workspace.cargo_release_binary("bench");

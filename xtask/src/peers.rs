@@ -18,8 +18,7 @@ use crate::workspace::Workspace;
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let python = match supported().and_then(|()| Python::find()) {
         Ok(python) => python,
-        Err(why) if required() => bail!("{why}; with CI=true this step has to run"),
-        Err(why) => return Ok(Outcome::Skipped(why)),
+        Err(why) => return Outcome::without(why),
     };
     let peers = workspace.root().join("tests").join("peers");
     let interpreter = python.environment(workspace, &peers.join("requirements.txt"))?;
@@ -50,10 +49,6 @@ fn supported() -> Result<(), String> {
             "pylibfranka has wheels for Linux on x86-64 only, this is {system} on {machine}"
         )),
     }
-}
-
-fn required() -> bool {
-    env::var("CI").is_ok_and(|value| value == "true" || value == "1")
 }
 
 /// The vendor's client knows one port only, so that simulators side by side need addresses of their own.
