@@ -14,7 +14,6 @@ use crate::{JointVector, joint_vector};
 pub(crate) static FER: Description = Description {
     client: &CLIENT,
     realisable: &REALISABLE,
-    joints: JOINTS,
     cartesian: CARTESIAN,
 };
 
@@ -141,6 +140,7 @@ static CLIENT: Model = Model {
         ),
     ],
     merge: Merge::WithoutOwnLever(LINK_7_INSIDE),
+    joints: JOINTS,
 };
 
 /// Link 7 as the vendor's library has it inside, in link axes; nothing but its merging with
@@ -242,6 +242,7 @@ static REALISABLE: Model = Model {
         ),
     ],
     merge: Merge::Rigid,
+    joints: JOINTS,
 };
 
 /// `franka_description` 1.0.1, `robots/fer/inertials.yaml`.

@@ -10,7 +10,6 @@ use crate::model::Model;
 pub(crate) static FR3: Description = Description {
     client: &MODEL,
     realisable: &MODEL,
-    joints: JOINTS,
     cartesian: CARTESIAN,
 };
 
@@ -111,6 +110,7 @@ static MODEL: Model = Model {
         ),
     ],
     merge: Merge::Rigid,
+    joints: JOINTS,
 };
 
 /// `lower` and `upper`: limits table of the FCI documentation (`franka_description` 1.0.1,

@@ -1,6 +1,6 @@
 //! Which robots there are, and everything that differs between them.
 
-use crate::limits::{CartesianLimits, JointLimits};
+use crate::limits::CartesianLimits;
 use crate::model::Model;
 use crate::{fer, fr3};
 
@@ -33,6 +33,5 @@ pub(crate) struct Description {
     pub(crate) client: &'static Model,
     /// A model that a physical arm could have, for simulation.
     pub(crate) realisable: &'static Model,
-    pub(crate) joints: JointLimits,
     pub(crate) cartesian: CartesianLimits,
 }

@@ -209,12 +209,9 @@ fn dynamics_of_the_fer() {
         ],
     );
     // The rigid composition, which the vendor's library of the FER does not have.
-    let fer = Model::fer();
     let rigid = Model {
-        kind: fer.kind,
-        base: fer.base,
-        links: fer.links,
         merge: Merge::Rigid,
+        ..Model::fer().clone()
     };
     assert_torques(
         &rigid,

@@ -57,7 +57,7 @@ impl BrakingEnvelope {
 impl JointLimits {
     /// The limits of a kind of robot.
     pub const fn of(kind: RobotKind) -> &'static Self {
-        &kind.description().joints
+        &kind.description().client.joints
     }
 
     /// Velocities allowed at the positions `q`: `(lower, upper)`, `[rad/s]`.

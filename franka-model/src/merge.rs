@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::inertia::{RigidBody, Symmetric3};
 
 /// A rule of composition. Mass and first moment, and so gravity, are the same under both.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Merge {
     /// That of mechanics: inertias about the common centre of mass add up.
     Rigid,

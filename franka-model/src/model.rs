@@ -13,18 +13,23 @@ use crate::load::Load;
 use crate::merge::Merge;
 use crate::{Jacobian, JointVector, MassMatrix};
 
-/// A robot's constants. There are few values, all static: take them by reference.
+/// A robot's constants: kinematics, bodies and limits.
+///
+/// The vendor's numbers are static values ([`of`](Self::of), [`realisable`](Self::realisable)); a
+/// description that a robot serves gives a value of its own. Both answer the same questions, and
+/// take the same time to do so.
 ///
 /// Throughout, `q` are joint positions `[rad]`, `dq` velocities `[rad/s]`, `ddq` accelerations
 /// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in
 /// the base frame `[m/s²]` ([`GRAVITY_EARTH`](crate::GRAVITY_EARTH) for an upright robot). Numbers
 /// that are not finite give results that are not finite.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     pub(crate) kind: RobotKind,
     pub(crate) base: RigidBody,
     pub(crate) links: [RigidBody; 7],
     pub(crate) merge: Merge,
+    pub(crate) joints: JointLimits,
 }
 
 impl Model {
@@ -75,8 +80,8 @@ impl Model {
     }
 
     /// What its joints may do.
-    pub fn joint_limits(&self) -> &'static JointLimits {
-        JointLimits::of(self.kind)
+    pub fn joint_limits(&self) -> &JointLimits {
+        &self.joints
     }
 
     /// What its end effector and elbow may do.
