@@ -9,6 +9,7 @@
 //! * [`driver`]: what one robot state calls for; phases from watching to finishing. No clock, no socket.
 //! * [`session`]: target control: goals in, one continuous joint-space reference out.
 //! * [`law`]: joint torques from a reference and a state.
+//! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`otg`]: jerk-limited trajectories to rest.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP. Pure.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
@@ -24,6 +25,7 @@ pub mod lifecycle;
 pub mod otg;
 pub mod sched;
 pub mod session;
+pub mod shaping;
 pub mod slot;
 pub mod stats;
 mod sys;

@@ -3,17 +3,13 @@
 use franka_model::JointVector;
 use franka_model::limits::CLIENT_MARGIN;
 
+use crate::shaping::{CYCLE, DEFAULT_CUTOFF_FREQUENCY, filter, limiter};
+
 /// Bound of the spring and damper torques per joint, `[N m]`: just inside the 87 and 12 N m that the joints can give.
 pub const TORQUE_CLAMP: [f64; 7] = [86.0, 86.0, 86.0, 86.0, 11.5, 11.5, 11.5];
 
-/// Cutoff frequency of the low-pass filter on torques, `[Hz]`. Source: the default of libfranka's control loops.
-pub const CUTOFF_FREQUENCY: f64 = 100.0;
-
-/// The cycle, `[s]`.
-const CYCLE: f64 = 1e-3;
-
-/// Share of the new value in the low-pass filter, `T / (T + 1 / (2 pi f))`.
-const FILTER_GAIN: f64 = CYCLE / (CYCLE + 1.0 / (2.0 * core::f64::consts::PI * CUTOFF_FREQUENCY));
+/// Share of the new value in the low-pass filter, which has the cutoff frequency of libfranka's control loops.
+const FILTER_GAIN: f64 = filter::gain(CYCLE, DEFAULT_CUTOFF_FREQUENCY);
 
 /// Bounds each torque by `most`, `[N m]`, and tells whether that changed any.
 pub fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool) {
@@ -23,25 +19,26 @@ pub fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool) {
 
 /// Low-passes `tau` against the torques that the robot last took, `tau_J_d` of its state.
 pub fn low_pass(tau: &JointVector, last: &JointVector) -> JointVector {
-    tau * FILTER_GAIN + last * (1.0 - FILTER_GAIN)
+    tau.zip_map(last, |tau, last| filter::mix(FILTER_GAIN, tau, last))
 }
 
 /// Keeps the change from the torques that the robot last took inside its rate limit, and tells whether that bound.
 ///
-/// The robot's echo of the last torques is rounded to `f32` in protocol 10, while the robot compares with what it
-/// received: the bound shrinks by half a unit in the last place of the echo. `rate` is the robot's limit, `[N m/s]`;
-/// the usual margin is kept from it.
+/// The usual margin is kept from `rate`, the robot's limit `[N m/s]`, and what an echo rounded to `f32` may hide of the
+/// last torques.
 pub fn limit_rate(
     tau: &JointVector,
     last: &JointVector,
     rate: &JointVector,
 ) -> (JointVector, bool) {
+    let mut bound = false;
     let limited = tau.zip_zip_map(last, rate, |tau, last, rate| {
-        let echo_error = f64::from(f32::EPSILON) * last.abs() / 2.0;
-        let most = (rate - CLIENT_MARGIN) * CYCLE - echo_error;
-        last + (tau - last).clamp(-most, most)
+        let rate = limiter::within_echo(rate - CLIENT_MARGIN, last);
+        let (limited, slowed) = limiter::limit_rate(tau, last, rate);
+        bound |= slowed;
+        limited
     });
-    (limited, limited != *tau)
+    (limited, bound)
 }
 
 #[cfg(test)]

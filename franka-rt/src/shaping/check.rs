@@ -1,0 +1,116 @@
+//! Whether a command is one at all: finite, a transformation, an elbow.
+
+use crate::shaping::InvalidCommand;
+
+/// How far the norm of a row or column of a rotation may be from 1 (libfranka 0.21, `kOrthonormalThreshold`).
+pub const ORTHONORMAL_TOLERANCE: f64 = 1e-5;
+
+/// Refuses numbers that are not finite.
+///
+/// # Errors
+/// [`InvalidCommand::NotFinite`].
+pub fn finite(values: &[f64]) -> Result<(), InvalidCommand> {
+    if all_finite(values) {
+        Ok(())
+    } else {
+        Err(InvalidCommand::NotFinite)
+    }
+}
+
+/// Refuses what is no pose in column-major order.
+///
+/// # Errors
+/// [`InvalidCommand::NotFinite`], then [`InvalidCommand::Transformation`].
+pub fn pose(column_major: &[f64; 16]) -> Result<(), InvalidCommand> {
+    finite(column_major)?;
+    if is_homogeneous(column_major) {
+        Ok(())
+    } else {
+        Err(InvalidCommand::Transformation)
+    }
+}
+
+/// Refuses what is no elbow: an angle of joint 3 `[rad]` and a sign of joint 4, -1 or +1.
+///
+/// # Errors
+/// [`InvalidCommand::NotFinite`], then [`InvalidCommand::ElbowSign`].
+pub fn elbow(elbow: &[f64; 2]) -> Result<(), InvalidCommand> {
+    finite(elbow)?;
+    if elbow[1] == 1.0 || elbow[1] == -1.0 {
+        Ok(())
+    } else {
+        Err(InvalidCommand::ElbowSign)
+    }
+}
+
+/// Whether a 4x4 matrix, column-major, passes for a transformation: its last row is exactly `0 0 0 1`, and each row and
+/// column of its rotation has length 1 within [`ORTHONORMAL_TOLERANCE`].
+///
+/// As in libfranka, neither the angles between the columns nor the handedness count: a mirrored matrix passes.
+pub fn is_homogeneous(column_major: &[f64; 16]) -> bool {
+    let m = column_major;
+    let unit = |x: f64, y: f64, z: f64| {
+        (((x * x + y * y) + z * z).sqrt() - 1.0).abs() <= ORTHONORMAL_TOLERANCE
+    };
+    [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0]
+        && [0, 4, 8]
+            .iter()
+            .all(|&first| unit(m[first], m[first + 1], m[first + 2]))
+        && (0..3).all(|row| unit(m[row], m[row + 4], m[row + 8]))
+}
+
+pub(super) fn all_finite(values: &[f64]) -> bool {
+    values.iter().all(|value| value.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const IDENTITY: [f64; 16] = [
+        1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.3, 0.2, 0.1, 1.0,
+    ];
+
+    /// The identity with one element replaced.
+    fn with(index: usize, value: f64) -> [f64; 16] {
+        let mut m = IDENTITY;
+        m[index] = value;
+        m
+    }
+
+    #[test]
+    fn a_matrix_in_row_major_order_is_no_pose() {
+        let transposed = core::array::from_fn(|i| IDENTITY[i % 4 * 4 + i / 4]);
+        assert_eq!(pose(&IDENTITY), Ok(()));
+        assert_eq!(pose(&transposed), Err(InvalidCommand::Transformation));
+    }
+
+    #[test]
+    fn lengths_count_and_handedness_does_not() {
+        assert!(is_homogeneous(&with(0, -1.0)));
+        assert!(is_homogeneous(&with(0, 1.0 + 0.9e-5)));
+        assert!(!is_homogeneous(&with(0, 1.0 + 1.1e-5)));
+        assert!(!is_homogeneous(&with(15, 1.0 + f64::EPSILON)));
+        assert!(!is_homogeneous(&with(5, 1e200)));
+        assert!(!is_homogeneous(&with(5, f64::NAN)));
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_named_first() {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(pose(&with(3, value)), Err(InvalidCommand::NotFinite));
+            assert_eq!(elbow(&[0.1, value]), Err(InvalidCommand::NotFinite));
+            assert_eq!(elbow(&[value, 0.5]), Err(InvalidCommand::NotFinite));
+        }
+    }
+
+    #[test]
+    fn an_elbow_has_a_sign() {
+        for sign in [1.0, -1.0] {
+            assert_eq!(elbow(&[0.1, sign]), Ok(()));
+        }
+        for sign in [0.0, -0.0, 0.999_999, 2.0] {
+            assert_eq!(elbow(&[0.1, sign]), Err(InvalidCommand::ElbowSign));
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Why a command cannot be sent.
+
+use core::fmt;
+
+/// Why a command cannot be sent. The texts are those of libfranka 0.21, to the letter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InvalidCommand {
+    /// A number of a torque command, or of any command after filter and limiter, is not finite.
+    #[error("Commanding value is infinite or NaN.")]
+    NotFinite,
+    /// The scalar given to the velocity limiter is not finite.
+    #[error("commanded_velocity is infinite or NaN.")]
+    Velocity,
+    /// The scalar given to the position limiter, such as an elbow's angle, is not finite.
+    #[error("commanded_position is infinite or NaN.")]
+    Position,
+    /// A joint velocity given to the limiter is not finite.
+    #[error("commanded_velocities is infinite or NaN.")]
+    JointVelocities,
+    /// A joint position given to the limiter is not finite.
+    #[error("commanded_positions is infinite or NaN.")]
+    JointPositions,
+    /// A component of the twist given to the limiter is not finite.
+    #[error("O_dP_EE_c is infinite or NaN.")]
+    Twist,
+    /// An element of the pose given to the limiter is not finite.
+    #[error("O_T_EE_c is infinite or NaN.")]
+    Pose,
+    /// The pose given to the limiter is not a homogeneous transformation in column-major order.
+    #[error("O_T_EE_c is invalid transformation matrix. Has to be column major!")]
+    LimiterTransformation,
+    /// The pose after filter and limiter is not a homogeneous transformation in column-major order.
+    #[error(
+        "libfranka: Attempt to set invalid transformation in motion generator. Has to be column major!"
+    )]
+    Transformation,
+    /// The sign of joint 4 in an elbow is neither -1 nor +1.
+    #[error(
+        "Invalid elbow configuration given! Only +1 or -1 are allowed for the sign of the 4th joint."
+    )]
+    ElbowSign,
+    /// The low-pass filter refuses its arguments.
+    #[error("{signal}lowpass-filter: {fault}")]
+    Filter {
+        /// What was to be filtered.
+        signal: Signal,
+        /// What is wrong.
+        fault: FilterFault,
+    },
+}
+
+/// What a low-pass filter is applied to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// Numbers on their own.
+    Scalar,
+    /// A pose.
+    Pose,
+}
+
+/// How it stands in a text, before the name of the filter.
+impl fmt::Display for Signal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Scalar => "",
+            Self::Pose => "Cartesian ",
+        })
+    }
+}
+
+/// What a low-pass filter refuses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FilterFault {
+    /// The time between two samples is negative or not finite.
+    #[error("sample_time is negative, infinite or NaN.")]
+    SampleTime,
+    /// The cutoff frequency is not positive, or not finite.
+    #[error("cutoff_frequency is zero, negative, infinite or NaN.")]
+    CutoffFrequency,
+    /// The command, or the value of the state that it is filtered against, is not finite.
+    #[error("current or past input value of the signal to be filtered is infinite or NaN.")]
+    Value,
+}

@@ -1,0 +1,107 @@
+//! First-order low-pass filters.
+//!
+//! `y = g x + (1 - g) y_last` with `g = T / (T + 1 / (2 pi f))`, for the sample time `T` and the cutoff frequency `f`. At
+//! 1 ms and 100 Hz `g` is 0.386.
+
+use core::f64::consts::PI;
+
+use crate::shaping::check::all_finite;
+use crate::shaping::rotation::{self, nearest_rotation, quaternion, slerp};
+use crate::shaping::{FilterFault, InvalidCommand, Signal};
+
+/// Cutoff frequency from which on a control loop does not filter, `[Hz]` (libfranka 0.21, `lowpass_filter.h`).
+pub const MAX_CUTOFF_FREQUENCY: f64 = 1000.0;
+
+/// Cutoff frequency of a control loop by default, `[Hz]` (libfranka 0.21, `lowpass_filter.h`).
+pub const DEFAULT_CUTOFF_FREQUENCY: f64 = 100.0;
+
+/// Filters a number: `last` is the last filtered value, `sample_time` is in `[s]` and may be 0, `cutoff_frequency` in
+/// `[Hz]`.
+///
+/// # Errors
+/// [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.
+pub fn low_pass(
+    sample_time: f64,
+    current: f64,
+    last: f64,
+    cutoff_frequency: f64,
+) -> Result<f64, InvalidCommand> {
+    let [filtered] = low_pass_each(sample_time, &[current], &[last], cutoff_frequency)?;
+    Ok(filtered)
+}
+
+/// Filters each of several numbers as [`low_pass`] does.
+///
+/// # Errors
+/// As of [`low_pass`].
+pub fn low_pass_each<const N: usize>(
+    sample_time: f64,
+    current: &[f64; N],
+    last: &[f64; N],
+    cutoff_frequency: f64,
+) -> Result<[f64; N], InvalidCommand> {
+    let gain = checked_gain(sample_time, current, last, cutoff_frequency);
+    let gain = gain.map_err(|fault| InvalidCommand::Filter {
+        signal: Signal::Scalar,
+        fault,
+    })?;
+    Ok(core::array::from_fn(|i| mix(gain, current[i], last[i])))
+}
+
+/// Filters a pose, column-major: the translation as [`low_pass`], the orientation along the arc from that of `last`.
+///
+/// The orientations are the nearest rotations of both poses; the last row is that of `current`.
+///
+/// # Errors
+/// [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.
+pub fn low_pass_pose(
+    sample_time: f64,
+    current: &[f64; 16],
+    last: &[f64; 16],
+    cutoff_frequency: f64,
+) -> Result<[f64; 16], InvalidCommand> {
+    let gain = checked_gain(sample_time, current, last, cutoff_frequency);
+    let gain = gain.map_err(|fault| InvalidCommand::Filter {
+        signal: Signal::Pose,
+        fault,
+    })?;
+    let orientation = |pose| quaternion(&nearest_rotation(pose));
+    let orientation = slerp(&orientation(last), &orientation(current), gain);
+    let translation = rotation::translation(current)
+        .zip_map(&rotation::translation(last), |current, last| {
+            mix(gain, current, last)
+        });
+    Ok(rotation::pose(
+        orientation.to_rotation_matrix().matrix(),
+        &translation,
+        [current[3], current[7], current[11], current[15]],
+    ))
+}
+
+/// Share of the new value.
+pub(crate) const fn gain(sample_time: f64, cutoff_frequency: f64) -> f64 {
+    sample_time / (sample_time + (1.0 / (2.0 * PI * cutoff_frequency)))
+}
+
+/// The new value and the last one, mixed by the share of the new one.
+pub(crate) fn mix(gain: f64, current: f64, last: f64) -> f64 {
+    gain * current + (1.0 - gain) * last
+}
+
+fn checked_gain(
+    sample_time: f64,
+    current: &[f64],
+    last: &[f64],
+    cutoff_frequency: f64,
+) -> Result<f64, FilterFault> {
+    if !sample_time.is_finite() || sample_time < 0.0 {
+        return Err(FilterFault::SampleTime);
+    }
+    if !cutoff_frequency.is_finite() || cutoff_frequency <= 0.0 {
+        return Err(FilterFault::CutoffFrequency);
+    }
+    if !all_finite(current) || !all_finite(last) {
+        return Err(FilterFault::Value);
+    }
+    Ok(gain(sample_time, cutoff_frequency))
+}

@@ -1,0 +1,142 @@
+//! Limiters of the end effector's motion: twist and pose.
+
+use franka_model::limits::MotionLimits;
+use franka_model::rotation;
+use nalgebra::Vector3;
+
+use crate::shaping::check::{all_finite, is_homogeneous};
+use crate::shaping::rotation::{about, nearest_rotation, pose, quaternion, translation};
+use crate::shaping::{CYCLE, InvalidCommand, hi, lo};
+
+/// Share of the rotational bounds that a pose may use (libfranka 0.21, `kFactorCartesianRotationPoseInterface`).
+pub const POSE_ROTATION_SHARE: f64 = 0.99;
+
+/// Bounds on the norms of the end effector's linear and angular motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CartesianBounds {
+    /// `[m/s, m/s^2, m/s^3]`.
+    pub translation: MotionLimits,
+    /// `[rad/s, rad/s^2, rad/s^3]`.
+    pub rotation: MotionLimits,
+}
+
+/// Limits a twist: linear `[m/s]`, then angular velocity `[rad/s]`, in the base frame.
+///
+/// # Errors
+/// [`InvalidCommand::Twist`] if a component of `command` is not finite.
+pub fn cartesian_velocity(
+    bounds: &CartesianBounds,
+    command: &[f64; 6],
+    last_velocity: &[f64; 6],
+    last_acceleration: &[f64; 6],
+) -> Result<[f64; 6], InvalidCommand> {
+    if !all_finite(command) {
+        return Err(InvalidCommand::Twist);
+    }
+    let (v, w) = halves(command);
+    let (v, w) = limit_twist(bounds, v, w, last_velocity, last_acceleration);
+    Ok([v.x, v.y, v.z, w.x, w.y, w.z])
+}
+
+/// Limits a pose, column-major, in the base frame, by the twist that leads there from `last_pose`.
+///
+/// Of both poses the nearest rotation counts. The rotational bounds are taken times [`POSE_ROTATION_SHARE`]. `last_pose`
+/// is not checked.
+///
+/// # Errors
+/// [`InvalidCommand::Pose`] if an element of `command` is not finite, then [`InvalidCommand::LimiterTransformation`] if
+/// it is no homogeneous transformation.
+pub fn cartesian_pose(
+    bounds: &CartesianBounds,
+    command: &[f64; 16],
+    last_pose: &[f64; 16],
+    last_velocity: &[f64; 6],
+    last_acceleration: &[f64; 6],
+) -> Result<[f64; 16], InvalidCommand> {
+    if !all_finite(command) {
+        return Err(InvalidCommand::Pose);
+    }
+    if !is_homogeneous(command) {
+        return Err(InvalidCommand::LimiterTransformation);
+    }
+    let last_rotation = nearest_rotation(last_pose);
+    let last_translation = translation(last_pose);
+    let turn = nearest_rotation(command) * last_rotation.transpose();
+    let bounds = CartesianBounds {
+        translation: bounds.translation,
+        rotation: MotionLimits {
+            velocity: POSE_ROTATION_SHARE * bounds.rotation.velocity,
+            acceleration: POSE_ROTATION_SHARE * bounds.rotation.acceleration,
+            jerk: POSE_ROTATION_SHARE * bounds.rotation.jerk,
+        },
+    };
+    let (v, w) = limit_twist(
+        &bounds,
+        (translation(command) - last_translation) / CYCLE,
+        rotation::log(&quaternion(&turn)) / CYCLE,
+        last_velocity,
+        last_acceleration,
+    );
+    let speed = w.norm();
+    let rotation = if speed > f64::EPSILON {
+        about(&(w / speed), CYCLE * speed) * last_rotation
+    } else {
+        last_rotation
+    };
+    let translation = last_translation + v * CYCLE;
+    Ok(pose(&rotation, &translation, [0.0, 0.0, 0.0, 1.0]))
+}
+
+/// Both halves of a twist: linear, then angular.
+fn halves(twist: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
+    let [x, y, z, rx, ry, rz] = *twist;
+    (Vector3::new(x, y, z), Vector3::new(rx, ry, rz))
+}
+
+fn limit_twist(
+    bounds: &CartesianBounds,
+    v: Vector3<f64>,
+    w: Vector3<f64>,
+    last_velocity: &[f64; 6],
+    last_acceleration: &[f64; 6],
+) -> (Vector3<f64>, Vector3<f64>) {
+    let (last_v, last_w) = halves(last_velocity);
+    let (last_dv, last_dw) = halves(last_acceleration);
+    (
+        limit_vector(&bounds.translation, v, last_v, last_dv),
+        limit_vector(&bounds.rotation, w, last_w, last_dw),
+    )
+}
+
+/// Limits a velocity of three components by the norms of its derivatives.
+///
+/// The acceleration keeps its direction and may be as large as the distance to the bound of the velocity, along that
+/// direction, allows: it falls with the distance at the rate of the jerk. Where the last velocity is so far outside that
+/// no acceleration in this direction leads back, the distance is NaN and does not bound.
+fn limit_vector(
+    most: &MotionLimits,
+    command: Vector3<f64>,
+    last_velocity: Vector3<f64>,
+    last_acceleration: Vector3<f64>,
+) -> Vector3<f64> {
+    let jerk = ((command - last_velocity) / CYCLE - last_acceleration) / CYCLE;
+    let mut acceleration = last_acceleration;
+    let size = jerk.norm();
+    if size > f64::EPSILON {
+        acceleration += jerk / size * hi(lo(size, most.jerk), -most.jerk) * CYCLE;
+    }
+    let size = acceleration.norm();
+    if size > f64::EPSILON {
+        let direction = acceleration / size;
+        let along = direction.dot(&last_velocity);
+        let square = along * along - last_velocity.norm_squared() + most.velocity * most.velocity;
+        let distance = -along + square.sqrt();
+        let safe = lo(
+            (most.jerk / most.acceleration) * distance,
+            most.acceleration,
+        );
+        last_velocity + direction * lo(size, safe) * CYCLE
+    } else {
+        last_velocity
+    }
+}

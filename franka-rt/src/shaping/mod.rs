@@ -1,0 +1,55 @@
+//! What a control loop makes of a returned command before it leaves: filtered, limited, checked. Pure functions.
+//!
+//! ```text
+//! command -> filter (low-pass against the state) -> limiter (velocity, acceleration, jerk) -> check -> robot
+//!            cutoff < 1000 Hz                       limit_rate
+//! ```
+//!
+//! * [`Shaper`]: the three steps for each kind of command, as libfranka's control loops take them.
+//! * [`limiter`]: commands inside bounds that are arguments: torques, scalars, joints, Cartesian velocity and pose.
+//! * [`filter`]: first-order low-pass filters of scalars, arrays and poses.
+//! * [`Bounds`]: what the limiters of libfranka keep, for both robots.
+//! * [`check`]: whether a command is one at all.
+//!
+//! The references of filters and limiters are the *last commanded* values of the robot's state. Everything is arithmetic
+//! on arrays: nothing allocates, and nothing panics for any input. Formulas, order of operations and the treatment of
+//! NaN are those of libfranka 0.21 (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`); libfranka 0.9 differs
+//! in bounds and in how a motion begins. The robot enforces its own limits, whatever a client does.
+
+mod bounds;
+pub mod check;
+mod error;
+pub mod filter;
+pub mod limiter;
+mod rotation;
+mod shaper;
+
+pub use bounds::{Bounds, VelocityBounds};
+pub use error::{FilterFault, InvalidCommand, Signal};
+pub use filter::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
+pub use shaper::Shaper;
+
+/// The cycle of the robot, `[s]`: the time between two commands, also after lost states.
+pub const CYCLE: f64 = 1e-3;
+
+/// `y` if it is less, else `x`: with a NaN the first, where [`f64::min`] gives the other.
+const fn lo(x: f64, y: f64) -> f64 {
+    if y < x { y } else { x }
+}
+
+/// `y` if it is greater, else `x`: with a NaN the first, where [`f64::max`] gives the other.
+const fn hi(x: f64, y: f64) -> f64 {
+    if x < y { y } else { x }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn with_nan_the_first_argument_wins() {
+        assert!(lo(f64::NAN, 1.0).is_nan() && hi(f64::NAN, 1.0).is_nan());
+        assert_eq!((lo(1.0, f64::NAN), hi(1.0, f64::NAN)), (1.0, 1.0));
+        assert_eq!((lo(1.0, 2.0), hi(1.0, 2.0)), (1.0, 2.0));
+    }
+}

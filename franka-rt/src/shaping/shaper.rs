@@ -1,0 +1,296 @@
+//! What a control loop does with a returned command.
+
+use franka_proto::{RobotState, Version};
+
+use crate::control::{
+    CartesianPose, CartesianVelocities, JointPositions, JointVelocities, Torques,
+};
+use crate::shaping::{
+    Bounds, CYCLE, DEFAULT_CUTOFF_FREQUENCY, InvalidCommand, MAX_CUTOFF_FREQUENCY, check, filter,
+    limiter,
+};
+
+/// Shapes the commands of a control loop: low-pass filter, limiter and check, in this order.
+///
+/// ```
+/// use franka_proto::{RobotState, Version};
+/// use franka_rt::control::Torques;
+/// use franka_rt::shaping::Shaper;
+///
+/// let state = RobotState::default();
+/// let shaper = Shaper::new(Version::V10, true, 1000.0);
+/// let sent = shaper.torques(&Torques([87.0; 7]), &state)?;
+/// assert!((sent.0[0] - 0.999_999).abs() < 1e-12); // 1000 N m/s, less the margin, for 1 ms
+/// # Ok::<(), franka_rt::shaping::InvalidCommand>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shaper {
+    bounds: Bounds,
+    limit_rate: bool,
+    cutoff_frequency: f64,
+    start: Start,
+    echo: Echo,
+}
+
+/// What the first position or pose of a motion is filtered and limited against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    /// Itself: it passes as it is if the state is at rest (libfranka 0.21).
+    Itself,
+    /// The state, as all that follow (libfranka 0.9).
+    State,
+}
+
+/// How precisely the state tells the last torques.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Echo {
+    /// As they were sent, or taken for that.
+    Exact,
+    /// Rounded to `f32`, for which the bound of their rate leaves room.
+    Rounded,
+}
+
+/// What the control loops of libfranka 0.9 and 0.21 do differently.
+struct Conventions {
+    bounds: Bounds,
+    limit_rate: bool,
+    start: Start,
+    echo: Echo,
+}
+
+impl Conventions {
+    fn of(version: Version) -> Self {
+        match version {
+            Version::V5 => Self {
+                bounds: Bounds::fer(),
+                limit_rate: true,
+                start: Start::State,
+                echo: Echo::Exact,
+            },
+            Version::V10 => Self {
+                bounds: Bounds::fr3(),
+                limit_rate: false,
+                start: Start::Itself,
+                echo: Echo::Rounded,
+            },
+        }
+    }
+}
+
+impl Shaper {
+    /// The shaper of a robot that speaks `version`: with or without limiter, and with a filter if `cutoff_frequency`,
+    /// `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
+    ///
+    /// A cutoff frequency that is not positive is reported with the first command, as libfranka does.
+    pub fn new(version: Version, limit_rate: bool, cutoff_frequency: f64) -> Self {
+        let Conventions {
+            bounds,
+            start,
+            echo,
+            ..
+        } = Conventions::of(version);
+        Self {
+            bounds,
+            limit_rate,
+            cutoff_frequency,
+            start,
+            echo,
+        }
+    }
+
+    /// The shaper that libfranka's control loops use by default: [`DEFAULT_CUTOFF_FREQUENCY`], and a limiter where
+    /// [`limits_by_default`](Self::limits_by_default) says so.
+    pub fn by_default(version: Version) -> Self {
+        let limit_rate = Self::limits_by_default(version);
+        Self::new(version, limit_rate, DEFAULT_CUTOFF_FREQUENCY)
+    }
+
+    /// Whether libfranka's control loops limit by default: up to version 0.9 for the FER they do, for the FR3 not.
+    pub fn limits_by_default(version: Version) -> bool {
+        Conventions::of(version).limit_rate
+    }
+
+    /// Replaces the bounds, those of the robot that speaks the version by default.
+    #[must_use]
+    pub fn with_bounds(mut self, bounds: Bounds) -> Self {
+        self.bounds = bounds;
+        self
+    }
+
+    /// Limits torque rates without room for the rounding of their echo, as libfranka does: see
+    /// [`limiter::within_echo`]. Only protocol 10 rounds.
+    #[must_use]
+    pub fn trusting_the_echo(mut self) -> Self {
+        self.echo = Echo::Exact;
+        self
+    }
+
+    /// Shapes torques against the last ones, `tau_J_d` of the state.
+    ///
+    /// # Errors
+    /// [`InvalidCommand`] if a number of the command, or of what it is shaped against, is not finite.
+    pub fn torques(
+        &self,
+        command: &Torques,
+        state: &RobotState,
+    ) -> Result<Torques, InvalidCommand> {
+        let last = &state.tau_J_d;
+        let mut tau = self.filtered(&command.0, last)?;
+        if self.limit_rate {
+            let bounds = self.bounds.torque_rate;
+            let bounds = match self.echo {
+                Echo::Exact => bounds,
+                Echo::Rounded => core::array::from_fn(|i| limiter::within_echo(bounds[i], last[i])),
+            };
+            tau = limiter::torques(&tau, last, &bounds)?;
+        }
+        check::finite(&tau)?;
+        Ok(Torques(tau))
+    }
+
+    /// Shapes joint positions against the last ones, `q_d` of the state and its derivatives. `first` is whether no
+    /// command of the motion came before.
+    ///
+    /// # Errors
+    /// As of [`torques`](Self::torques).
+    pub fn joint_positions(
+        &self,
+        command: &JointPositions,
+        state: &RobotState,
+        first: bool,
+    ) -> Result<JointPositions, InvalidCommand> {
+        let last = if self.starts_itself(first) {
+            &command.0
+        } else {
+            &state.q_d
+        };
+        let mut q = self.filtered(&command.0, last)?;
+        if self.limit_rate {
+            let bounds = self.bounds.joints_at(last);
+            q = limiter::joint_positions(&bounds, &q, last, &state.dq_d, &state.ddq_d)?;
+        }
+        check::finite(&q)?;
+        Ok(JointPositions(q))
+    }
+
+    /// Shapes joint velocities against the last ones, `dq_d` of the state and their derivatives.
+    ///
+    /// # Errors
+    /// As of [`torques`](Self::torques).
+    pub fn joint_velocities(
+        &self,
+        command: &JointVelocities,
+        state: &RobotState,
+    ) -> Result<JointVelocities, InvalidCommand> {
+        let mut dq = self.filtered(&command.0, &state.dq_d)?;
+        if self.limit_rate {
+            let bounds = self.bounds.joints_at(&state.q_d);
+            dq = limiter::joint_velocities(&bounds, &dq, &state.dq_d, &state.ddq_d)?;
+        }
+        check::finite(&dq)?;
+        Ok(JointVelocities(dq))
+    }
+
+    /// Shapes a pose against the last one, `O_T_EE_c` of the state and its derivatives, and its elbow against `elbow_c`.
+    /// `first` is whether no command of the motion came before.
+    ///
+    /// # Errors
+    /// As of [`torques`](Self::torques); also if the pose is no transformation, or the elbow has no sign.
+    pub fn cartesian_pose(
+        &self,
+        command: &CartesianPose,
+        state: &RobotState,
+        first: bool,
+    ) -> Result<CartesianPose, InvalidCommand> {
+        let starts = self.starts_itself(first);
+        let last = if starts {
+            &command.O_T_EE
+        } else {
+            &state.O_T_EE_c
+        };
+        let mut pose = command.O_T_EE;
+        if self.filters() {
+            pose = filter::low_pass_pose(CYCLE, &pose, last, self.cutoff_frequency)?;
+        }
+        if self.limit_rate {
+            pose = limiter::cartesian_pose(
+                &self.bounds.cartesian,
+                &pose,
+                last,
+                &state.O_dP_EE_c,
+                &state.O_ddP_EE_c,
+            )?;
+        }
+        check::pose(&pose)?;
+        Ok(CartesianPose {
+            O_T_EE: pose,
+            elbow: self.elbow(command.elbow, state, starts)?,
+        })
+    }
+
+    /// Shapes a twist against the last one, `O_dP_EE_c` of the state and its derivative, and its elbow against `elbow_c`.
+    ///
+    /// # Errors
+    /// As of [`torques`](Self::torques); also if the elbow has no sign.
+    pub fn cartesian_velocities(
+        &self,
+        command: &CartesianVelocities,
+        state: &RobotState,
+    ) -> Result<CartesianVelocities, InvalidCommand> {
+        let mut twist = self.filtered(&command.O_dP_EE, &state.O_dP_EE_c)?;
+        if self.limit_rate {
+            twist = limiter::cartesian_velocity(
+                &self.bounds.cartesian,
+                &twist,
+                &state.O_dP_EE_c,
+                &state.O_ddP_EE_c,
+            )?;
+        }
+        check::finite(&twist)?;
+        Ok(CartesianVelocities {
+            O_dP_EE: twist,
+            elbow: self.elbow(command.elbow, state, false)?,
+        })
+    }
+
+    /// Shapes the angle of an elbow; the sign stays. Two zeros are no elbow, as on the wire.
+    fn elbow(
+        &self,
+        command: Option<[f64; 2]>,
+        state: &RobotState,
+        starts: bool,
+    ) -> Result<Option<[f64; 2]>, InvalidCommand> {
+        let Some(mut elbow) = command.filter(|elbow| *elbow != [0.0, 0.0]) else {
+            return Ok(None);
+        };
+        let last = if starts { elbow[0] } else { state.elbow_c[0] };
+        [elbow[0]] = self.filtered(&[elbow[0]], &[last])?;
+        if self.limit_rate {
+            let (velocity, acceleration) = (state.delbow_c[0], state.ddelbow_c[0]);
+            elbow[0] =
+                limiter::position(&self.bounds.elbow, elbow[0], last, velocity, acceleration)?;
+        }
+        check::elbow(&elbow)?;
+        Ok(Some(elbow))
+    }
+
+    fn starts_itself(&self, first: bool) -> bool {
+        first && self.start == Start::Itself
+    }
+
+    fn filters(&self) -> bool {
+        self.cutoff_frequency < MAX_CUTOFF_FREQUENCY
+    }
+
+    fn filtered<const N: usize>(
+        &self,
+        command: &[f64; N],
+        last: &[f64; N],
+    ) -> Result<[f64; N], InvalidCommand> {
+        if self.filters() {
+            filter::low_pass_each(CYCLE, command, last, self.cutoff_frequency)
+        } else {
+            Ok(*command)
+        }
+    }
+}
