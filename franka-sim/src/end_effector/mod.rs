@@ -128,8 +128,8 @@ impl<M: Mechanism> EndEffector<M> {
     /// Takes bytes from the client's stream, in any portions.
     ///
     /// # Errors
-    /// [`SessionError`] if the client left the protocol. It is then disconnected, after the replies
-    /// that are still to be sent.
+    /// [`SessionError`] if the client left the protocol or speaks another version. It is then
+    /// disconnected, after the replies that are still to be sent.
     pub fn receive(
         &mut self,
         bytes: &[u8],
@@ -207,9 +207,11 @@ impl<M: Mechanism> EndEffector<M> {
                     client.udp_port = Some(udp_port);
                     self.queue(reply.as_bytes());
                 }
-                Event::Incompatible { reply, .. } | Event::Rejected { reply, .. } => {
+                Event::Incompatible { version, reply } => {
                     self.queue(reply.as_bytes());
+                    return Err(SessionError::Incompatible { announced: version });
                 }
+                Event::Rejected { reply, .. } => self.queue(reply.as_bytes()),
                 Event::Request { id, request } => self.answer(id, &request),
                 _ => {}
             }

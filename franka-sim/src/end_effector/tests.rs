@@ -301,7 +301,9 @@ fn a_second_client_and_a_foreign_version_are_refused() {
     assert!(hand.device.connect());
     // Connect, id 0, 14 bytes, version 4, port 4711.
     let hello = [0, 0, 0, 0, 0, 0, 14, 0, 0, 0, 4, 0, 0x67, 0x12];
-    hand.device.receive(&hello).expect("an answer");
+    let result = hand.device.receive(&hello);
+    assert_eq!(result, Err(SessionError::Incompatible { announced: 4 }));
+    assert!(!hand.device.is_connected());
     let reply = hand.device.take_reply().expect("an answer");
     // Incompatible, version 3.
     assert_eq!(reply[10..], [1, 0, 3, 0]);

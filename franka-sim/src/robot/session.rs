@@ -42,6 +42,12 @@ pub enum SessionError<C: ServiceCommand = Command> {
     /// Its messages are not allowed.
     #[error("{0}")]
     Violation(Violation<C>),
+    /// It speaks another version, and is told so.
+    #[error("it speaks protocol {announced}, which is not understood here")]
+    Incompatible {
+        /// The version that it announces.
+        announced: u16,
+    },
 }
 
 impl Robot {
@@ -72,8 +78,8 @@ impl Robot {
     /// Takes bytes from the client's stream, in any portions.
     ///
     /// # Errors
-    /// [`SessionError`] if the client left the protocol. It is then disconnected, after the replies
-    /// that are still to be sent.
+    /// [`SessionError`] if the client left the protocol or speaks another version. It is then
+    /// disconnected, after the replies that are still to be sent.
     pub fn receive(&mut self, bytes: &[u8]) -> Result<(), SessionError> {
         let Some(client) = &mut self.client else {
             return Ok(());
@@ -113,7 +119,12 @@ impl Robot {
                     self.replies
                         .push_back(Bytes::copy_from_slice(reply.as_bytes()));
                 }
-                Event::Incompatible { reply, .. } | Event::Rejected { reply, .. } => {
+                Event::Incompatible { version, reply } => {
+                    self.replies
+                        .push_back(Bytes::copy_from_slice(reply.as_bytes()));
+                    return Err(SessionError::Incompatible { announced: version });
+                }
+                Event::Rejected { reply, .. } => {
                     self.replies
                         .push_back(Bytes::copy_from_slice(reply.as_bytes()));
                 }

@@ -3,7 +3,8 @@
 use std::fmt::Display;
 
 use bytes::Bytes;
-use franka_proto::Protocol;
+use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_within};
+use franka_proto::{Protocol, gripper};
 
 use crate::end_effector::{EndEffector, Mechanism};
 use crate::robot::{Datagram, Robot, SessionError};
@@ -12,6 +13,10 @@ use crate::robot::{Datagram, Robot, SessionError};
 pub(super) trait Device: Send + 'static {
     /// Why it disconnects a client.
     type Error: Display;
+
+    /// How much of a stream to give to [`receive`](Self::receive): the first message, or everything
+    /// if it can never become one. `None` while that is open.
+    fn portion(received: &[u8]) -> Option<usize>;
 
     fn name(&self) -> &'static str;
     fn connect(&mut self) -> bool;
@@ -24,6 +29,10 @@ pub(super) trait Device: Send + 'static {
 
 impl Device for Robot {
     type Error = SessionError;
+
+    fn portion(received: &[u8]) -> Option<usize> {
+        length(received, next_message_within(received, MAX_REQUEST_SIZE))
+    }
 
     fn name(&self) -> &'static str {
         "robot"
@@ -61,6 +70,10 @@ where
 {
     type Error = SessionError<<M::Protocol as Protocol>::Command>;
 
+    fn portion(received: &[u8]) -> Option<usize> {
+        length(received, gripper::next_message(received))
+    }
+
     fn name(&self) -> &'static str {
         M::Protocol::default().device()
     }
@@ -86,5 +99,13 @@ where
 
     fn tick(&mut self) -> Option<Datagram<'_>> {
         self.tick()
+    }
+}
+
+/// [`Device::portion`] of what has been cut like this.
+fn length(received: &[u8], first: Result<Option<Message<'_>>, FrameError>) -> Option<usize> {
+    match first {
+        Ok(message) => message.map(|message| message.size()),
+        Err(_) => Some(received.len()),
     }
 }

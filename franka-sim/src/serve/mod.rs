@@ -11,6 +11,8 @@
 
 mod cycle;
 mod device;
+mod lobby;
+mod portion;
 mod seat;
 mod service;
 mod tcp;

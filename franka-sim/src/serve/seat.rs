@@ -30,6 +30,10 @@ pub(super) enum Order<D> {
 /// Datagrams read per cycle, at most: a flood must not stop the clock.
 const DATAGRAMS: usize = 64;
 
+/// Orders taken per cycle, at most, for the same reason. Fewer than the replies that may wait for
+/// a client, so that one that reads is never taken for one that does not.
+const ORDERS: usize = 32;
+
 /// Device, UDP socket and the two queues.
 pub(super) struct Seat<D> {
     device: D,
@@ -83,7 +87,7 @@ impl<D: Device> Seat<D> {
     }
 
     fn take_orders(&mut self, pace: Pace) -> bool {
-        loop {
+        for _ in 0..ORDERS {
             match self.orders.try_recv() {
                 Ok(Order::Connect { peer, replies }) => {
                     self.device.disconnect();
@@ -107,6 +111,7 @@ impl<D: Device> Seat<D> {
                 Err(mpsc::error::TryRecvError::Disconnected) => return false,
             }
         }
+        true
     }
 
     fn send_replies(&mut self) {

@@ -1,14 +1,24 @@
 //! The stream: one client at a time.
+//!
+//! ```text
+//! lobby: anybody ── first message is whole ──> waits a moment ── seat is free ──> session
+//!          └─ too slow, too many: closed            └─ seat is taken: closed
+//! ```
+//!
+//! A connection takes the seat with its first message and not before, so that one that says nothing
+//! keeps nobody out.
 
 use std::time::Duration;
 
-use bytes::{Bytes, BytesMut};
-use tokio::io::{AsyncReadExt, AsyncWriteExt};
-use tokio::net::{TcpListener, TcpStream};
+use bytes::Bytes;
+use tokio::io::AsyncWriteExt;
+use tokio::net::TcpListener;
 use tokio::sync::mpsc;
-use tokio::time::timeout;
+use tokio::time::{Instant, sleep_until, timeout};
 
 use super::device::Device;
+use super::lobby::{Lobby, Visitor};
+use super::portion::{Silence, portion};
 use super::seat::Order;
 
 /// Replies that may wait for a client that does not read.
@@ -21,57 +31,59 @@ const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 /// before its old connection has been taken down.
 const HANDOVER: Duration = Duration::from_millis(50);
 
-/// How long to wait after the listener failed (out of file descriptors, for one).
-const RETRY: Duration = Duration::from_millis(100);
-
 /// Serves clients until the thread has gone or the task is aborted.
 pub(super) async fn serve<D: Device>(
     listener: TcpListener,
     orders: mpsc::Sender<Order<D>>,
     name: &'static str,
 ) {
+    let mut lobby = Lobby::<D>::new(listener, name);
     let mut next = None;
     while !orders.is_closed() {
-        let stream = match next.take() {
-            Some(stream) => stream,
-            None => accept(&listener).await,
+        let visitor = match next.take() {
+            Some(visitor) => visitor,
+            None => lobby.next().await,
         };
-        let mut session = std::pin::pin!(session(stream, orders.clone(), name));
+        let mut session = std::pin::pin!(session(visitor, orders.clone(), name));
+        let mut waiting: Option<(Visitor, Instant)> = None;
         loop {
+            let patience = waiting.as_ref().map(|(_, deadline)| *deadline);
             tokio::select! {
                 biased;
                 () = &mut session => break,
-                other = accept(&listener) => {
-                    // Refused by closing: a client sees an orderly end instead of silence.
-                    if timeout(HANDOVER, &mut session).await.is_ok() {
-                        next = Some(other);
-                        break;
+                visitor = lobby.next() => {
+                    let deadline = Instant::now() + HANDOVER;
+                    if let Some((other, _)) = waiting.replace((visitor, deadline)) {
+                        refuse(other, name);
+                    }
+                }
+                () = until(patience) => {
+                    if let Some((visitor, _)) = waiting.take() {
+                        refuse(visitor, name);
                     }
                 }
             }
         }
+        next = waiting.map(|(visitor, _)| visitor);
     }
 }
 
-async fn accept(listener: &TcpListener) -> TcpStream {
-    loop {
-        match listener.accept().await {
-            Ok((stream, _)) => return stream,
-            Err(error) => {
-                tracing::warn!(%error, "cannot accept a connection");
-                tokio::time::sleep(RETRY).await;
-            }
-        }
+/// Refused by closing: a client sees an orderly end instead of silence.
+fn refuse(visitor: Visitor, name: &str) {
+    let peer = visitor.peer;
+    tracing::warn!(%peer, "refused: the {name} has a client");
+}
+
+async fn until(deadline: Option<Instant>) {
+    match deadline {
+        Some(deadline) => sleep_until(deadline).await,
+        None => std::future::pending().await,
     }
 }
 
-/// One client from first byte to last.
-async fn session<D: Device>(stream: TcpStream, orders: mpsc::Sender<Order<D>>, name: &str) {
-    let Ok(peer) = stream.peer_addr() else {
-        return;
-    };
-    // Replies are small and their delay is felt; without it, they are only slower.
-    let _ = stream.set_nodelay(true);
+/// One client from first message to last.
+async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order<D>>, name: &str) {
+    let peer = visitor.peer;
     tracing::info!(%peer, "client of the {name} connected");
     let (sender, replies) = mpsc::channel(REPLIES);
     let connect = Order::Connect {
@@ -79,26 +91,40 @@ async fn session<D: Device>(stream: TcpStream, orders: mpsc::Sender<Order<D>>, n
         replies: sender,
     };
     if orders.send(connect).await.is_ok() {
-        transfer(stream, &orders, replies).await;
+        transfer(visitor, &orders, replies, name).await;
         // If the thread has gone, so has the robot.
         let _ = orders.send(Order::Disconnect).await;
     }
     tracing::info!(%peer, "client of the {name} gone");
 }
 
-/// Moves bytes both ways until either side is done.
+/// Moves messages both ways until either side is done.
 async fn transfer<D: Device>(
-    mut stream: TcpStream,
+    visitor: Visitor,
     orders: &mpsc::Sender<Order<D>>,
     mut replies: mpsc::Receiver<Bytes>,
+    name: &str,
 ) {
+    let Visitor {
+        mut stream,
+        peer,
+        mut received,
+    } = visitor;
     let (mut read, mut write) = stream.split();
     let incoming = async {
-        let mut buffer = BytesMut::with_capacity(4096);
-        while matches!(read.read_buf(&mut buffer).await, Ok(count) if count > 0) {
-            let bytes = buffer.split().freeze();
-            if orders.send(Order::Receive(bytes)).await.is_err() {
-                return;
+        loop {
+            match portion::<D>(&mut read, &mut received).await {
+                Ok(length) => {
+                    let bytes = received.split_to(length).freeze();
+                    if orders.send(Order::Receive(bytes)).await.is_err() {
+                        return;
+                    }
+                }
+                Err(Silence::Closed) => return,
+                Err(Silence::Unfinished) => {
+                    tracing::warn!(%peer, "client of the {name} disconnected: half a message");
+                    return;
+                }
             }
         }
     };

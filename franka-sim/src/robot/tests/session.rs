@@ -49,13 +49,15 @@ fn a_client_of_another_version_learns_the_robots() {
         });
         robot.connect();
         let mut client = client::Session::new(other);
-        robot
-            .receive(client.connect(PORT).as_bytes())
-            .expect("a client of another robot");
+        let result = robot.receive(client.connect(PORT).as_bytes());
+        let announced = other.number();
+        assert_eq!(result, Err(SessionError::Incompatible { announced }));
         let reply = robot.take_reply().expect("an answer");
         let message = next_message(&reply).expect("whole").expect("complete");
         let event = client.on_message(message).expect("an answer");
         assert!(matches!(event, client::Event::Incompatible(v) if v.server_version == version));
+        // Its place is free.
+        assert!(robot.connect());
         assert!(robot.tick().is_none());
     }
 }
