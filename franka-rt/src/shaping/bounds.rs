@@ -28,6 +28,10 @@ pub struct Bounds {
 
 /// Velocity of each joint, `[rad/s]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one per control loop, which copies it once; a box would not be Copy"
+)]
 pub enum VelocityBounds {
     /// The same at every position, in both directions.
     Everywhere([f64; 7]),
@@ -100,6 +104,17 @@ impl Bounds {
             },
             elbow: AxisBounds::symmetric(&motion(&cartesian.elbow)),
         }
+    }
+
+    /// The same with the velocities of `joints`, such as those of the description that a robot serves. An FR3's client
+    /// takes nothing else from there.
+    #[must_use]
+    pub fn with_envelope_of(mut self, joints: &JointLimits) -> Self {
+        self.joint_velocity = VelocityBounds::Envelope {
+            joints: *joints,
+            margin: CLIENT_MARGIN,
+        };
+        self
     }
 
     /// What the joints keep at the positions `q`, `[rad]`.

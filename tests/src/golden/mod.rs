@@ -29,6 +29,9 @@ mod node;
 mod otg;
 mod report;
 mod run;
+mod shaping;
+mod shaping_errors;
+mod shaping_filter;
 mod wire;
 mod wire_datagrams;
 mod wire_end_effectors;
@@ -87,5 +90,13 @@ pub const SUITES: &[Suite] = &[
     Suite {
         file: "otg/multi_axis.json",
         check: otg::multi_axis,
+    },
+    Suite {
+        file: "rate_limiting_vectors.json",
+        check: shaping::limiters,
+    },
+    Suite {
+        file: "lowpass_vectors.json",
+        check: shaping_filter::filters,
     },
 ];
