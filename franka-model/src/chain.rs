@@ -13,6 +13,7 @@ use crate::inertia::cross;
 use crate::scalar::sin_cos;
 
 /// Rotations, origins and screws of the seven joint frames, in base axes.
+#[derive(Clone)]
 pub(crate) struct Chain {
     /// Axes of frame i as columns.
     pub(crate) rotation: [Matrix3<f64>; 7],

@@ -23,6 +23,7 @@
 //! | [`inverse_kinematics`] | joint positions for a pose, by iteration |
 //! | [`analytic_ik`] | every joint position for a pose and an angle of joint 7 |
 //! | [`elbow`] | the vendor's elbow parameter |
+//! | [`collision`] | distances to itself, planes and boxes, with gradients |
 //!
 //! # Conventions
 //!
@@ -51,7 +52,7 @@
 //! # What it does not do
 //!
 //! Friction, rotor inertia and joint elasticity are not part of the model, as they are not part of
-//! the vendor's. There is no self-collision check.
+//! the vendor's.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -72,6 +73,7 @@ mod model;
 mod scalar;
 
 pub mod analytic_ik;
+pub mod collision;
 pub mod differential_ik;
 pub mod elbow;
 pub mod frame;

@@ -1,0 +1,517 @@
+//! The capsules of the arm and of the Hand, and which of them can meet.
+
+use nalgebra::Vector3;
+
+use crate::kind::RobotKind;
+
+/// All points within `radius` of a segment. With both ends alike: a ball.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capsule {
+    /// One end of the axis, `[m]`.
+    pub start: Vector3<f64>,
+    /// The other end, `[m]`.
+    pub end: Vector3<f64>,
+    /// `[m]`.
+    pub radius: f64,
+}
+
+impl Capsule {
+    /// From the ends of the axis and the radius, `[m]`.
+    pub const fn new(start: [f64; 3], end: [f64; 3], radius: f64) -> Self {
+        let ([a, b, c], [x, y, z]) = (start, end);
+        Self {
+            start: Vector3::new(a, b, c),
+            end: Vector3::new(x, y, z),
+            radius,
+        }
+    }
+
+    fn is_sound(&self) -> bool {
+        let mut ends = self.start.iter().chain(self.end.iter());
+        ends.all(|x| x.is_finite()) && self.radius.is_finite() && self.radius >= 0.0
+    }
+}
+
+/// Capsules on the links of the arm and on the flange.
+///
+/// Two sets describe the arm, for different questions. Both are the same for every end effector; the
+/// [Hand](Self::with_hand) or [another tool](Self::with_tool) comes on top.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape<'a> {
+    /// By link, the base first.
+    pub(super) arm: &'static [LinkCapsule],
+    /// Indices into `arm` of capsules that can meet, the inner one first.
+    pub(super) pairs: &'static [(u8, u8)],
+    /// In the flange frame.
+    pub(super) tool: &'a [Capsule],
+}
+
+impl Shape<'static> {
+    /// The vendor's capsules for self-collision, the same for both robots.
+    ///
+    /// They are made for links that are far from each other along the chain, and **do not cover** the
+    /// links: the elbow, for one, sticks out by several centimetres. Towards obstacles take
+    /// [`covering`](Self::covering).
+    ///
+    /// The pairs are those that come within 5 cm of each other somewhere within the position limits of
+    /// either robot, of links with another link between them. Links 1 and 3 are left out: their capsules
+    /// overlap around the shoulder, where the links themselves fit each other.
+    pub const fn vendor() -> Self {
+        Self {
+            arm: &VENDOR,
+            pairs: &VENDOR_PAIRS,
+            tool: &[],
+        }
+    }
+
+    /// Capsules that contain every vertex of the links' collision meshes: what has to stay out of
+    /// obstacles.
+    ///
+    /// They are up to 3.4 cm thicker than the links. So a small negative distance need not be a
+    /// collision, and its pairs are only those of the base, link 1 and link 2 with links 5 to 7: closer
+    /// ones touch in postures that the arm reaches every day.
+    pub const fn covering(kind: RobotKind) -> Self {
+        let arm: &[LinkCapsule] = match kind {
+            RobotKind::Fr3 => &FR3,
+            RobotKind::Fer => &FER,
+        };
+        Self {
+            arm,
+            // Both have the same number of capsules on each link.
+            pairs: &COVERING_PAIRS,
+            tool: &[],
+        }
+    }
+
+    /// With the Franka Hand on the flange, mounted as the vendor does: turned by -45° about its axis.
+    pub const fn with_hand(self) -> Self {
+        Self {
+            arm: self.arm,
+            pairs: self.pairs,
+            tool: if self.arm.len() == VENDOR.len() {
+                &VENDOR_HAND
+            } else {
+                &COVERING_HAND
+            },
+        }
+    }
+}
+
+impl Shape<'_> {
+    /// With capsules of one's own on the flange, in the flange frame, instead of any tool before.
+    ///
+    /// A tool is checked against links 0 to 5.
+    ///
+    /// # Errors
+    /// [`ToolError`] for more capsules than there is room for, and for numbers that are not finite or a
+    /// negative radius.
+    pub fn with_tool<'a>(&self, capsules: &'a [Capsule]) -> Result<Shape<'a>, ToolError> {
+        if capsules.len() > TOOL_MAX {
+            return Err(ToolError::TooMany {
+                got: capsules.len(),
+            });
+        }
+        if let Some(index) = capsules.iter().position(|capsule| !capsule.is_sound()) {
+            return Err(ToolError::NotACapsule {
+                index,
+                got: capsules[index],
+            });
+        }
+        Ok(Shape {
+            arm: self.arm,
+            pairs: self.pairs,
+            tool: capsules,
+        })
+    }
+
+    /// How many capsules there are.
+    pub(super) fn len(&self) -> usize {
+        self.arm.len() + self.tool.len()
+    }
+}
+
+/// Why capsules are no tool.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ToolError {
+    /// There is room for 8.
+    TooMany {
+        /// How many there are.
+        got: usize,
+    },
+    /// A number is not finite, or the radius negative.
+    NotACapsule {
+        /// Which.
+        index: usize,
+        /// What was given.
+        got: Capsule,
+    },
+}
+
+impl core::fmt::Display for ToolError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::TooMany { got } => {
+                write!(f, "a tool of {got} capsules, expected at most {TOOL_MAX}")
+            }
+            Self::NotACapsule { index, got } => write!(
+                f,
+                "capsule {index} of the tool is from {:?} to {:?} with radius {}, expected finite numbers and no \
+                 negative radius",
+                got.start.as_slice(),
+                got.end.as_slice(),
+                got.radius
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ToolError {}
+
+/// A capsule in the frame of a link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LinkCapsule {
+    pub(super) link: u8,
+    pub(super) capsule: Capsule,
+}
+
+const fn link(link: u8, start: [f64; 3], end: [f64; 3], radius: f64) -> LinkCapsule {
+    LinkCapsule {
+        link,
+        capsule: Capsule::new(start, end, radius),
+    }
+}
+
+/// Capsules that a tool may have.
+pub(super) const TOOL_MAX: usize = 8;
+
+/// Capsules of the arm with the most of them.
+pub(super) const ARM_MAX: usize = FR3.len();
+
+/// The outermost link that a tool is checked against. It moves against it by the last two joints.
+pub(super) const TOOL_MEETS: u8 = 5;
+
+/// See [`Shape::vendor`] for the rule; the tests repeat the search.
+static VENDOR_PAIRS: [(u8, u8); 23] = pairs(
+    &VENDOR,
+    &[
+        (0, 5),
+        (0, 6),
+        (0, 7),
+        (1, 5),
+        (1, 6),
+        (1, 7),
+        (2, 5),
+        (2, 6),
+        (2, 7),
+        (3, 5),
+        (3, 7),
+        (5, 7),
+    ],
+);
+
+/// See [`Shape::covering`].
+static COVERING_PAIRS: [(u8, u8); 42] = pairs(
+    &FR3,
+    &[
+        (0, 5),
+        (0, 6),
+        (0, 7),
+        (1, 5),
+        (1, 6),
+        (1, 7),
+        (2, 5),
+        (2, 6),
+        (2, 7),
+    ],
+);
+
+/// The pairs of capsules on pairs of links; there are `N`.
+const fn pairs<const N: usize>(capsules: &[LinkCapsule], links: &[(u8, u8)]) -> [(u8, u8); N] {
+    let mut pairs = [(0, 0); N];
+    let mut count = 0;
+    let mut row = 0;
+    while row < links.len() {
+        let (inner, outer) = links[row];
+        let mut a = 0;
+        while a < capsules.len() {
+            let mut b = 0;
+            while b < capsules.len() {
+                if capsules[a].link == inner && capsules[b].link == outer {
+                    pairs[count] = (a as u8, b as u8);
+                    count += 1;
+                }
+                b += 1;
+            }
+            a += 1;
+        }
+        row += 1;
+    }
+    assert!(count == N);
+    pairs
+}
+
+/// Sine and cosine of the Hand's turn on the flange.
+const HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
+
+/// A capsule of the Hand in the flange frame: `RotZ(-45°)` applied.
+const fn on_hand(start: [f64; 3], end: [f64; 3], radius: f64) -> Capsule {
+    const fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
+        [HALF * (x + y), HALF * (y - x), z]
+    }
+    Capsule::new(turned(start), turned(end), radius)
+}
+
+/// `franka_description` 1.0.1, `end_effectors/common/franka_hand.xacro`: body, and fingers at any width.
+static VENDOR_HAND: [Capsule; 2] = [
+    on_hand([0.0, -0.05, 0.04], [0.0, 0.05, 0.04], 0.04),
+    on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
+];
+
+/// The body fitted as the links are; the fingers as the vendor's capsule has them, and another one for
+/// where they leave the body.
+static COVERING_HAND: [Capsule; 3] = [
+    on_hand(
+        [-0.0007, -0.0702, 0.0228],
+        [0.0001, 0.0673, 0.0254],
+        0.0363 + 0.0147,
+    ),
+    on_hand([0.0, -0.05, 0.08], [0.0, 0.05, 0.08], 0.02),
+    on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
+];
+
+/// `franka_description` 1.0.1, `robots/common/franka_arm.xacro` with a safety distance of 0, the same for
+/// the FER and the FR3; the second capsule of link 7 with the turn of 45° of its sub-link applied.
+static VENDOR: [LinkCapsule; 10] = [
+    link(0, [-0.09, 0.0, 0.06], [-0.06, 0.0, 0.06], 0.06),
+    link(1, [0.0, 0.0, -0.333], [0.0, 0.0, -0.05], 0.06),
+    link(2, [0.0, 0.0, -0.06], [0.0, 0.0, 0.06], 0.06),
+    link(3, [0.0, 0.0, -0.22], [0.0, 0.0, -0.07], 0.06),
+    link(4, [0.0, 0.0, -0.06], [0.0, 0.0, 0.06], 0.06),
+    link(5, [0.0, 0.0, -0.31], [0.0, 0.0, -0.21], 0.06),
+    link(5, [0.0, 0.08, -0.2], [0.0, 0.08, -0.06], 0.025),
+    link(6, [0.0, 0.0, -0.07], [0.0, 0.0, 0.01], 0.05),
+    link(7, [0.0, 0.0, -0.06], [0.0, 0.0, 0.08], 0.04),
+    link(
+        7,
+        [0.03889, 0.03889, 0.082],
+        [0.04596, 0.04596, 0.082],
+        0.03,
+    ),
+];
+
+/// Franka Research 3: capsules fitted to the surface of the collision meshes of `franka_description` 1.0.1
+/// by least squares. The second summand of a radius is the largest distance at which a vertex of the link's
+/// mesh sticks out of the fit.
+static FR3: [LinkCapsule; 17] = [
+    link(
+        0,
+        [-0.0956, 0.0267, 0.0282],
+        [-0.0892, -0.0342, 0.0295],
+        0.0432 + 0.0338,
+    ),
+    link(
+        0,
+        [-0.0071, 0.0009, 0.0446],
+        [-0.0089, 0.0003, 0.0806],
+        0.0721 + 0.0338,
+    ),
+    link(
+        1,
+        [-0.0001, 0.0024, -0.1554],
+        [-0.0003, -0.0197, -0.1023],
+        0.0543 + 0.0166,
+    ),
+    link(
+        1,
+        [0.0002, -0.0439, -0.0045],
+        [-0.0003, -0.0678, -0.0057],
+        0.0598 + 0.0166,
+    ),
+    link(
+        2,
+        [-0.0007, 0.0147, -0.0367],
+        [-0.0003, 0.0024, 0.0886],
+        0.0449 + 0.0171,
+    ),
+    link(
+        2,
+        [-0.0003, 0.0036, 0.0627],
+        [0.0001, -0.1598, -0.0042],
+        0.0523 + 0.0171,
+    ),
+    link(
+        3,
+        [0.0004, 0.0004, -0.0883],
+        [0.0031, 0.0019, -0.0674],
+        0.0535 + 0.0138,
+    ),
+    link(
+        3,
+        [0.0816, 0.0384, -0.0024],
+        [0.079, 0.0574, -0.0046],
+        0.0555 + 0.0138,
+    ),
+    link(
+        4,
+        [-0.004, 0.0031, 0.0571],
+        [-0.0004, 0.0001, 0.0389],
+        0.0555 + 0.0134,
+    ),
+    link(
+        4,
+        [-0.0796, 0.0662, 0.002],
+        [-0.082, 0.0882, 0.0005],
+        0.054 + 0.0134,
+    ),
+    link(
+        5,
+        [0.0011, 0.0, -0.224],
+        [-0.0005, 0.0206, -0.2127],
+        0.0523 + 0.0146,
+    ),
+    link(
+        5,
+        [-0.001, 0.067, -0.1855],
+        [-0.0, 0.0994, -0.051],
+        0.0281 + 0.0146,
+    ),
+    link(
+        5,
+        [-0.0001, 0.0538, -0.0],
+        [0.0001, 0.085, 0.0001],
+        0.0502 + 0.0146,
+    ),
+    link(
+        6,
+        [0.0239, 0.0067, 0.0154],
+        [-0.0044, -0.0014, 0.0129],
+        0.045 + 0.0117,
+    ),
+    link(
+        6,
+        [0.0835, 0.0412, -0.001],
+        [0.0862, -0.0219, -0.0007],
+        0.0443 + 0.0117,
+    ),
+    link(
+        7,
+        [0.0219, -0.0026, 0.0757],
+        [-0.0087, -0.0174, 0.0756],
+        0.0302 + 0.0121,
+    ),
+    link(
+        7,
+        [-0.0211, 0.0089, 0.0744],
+        [0.0454, 0.0431, 0.0809],
+        0.0274 + 0.0121,
+    ),
+];
+
+/// Franka Emika Robot: capsules fitted to the surface of the collision meshes of `franka_description` 1.0.1
+/// by least squares. The second summand of a radius is the largest distance at which a vertex of the link's
+/// mesh sticks out of the fit.
+static FER: [LinkCapsule; 17] = [
+    link(
+        0,
+        [-0.0969, -0.041, 0.0288],
+        [-0.1019, 0.038, 0.0269],
+        0.0407 + 0.0282,
+    ),
+    link(
+        0,
+        [-0.0111, -0.0006, 0.0543],
+        [-0.0135, -0.0006, 0.0676],
+        0.082 + 0.0282,
+    ),
+    link(
+        1,
+        [-0.0003, 0.0023, -0.1516],
+        [0.0001, -0.0358, 0.0009],
+        0.0568 + 0.0121,
+    ),
+    link(
+        1,
+        [0.0, -0.0149, -0.1499],
+        [0.0001, -0.0757, -0.0002],
+        0.0542 + 0.0121,
+    ),
+    link(
+        2,
+        [0.0002, -0.0006, 0.0323],
+        [-0.0001, -0.0045, 0.0741],
+        0.0566 + 0.0135,
+    ),
+    link(
+        2,
+        [-0.0001, -0.0493, 0.0379],
+        [-0.0004, -0.1472, 0.0053],
+        0.0629 + 0.0135,
+    ),
+    link(
+        3,
+        [0.0016, 0.0011, -0.0771],
+        [0.0237, 0.0131, -0.0701],
+        0.0589 + 0.0132,
+    ),
+    link(
+        3,
+        [0.033, 0.0174, -0.0495],
+        [0.0795, 0.0454, -0.0027],
+        0.0628 + 0.0132,
+    ),
+    link(
+        4,
+        [-0.0678, 0.0695, 0.0075],
+        [-0.0026, 0.0035, 0.0447],
+        0.0632 + 0.0157,
+    ),
+    link(
+        4,
+        [-0.1089, 0.0996, 0.0149],
+        [-0.097, 0.1007, -0.0268],
+        0.0307 + 0.0157,
+    ),
+    link(
+        5,
+        [-0.0102, 0.0429, 0.0109],
+        [-0.0159, -0.0103, -0.2315],
+        0.0391 + 0.0152,
+    ),
+    link(
+        5,
+        [0.0001, 0.0233, -0.216],
+        [-0.0001, 0.0812, -0.0009],
+        0.0529 + 0.0152,
+    ),
+    link(
+        5,
+        [0.0106, 0.0438, 0.008],
+        [0.0132, -0.0127, -0.2313],
+        0.0399 + 0.0152,
+    ),
+    link(
+        6,
+        [0.0499, -0.0084, 0.0086],
+        [0.0012, 0.0028, 0.0126],
+        0.049 + 0.0102,
+    ),
+    link(
+        6,
+        [0.0881, -0.0153, 0.0003],
+        [0.0761, 0.0401, 0.002],
+        0.0472 + 0.0102,
+    ),
+    link(
+        7,
+        [-0.0126, -0.0184, 0.0781],
+        [0.0277, 0.0007, 0.0785],
+        0.0308 + 0.0112,
+    ),
+    link(
+        7,
+        [0.042, 0.0427, 0.0825],
+        [-0.0194, 0.0097, 0.077],
+        0.0294 + 0.0112,
+    ),
+];

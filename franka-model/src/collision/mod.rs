@@ -1,0 +1,261 @@
+//! Distances of the arm to itself, to planes and to boxes, each with its gradient.
+//!
+//! ```text
+//! Shape (capsules on links, pairs that can meet)
+//!    │ at(q)
+//!    v
+//! Placed ──> pairs(), nearest_pair()        arm and tool against each other
+//!        ──> to(obstacle), nearest_to(..)   arm and tool against a plane or a box
+//! ```
+//!
+//! The bodies are [capsules](Capsule): all points within a radius of a segment. Distances are exact, between
+//! surfaces, in metres; where bodies overlap they are negative, the length of the shortest shift that separates
+//! the two. Gradients are with respect to the joint positions, in m/rad. Work and memory are bounded;
+//! nothing is allocated.
+//!
+//! # Kinks
+//!
+//! Each distance is continuous in `q` and changes by no more than the points move, but it is not smooth everywhere:
+//!
+//! - Between two segments that are parallel and side by side, or that cross (distance
+//!   `-(r1 + r2)`), the nearest points jump. The gradient given is one of those that occur around
+//!   that posture: at parallel segments that of the middle of the overlap; at crossing ones along the
+//!   common normal of the segments, which of its two directions is a matter of rounding.
+//! - An axis that crosses a box may be as far from one of its faces, or edges, as from another; one
+//!   parallel to a face, or to a plane, has both ends as near. The gradient is that of one of them, in the
+//!   latter case that of the middle.
+//! - The least distance over pairs has a kink where another pair becomes the nearest. Who needs a
+//!   smooth constraint takes every pair's distance and gradient ([`Placed::pairs`]) as one
+//!   constraint each.
+//!
+//! Away from these sets (which have no volume) the gradient is the derivative.
+//!
+//! # Example
+//!
+//! ```
+//! use franka_model::READY;
+//! use franka_model::collision::{Obstacle, Shape};
+//!
+//! let arm = Shape::vendor().with_hand().at(&READY);
+//! assert!(arm.nearest_pair().distance > 0.1);
+//!
+//! let table = Obstacle::floor(0.0);
+//! let tip = Shape::covering(franka_model::RobotKind::Fr3).with_hand().at(&READY);
+//! let nearest = tip.nearest_to(&table);
+//! assert!(nearest.distance > 0.3);
+//! // Lowering joint 2 brings the tool closer to the table.
+//! assert!(nearest.gradient[1] < 0.0);
+//! ```
+
+mod capsules;
+mod obstacle;
+mod segment;
+#[cfg(test)]
+mod tests;
+
+pub use capsules::{Capsule, Shape, ToolError};
+pub use obstacle::Obstacle;
+
+use nalgebra::Vector3;
+
+use crate::JointVector;
+use crate::chain::Chain;
+use crate::geometry::{FLANGE, SHOULDER};
+use crate::inertia::{cross, dot};
+use capsules::LinkCapsule;
+use segment::Segment;
+
+/// What a capsule belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Body {
+    /// Link 0 (the base) to 7.
+    Link(u8),
+    /// What is mounted on the flange.
+    Tool,
+}
+
+impl Body {
+    /// How many joints move it.
+    fn joints(self) -> usize {
+        match self {
+            Self::Link(link) => usize::from(link),
+            Self::Tool => 7,
+        }
+    }
+}
+
+/// How far two bodies are apart, and how that changes. `P` names them: `(Body, Body)` inside the
+/// arm, inner one first; [`Body`] towards an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Proximity<P> {
+    /// Who.
+    pub bodies: P,
+    /// Between the surfaces, `[m]`; negative: the bodies overlap.
+    pub distance: f64,
+    /// Change of the distance per joint position, `[m/rad]`.
+    pub gradient: JointVector,
+    /// Direction in which the distance grows, in base axes: from the inner body, or the obstacle, to
+    /// the outer body. Length 1.
+    pub normal: Vector3<f64>,
+    /// The nearest points of the axes, `[m]`, in the base frame: of the inner body, or on the surface
+    /// of the obstacle, and of the outer body.
+    pub points: [Vector3<f64>; 2],
+}
+
+/// A [`Shape`] at one posture.
+#[derive(Clone)]
+pub struct Placed<'a> {
+    shape: Shape<'a>,
+    chain: Chain,
+    segments: [Segment; CAPACITY],
+}
+
+/// Capsules of any shape: those of the largest arm and of a tool.
+const CAPACITY: usize = capsules::ARM_MAX + capsules::TOOL_MAX;
+
+impl<'a> Shape<'a> {
+    /// The shape at the joint positions `q`, `[rad]`.
+    pub fn at(&self, q: &JointVector) -> Placed<'a> {
+        let chain = Chain::at(q);
+        let mut segments = [Segment::EMPTY; CAPACITY];
+        for (segment, LinkCapsule { link, capsule }) in segments.iter_mut().zip(self.arm) {
+            *segment = match link {
+                0 => Segment::of(capsule, |p| p - Vector3::new(0.0, 0.0, SHOULDER)),
+                link => {
+                    let i = usize::from(*link) - 1;
+                    Segment::of(capsule, |p| chain.origin[i] + chain.rotation[i] * p)
+                }
+            };
+        }
+        let flange = chain.origin[6] + chain.axis[6] * FLANGE;
+        for (segment, capsule) in segments[self.arm.len()..].iter_mut().zip(self.tool) {
+            *segment = Segment::of(capsule, |p| flange + chain.rotation[6] * p);
+        }
+        Placed {
+            shape: *self,
+            chain,
+            segments,
+        }
+    }
+}
+
+impl Placed<'_> {
+    /// Every pair that can meet.
+    pub fn pairs(&self) -> impl Iterator<Item = Proximity<(Body, Body)>> + '_ {
+        self.indices().map(|(a, b)| {
+            let nearest = self.segments[a].nearest(&self.segments[b]);
+            self.pair_proximity(a, b, &nearest)
+        })
+    }
+
+    /// The pair with the least distance. Costs less than [`pairs`](Self::pairs): there is one gradient.
+    pub fn nearest_pair(&self) -> Proximity<(Body, Body)> {
+        let distances = self.indices().map(|(a, b)| {
+            let nearest = self.segments[a].nearest(&self.segments[b]);
+            (nearest.distance, (a, b, nearest))
+        });
+        let (a, b, nearest) = least(distances).expect("every shape has pairs");
+        self.pair_proximity(a, b, &nearest)
+    }
+
+    /// Every capsule that moves, against an obstacle. The base stands where it stands: it is left out.
+    pub fn to<'o>(&'o self, obstacle: &'o Obstacle) -> impl Iterator<Item = Proximity<Body>> + 'o {
+        self.moving().map(move |i| {
+            let nearest = obstacle.nearest(&self.segments[i]);
+            self.obstacle_proximity(i, &nearest)
+        })
+    }
+
+    /// The moving capsule that is nearest to an obstacle.
+    pub fn nearest_to(&self, obstacle: &Obstacle) -> Proximity<Body> {
+        let distances = self.moving().map(|i| {
+            let nearest = obstacle.nearest(&self.segments[i]);
+            (nearest.distance, (i, nearest))
+        });
+        let (i, nearest) = least(distances).expect("every shape has moving links");
+        self.obstacle_proximity(i, &nearest)
+    }
+
+    /// The capsules in the base frame, base to tool.
+    pub fn capsules(&self) -> impl Iterator<Item = (Body, Capsule)> + '_ {
+        (0..self.shape.len()).map(|i| (self.body(i), self.segments[i].capsule()))
+    }
+
+    fn body(&self, i: usize) -> Body {
+        match self.shape.arm.get(i) {
+            Some(capsule) => Body::Link(capsule.link),
+            None => Body::Tool,
+        }
+    }
+
+    fn moving(&self) -> impl Iterator<Item = usize> + '_ {
+        let base = self.shape.arm.iter().take_while(|c| c.link == 0).count();
+        base..self.shape.len()
+    }
+
+    /// Indices of the capsules that can meet, inner one first.
+    fn indices(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let (arm, tool) = (self.shape.arm, self.shape.arm.len()..self.shape.len());
+        let within = self.shape.pairs.iter().map(|&(a, b)| (a.into(), b.into()));
+        let inner = arm.iter().take_while(|c| c.link <= capsules::TOOL_MEETS);
+        let beyond = move |(a, _)| tool.clone().map(move |b| (a, b));
+        within.chain(inner.enumerate().flat_map(beyond))
+    }
+
+    #[inline(always)]
+    fn pair_proximity(
+        &self,
+        a: usize,
+        b: usize,
+        nearest: &segment::Nearest,
+    ) -> Proximity<(Body, Body)> {
+        let bodies = (self.body(a), self.body(b));
+        let joints = bodies.0.joints()..bodies.1.joints();
+        self.proximity(bodies, joints, nearest)
+    }
+
+    #[inline(always)]
+    fn obstacle_proximity(&self, i: usize, nearest: &segment::Nearest) -> Proximity<Body> {
+        let body = self.body(i);
+        self.proximity(body, 0..body.joints(), nearest)
+    }
+
+    /// `joints` move the second point and not the first.
+    ///
+    /// The nearest points stay the nearest to first order, so the distance changes by the velocity of
+    /// the second along the normal: `n · (axis × p + moment) = axis · (p × n) + moment · n`.
+    #[inline(always)]
+    fn proximity<P>(
+        &self,
+        bodies: P,
+        joints: core::ops::Range<usize>,
+        nearest: &segment::Nearest,
+    ) -> Proximity<P> {
+        let (normal, [inner, outer]) = (nearest.normal, nearest.points);
+        let torque = cross(&outer, &normal);
+        let mut gradient = JointVector::zeros();
+        for i in joints {
+            gradient[i] = dot(&self.chain.axis[i], &torque) + dot(&self.chain.moment[i], &normal);
+        }
+        let shoulder = Vector3::new(0.0, 0.0, SHOULDER);
+        Proximity {
+            bodies,
+            distance: nearest.distance,
+            gradient,
+            normal,
+            points: [inner + shoulder, outer + shoulder],
+        }
+    }
+}
+
+/// The item with the least distance; one whose distance is not a number comes before all others.
+fn least<T>(items: impl Iterator<Item = (f64, T)>) -> Option<T> {
+    let nearer = |best: (f64, T), next: (f64, T)| {
+        if next.0 < best.0 || next.0.is_nan() {
+            next
+        } else {
+            best
+        }
+    };
+    items.reduce(nearer).map(|(_, item)| item)
+}

@@ -1,0 +1,232 @@
+//! Planes and boxes, and how far a capsule is from them.
+
+use nalgebra::{Isometry3, UnitVector3, Vector3};
+
+use super::segment::{Nearest, Segment};
+use crate::geometry::SHOULDER;
+use crate::inertia::cross;
+use crate::scalar::sqrt;
+
+/// A region that the arm has to keep out of, in the base frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Obstacle {
+    /// All points with `normal · p < offset`.
+    Plane {
+        /// Out of the region.
+        normal: UnitVector3<f64>,
+        /// Distance of the surface from the origin along the normal, `[m]`.
+        offset: f64,
+    },
+    /// A box, in any orientation.
+    Box {
+        /// Pose of its centre.
+        pose: Isometry3<f64>,
+        /// Half of its sides, `[m]`, along the axes of `pose`; none is negative.
+        half: Vector3<f64>,
+    },
+}
+
+impl Obstacle {
+    /// Everything below the height `z`, `[m]`.
+    pub fn floor(z: f64) -> Self {
+        Self::Plane {
+            normal: Vector3::z_axis(),
+            offset: z,
+        }
+    }
+
+    /// Nearest points of the obstacle and a capsule. All distances are exact: apart, the least between
+    /// any two points; overlapping, the length of the shortest shift that separates them, negative.
+    #[inline(always)]
+    pub(super) fn nearest(&self, segment: &Segment) -> Nearest {
+        match self {
+            Self::Plane { normal, offset } => nearest_to_plane(normal, *offset, segment),
+            Self::Box { pose, half } => nearest_to_box(pose, half, segment),
+        }
+    }
+}
+
+#[inline(always)]
+fn nearest_to_plane(normal: &UnitVector3<f64>, offset: f64, segment: &Segment) -> Nearest {
+    // The segment counts from the shoulder.
+    let offset = offset - normal.z * SHOULDER;
+    let rise = normal.dot(&segment.along);
+    let t = if rise > 0.0 {
+        0.0
+    } else if rise < 0.0 {
+        1.0
+    } else {
+        0.5
+    };
+    let point = segment.at(t);
+    let height = normal.dot(&point) - offset;
+    Nearest {
+        distance: height - segment.radius,
+        normal: normal.into_inner(),
+        points: [point - normal.into_inner() * height, point],
+    }
+}
+
+fn nearest_to_box(pose: &Isometry3<f64>, half: &Vector3<f64>, segment: &Segment) -> Nearest {
+    let turn = pose.rotation.to_rotation_matrix();
+    let turn = turn.matrix();
+    let centre = pose.translation.vector - Vector3::new(0.0, 0.0, SHOULDER);
+    let axis = Axis {
+        start: turn.tr_mul(&(segment.start - centre)),
+        along: turn.tr_mul(&segment.along),
+        half: *half,
+    };
+    let t = axis.nearest_outside();
+    let gap = axis.at(t) - axis.clamped(t);
+    let length = sqrt(gap.norm_squared());
+    let (t, normal, distance) = if length > TOUCHING {
+        (t, gap / length, length)
+    } else {
+        axis.shortest_way_out()
+    };
+    Nearest {
+        distance: distance - segment.radius,
+        normal: turn * normal,
+        points: [
+            centre + turn * (axis.at(t) - normal * distance),
+            segment.at(t),
+        ],
+    }
+}
+
+/// Length, `[m]`, below which the axis counts as touching the box: the direction of a shorter gap is
+/// rounding.
+const TOUCHING: f64 = 1e-12;
+
+/// The axis of a capsule in the axes of a box.
+struct Axis {
+    start: Vector3<f64>,
+    along: Vector3<f64>,
+    half: Vector3<f64>,
+}
+
+impl Axis {
+    fn at(&self, t: f64) -> Vector3<f64> {
+        self.start + self.along * t
+    }
+
+    /// The point of the box nearest to the point at `t`.
+    fn clamped(&self, t: f64) -> Vector3<f64> {
+        let point = self.at(t);
+        point.zip_map(&self.half, |x, half| x.clamp(-half, half))
+    }
+
+    /// Half the derivative of the square of the distance from outside: piecewise linear, and never
+    /// falling, since the distance to a convex body is convex.
+    fn slope(&self, t: f64) -> f64 {
+        (self.at(t) - self.clamped(t)).dot(&self.along)
+    }
+
+    /// The parameter with the least distance to the box; the middle of them if there are many.
+    ///
+    /// The slope bends where a coordinate passes a face. Between two bends its root is that of a
+    /// straight line.
+    fn nearest_outside(&self) -> f64 {
+        let bends = self.bends();
+        let slopes = bends.map(|t| self.slope(t));
+        // The last with a negative slope and the first with a positive one enclose all roots.
+        let below = slopes.iter().rposition(|&slope| slope < 0.0);
+        let above = slopes.iter().position(|&slope| slope > 0.0);
+        match (below, above) {
+            (None, None) => 0.5,
+            (None, Some(above)) => 0.5 * bends[above.saturating_sub(1)],
+            (Some(below), None) => 0.5 * (bends[(below + 1).min(BENDS - 1)] + 1.0),
+            (Some(below), Some(above)) if above == below + 1 => {
+                let (low, high) = (slopes[below], slopes[above]);
+                bends[below] + (bends[above] - bends[below]) * (low / (low - high))
+            }
+            (Some(below), Some(above)) => 0.5 * (bends[below + 1] + bends[above - 1]),
+        }
+    }
+
+    /// The ends, and where a coordinate passes a face, in order.
+    fn bends(&self) -> [f64; BENDS] {
+        let mut bends = [1.0; BENDS];
+        bends[0] = 0.0;
+        for i in 0..3 {
+            for (k, face) in [self.half[i], -self.half[i]].into_iter().enumerate() {
+                let t = (face - self.start[i]) / self.along[i];
+                // Not a number, or infinite, where the axis runs along the face.
+                if t > 0.0 && t < 1.0 {
+                    bends[1 + 2 * i + k] = t;
+                }
+            }
+        }
+        bends.sort_unstable_by(f64::total_cmp);
+        bends
+    }
+
+    /// The shortest shift out of the box, given that the axis meets it: the parameter of the point that
+    /// touches the box last, the direction, and the length, which is negative.
+    ///
+    /// All positions at which the two meet fill a polytope: the box swept by the segment. Its faces are
+    /// those of the box, and those that the segment sweeps from the box's edges; the nearest of them is
+    /// the way out (Gottschalk, Lin and Manocha, OBBTree, 1996).
+    fn shortest_way_out(&self) -> (f64, Vector3<f64>, f64) {
+        let mut best = (0.0, Vector3::zeros(), f64::NEG_INFINITY);
+        for i in 0..3 {
+            let face = unit(i);
+            for normal in [face, -face] {
+                // The end that leaves last; the middle where both do.
+                let t = 0.5 - 0.5 * sign(normal.dot(&self.along));
+                self.consider(&mut best, t, normal);
+            }
+            let swept = cross(&self.along, &face);
+            let square = swept.norm_squared();
+            if square > PARALLEL * self.along.norm_squared() {
+                for normal in [swept / sqrt(square), -swept / sqrt(square)] {
+                    self.consider(&mut best, self.beside_edge(i, &normal), normal);
+                }
+            }
+        }
+        best
+    }
+
+    /// Replaces `best` where leaving along `normal` is shorter, which the point at `t` does last.
+    fn consider(&self, best: &mut (f64, Vector3<f64>, f64), t: f64, normal: Vector3<f64>) {
+        let reach = normal.abs().dot(&self.half);
+        // Of the lower end: right for a direction that rounding has turned, too.
+        let height = normal.dot(&self.start) + normal.dot(&self.along).min(0.0) - reach;
+        if height > best.2 {
+            *best = (t, normal, height);
+        }
+    }
+
+    /// Where the axis passes the edge of the box along coordinate `i` that is outermost along `normal`,
+    /// a direction perpendicular to both.
+    fn beside_edge(&self, i: usize, normal: &Vector3<f64>) -> f64 {
+        let edge = normal.zip_map(&self.half, |n, half| sign(n) * half);
+        // Seen along the edge, the axis passes a point.
+        let (mut gap, mut along) = (edge - self.start, self.along);
+        (gap[i], along[i]) = (0.0, 0.0);
+        // On the way out it is between the ends but for rounding.
+        (gap.dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
+    }
+}
+
+fn unit(i: usize) -> Vector3<f64> {
+    Vector3::from_fn(|row, _| if row == i { 1.0 } else { 0.0 })
+}
+
+/// -1, 0 or 1.
+fn sign(x: f64) -> f64 {
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+/// Square of the sine of an angle below which an axis counts as parallel to an edge: it then sweeps no face of
+/// its own from it.
+const PARALLEL: f64 = 1e-24;
+
+/// Two ends and two faces per coordinate.
+const BENDS: usize = 8;
