@@ -13,6 +13,7 @@
 //! | module | measures |
 //! |---|---|
 //! | [`codec`] | a state read, a command written |
+//! | [`collision`] | distances of the arm to itself, with gradients |
 //! | [`cycle`] | target control, datagram in to datagram out |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
 //! | [`otg`] | a new target for seven joints in motion |
@@ -21,6 +22,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 pub mod codec;
+pub mod collision;
 pub mod cycle;
 pub mod model;
 pub mod otg;
@@ -69,10 +71,16 @@ impl Statistic {
 
 /// All benchmarks of the project.
 pub fn all() -> Vec<Benchmark> {
-    [codec::all(), cycle::all(), model::all(), otg::all()]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        codec::all(),
+        collision::all(),
+        cycle::all(),
+        model::all(),
+        otg::all(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// Runs `rounds` interleaved rounds, at least one, and gives the median of each statistic over them.
