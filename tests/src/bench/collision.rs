@@ -12,9 +12,8 @@ use super::{Benchmark, Inputs, Statistic, timed};
 pub fn all() -> Vec<Benchmark> {
     let limits = Model::fr3().joint_limits();
     let mut random = SmallRng::seed_from_u64(SEED);
-    let posture = move |_| {
-        JointVector::from_fn(|i, _| random.random_range(limits.lower[i]..limits.upper[i]))
-    };
+    let posture =
+        move |_| JointVector::from_fn(|i, _| random.random_range(limits.lower[i]..limits.upper[i]));
     let mut postures = Inputs::new((0..POSTURES).map(posture));
     let shape = Shape::vendor().with_hand();
     vec![Benchmark {
