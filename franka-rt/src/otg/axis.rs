@@ -1,69 +1,167 @@
 //! One axis from its state to its target: brake, least time, given duration, laid out as a profile.
 
 use super::brake::{Pieces, into_limits};
+use super::farthest::Reach;
+use super::generator::CYCLE;
 use super::given_duration::lasting;
-use super::least_time::{Least, least_time};
+use super::least_time::{Least, Shape, least_time};
 use super::limits::AxisLimits;
+use super::passing::{Passing, Way};
 use super::profile::Profile;
 use super::state::AxisState;
-use super::task::Task;
+use super::task::{ROUNDING, Task};
 use super::transfer::stop;
 
 /// The solved problem of one axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axis {
     start: AxisState,
-    target: f64,
-    jerk: f64,
+    target: AxisState,
+    limits: AxisLimits,
     /// Unit of time.
     unit: f64,
     brake: Pieces,
     /// Duration of the brake, in that unit.
     braking: f64,
-    least: Least,
+    motion: Motion,
+}
+
+/// What follows the brake.
+#[derive(Debug, Clone, Copy)]
+enum Motion {
+    ToRest(Least),
+    Through(Passing),
+}
+
+/// Why an axis has no plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// The numbers are too far apart.
+    OutOfRange,
+    /// The target moves in a way that the limits do not allow.
+    TargetMotion,
 }
 
 impl Axis {
-    /// Finds the least-time motion; `None` if the numbers are too far apart for it.
-    pub(super) fn new(start: AxisState, target: f64, limits: AxisLimits) -> Option<Self> {
-        let (task, unit) = Task::new(start, target, limits)?;
+    /// Finds the least-time motion.
+    pub(super) fn new(
+        start: AxisState,
+        target: AxisState,
+        limits: AxisLimits,
+    ) -> Result<Self, Refusal> {
+        let (task, unit) = Task::new(start, target.position, limits).ok_or(Refusal::OutOfRange)?;
         let (brake, task) = into_limits(task);
-        Some(Self {
+        let motion = if target.is_at_rest() {
+            Motion::ToRest(least_time(task))
+        } else {
+            let v = target.velocity / (limits.acceleration * unit);
+            let a = target.acceleration / limits.acceleration;
+            // It has to be reached from inside, and left again.
+            let fastest = v.abs() + 0.5 * a * a;
+            if a.abs() > 1.0 + AT_LIMIT || fastest > task.top * (1.0 + AT_LIMIT) {
+                return Err(Refusal::TargetMotion);
+            }
+            let size = start.position.abs().max(target.position.abs());
+            let task = Task {
+                top: task.top.max(fastest),
+                fuzz: ROUNDING * size / (limits.jerk * unit * unit * unit),
+                ..task
+            };
+            Motion::Through(Passing::new(&task, v, a))
+        };
+        Ok(Self {
             start,
             target,
-            jerk: limits.jerk,
+            limits,
             unit,
             braking: brake.duration(),
             brake,
-            least: least_time(task),
+            motion,
         })
     }
 
     /// Its least duration, in seconds.
     pub(super) fn least_duration(&self) -> f64 {
-        self.unit * (self.braking + self.least.duration)
+        let least = match &self.motion {
+            Motion::ToRest(least) => least.duration,
+            Motion::Through(passing) => passing.least(),
+        };
+        self.unit * (self.braking + least)
+    }
+
+    /// The least duration that it can take and that is not less than `duration`, which is not less than the least.
+    pub(super) fn from(&self, duration: f64) -> f64 {
+        let Motion::Through(passing) = &self.motion else {
+            return duration;
+        };
+        let t = duration / self.unit;
+        let left = t - self.braking;
+        let possible = passing.from(left, ROUNDING * t);
+        if possible == left {
+            duration
+        } else {
+            self.unit * (self.braking + possible)
+        }
     }
 
     /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes longer.
+    ///
+    /// Behind a target in motion it goes on for one cycle and then comes to rest in the least time.
     pub(super) fn lay_out(&self, duration: f64, profile: &mut Profile) {
-        let Self { jerk, unit, .. } = *self;
+        let left = duration / self.unit - self.braking;
+        match &self.motion {
+            Motion::ToRest(least) => {
+                self.begin(profile);
+                let solution = lasting(least, left);
+                let jerk = least.sign * self.limits.jerk;
+                profile.push_pieces(&solution.before, jerk, self.unit);
+                self.lay_out_shape(least.sign * solution.sign, &solution.shape, 0.0, profile);
+            }
+            Motion::Through(passing) => {
+                match passing.way(left.max(passing.least())) {
+                    Way::Farthest(sign, reach) => {
+                        let shape = reach.shape(passing.farthest(sign));
+                        self.begin(profile);
+                        self.lay_out_shape(sign, &shape, 0.0, profile);
+                    }
+                    Way::Mean { up, down, weight } => {
+                        let up = self.farthest(passing, 1.0, &up);
+                        let down = self.farthest(passing, -1.0, &down);
+                        profile.mean_of(weight, &up, &down, self.target);
+                    }
+                }
+                lay_out_beyond(self.limits, profile);
+            }
+        }
+    }
+
+    fn begin(&self, profile: &mut Profile) {
         profile.begin(self.start);
-        profile.push_pieces(&self.brake, jerk, unit);
-        let frame = self.least.sign;
-        let solution = lasting(&self.least, duration / unit - self.braking);
-        let (ramp_sign, ramp) = solution.ramp;
-        profile.push(frame * ramp_sign * jerk, unit * ramp);
-        let unit = unit * solution.cap;
-        let up = frame * solution.sign * jerk;
-        let [t1, t2, t3, t4, t5, t6, t7] = solution.shape.t.map(|t| t * unit);
-        let first = solution.shape.first * up;
+        profile.push_pieces(&self.brake, self.limits.jerk, self.unit);
+    }
+
+    /// The motion that gets farthest, to where it gets.
+    fn farthest(&self, passing: &Passing, sign: f64, reach: &Reach) -> Profile {
+        let mut profile = Profile::at_rest(0.0);
+        let shape = reach.shape(passing.farthest(sign));
+        self.begin(&mut profile);
+        self.lay_out_shape(sign, &shape, sign * reach.beyond, &mut profile);
+        profile
+    }
+
+    /// Appends a shape in the direction of `sign` that leads as far `beyond` the target, in units of the axis.
+    fn lay_out_shape(&self, sign: f64, shape: &Shape, beyond: f64, profile: &mut Profile) {
+        let unit = self.unit;
+        let up = sign * self.limits.jerk;
+        let per_velocity = self.limits.jerk * unit * unit;
+        let [t1, t2, t3, t4, t5, t6, t7] = shape.t.map(|t| t * unit);
+        let first = shape.first * up;
         profile.push(first, t1);
         profile.push(0.0, t2);
         profile.push(-first, t3);
-        let per_velocity = jerk * unit * unit;
-        let along = frame * solution.sign;
-        profile.cruise(along * per_velocity * solution.shape.cruise, t4);
-        profile.finish(-up, [t5, t6, t7], self.target);
+        profile.cruise(sign * per_velocity * shape.cruise, t4);
+        let beyond = beyond * per_velocity * unit;
+        profile.lead_to(self.target, beyond, -up, [t5, t6, t7]);
     }
 }
 
@@ -74,8 +172,31 @@ pub(super) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
 
 /// Lays out the least-time stop, from a state that [`can_stop`] or that a plan from such a state leads to.
 pub(super) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut Profile) {
-    let (task, unit) = Task::unchecked(start, start.position, limits);
     profile.begin(start);
+    append_stop(limits, profile);
+}
+
+/// Appends what follows a target in motion: one cycle more of its acceleration if the limits allow it, and the
+/// least-time stop.
+///
+/// The first command that counts as at the target is sent up to one cycle after it. Whoever sets a new target then finds
+/// the axis where the old one would be, not already slowing down.
+fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
+    let AxisState {
+        velocity,
+        acceleration,
+        ..
+    } = profile.front().after(0.0, CYCLE);
+    let change = 0.5 * acceleration * acceleration / limits.jerk;
+    if velocity.abs() + change <= limits.velocity * (1.0 + AT_LIMIT) {
+        profile.push(0.0, CYCLE);
+    }
+    append_stop(limits, profile);
+}
+
+fn append_stop(limits: AxisLimits, profile: &mut Profile) {
+    let front = profile.front();
+    let (task, unit) = Task::unchecked(front, front.position, limits);
     let excess = task.a.abs() - 1.0;
     let ramp = -1_f64.copysign(task.a);
     let task = if excess > 0.0 {
@@ -90,3 +211,6 @@ pub(super) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut P
     profile.push(-sign * limits.jerk, t3 * unit);
     profile.finish_here();
 }
+
+/// Relative excess over a limit that counts as rounding of a target that is at the limit.
+const AT_LIMIT: f64 = 1e-12;

@@ -8,16 +8,16 @@
 
 use super::task::Task;
 
-/// Jerks, in units of the limit, and how long each lasts.
+/// Jerks, in units of the limit, and how long each lasts: what comes before a shape.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pieces {
-    list: [(f64, f64); 3],
+    list: [(f64, f64); 4],
     len: usize,
 }
 
 impl Pieces {
     pub(super) const NONE: Self = Self {
-        list: [(0.0, 0.0); 3],
+        list: [(0.0, 0.0); 4],
         len: 0,
     };
 
@@ -31,7 +31,7 @@ impl Pieces {
     }
 
     /// Appends a piece and returns what is left of the task after it.
-    fn push(&mut self, task: Task, jerk: f64, t: f64) -> Task {
+    pub(super) fn push(&mut self, task: Task, jerk: f64, t: f64) -> Task {
         // NaN cannot occur here; a time that is not positive is no piece.
         if t > 0.0 && self.len < self.list.len() {
             self.list[self.len] = (jerk, t);

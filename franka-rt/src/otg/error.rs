@@ -24,6 +24,13 @@ pub enum PlanError {
         /// The limit as given.
         value: f64,
     },
+    /// The target's velocity and acceleration cannot be met inside the limits: the acceleration is larger than its
+    /// limit, or the velocity would be on the way there or behind it.
+    #[error("the motion of the target of axis {axis} does not fit its limits")]
+    TargetMotion {
+        /// Axis, counted from zero; 0 for a straight line, which is planned as one.
+        axis: usize,
+    },
     /// The norm groups do not cover the axes exactly once.
     #[error("norm groups cover {got} axes of {axes}")]
     Groups {
@@ -55,6 +62,10 @@ pub enum Quantity {
     Jerk,
     /// Target position.
     Target,
+    /// Velocity of the target.
+    TargetVelocity,
+    /// Acceleration of the target.
+    TargetAcceleration,
 }
 
 impl fmt::Display for Quantity {
@@ -65,6 +76,8 @@ impl fmt::Display for Quantity {
             Self::Acceleration => "acceleration",
             Self::Jerk => "jerk",
             Self::Target => "target",
+            Self::TargetVelocity => "target velocity",
+            Self::TargetAcceleration => "target acceleration",
         })
     }
 }

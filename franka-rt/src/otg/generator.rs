@@ -4,6 +4,7 @@ use super::axis::can_stop;
 use super::error::{PlanError, Quantity};
 use super::limits::Limits;
 use super::plan::{Plan, Start, Synchronisation};
+use super::segment::Segment;
 use super::state::{State, check_finite};
 
 /// One nominal cycle of the robot, in seconds (FCI documentation: 1 kHz).
@@ -12,14 +13,15 @@ use super::state::{State, check_finite};
 /// milliseconds' motion in one command is a doubled velocity.
 pub const CYCLE: f64 = 1e-3;
 
-/// Moves `N` axes to rest at a target that may change at any time, inside limits of velocity, acceleration
-/// and jerk.
+/// Moves `N` axes to a target that may change at any time, inside limits of velocity, acceleration and jerk.
 ///
-/// - Input: [`set_target`](Self::set_target), [`set_limits`](Self::set_limits), [`brake`](Self::brake),
-///   [`set_state`](Self::set_state). Each plans anew from the present state, unless nothing changes.
-/// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) to look ahead.
-/// - Getters: [`state`](Self::state), [`target`](Self::target), [`remaining`](Self::remaining),
-///   [`is_done`](Self::is_done).
+/// - Input: [`set_target`](Self::set_target), [`set_moving_target`](Self::set_moving_target),
+///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state),
+///   [`set_position`](Self::set_position). Each plans anew from the present state, unless nothing changes.
+/// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) and [`segments`](Self::segments) to look
+///   ahead.
+/// - Getters: [`state`](Self::state), [`target`](Self::target), [`time_to_target`](Self::time_to_target),
+///   [`remaining`](Self::remaining), [`is_done`](Self::is_done).
 ///
 /// All of it is bounded work without allocation, fit for the real-time thread. An error leaves the generator
 /// as it was.
@@ -40,7 +42,7 @@ pub const CYCLE: f64 = 1e-3;
 pub struct Generator<const N: usize> {
     limits: Limits<N>,
     synchronisation: Synchronisation,
-    goal: Goal,
+    goal: Goal<N>,
     plan: Plan<N>,
     /// Cycles since the plan was made.
     cycle: u64,
@@ -49,10 +51,10 @@ pub struct Generator<const N: usize> {
 }
 
 /// What the plan is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Goal {
-    /// Rest at the plan's end because the caller asked for that place.
-    Target,
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Goal<const N: usize> {
+    /// The state that the caller asked for.
+    Target(State<N>),
     /// Rest wherever it is reached first.
     Rest,
 }
@@ -90,10 +92,40 @@ impl<const N: usize> Generator<N> {
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
     pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
-        if self.goal == Goal::Target && self.plan.end() == target {
+        if let Goal::Target(now) = &self.goal
+            && now.position == *target
+            && now.is_at_rest()
+        {
             return Ok(());
         }
         check_finite(target, Quantity::Target)?;
+        self.plan_target(&State::at_rest(*target))
+    }
+
+    /// Moves to `target`, to be there with its velocity and acceleration, in the least time in which all axes can. The
+    /// target in force already is not planned again.
+    ///
+    /// Meant for following something that moves, with a new target before each arrival, and for passing through points
+    /// on the way to others. Without a new target the motion goes on past the old one for one cycle, and then comes to
+    /// rest in the least time: a program that stalls does not send an arm on for ever.
+    ///
+    /// An axis that would be early cannot wait at a moving target. It makes room and comes again, which may lead it
+    /// beyond the target or the other way first.
+    ///
+    /// # Errors
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the limits do not allow the
+    /// target's motion, which without norms is if `|velocity| + acceleration^2 / (2 jerk limit)` exceeds the velocity
+    /// limit, or the acceleration its own. The motion in progress goes on.
+    pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
+        if target.is_at_rest() {
+            return self.set_target(&target.position);
+        }
+        if self.goal == Goal::Target(*target) {
+            return Ok(());
+        }
+        check_finite(&target.position, Quantity::Target)?;
+        check_finite(&target.velocity, Quantity::TargetVelocity)?;
+        check_finite(&target.acceleration, Quantity::TargetAcceleration)?;
         self.plan_target(target)
     }
 
@@ -102,7 +134,8 @@ impl<const N: usize> Generator<N> {
     /// A state outside the new limits brakes back into them.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`]; the limits before stay in force.
+    /// [`PlanError::OutOfRange`], or [`PlanError::TargetMotion`] if the target moves faster than the new limits allow;
+    /// the limits before stay in force.
     pub fn set_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
         if limits == self.limits {
             return Ok(());
@@ -110,11 +143,9 @@ impl<const N: usize> Generator<N> {
         check_range(&self.state, &limits)?;
         let before = core::mem::replace(&mut self.limits, limits);
         match self.goal {
-            Goal::Target => {
-                let target = *self.plan.end();
-                self.plan_target(&target)
-                    .inspect_err(|_| self.limits = before)
-            }
+            Goal::Target(target) => self
+                .plan_target(&target)
+                .inspect_err(|_| self.limits = before),
             Goal::Rest => {
                 self.plan_stop();
                 Ok(())
@@ -140,7 +171,9 @@ impl<const N: usize> Generator<N> {
     /// The output steps to `state`; that it is close to the last output is for the caller to see to.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
+    /// [`PlanError::NotFinite`], [`PlanError::OutOfRange`] or, with norms, [`PlanError::TargetMotion`] if the state leaves
+    /// a straight line along which the target moves faster than its axes may on their own; the motion in progress goes
+    /// on.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         state.check()?;
         check_range(&state, &self.limits)?;
@@ -150,10 +183,7 @@ impl<const N: usize> Generator<N> {
             limits: &self.limits,
         };
         match self.goal {
-            Goal::Target => {
-                let target = *self.plan.end();
-                self.plan.go_to(&target, &start, self.synchronisation)?;
-            }
+            Goal::Target(target) => self.plan.go_to(&target, &start, self.synchronisation)?,
             Goal::Rest => self.plan.stop(&start),
         }
         self.cycle = 0;
@@ -161,10 +191,22 @@ impl<const N: usize> Generator<N> {
         Ok(())
     }
 
+    /// Re-anchors the position and keeps velocity and acceleration: [`set_state`](Self::set_state) for a motion that
+    /// something else has held back or moved on.
+    ///
+    /// # Errors
+    /// As [`set_state`](Self::set_state); the motion in progress goes on.
+    pub fn set_position(&mut self, position: [f64; N]) -> Result<(), PlanError> {
+        self.set_state(State {
+            position,
+            ..self.state
+        })
+    }
+
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
     /// The cycle in which the motion ends, and all after it, give exactly the target without velocity and
-    /// acceleration.
+    /// acceleration (the place behind it where the motion comes to rest, if the target moves).
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
         self.state = self.plan.sample(self.elapsed());
@@ -181,15 +223,40 @@ impl<const N: usize> Generator<N> {
         }
     }
 
+    /// The motion in progress of one axis, as its pieces of constant jerk in order, from where it was planned to rest.
+    ///
+    /// Pieces may end up to a rounding apart. There are none for an axis that has not been told to move; behind the last
+    /// one an axis rests.
+    ///
+    /// # Panics
+    /// If there is no such axis.
+    pub fn segments(&self, axis: usize) -> impl Iterator<Item = Segment> + '_ {
+        let elapsed = self.elapsed();
+        self.plan.segments(axis).map(move |segment| Segment {
+            start: segment.start - elapsed,
+            ..segment
+        })
+    }
+
     /// The present state.
     #[must_use]
     pub const fn state(&self) -> &State<N> {
         &self.state
     }
 
-    /// Position at which the motion in progress comes to rest: the target, or where braking ends.
+    /// Position that the motion in progress leads to: that of the target, or where braking ends.
     #[must_use]
     pub const fn target(&self) -> &[f64; N] {
+        match &self.goal {
+            Goal::Target(target) => &target.position,
+            Goal::Rest => self.plan.end(),
+        }
+    }
+
+    /// Position at which the motion in progress comes to rest if nothing changes: the target, a place behind it if it
+    /// moves, or where braking ends.
+    #[must_use]
+    pub const fn end(&self) -> &[f64; N] {
         self.plan.end()
     }
 
@@ -203,6 +270,16 @@ impl<const N: usize> Generator<N> {
     #[must_use]
     pub const fn duration(&self) -> f64 {
         self.plan.duration()
+    }
+
+    /// Time until the target is met, or rest is if there is none, in seconds; zero from then on.
+    #[must_use]
+    pub fn time_to_target(&self) -> f64 {
+        if self.is_done() {
+            0.0
+        } else {
+            (self.plan.arrival() - self.elapsed()).max(0.0)
+        }
     }
 
     /// Time until rest, in seconds; zero once there. The output rests at the first whole cycle from then.
@@ -225,14 +302,14 @@ impl<const N: usize> Generator<N> {
         self.cycle as f64 * CYCLE
     }
 
-    fn plan_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
+    fn plan_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
         let start = Start {
             state: self.state,
             line: self.plan.line_at(self.elapsed()),
             limits: &self.limits,
         };
         self.plan.go_to(target, &start, self.synchronisation)?;
-        self.goal = Goal::Target;
+        self.goal = Goal::Target(*target);
         self.cycle = 0;
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Straight lines: all axes as one.
 //!
-//! If the way to go, the velocity and the acceleration of all axes are multiples of one vector, one scalar
+//! If the way to go, the velocities and the accelerations of all axes, now and at the target, are multiples of one vector, one scalar
 //! problem along it moves them in phase, and the path is a straight line. From rest this is always so. Its
 //! duration equals the time-synchronised one when one axis binds in all three limits, and is longer
 //! otherwise.
@@ -23,9 +23,15 @@ impl<const N: usize> Line<N> {
     /// The line along which `state` moves and `target` lies, with the state along it.
     ///
     /// `None` if there is none, or if nothing moves and nothing is to move.
-    pub(super) fn through(state: &State<N>, target: &[f64; N]) -> Option<(Self, AxisState)> {
-        let way: [f64; N] = core::array::from_fn(|i| target[i] - state.position[i]);
-        let vectors = [way, state.velocity, state.acceleration];
+    pub(super) fn through(state: &State<N>, target: &State<N>) -> Option<(Self, AxisState)> {
+        let way: [f64; N] = core::array::from_fn(|i| target.position[i] - state.position[i]);
+        let vectors = [
+            way,
+            state.velocity,
+            state.acceleration,
+            target.velocity,
+            target.acceleration,
+        ];
         let along = vectors
             .iter()
             .find(|vector| vector.iter().any(|x| *x != 0.0))?;
@@ -63,15 +69,17 @@ impl<const N: usize> Line<N> {
         })
     }
 
-    /// The parameter of `target` if it lies on the line.
-    pub(super) fn parameter_of(&self, target: &[f64; N]) -> Option<f64> {
-        let s = target[self.main] - self.origin[self.main];
+    /// The state along the line of a `target` that lies on it and moves along it.
+    pub(super) fn state_of(&self, target: &State<N>) -> Option<AxisState> {
+        let to = target.axis(self.main);
+        let s = to.position - self.origin[self.main];
         let on_it = (0..N).all(|i| {
-            let step = s * self.direction[i];
-            let size = target[i].abs() + self.origin[i].abs() + step.abs();
-            (self.origin[i] + step - target[i]).abs() <= 4.0 * f64::EPSILON * size
+            let (target, step) = (target.position[i], s * self.direction[i]);
+            let size = target.abs() + self.origin[i].abs() + step.abs();
+            (self.origin[i] + step - target).abs() <= 4.0 * f64::EPSILON * size
         });
-        on_it.then_some(s)
+        let parallel = self.is_parallel(&target.velocity) && self.is_parallel(&target.acceleration);
+        (on_it && parallel).then_some(AxisState { position: s, ..to })
     }
 
     /// The state of all axes where the line's own state is `along`.

@@ -1,19 +1,21 @@
-//! Jerk-limited online trajectory generation to targets at rest.
+//! Jerk-limited online trajectory generation, to targets at rest and in motion.
 //!
-//! [`Generator`] moves `N` axes from any state to rest at a target inside limits of velocity, acceleration
-//! and jerk, in the least time in which all axes can arrive together. Target and limits may change in any
-//! cycle. A plan is made when something changes, then followed: planning anew in each cycle would add its
-//! rounding in each, where a kept plan ends exactly at the target.
+//! [`Generator`] moves `N` axes from any state to a target inside limits of velocity, acceleration and jerk, in the least
+//! time in which all axes can arrive together. Target and limits may change in any cycle. A plan is made when something
+//! changes, then followed: planning anew in each cycle would add its rounding in each, where a kept plan ends exactly at
+//! the target.
 //!
 //! ```text
 //! state, target, limits -> plan     straight line if the motion so far allows one, else each axis on its own
 //!                           -> axis      brake into the limits if outside, then
-//!                                least_time        the least duration T of this axis
-//!                                given_duration    a profile of the longest T of all axes
-//!                           -> profile   at most eleven segments of constant jerk; sampled once per cycle
+//!                                to rest           least_time      the least duration of this axis
+//!                                                  given_duration  a profile of a longer one
+//!                                to what moves     passing         the durations that are possible, a profile of each
+//!                                                  farthest        what both are made of
+//!                           -> profile   at most twenty segments of constant jerk; sampled once per cycle
 //! ```
 //!
-//! # Why targets at rest are the easy case
+//! # Targets at rest
 //!
 //! An axis may wait at rest, so the positions at which it can rest at time `T` are an interval that only
 //! grows with `T`. Three things follow. Every duration from the least on is feasible, so the common duration
@@ -22,22 +24,47 @@
 //! lasts, so the case that applies is found by comparing the target with the breakpoints: closed forms or one
 //! short convex search, no families to try (`least_time`).
 //!
-//! A target velocity breaks this, since there are then durations that cannot be met between others that can.
-//! That solution would replace `least_time` and `given_duration`, and the choice of the common duration in
-//! `plan`; the rest stays.
+//! # Targets in motion
+//!
+//! At a target that moves an axis cannot wait, and there may be durations that cannot be met between others that can.
+//! But for one duration the positions that can be reached still are an interval, whose ends have closed forms, and the
+//! mean of two admissible motions is one. So whether a duration is possible is decided by two evaluations, and a profile
+//! for it is a weighted mean: one short search per axis finds where possible durations begin, and nothing else is
+//! searched for (`passing`).
 //!
 //! # What it holds
 //!
 //! - Velocity, acceleration and jerk keep their limits to rounding, from every state that can stay inside
 //!   them. Others are brought back inside under the jerk limit, as early as possible; the state is never
 //!   clamped (`brake`).
-//! - A target that can be reached without overshooting is not overshot because another axis takes longer.
-//!   Such an axis arrives with the others, except where it is slowing down into the target already and cannot
-//!   lose so much time: then it waits there (`acceleration_cap`).
+//! - All axes arrive together. A target at rest that can be reached without overshooting is not overshot because another
+//!   axis takes longer. The one exception keeps the second promise: an axis whose stop ends exactly at its target cannot
+//!   be late there without overshooting, and waits (`late_push`).
 //! - From rest, and while new targets stay on the line, the path is straight (`line`). Budgets that bind a
 //!   norm are used in full there, and kept while turning off (`turn`, [`Limits::norms`]).
-//! - Bounded loops, no allocation, no panic, for all finite inputs; what `f64` cannot compute is an error at
-//!   the door.
+//! - No allocation, no panic, for all finite inputs; what `f64` cannot compute is an error at the door.
+//!
+//! # Why it terminates
+//!
+//! No function calls itself, directly or through others: the modules call each other in the order of the diagram. So the
+//! work is bounded if each loop is, and each loop counts:
+//!
+//! | loop | passes at most |
+//! |---|---|
+//! | axes of a plan, groups of limits | `N` |
+//! | `least_time`, Newton steps | 60 |
+//! | `given_duration`, bracketed Newton steps | 60 |
+//! | `late_push`, one `root` around `least_time` | 80 evaluations |
+//! | `passing`, pieces between breaks: one `root` each, for two sides | 15 pieces of 80 evaluations, none of which loops |
+//! | `passing`, insertion into a sorted list | the list's capacity, at most 48 |
+//! | `plan`, common duration | 16 candidates of each axis |
+//! | `profile`, segments laid out, merged or skipped | 20, 40, 20 |
+//!
+//! The counts of the searches are ceilings that no comparison of floating-point numbers can lift, whatever is rounded,
+//! infinite or not a number. What a search needs is a separate question, which decides accuracy and not termination:
+//! bisection alone, into which the bracketed ones fall back, halves the bracket in each step and has no more than 53 to
+//! halve. The tests count the steps on a grid over states, targets and limits, and find less than half the ceilings
+//! (`tests/bounds.rs`).
 //!
 //! # Sources
 //!
@@ -49,17 +76,21 @@
 //! way off a line are derived in these files; the tests hold them against plain bisection, and against
 //! vectors made with Ruckig 0.19.4.
 
-mod acceleration_cap;
 mod axis;
 mod brake;
 mod error;
+mod farthest;
 mod generator;
 mod given_duration;
+mod late_push;
 mod least_time;
 mod limits;
 mod line;
+mod passing;
 mod plan;
 mod profile;
+mod root;
+mod segment;
 mod state;
 mod task;
 mod transfer;
@@ -69,6 +100,7 @@ pub use error::{PlanError, Quantity};
 pub use generator::{CYCLE, Generator};
 pub use limits::{AxisLimits, Limits};
 pub use plan::Synchronisation;
+pub use segment::Segment;
 pub use state::{AxisState, State};
 
 #[cfg(test)]

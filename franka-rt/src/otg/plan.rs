@@ -1,10 +1,12 @@
 //! A motion of all axes over time.
 
-use super::axis::{Axis, lay_out_stop};
+use super::axis::{Axis, Refusal, lay_out_stop};
 use super::error::PlanError;
 use super::limits::Limits;
 use super::line::Line;
+use super::passing::CANDIDATES;
 use super::profile::Profile;
+use super::segment::Segment;
 use super::state::{AxisState, State};
 use super::turn::lay_out_lead;
 
@@ -27,6 +29,9 @@ pub(super) struct Plan<const N: usize> {
     along: Profile,
     /// Motion of each axis on its own.
     axes: [Profile; N],
+    /// When the target is met, in seconds from the start.
+    arrival: f64,
+    /// Where it comes to rest: the target, or behind it.
     end: [f64; N],
     duration: f64,
 }
@@ -56,34 +61,35 @@ impl<const N: usize> Plan<N> {
             course: Course::Axes,
             along: Profile::at_rest(0.0),
             axes: position.map(Profile::at_rest),
+            arrival: 0.0,
             end: position,
             duration: 0.0,
         }
     }
 
-    /// Replaces the plan by the motion to rest at `target`.
+    /// Replaces the plan by the motion to `target`, and to rest behind it if it moves.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`]; the plan is then unchanged.
+    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the plan is then unchanged.
     pub(super) fn go_to(
         &mut self,
-        target: &[f64; N],
+        target: &State<N>,
         start: &Start<'_, N>,
         synchronisation: Synchronisation,
     ) -> Result<(), PlanError> {
         // A single axis is its own line.
         if synchronisation == Synchronisation::Straight && N > 1 {
             let kept = start.line.as_ref().and_then(|(line, along)| {
-                let s = line.parameter_of(target)?;
-                Some((*line, *along, s))
+                let to = line.state_of(target)?;
+                Some((*line, *along, to))
             });
             let straight = kept.or_else(|| {
                 let (line, along) = Line::through(&start.state, target)?;
-                let s = line.parameter_of(target)?;
-                Some((line, along, s))
+                let to = line.state_of(target)?;
+                Some((line, along, to))
             });
-            if let Some((line, along, s)) = straight {
-                return self.follow_line(line, along, s, target, start.limits);
+            if let Some((line, along, to)) = straight {
+                return self.follow_line(line, along, to, target, start.limits);
             }
         }
         match &start.line {
@@ -102,15 +108,22 @@ impl<const N: usize> Plan<N> {
         &mut self,
         line: Line<N>,
         along: AxisState,
-        s: f64,
-        target: &[f64; N],
+        to: AxisState,
+        target: &State<N>,
         limits: &Limits<N>,
     ) -> Result<(), PlanError> {
-        let axis = Axis::new(along, s, limits.along(line.direction()))
-            .ok_or(PlanError::OutOfRange { axis: 0 })?;
-        axis.lay_out(axis.least_duration(), &mut self.along);
+        let axis = Axis::new(along, to, limits.along(line.direction()))
+            .map_err(|refusal| refusal.of_axis(0))?;
+        let least = axis.least_duration();
+        axis.lay_out(least, &mut self.along);
         self.duration = self.along.duration();
-        self.end = *target;
+        if target.is_at_rest() {
+            self.arrival = self.duration;
+            self.end = target.position;
+        } else {
+            self.arrival = least;
+            self.end = line.state(AxisState::at_rest(self.along.end())).position;
+        }
         self.course = Course::Line(line);
         Ok(())
     }
@@ -119,7 +132,7 @@ impl<const N: usize> Plan<N> {
         &mut self,
         line: &Line<N>,
         along: AxisState,
-        target: &[f64; N],
+        target: &State<N>,
         limits: &Limits<N>,
     ) -> Result<(), PlanError> {
         let (full, shares) = (
@@ -136,28 +149,39 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Lays out the axes so that all arrive when the slowest does, `until` seconds after the plan's start or
-    /// later.
+    /// Lays out the axes so that all arrive when the slowest does, or as soon after as each of them can, `until`
+    /// seconds after the plan's start or later.
     fn move_axes(
         &mut self,
         state: &State<N>,
-        target: &[f64; N],
+        target: &State<N>,
         limits: &Limits<N>,
         until: f64,
     ) -> Result<(), PlanError> {
         let mut axes = [None; N];
         let mut duration = 0.0_f64;
         for (i, axis) in axes.iter_mut().enumerate() {
-            let solved = Axis::new(state.axis(i), target[i], limits.axis(i))
-                .ok_or(PlanError::OutOfRange { axis: i })?;
+            let solved = Axis::new(state.axis(i), target.axis(i), limits.axis(i))
+                .map_err(|refusal| refusal.of_axis(i))?;
             duration = duration.max(solved.least_duration());
             *axis = Some(solved);
+        }
+        let moves = !target.is_at_rest();
+        if moves {
+            duration = common_duration(&axes, duration);
         }
         for (axis, profile) in axes.iter().flatten().zip(&mut self.axes) {
             axis.lay_out(duration, profile);
         }
-        self.duration = until + duration;
-        self.end = *target;
+        self.arrival = until + duration;
+        self.duration = self.arrival;
+        self.end = target.position;
+        if moves {
+            for (i, profile) in self.axes.iter().enumerate() {
+                self.duration = self.duration.max(until + profile.duration());
+                self.end[i] = profile.end();
+            }
+        }
         Ok(())
     }
 
@@ -171,6 +195,7 @@ impl<const N: usize> Plan<N> {
                 &mut self.along,
             );
             self.duration = self.along.duration();
+            self.arrival = self.duration;
             self.end = line.state(AxisState::at_rest(self.along.end())).position;
             self.course = Course::Line(*line);
             return;
@@ -181,12 +206,18 @@ impl<const N: usize> Plan<N> {
             self.duration = self.duration.max(profile.duration());
             self.end[i] = profile.end();
         }
+        self.arrival = self.duration;
         self.course = Course::Axes;
     }
 
     /// Where it comes to rest.
     pub(super) const fn end(&self) -> &[f64; N] {
         &self.end
+    }
+
+    /// When the target is met, in seconds from its start: when all axes rest, unless the target moves.
+    pub(super) const fn arrival(&self) -> f64 {
+        self.arrival
     }
 
     /// When all axes rest, in seconds from its start.
@@ -215,6 +246,29 @@ impl<const N: usize> Plan<N> {
         state
     }
 
+    /// The segments of one axis, from the plan's start on: those on a line first, then those of its own.
+    pub(super) fn segments(&self, axis: usize) -> impl Iterator<Item = Segment> + '_ {
+        let (line, own) = match &self.course {
+            Course::Axes => (None, Some(0.0)),
+            Course::Line(line) => (Some(line), None),
+            Course::Turn(line, until) => (Some(line), Some(*until)),
+        };
+        let on_line = line.into_iter().flat_map(move |line| {
+            self.along.segments().map(move |segment| Segment {
+                state: line.state(segment.state).axis(axis),
+                jerk: segment.jerk * line.direction()[axis],
+                ..segment
+            })
+        });
+        let on_its_own = own.into_iter().flat_map(move |until| {
+            self.axes[axis].segments().map(move |segment| Segment {
+                start: until + segment.start,
+                ..segment
+            })
+        });
+        on_line.chain(on_its_own)
+    }
+
     /// The straight line that the motion is on at `t`, and the state along it; `None` at rest.
     pub(super) fn line_at(&self, t: f64) -> Option<(Line<N>, AxisState)> {
         let until = match &self.course {
@@ -227,6 +281,34 @@ impl<const N: usize> Plan<N> {
                 Some((*line, self.along.sample(t)))
             }
             _ => None,
+        }
+    }
+}
+
+/// The least duration from `at_least` on that all axes can take.
+///
+/// An axis that cannot take a duration asks for the next one that it can, which is one of its candidates; the duration
+/// only grows, so each candidate is asked for once at most.
+fn common_duration<const N: usize>(axes: &[Option<Axis>; N], at_least: f64) -> f64 {
+    let mut duration = at_least;
+    for _ in 0..N * CANDIDATES {
+        let next = axes
+            .iter()
+            .flatten()
+            .fold(duration, |duration, axis| axis.from(duration));
+        if next == duration {
+            break;
+        }
+        duration = next;
+    }
+    duration
+}
+
+impl Refusal {
+    fn of_axis(self, axis: usize) -> PlanError {
+        match self {
+            Self::OutOfRange => PlanError::OutOfRange { axis },
+            Self::TargetMotion => PlanError::TargetMotion { axis },
         }
     }
 }

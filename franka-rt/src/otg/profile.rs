@@ -1,13 +1,14 @@
 //! One axis over time: segments of constant jerk.
 
 use super::brake::Pieces;
+use super::segment;
 use super::state::AxisState;
 
 /// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
 ///
 /// Positions are kept relative to the start, so that a large offset rounds the result once and not in each
-/// segment. The last three segments of a motion to a target are laid out backwards from the target: the end
-/// is exact, and what rounding there is lies at full speed, where it is relatively smallest.
+/// segment. The last three segments of a motion to a target are laid out backwards from the target: it is met
+/// exactly, and what rounding there is lies at full speed, where it is relatively smallest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Profile {
     origin: f64,
@@ -25,6 +26,13 @@ struct Segment {
     jerk: f64,
     /// State at the start, relative to the origin.
     state: AxisState,
+}
+
+impl Segment {
+    /// The state `t` after the start of the profile, relative to the origin.
+    fn at(&self, t: f64) -> AxisState {
+        self.state.after(self.jerk, t - self.start)
+    }
 }
 
 impl Profile {
@@ -84,10 +92,14 @@ impl Profile {
         }
     }
 
-    /// Appends jerks `jerk, 0, -jerk` for the times `t` that end at rest at `target`.
-    pub(super) fn finish(&mut self, jerk: f64, t: [f64; 3], target: f64) {
-        self.end = target;
-        let mut states = [AxisState::at_rest(target - self.origin); 4];
+    /// Appends jerks `jerk, 0, -jerk` for the times `t` that lead to `target`, or to as far `beyond` it.
+    pub(super) fn lead_to(&mut self, target: AxisState, beyond: f64, jerk: f64, t: [f64; 3]) {
+        self.end = target.position;
+        self.front = AxisState {
+            position: target.position - self.origin + beyond,
+            ..target
+        };
+        let mut states = [self.front; 4];
         let jerks = [jerk, 0.0, -jerk];
         for i in (0..3).rev() {
             states[i] = states[i + 1].after(jerks[i], -t[i]);
@@ -102,6 +114,62 @@ impl Profile {
     /// Takes where the segments lead, made exactly at rest, for the end.
     pub(super) fn finish_here(&mut self) {
         self.end = self.origin + self.front.position;
+    }
+
+    /// Becomes the mean of two motions from one state that take equally long, the first one with `weight`, the other
+    /// with the rest to one, and leads to `target`.
+    ///
+    /// The states of its segments are means of theirs, not sums of what comes before: like theirs they are as exact at
+    /// the end as at the start, and after any cruise.
+    pub(super) fn mean_of(&mut self, weight: f64, one: &Self, other: &Self, target: AxisState) {
+        let mean = |a: f64, b: f64| weight * a + (1.0 - weight) * b;
+        self.begin(AxisState {
+            position: one.origin,
+            ..AxisState::at_rest(0.0)
+        });
+        let (mut i, mut j, mut t) = (0, 0, 0.0);
+        while i < one.len && j < other.len {
+            let (a, b) = (&one.segments[i], &other.segments[j]);
+            let ends = [one.end_of(i), other.end_of(j)];
+            let next = ends[0].min(ends[1]);
+            if next > t {
+                let (p, q) = (a.at(t), b.at(t));
+                let state = AxisState {
+                    position: mean(p.position, q.position),
+                    velocity: mean(p.velocity, q.velocity),
+                    acceleration: mean(p.acceleration, q.acceleration),
+                };
+                self.place(mean(a.jerk, b.jerk), next - t, state);
+                t = next;
+            }
+            i += usize::from(ends[0] <= next);
+            j += usize::from(ends[1] <= next);
+        }
+        self.lead_to(target, 0.0, 0.0, [0.0; 3]);
+    }
+
+    /// Its segments, from its start on.
+    pub(super) fn segments(&self) -> impl Iterator<Item = segment::Segment> + '_ {
+        self.segments[..self.len]
+            .iter()
+            .enumerate()
+            .map(|(i, segment)| segment::Segment {
+                start: segment.start,
+                duration: self.end_of(i) - segment.start,
+                state: AxisState {
+                    position: self.origin + segment.state.position,
+                    ..segment.state
+                },
+                jerk: segment.jerk,
+            })
+    }
+
+    /// When a segment ends.
+    fn end_of(&self, segment: usize) -> f64 {
+        match self.segments[..self.len].get(segment + 1) {
+            Some(next) => next.start,
+            None => self.duration,
+        }
     }
 
     fn place(&mut self, jerk: f64, t: f64, state: AxisState) {
@@ -141,8 +209,7 @@ impl Profile {
             .skip(1)
             .take_while(|segment| segment.start <= t)
             .count();
-        let segment = &self.segments[later.min(MAX_SEGMENTS - 1)];
-        let relative = segment.state.after(segment.jerk, t - segment.start);
+        let relative = self.segments[later.min(MAX_SEGMENTS - 1)].at(t);
         AxisState {
             position: self.origin + relative.position,
             ..relative
@@ -150,8 +217,9 @@ impl Profile {
     }
 }
 
-/// Three to brake into the limits, one to ramp down to an acceleration cap, seven of the shape.
-const MAX_SEGMENTS: usize = 11;
+/// Three to brake into the limits, thirteen of the mean of two shapes, four to come to rest behind a target in motion.
+/// A motion that begins with a part of a stop has three less of one shape more: thirteen in all.
+const MAX_SEGMENTS: usize = 20;
 
 #[cfg(test)]
 mod tests {
@@ -171,7 +239,7 @@ mod tests {
         profile.begin(AxisState::at_rest(0.3));
         profile.push(2.0, 1.0);
         profile.push(-2.0, 1.0);
-        profile.finish(-2.0, [1.0, 0.0, 1.0], 4.3);
+        profile.lead_to(AxisState::at_rest(4.3), 0.0, -2.0, [1.0, 0.0, 1.0]);
         assert_eq!(profile.duration(), 4.0);
         for (t, p) in [(1.0, 0.3 + 1.0 / 3.0), (2.0, 2.3), (3.0, 4.3 - 1.0 / 3.0)] {
             for t in [t - 1e-12, t, t + 1e-12] {

@@ -83,18 +83,6 @@ impl Task {
         }
     }
 
-    /// The same task under the acceleration limit `cap < 1`, in units of that limit.
-    pub(super) fn capped(self, cap: f64) -> Self {
-        let square = cap * cap;
-        Self {
-            d: self.d / (square * cap),
-            v: self.v / square,
-            a: self.a / cap,
-            top: self.top / square,
-            fuzz: self.fuzz / (square * cap),
-        }
-    }
-
     /// The velocity left when the acceleration is ramped straight to zero.
     pub(super) fn coasting_velocity(&self) -> f64 {
         self.v + 0.5 * self.a * self.a.abs()
@@ -111,7 +99,7 @@ impl Task {
 }
 
 /// Relative rounding of a position that some ten operations led to.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Bound of distances and velocities in units of the limits, chosen so that no product of the solution
 /// overflows.

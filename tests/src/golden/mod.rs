@@ -92,6 +92,10 @@ pub const SUITES: &[Suite] = &[
         check: otg::multi_axis,
     },
     Suite {
+        file: "otg/single_axis_target_velocity.json",
+        check: otg::target_velocity,
+    },
+    Suite {
         file: "rate_limiting_vectors.json",
         check: shaping::limiters,
     },

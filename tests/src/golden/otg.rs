@@ -23,27 +23,9 @@ const INSTANTS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 pub(super) fn single_axis(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     for node in root.get("cases")?.list()? {
-        let number = |name: &str| node.get(name)?.number();
-        let problem = Problem {
-            start: State {
-                position: [number("p0")?],
-                velocity: [number("v0")?],
-                acceleration: [number("a0")?],
-            },
-            target: [number("target")?],
-            velocity: [number("vmax")?],
-            acceleration: [number("amax")?],
-            jerk: [number("jmax")?],
-        };
-        let duration = number("duration")?;
-        let samples = node.get("samples")?.list()?;
-        let samples: Vec<[f64; 3]> = samples
-            .iter()
-            .map(Node::numbers)
-            .collect::<Result<_, _>>()?;
-        if samples.len() != INSTANTS.len() {
-            return Err(node.malformed("five samples"));
-        }
+        let problem = Problem::of_one_axis(&node, 0.0)?;
+        let duration = node.get("duration")?.number()?;
+        let samples = samples(&node)?;
         let name = format!("{} ({})", node.path(), node.get("kind")?.text()?);
         report.case(name, |case| match problem.plan() {
             Ok(plan) => {
@@ -55,6 +37,64 @@ pub(super) fn single_axis(root: &Node<'_>) -> Result<Report, Malformed> {
         });
     }
     Ok(report)
+}
+
+/// Checks `otg/single_axis_target_velocity.json`: the least motion, its mirror image in time, and the durations that are
+/// blocked.
+///
+/// The mirror image in time ends with the acceleration that the case begins with. So it checks targets that accelerate,
+/// of which the file has none.
+pub(super) fn target_velocity(root: &Node<'_>) -> Result<Report, Malformed> {
+    let mut report = Report::default();
+    for node in root.get("cases")?.list()? {
+        let problem = Problem::of_one_axis(&node, node.get("target_velocity")?.number()?)?;
+        let duration = node.get("duration")?.number()?;
+        let samples = samples(&node)?;
+        let blocked = node.get("blocked")?.list()?;
+        let blocked: Vec<[f64; 2]> = blocked
+            .iter()
+            .map(Node::numbers)
+            .collect::<Result<_, _>>()?;
+        let name = format!("{} ({})", node.path(), node.get("kind")?.text()?);
+        report.case(name, |case| {
+            match problem.plan() {
+                Ok(plan) => {
+                    problem.check_duration(case, &plan, duration);
+                    problem.check_samples(case, &plan, duration, &samples);
+                    problem.check_end(case, &plan);
+                    problem.check_limits(case, &plan);
+                }
+                Err(error) => case.fail(error.to_string()),
+            }
+            let mirrored = problem.mirrored_in_time();
+            match mirrored.plan() {
+                // A start that can be left inside the limits cannot always be reached inside them.
+                Err(PlanError::TargetMotion { .. }) if !problem.starts_reachably() => {}
+                Ok(plan) => {
+                    mirrored.check_duration(case, &plan, duration);
+                    mirrored.check_end(case, &plan);
+                    mirrored.check_limits(case, &plan);
+                }
+                Err(error) => case.fail(format!("mirrored in time: {error}")),
+            }
+            if let Err(error) = problem.check_blocked(case, duration, &blocked) {
+                case.fail(error.to_string());
+            }
+        });
+    }
+    Ok(report)
+}
+
+fn samples(node: &Node<'_>) -> Result<Vec<[f64; 3]>, Malformed> {
+    let samples = node.get("samples")?.list()?;
+    let samples: Vec<[f64; 3]> = samples
+        .iter()
+        .map(Node::numbers)
+        .collect::<Result<_, _>>()?;
+    if samples.len() != INSTANTS.len() {
+        return Err(node.malformed("five samples"));
+    }
+    Ok(samples)
 }
 
 /// Checks `otg/multi_axis.json`.
@@ -78,7 +118,7 @@ fn synchronised<const N: usize>(node: &Node<'_>, report: &mut Report) -> Result<
             velocity: numbers("v0")?,
             acceleration: numbers("a0")?,
         },
-        target: numbers("target")?,
+        target: State::at_rest(numbers("target")?),
         velocity: numbers("vmax")?,
         acceleration: numbers("amax")?,
         jerk: numbers("jmax")?,
@@ -107,7 +147,7 @@ fn synchronised<const N: usize>(node: &Node<'_>, report: &mut Report) -> Result<
 
 struct Problem<const N: usize> {
     start: State<N>,
-    target: [f64; N],
+    target: State<N>,
     velocity: [f64; N],
     acceleration: [f64; N],
     jerk: [f64; N],
@@ -118,19 +158,20 @@ impl<const N: usize> Problem<N> {
         let limits = Limits::from_arrays(self.velocity, self.acceleration, self.jerk)?;
         let generator = Generator::new(self.start, limits)?;
         let mut generator = generator.with_synchronisation(Synchronisation::Time);
-        generator.set_target(&self.target)?;
+        generator.set_moving_target(&self.target)?;
         Ok(generator)
     }
 
     /// One axis of it on its own.
     fn axis(&self, axis: usize) -> Problem<1> {
+        let alone = |state: &State<N>| State {
+            position: [state.position[axis]],
+            velocity: [state.velocity[axis]],
+            acceleration: [state.acceleration[axis]],
+        };
         Problem {
-            start: State {
-                position: [self.start.position[axis]],
-                velocity: [self.start.velocity[axis]],
-                acceleration: [self.start.acceleration[axis]],
-            },
-            target: [self.target[axis]],
+            start: alone(&self.start),
+            target: alone(&self.target),
             velocity: [self.velocity[axis]],
             acceleration: [self.acceleration[axis]],
             jerk: [self.jerk[axis]],
@@ -139,26 +180,31 @@ impl<const N: usize> Problem<N> {
 
     fn check_duration(&self, case: &mut Case<'_>, plan: &Generator<N>, duration: f64) {
         let tolerance = DURATION * duration;
-        case.near("duration", &[plan.duration()], &[duration], tolerance);
+        let got = plan.time_to_target();
+        case.near("duration", &[got], &[duration], tolerance);
     }
 
-    /// The end is exactly the target, and the motion leads there: a millionth before it, it is within what the jerk
-    /// makes of that time, and the rounding of positions.
+    /// The motion leads to the target: a millionth of the duration before it, it is as far away as the target's motion and
+    /// the jerk make it in that time, but for the rounding of positions. One that ends there ends there exactly.
     fn check_end(&self, case: &mut Case<'_>, plan: &Generator<N>) {
-        let duration = plan.duration();
-        case.equal("end", plan.sample(duration), State::at_rest(self.target));
+        let duration = plan.time_to_target();
+        if self.target.is_at_rest() {
+            case.equal("end", plan.sample(duration), self.target);
+        }
         let left = 1e-6 * duration;
         let before = plan.sample(duration - left);
         for i in 0..N {
-            let (from, to) = (self.start.position[i], self.target[i]);
-            let size = from.abs() + to.abs() + self.velocity[i] * duration;
+            let (from, to) = (self.start.position[i], self.target.axis(i));
+            let size = from.abs() + to.position.abs() + self.velocity[i] * duration;
+            let expected = to.position - left * (to.velocity - 0.5 * left * to.acceleration);
             let reach = self.jerk[i] * left.powi(3) / 6.0 + 4.0 * f64::EPSILON * size;
-            let lands = (before.position[i] - to).abs() <= reach;
+            let lands = (before.position[i] - expected).abs() <= reach;
             case.equal("motion leads to its end", lands, true);
         }
     }
 
     fn check_limits(&self, case: &mut Case<'_>, plan: &Generator<N>) {
+        // To rest, which for a target in motion is behind it.
         let dt = plan.duration() / f64::from(SAMPLES);
         let mut before = self.start;
         let mut excess = [0.0_f64; 3];
@@ -184,6 +230,92 @@ impl<const N: usize> Problem<N> {
 }
 
 impl Problem<1> {
+    fn of_one_axis(node: &Node<'_>, target_velocity: f64) -> Result<Self, Malformed> {
+        let number = |name: &str| node.get(name)?.number();
+        Ok(Self {
+            start: State {
+                position: [number("p0")?],
+                velocity: [number("v0")?],
+                acceleration: [number("a0")?],
+            },
+            target: State {
+                position: [number("target")?],
+                velocity: [target_velocity],
+                acceleration: [0.0],
+            },
+            velocity: [number("vmax")?],
+            acceleration: [number("amax")?],
+            jerk: [number("jmax")?],
+        })
+    }
+
+    /// The same motion backwards: positions and accelerations stay, velocities change their sign.
+    fn mirrored_in_time(&self) -> Self {
+        let backwards = |state: &State<1>| State {
+            velocity: [-state.velocity[0]],
+            ..*state
+        };
+        Self {
+            start: backwards(&self.target),
+            target: backwards(&self.start),
+            ..*self
+        }
+    }
+
+    /// Whether a motion inside the limits can lead through the start.
+    fn starts_reachably(&self) -> bool {
+        let (velocity, acceleration) = (self.start.velocity[0], self.start.acceleration[0]);
+        velocity.abs() + 0.5 * acceleration * acceleration / self.jerk[0] <= self.velocity[0]
+    }
+
+    /// Which durations are possible shows beside an axis that takes a duration of our choice from rest to rest: both
+    /// arrive as soon after that as this one can.
+    fn check_blocked(
+        &self,
+        case: &mut Case<'_>,
+        least: f64,
+        blocked: &[[f64; 2]],
+    ) -> Result<(), PlanError> {
+        let mut expected = vec![(0.5 * least, least), (1.5 * least, 1.5 * least)];
+        for &[from, to] in blocked {
+            expected.retain(|&(asked, _)| asked < from || asked > to);
+            let inside = |part: f64| from + part * (to - from);
+            expected.extend([
+                (from - 1e-6 * (from - least), from - 1e-6 * (from - least)),
+                (inside(1e-6), to),
+                (inside(0.5), to),
+                (inside(1.0 - 1e-6), to),
+                (inside(1.0 + 1e-6), inside(1.0 + 1e-6)),
+            ]);
+        }
+        for (asked, expected) in expected {
+            let both = self.beside_one_that_takes(asked);
+            let plan = both.plan()?;
+            let got = plan.time_to_target();
+            case.near("synchronised", &[got], &[expected], DURATION * expected);
+            both.check_end(case, &plan);
+            both.check_limits(case, &plan);
+        }
+        Ok(())
+    }
+
+    fn beside_one_that_takes(&self, duration: f64) -> Problem<2> {
+        // Four ramps of the jerk that neither velocity nor acceleration limit: distance 2 ramp^3.
+        let ramp = 0.25 * duration;
+        let beside = |one: &State<1>, position| State {
+            position: [one.position[0], position],
+            velocity: [one.velocity[0], 0.0],
+            acceleration: [one.acceleration[0], 0.0],
+        };
+        Problem {
+            start: beside(&self.start, 0.0),
+            target: beside(&self.target, 2.0 * ramp * ramp * ramp),
+            velocity: [self.velocity[0], 2.0 * ramp * ramp],
+            acceleration: [self.acceleration[0], 2.0 * ramp],
+            jerk: [self.jerk[0], 1.0],
+        }
+    }
+
     fn check_samples(
         &self,
         case: &mut Case<'_>,
@@ -194,10 +326,10 @@ impl Problem<1> {
         let start = self.start.position[0];
         let positions = samples.iter().map(|sample| sample[0]);
         let distance = positions
-            .chain(self.target)
+            .chain(self.target.position)
             .fold(0.0_f64, |farthest, p| farthest.max((p - start).abs()));
         // The last bits of a position may be more than the distance moved.
-        let rounding = 4.0 * f64::EPSILON * start.abs().max(self.target[0].abs());
+        let rounding = 4.0 * f64::EPSILON * start.abs().max(self.target.position[0].abs());
         for (instant, [p, v, a]) in INSTANTS.iter().zip(samples) {
             let got = plan.sample(instant * duration);
             let tolerance = SAMPLE * distance + rounding;
