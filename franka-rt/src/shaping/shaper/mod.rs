@@ -1,5 +1,8 @@
 //! What a control loop does with a returned command.
 
+#[cfg(test)]
+mod tests;
+
 use franka_proto::{RobotState, Version};
 
 use crate::control::{
