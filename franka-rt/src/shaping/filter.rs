@@ -105,3 +105,79 @@ fn checked_gain(
     }
     Ok(gain(sample_time, cutoff_frequency))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_model::transform;
+    use nalgebra::{Isometry3, Vector3};
+
+    #[test]
+    fn the_gain_at_1_ms_and_100_hz_is_that_of_libfranka() {
+        assert_eq!(gain(1e-3, DEFAULT_CUTOFF_FREQUENCY), 0.3858695450950375);
+        assert_eq!(low_pass(1e-3, 1.0, 0.0, 100.0), Ok(0.3858695450950375));
+    }
+
+    #[test]
+    fn without_time_nothing_changes() {
+        assert_eq!(low_pass(0.0, 1.0, 0.25, 100.0), Ok(0.25));
+        assert_eq!(low_pass_each(0.0, &[1.0; 3], &[2.0; 3], 1.0), Ok([2.0; 3]));
+    }
+
+    #[test]
+    fn a_pose_goes_the_share_of_the_gain_along_the_way() {
+        let last = Isometry3::new(Vector3::new(0.1, 0.2, 0.3), Vector3::new(0.0, 0.0, 0.5));
+        let current = Isometry3::new(Vector3::new(0.2, 0.2, 0.3), Vector3::new(0.0, 0.0, 1.5));
+        let got = low_pass_pose(
+            1e-3,
+            &transform::array(&current),
+            &transform::array(&last),
+            100.0,
+        );
+        let g = 0.3858695450950375;
+        let expected = Isometry3::new(
+            Vector3::new(0.1 + 0.1 * g, 0.2, 0.3),
+            Vector3::new(0.0, 0.0, 0.5 + g),
+        );
+        let got = got.expect("both are poses");
+        let errors = got.iter().zip(transform::array(&expected));
+        assert!(
+            errors
+                .map(|(got, want)| (got - want).abs())
+                .all(|error| error < 1e-15)
+        );
+    }
+
+    #[test]
+    fn faults_are_named_in_the_order_of_the_arguments() {
+        let fault = |time, x, cutoff| match low_pass_pose(time, &[x; 16], &[x; 16], cutoff) {
+            Err(InvalidCommand::Filter {
+                signal: Signal::Pose,
+                fault,
+            }) => Some(fault),
+            _ => None,
+        };
+        assert_eq!(fault(-1.0, f64::NAN, 0.0), Some(FilterFault::SampleTime));
+        assert_eq!(
+            fault(1e-3, f64::NAN, 0.0),
+            Some(FilterFault::CutoffFrequency)
+        );
+        assert_eq!(fault(1e-3, f64::NAN, 1.0), Some(FilterFault::Value));
+        assert_eq!(fault(1e-3, 0.5, 1.0), None);
+    }
+
+    /// The texts are what programs show and compare.
+    #[test]
+    fn the_texts_are_those_of_libfranka() {
+        assert_eq!(
+            low_pass(f64::NAN, 0.0, 0.0, 100.0).unwrap_err().to_string(),
+            "lowpass-filter: sample_time is negative, infinite or NaN."
+        );
+        assert_eq!(
+            low_pass_pose(1e-3, &[0.0; 16], &[0.0; 16], -1.0)
+                .unwrap_err()
+                .to_string(),
+            "Cartesian lowpass-filter: cutoff_frequency is zero, negative, infinite or NaN."
+        );
+    }
+}

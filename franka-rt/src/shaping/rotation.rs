@@ -68,17 +68,16 @@ fn polished(block: Matrix3<f64>) -> Option<Matrix3<f64>> {
     let mut x = block;
     for _ in 0..POLISH_STEPS_MAX {
         let error = x.tr_mul(&x) - Matrix3::identity();
-        let size = error.amax();
-        // Also where it is NaN, which `amax` may drop but the determinant does not.
-        let close = size <= POLISH_BELOW && x.determinant() > 0.0;
-        if !close {
+        // False for NaN, which `amax` may drop.
+        let within = |bound: f64| error.iter().all(|x| x.abs() <= bound);
+        if !within(POLISH_BELOW) || x.determinant() <= 0.0 {
             return None;
         }
-        if size <= ROUNDING {
+        if within(ROUNDING) {
             return Some(x);
         }
         x -= x * error * 0.5;
-        if size <= SQUARES_AWAY {
+        if within(SQUARES_AWAY) {
             return Some(x);
         }
     }
@@ -129,3 +128,113 @@ const SQUARES_AWAY: f64 = 1e-8;
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 /// Far more than a symmetric 4x4 matrix takes.
 const EIGEN_STEPS_MAX: usize = 200;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn block() -> impl Strategy<Value = Matrix3<f64>> {
+        prop::array::uniform9(-1.0..1.0).prop_map(|m| Matrix3::from_column_slice(&m))
+    }
+
+    fn rotation() -> impl Strategy<Value = Matrix3<f64>> {
+        prop::array::uniform3(-3.0..3.0)
+            .prop_map(|v| UnitQuaternion::from_scaled_axis(Vector3::from(v)))
+            .prop_map(|q| q.to_rotation_matrix().into_inner())
+    }
+
+    fn nearest(block: &Matrix3<f64>) -> Matrix3<f64> {
+        nearest_rotation(&pose(block, &Vector3::zeros(), [0.0, 0.0, 0.0, 1.0]))
+    }
+
+    fn is_rotation(r: &Matrix3<f64>) -> bool {
+        (r.tr_mul(r) - Matrix3::identity()).amax() < 4e-15 && r.determinant() > 0.0
+    }
+
+    /// `U V'` of the singular value decomposition, the last singular direction turned to make it a rotation.
+    fn by_singular_values(m: &Matrix3<f64>) -> Matrix3<f64> {
+        let svd = m.svd(true, true);
+        let (Some(mut u), Some(v_t)) = (svd.u, svd.v_t) else {
+            panic!("both factors were asked for")
+        };
+        if (u * v_t).determinant() < 0.0 {
+            let smallest = svd.singular_values.imin();
+            u.column_mut(smallest).neg_mut();
+        }
+        u * v_t
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+        #[test]
+        fn the_nearest_rotation_is_the_factor_of_the_singular_value_decomposition(m in block()) {
+            let mut singular = m.singular_values();
+            singular.as_mut_slice().sort_by(f64::total_cmp);
+            let (least, middle) = (singular[0], singular[1]);
+            // The result is as well determined as the two smallest singular values are apart from opposite.
+            let gap = if m.determinant() > 0.0 { middle + least } else { middle - least };
+            prop_assume!(gap > 1e-3);
+            prop_assert!(is_rotation(&nearest(&m)));
+            prop_assert!((nearest(&m) - by_singular_values(&m)).amax() < 1e-14 / gap);
+        }
+
+        #[test]
+        fn a_rotation_is_its_own_nearest_and_one_rounded_to_f32_nearly(r in rotation()) {
+            prop_assert!((nearest(&r) - r).amax() < 2e-15);
+            let rounded = r.map(|x| f64::from(x as f32));
+            prop_assert!(is_rotation(&nearest(&rounded)));
+            prop_assert!((nearest(&rounded) - by_singular_values(&rounded)).amax() < 2e-15);
+        }
+
+        #[test]
+        fn what_is_not_close_and_what_is_give_the_same(r in rotation(), noise in block()) {
+            let m = r + noise * 0.01;
+            let polished = polished(m).expect("close to a rotation");
+            prop_assert!((polished - procrustes(&m)).amax() < 4e-15);
+        }
+    }
+
+    #[test]
+    fn any_finite_block_gives_a_rotation() {
+        let flat = Matrix3::repeat(1.0 / 3.0_f64.sqrt());
+        let mirrored = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0));
+        for block in [
+            Matrix3::zeros(),
+            flat,
+            mirrored,
+            -Matrix3::identity(),
+            Matrix3::repeat(1e300),
+            mirrored * 1e-300,
+            mirrored * 5e-324,
+            Matrix3::identity() * f64::MAX,
+        ] {
+            assert!(is_rotation(&nearest(&block)), "{block}");
+        }
+    }
+
+    #[test]
+    fn a_block_that_is_not_finite_gives_nan() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            for index in 0..9 {
+                let mut block = Matrix3::identity();
+                block[index] = bad;
+                assert!(nearest(&block).iter().all(|x| x.is_nan()));
+            }
+        }
+    }
+
+    #[test]
+    fn the_way_between_orientations_is_the_short_one_at_even_speed() {
+        let axis = Vector3::z_axis();
+        for (angle, t) in [(1.0, 0.25), (3.1, 0.5), (1e-9, 0.386), (0.0, 0.3)] {
+            let to = UnitQuaternion::from_axis_angle(&axis, angle);
+            for to in [to, UnitQuaternion::new_unchecked(-to.into_inner())] {
+                let between = slerp(&UnitQuaternion::identity(), &to, t);
+                let expected = UnitQuaternion::from_axis_angle(&axis, angle * t);
+                assert!((between.coords - expected.coords).amax() < 4e-16, "{angle}");
+            }
+        }
+    }
+}
