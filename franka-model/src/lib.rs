@@ -24,6 +24,7 @@
 //! | [`analytic_ik`] | every joint position for a pose and an angle of joint 7 |
 //! | [`elbow`] | the vendor's elbow parameter |
 //! | [`collision`] | distances to itself, planes and boxes, with gradients |
+//! | `urdf` (a feature) | models from the description that a robot serves |
 //!
 //! # Conventions
 //!
@@ -56,7 +57,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-#[cfg(test)]
+#[cfg(any(test, feature = "urdf"))]
 extern crate std;
 
 mod bodies;
@@ -83,6 +84,8 @@ pub mod limits;
 pub mod load;
 pub mod rotation;
 pub mod transform;
+#[cfg(feature = "urdf")]
+pub mod urdf;
 
 #[cfg(test)]
 mod identities;

@@ -1,0 +1,122 @@
+//! Elements of the text, and the numbers in their attributes.
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use roxmltree::Node;
+use std::borrow::ToOwned;
+use std::string::String;
+
+use super::UrdfError;
+
+/// An element, and where it is: for messages.
+#[derive(Clone, Copy)]
+pub(super) struct Element<'a, 'n> {
+    node: Node<'a, 'n>,
+    name: &'static str,
+    owner: &'a str,
+}
+
+impl<'a, 'n> Element<'a, 'n> {
+    /// The direct child called `name` of a joint or link, which `owner` names.
+    pub(super) fn child(
+        parent: Node<'a, 'n>,
+        name: &'static str,
+        owner: &'a str,
+    ) -> Result<Self, UrdfError> {
+        Self::find(parent, name, owner).ok_or_else(|| UrdfError::MissingElement {
+            element: name,
+            owner: owner.to_owned(),
+        })
+    }
+
+    /// The same, if it is there.
+    pub(super) fn find(parent: Node<'a, 'n>, name: &'static str, owner: &'a str) -> Option<Self> {
+        let node = parent.children().find(|node| node.has_tag_name(name))?;
+        Some(Self { node, name, owner })
+    }
+
+    /// The direct child called `name` of this element.
+    pub(super) fn inner(&self, name: &'static str) -> Result<Self, UrdfError> {
+        Self::child(self.node, name, self.owner)
+    }
+
+    pub(super) fn node(&self) -> Node<'a, 'n> {
+        self.node
+    }
+
+    pub(super) fn text(&self, attribute: &'static str) -> Result<&'a str, UrdfError> {
+        self.node
+            .attribute(attribute)
+            .ok_or_else(|| UrdfError::MissingAttribute {
+                attribute,
+                element: self.name,
+                owner: self.owner.to_owned(),
+            })
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self, attribute: &'static str) -> Result<f64, UrdfError> {
+        self.number_where(attribute, "a finite number", |_| true)
+    }
+
+    /// A finite number that meets a condition, which `expected` tells.
+    pub(super) fn number_where(
+        &self,
+        attribute: &'static str,
+        expected: &'static str,
+        condition: impl Fn(f64) -> bool,
+    ) -> Result<f64, UrdfError> {
+        let text = self.text(attribute)?;
+        match text.trim().parse::<f64>() {
+            Ok(number) if number.is_finite() && condition(number) => Ok(number),
+            _ => Err(self.unexpected(attribute, text, expected)),
+        }
+    }
+
+    /// Three finite numbers.
+    pub(super) fn vector(&self, attribute: &'static str) -> Result<[f64; 3], UrdfError> {
+        let text = self.text(attribute)?;
+        let mut numbers = text.split_whitespace().map(str::parse::<f64>);
+        let mut next = || numbers.next()?.ok().filter(|number| number.is_finite());
+        match (next(), next(), next(), numbers.next()) {
+            (Some(x), Some(y), Some(z), None) => Ok([x, y, z]),
+            _ => Err(self.unexpected(attribute, text, "three finite numbers")),
+        }
+    }
+
+    fn unexpected(&self, attribute: &'static str, got: &str, expected: &'static str) -> UrdfError {
+        UrdfError::Value {
+            attribute,
+            element: self.name,
+            owner: self.owner.to_owned(),
+            got: got.to_owned(),
+            expected,
+        }
+    }
+}
+
+/// The pose in the direct child `origin`: a translation `xyz`, and `rpy` about the fixed axes x, y and z in
+/// this order. What is left out is zero.
+pub(super) fn origin(parent: Node<'_, '_>, owner: &str) -> Result<Isometry3<f64>, UrdfError> {
+    let Some(element) = Element::find(parent, "origin", owner) else {
+        return Ok(Isometry3::identity());
+    };
+    let vector = |attribute| match element.node.has_attribute(attribute) {
+        true => element.vector(attribute),
+        false => Ok([0.0; 3]),
+    };
+    let ([x, y, z], [roll, pitch, yaw]) = (vector("xyz")?, vector("rpy")?);
+    Ok(Isometry3::from_parts(
+        Translation3::new(x, y, z),
+        UnitQuaternion::from_euler_angles(roll, pitch, yaw),
+    ))
+}
+
+/// The `name` of a joint or link.
+pub(super) fn name<'a>(node: Node<'a, '_>, element: &'static str) -> Result<&'a str, UrdfError> {
+    node.attribute("name")
+        .ok_or_else(|| UrdfError::MissingAttribute {
+            attribute: "name",
+            element,
+            owner: String::from("the robot"),
+        })
+}
