@@ -1,5 +1,6 @@
 //! What a simulated robot is like before a client connects.
 
+use bytes::Bytes;
 use franka_model::{JointVector, Load, READY, RobotKind};
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 
@@ -28,6 +29,12 @@ pub struct Config {
     /// no cycle for the motion generator: it keeps its setpoint until the next command, so that
     /// a client may be slower than 1 kHz or stand in a debugger.
     pub enforce_communication: bool,
+    /// The description that the robot serves instead of its own (protocol 10), whatever it says: for
+    /// clients' tests.
+    pub urdf: Option<String>,
+    /// The model library that the robot serves to every architecture and system (protocol 5). The
+    /// vendor's is not ours to give: without one the robot answers with an error.
+    pub model_library: Option<Bytes>,
 }
 
 impl Default for Config {
@@ -42,6 +49,8 @@ impl Default for Config {
             clock: 100_000,
             enforce_limits: true,
             enforce_communication: true,
+            urdf: None,
+            model_library: None,
         }
     }
 }

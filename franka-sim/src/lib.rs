@@ -37,7 +37,7 @@
 //! # What it does not do
 //!
 //! - The robot: no hand guiding, no safety functions. Protocol 5 (FER): filters are accepted and have
-//!   no effect, no virtual wall is ever active, and there is no model library to load.
+//!   no effect, no virtual wall is ever active, and the model library is one that the user has.
 //! - Errors that never come: self-collision, virtual walls, power limit, instability, and those of
 //!   the force controller, of Desk's own motions and of the base's acceleration.
 //! - Physics: rigid links and joints. Nothing stands in the arm's way, itself included.

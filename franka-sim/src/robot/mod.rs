@@ -137,7 +137,10 @@ impl Robot {
         let mut robot = Self {
             kind,
             model,
-            description: kind.urdf_name.map(|name| crate::urdf::text(name, model)),
+            description: kind.urdf_name.map(|name| match &config.urdf {
+                Some(text) => text.clone(),
+                None => crate::urdf::text(name, model),
+            }),
             client: None,
             replies: VecDeque::new(),
             command: None,

@@ -142,7 +142,7 @@ impl Robot {
             Request::AutomaticErrorRecovery => self.request_recovery(id),
             Request::GetRobotModel => self.send_description(id),
             Request::GetCartesianLimit { .. } => self.reply(id, NO_WALL),
-            Request::LoadModelLibrary { .. } => self.reply(id, NO_LIBRARY),
+            Request::LoadModelLibrary { .. } => self.send_library(id),
             setter => {
                 let status = if self.robot_mode() == RobotMode::Move {
                     SetterStatus::CommandNotPossibleRejected
@@ -187,9 +187,21 @@ impl Robot {
         // A version without the request never gets here.
         let text = self.description.as_deref().unwrap_or_default().as_bytes();
         if let Ok(header) = client.session.model_header(id, text.len()) {
-            let mut message = header.as_bytes().to_vec();
-            message.extend_from_slice(text);
-            self.replies.push_back(message.into());
+            self.replies.push_back(joined(header.as_bytes(), text));
+        }
+    }
+
+    fn send_library(&mut self, id: CommandId) {
+        let Some(library) = &self.config.model_library else {
+            return self.reply(id, NO_LIBRARY);
+        };
+        let Some(client) = &mut self.client else {
+            return;
+        };
+        // One that is longer than a message may be is as good as none.
+        match client.session.library_header(id, library.len()) {
+            Ok(header) => self.replies.push_back(joined(header.as_bytes(), library)),
+            Err(_) => self.reply(id, NO_LIBRARY),
         }
     }
 
@@ -204,6 +216,10 @@ impl Robot {
     }
 }
 
+fn joined(header: &[u8], tail: &[u8]) -> Bytes {
+    [header, tail].concat().into()
+}
+
 /// Whatever wall a client asks for: it is not active. There is no Desk to set one up.
 const NO_WALL: Reply<'static> = Reply::CartesianLimit {
     status: SetterStatus::Success,
@@ -216,7 +232,7 @@ const NO_WALL: Reply<'static> = Reply::CartesianLimit {
     },
 };
 
-/// The vendor's model library is not ours to give.
+/// There is no model library to load.
 const NO_LIBRARY: Reply<'static> = Reply::ModelLibrary {
     status: LibraryStatus::Error,
     library: &[],

@@ -23,6 +23,7 @@ pub use service::{Service, Stopped};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 
+use bytes::Bytes;
 use franka_model::{JointVector, Load, RobotKind};
 use franka_proto::RobotState;
 use tokio::sync::oneshot;
@@ -134,6 +135,18 @@ impl Sim {
     /// See [`Config::enforce_communication`].
     pub fn enforce_communication(mut self, enforce: bool) -> Self {
         self.config.enforce_communication = enforce;
+        self
+    }
+
+    /// See [`Config::urdf`].
+    pub fn urdf(mut self, text: impl Into<String>) -> Self {
+        self.config.urdf = Some(text.into());
+        self
+    }
+
+    /// See [`Config::model_library`].
+    pub fn model_library(mut self, library: impl Into<Bytes>) -> Self {
+        self.config.model_library = Some(library.into());
         self
     }
 

@@ -147,3 +147,19 @@ fn requests_of_protocol_5_are_answered() {
     assert_eq!(pair.robot.description(), None);
     assert_eq!(pair.state.accelerometer_top, [[0.0; 3]; 6]);
 }
+
+#[test]
+fn a_library_that_the_robot_was_given_is_served_if_it_fits_into_a_message() {
+    for (size, status) in [(3, LibraryStatus::Success), (9 << 20, LibraryStatus::Error)] {
+        let mut pair = Pair::connected(Config {
+            kind: RobotKind::Fer,
+            model_library: Some(vec![7; size].into()),
+            ..Config::default()
+        });
+        let id = pair.request(&Request::LoadModelLibrary {
+            architecture: Architecture::X64,
+            system: System::Linux,
+        });
+        assert_eq!(pair.statuses(id), [Status::Library(status)]);
+    }
+}
