@@ -1,6 +1,9 @@
-//! The vendor's elbow parameter: which of the arm's self-motions a pose is taken with.
+//! Parameters of the arm's self-motion: the vendor's elbow, and the swivel angle.
 
 use crate::JointVector;
+use crate::chain::Chain;
+use crate::inertia::dot;
+use crate::scalar::{atan2, sqrt};
 
 /// Angle of joint 4, `[rad]`, at which the arm is stretched and the elbow flips over.
 ///
@@ -19,12 +22,35 @@ pub fn elbow(q: &JointVector) -> [f64; 2] {
     [q[2], side]
 }
 
+/// The swivel (arm) angle, `[rad]`: where the elbow is on the circle about the line from shoulder
+/// to wrist on which it can be.
+///
+/// The elbow is the origin of frame 4, the wrist that of frame 5. The angle is that of the half
+/// plane of the elbow from the vertical half plane above the line, about the direction from the
+/// shoulder to the wrist, in `(−π, π]`: zero with the elbow on top (Kreutz-Delgado, Long and
+/// Seraji, 1992, with the base's z axis for reference). `None` where the wrist is on the axis of
+/// joint 1 or the elbow on the line, to the last digits.
+pub fn swivel(q: &JointVector) -> Option<f64> {
+    let chain = Chain::at(q);
+    let (e, w) = (&chain.origin[3], &chain.origin[4]);
+    let squared = dot(w, w);
+    let turned = e.x * w.y - e.y * w.x;
+    let up = (e.z * squared - dot(e, w) * w.z) / sqrt(squared);
+    // Both are the horizontal distance of the wrist times that of the elbow from the line.
+    let size = sqrt(turned * turned + up * up);
+    (size > UNDEFINED).then(|| atan2(turned, up))
+}
+
+/// Product of two distances, `[m²]`, that is rounding.
+const UNDEFINED: f64 = 1e-16;
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::READY;
     use crate::geometry::{ELBOW, FOREARM, UPPER_ARM};
-    use crate::scalar::atan2;
+    use crate::random::Random;
+    use crate::{Model, READY};
+    use nalgebra::{Rotation3, Unit, Vector3};
 
     #[test]
     fn the_flip_angle_is_that_of_the_stretched_arm() {
@@ -44,5 +70,29 @@ mod tests {
         assert_eq!(elbow(&q), [0.3, 0.0]);
         q[3] = -0.2;
         assert_eq!(elbow(&q), [0.3, 1.0]);
+    }
+
+    #[test]
+    fn the_swivel_is_zero_with_the_elbow_on_top_and_the_turn_from_there_elsewhere() {
+        assert_eq!(swivel(&READY), Some(0.0));
+        let mut random = Random::new(11);
+        for _ in 0..1000 {
+            let q = random.posture(Model::fr3());
+            let chain = Chain::at(&q);
+            let (elbow, wrist) = (&chain.origin[3], &chain.origin[4]);
+            let line = Unit::new_normalize(*wrist);
+            let across = |v: &Vector3<f64>| (v - line.scale(line.dot(v))).normalize();
+            let angle = swivel(&q).expect("defined");
+            let turned = Rotation3::from_axis_angle(&line, angle) * across(&Vector3::z());
+            assert!((turned - across(elbow)).norm() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_swivel_is_undefined_above_the_shoulder_and_with_a_stretched_elbow() {
+        assert_eq!(swivel(&JointVector::zeros()), None);
+        let mut q = READY;
+        q[3] = FLIP_ANGLE;
+        assert_eq!(swivel(&q), None);
     }
 }

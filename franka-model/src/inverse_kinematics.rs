@@ -5,13 +5,13 @@
 //! ranges. It finds one solution near the seed where there is one; it does not list them, and a
 //! refusal is strong evidence, not a proof.
 
-use nalgebra::{Isometry3, Rotation3, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::box_qp::{JointBox, PASSES_MAX, Start, minimise};
 use crate::frame::{EndEffector, Frame};
 use crate::limits::JointLimits;
 use crate::model::Model;
-use crate::{JointVector, READY, Twist, rotation, transform};
+use crate::{Jacobian, JointVector, READY, Twist, rotation, transform};
 
 /// Why there is no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,25 +75,77 @@ pub fn solve(
     let limits = model.joint_limits();
     let spread = (0..SPREAD_STARTS).map(|index| spread(limits, index));
     for start in [*seed, READY].into_iter().chain(spread) {
-        match descend(model, &flange, &start) {
+        match from_seed(model, &flange, &start) {
             Ok(q) => return Ok(q),
             Err(gap) => best = best.smaller(gap),
         }
     }
-    Err(IkError::Unreachable {
-        position: best.position,
-        orientation: best.orientation,
-    })
+    Err(best.into())
+}
+
+/// Positions within the limits that bring the origin of the end effector to `point` `[m]`, in the
+/// base frame, to [`TOLERANCE`], with whatever orientation.
+///
+/// # Errors
+/// See [`IkError`]; the orientation that remains is zero.
+pub fn solve_position(
+    model: &Model,
+    point: &Vector3<f64>,
+    ee: &EndEffector,
+    seed: &JointVector,
+) -> Result<JointVector, IkError> {
+    let finite = |x: &f64| x.is_finite();
+    if !(point.iter().all(finite) && seed.iter().all(finite)) {
+        return Err(IkError::NotFinite);
+    }
+    let tool = transform::isometry(&ee.f_t_ee).ok_or(IkError::EndEffectorNotRigid)?;
+    let place = Task::Position(tool.translation.vector, *point);
+    let limits = model.joint_limits();
+    let mut best = Gap::INFINITE;
+    let spread = (0..POSITION_STARTS).map(|index| spread(limits, index));
+    for start in [*seed, READY].into_iter().chain(spread) {
+        match descend(model, &place, &start) {
+            Ok(q) => return Ok(q),
+            Err(gap) => best = best.smaller(gap),
+        }
+    }
+    Err(best.into())
+}
+
+/// Positions within the limits that bring the flange to a pose, from one start.
+pub(crate) fn from_seed(
+    model: &Model,
+    flange: &Isometry3<f64>,
+    seed: &JointVector,
+) -> Result<JointVector, Gap> {
+    descend(model, &Task::Pose(*flange), seed)
 }
 
 /// Residual of a solution at the flange: metres and radians.
 pub const TOLERANCE: f64 = 1e-9;
 
+/// What is to be met, in the base frame.
+enum Task {
+    /// By the flange.
+    Pose(Isometry3<f64>),
+    /// By a point in flange axes: the point, and where it is to be.
+    Position(Vector3<f64>, Vector3<f64>),
+}
+
 /// What is left to a target.
-#[derive(Clone, Copy)]
-struct Gap {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Gap {
     position: f64,
     orientation: f64,
+}
+
+impl From<Gap> for IkError {
+    fn from(gap: Gap) -> Self {
+        Self::Unreachable {
+            position: gap.position,
+            orientation: gap.orientation,
+        }
+    }
 }
 
 impl Gap {
@@ -113,17 +165,13 @@ impl Gap {
 }
 
 /// Gauss-Newton from one start.
-fn descend(
-    model: &Model,
-    flange: &Isometry3<f64>,
-    start: &JointVector,
-) -> Result<JointVector, Gap> {
+fn descend(model: &Model, task: &Task, start: &JointVector) -> Result<JointVector, Gap> {
     let limits = model.joint_limits();
     let mut q = JointBox::new(&limits.lower, &limits.upper).clamp(start);
     let mut active = Default::default();
     let mut gap = Gap::INFINITE;
     for _ in 0..ITERATIONS_MAX {
-        let error = error_at(model, flange, &q);
+        let (error, mut weighted) = task.linearised(model, &q);
         gap = Gap {
             position: error.fixed_rows::<3>(0).norm(),
             orientation: error.fixed_rows::<3>(3).norm(),
@@ -131,8 +179,7 @@ fn descend(
         if gap.position < TOLERANCE && gap.orientation < TOLERANCE {
             return Ok(q);
         }
-        let jacobian = model.zero_jacobian(Frame::Flange, &q, &EndEffector::default());
-        let (mut weighted, mut task) = (jacobian, error);
+        let mut task = error;
         weighted
             .fixed_rows_mut::<3>(3)
             .scale_mut(ORIENTATION_WEIGHT);
@@ -160,19 +207,36 @@ fn descend(
     Err(gap)
 }
 
-/// Position error and rotation vector, base axes, from the flange at `q` to `flange`.
-fn error_at(model: &Model, flange: &Isometry3<f64>, q: &JointVector) -> Twist {
-    let pose = model.pose(Frame::Flange, q, &EndEffector::default());
-    let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
-    let actual = UnitQuaternion::from_rotation_matrix(&rotation);
-    let mut error = Twist::zeros();
-    error
-        .fixed_rows_mut::<3>(0)
-        .copy_from(&(flange.translation.vector - pose.fixed_view::<3, 1>(0, 3)));
-    error
-        .fixed_rows_mut::<3>(3)
-        .copy_from(&rotation::error(&flange.rotation, &actual));
-    error
+impl Task {
+    /// What is left to do at `q`, position error and rotation vector in base axes, and how it
+    /// changes with the joints; zeros where nothing is asked.
+    fn linearised(&self, model: &Model, q: &JointVector) -> (Twist, Jacobian) {
+        let flange = EndEffector::default();
+        let pose = model.pose(Frame::Flange, q, &flange);
+        let mut jacobian = model.zero_jacobian(Frame::Flange, q, &flange);
+        let place: Vector3<f64> = pose.fixed_view::<3, 1>(0, 3).into_owned();
+        let axes: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
+        let (shift, turn) = match self {
+            Self::Pose(target) => {
+                let rotation = Rotation3::from_matrix_unchecked(axes);
+                let actual = UnitQuaternion::from_rotation_matrix(&rotation);
+                let turn = rotation::error(&target.rotation, &actual);
+                (target.translation.vector - place, turn)
+            }
+            Self::Position(point, target) => {
+                let lever = axes * point;
+                for mut column in jacobian.column_iter_mut() {
+                    let turn: Vector3<f64> = column.fixed_rows::<3>(3).into_owned();
+                    let mut linear = column.fixed_rows_mut::<3>(0);
+                    linear += turn.cross(&lever);
+                    column.fixed_rows_mut::<3>(3).fill(0.0);
+                }
+                (target - place - lever, Vector3::zeros())
+            }
+        };
+        let error = Twist::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z);
+        (error, jacobian)
+    }
 }
 
 /// Displacements that stay within the limits and within what a linear model is good for.
@@ -193,6 +257,8 @@ const STEP_MAX: f64 = 0.5;
 const ITERATIONS_MAX: usize = 60;
 /// Starts beyond the seed and the ready pose.
 const SPREAD_STARTS: u32 = 30;
+/// The same for a point, which one of few starts leads to.
+const POSITION_STARTS: u32 = 6;
 
 /// Posture `index` of a sequence that fills the joint ranges evenly.
 ///
@@ -211,7 +277,7 @@ fn spread(limits: &JointLimits, index: u32) -> JointVector {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use nalgebra::{Matrix4, Translation3, Vector3};
+    use nalgebra::{Matrix4, Translation3};
 
     fn pose(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
         let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
@@ -244,6 +310,18 @@ mod tests {
                 distance < 2e-9 && angle < 2e-9,
                 "{distance:e} m, {angle:e} rad"
             );
+        }
+    }
+
+    #[test]
+    fn every_point_of_the_tool_is_found_again() {
+        let mut random = Random::new(63);
+        let ee = tool();
+        for _ in 0..1000 {
+            let target = pose(&random.posture(Model::fr3()), &ee).translation.vector;
+            let q = solve_position(Model::fr3(), &target, &ee, &READY).expect("within reach");
+            assert!(Model::fr3().joint_limits().contains(&q));
+            assert!((pose(&q, &ee).translation.vector - target).norm() < 2e-9);
         }
     }
 

@@ -20,9 +20,9 @@
 //! | [`rotation`] | rotation vectors: exponential, logarithm, angular velocity and acceleration |
 //! | [`transform`] | column-major arrays and 4×4 matrices to isometries and back |
 //! | [`differential_ik`] | joint velocities for a twist, exactly inside a box |
-//! | [`inverse_kinematics`] | joint positions for a pose, by iteration |
-//! | [`analytic_ik`] | every joint position for a pose and an angle of joint 7 |
-//! | [`elbow`] | the vendor's elbow parameter |
+//! | [`inverse_kinematics`] | joint positions for a pose or a point, by iteration |
+//! | [`analytic_ik`] | every joint position for a pose and a redundancy parameter, and what is within reach |
+//! | [`elbow`] | the vendor's elbow parameter, and the swivel angle |
 //! | [`collision`] | distances to itself, planes and boxes, with gradients |
 //! | `urdf` (a feature) | models from the description that a robot serves |
 //!

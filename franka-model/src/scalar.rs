@@ -12,6 +12,10 @@ pub(crate) fn sqrt(x: f64) -> f64 {
     ComplexField::sqrt(x)
 }
 
+pub(crate) fn acos(x: f64) -> f64 {
+    ComplexField::acos(x)
+}
+
 pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     RealField::atan2(y, x)
 }

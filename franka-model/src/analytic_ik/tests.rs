@@ -1,15 +1,23 @@
 use super::*;
 use crate::random::Random;
-use crate::{Frame, READY, RobotKind, elbow, rotation};
-use nalgebra::{Matrix4, Translation3};
+use crate::{Frame, JointVector, READY, RobotKind, elbow, rotation};
+use core::f64::consts::{FRAC_PI_2, TAU};
+use nalgebra::{Matrix4, Translation3, Vector3};
 
-fn flange(q: &JointVector) -> Isometry3<f64> {
+/// Poses per robot and parameter: with `--release` as many as the figures in the docs are for.
+const CASES: usize = if cfg!(debug_assertions) {
+    2_000
+} else {
+    100_000
+};
+
+pub(super) fn flange(q: &JointVector) -> Isometry3<f64> {
     let pose = Model::fr3().pose(Frame::Flange, q, &EndEffector::default());
     transform::isometry(&pose).expect("a rigid frame")
 }
 
 /// Metres and radians between the flange at `q` and `target`, the larger.
-fn miss(q: &JointVector, target: &Isometry3<f64>) -> f64 {
+pub(super) fn miss(q: &JointVector, target: &Isometry3<f64>) -> f64 {
     let reached = flange(q);
     let distance = (reached.translation.vector - target.translation.vector).norm();
     distance.max(rotation::error(&target.rotation, &reached.rotation).norm())
@@ -18,47 +26,143 @@ fn miss(q: &JointVector, target: &Isometry3<f64>) -> f64 {
 fn branch(q: &JointVector) -> Branch {
     Branch {
         elbow: q[3] > elbow::FLIP_ANGLE,
-        wrist: sin_cos(q[4]).1 > 0.0,
+        wrist: q[4].cos() > 0.0,
         shoulder: q[1] < 0.0,
     }
 }
 
+/// A redundancy parameter, with what computes it of a posture.
+type Parameter = (Redundancy, fn(&JointVector) -> f64);
+
+/// The parameter of every kind that a posture has.
+fn parameters(q: &JointVector) -> [Parameter; 3] {
+    let swivel = |q: &JointVector| elbow::swivel(q).expect("defined");
+    [
+        (Redundancy::Joint7(q[6]), |q| q[6]),
+        (Redundancy::Joint4(q[3]), |q| q[3]),
+        (Redundancy::Swivel(swivel(q)), swivel),
+    ]
+}
+
+/// How far the parameter of a posture is from the one given.
+fn parameter_miss(q: &JointVector, given: Redundancy, of: fn(&JointVector) -> f64) -> f64 {
+    let (Redundancy::Joint7(angle) | Redundancy::Joint4(angle) | Redundancy::Swivel(angle)) = given;
+    let off = of(q) - angle;
+    (off - TAU * (off / TAU).round()).abs()
+}
+
 #[test]
-fn every_solution_is_one_and_the_seeding_posture_is_among_them() {
+fn every_solution_meets_pose_and_limits_and_the_seeding_posture_is_among_them() {
     for kind in RobotKind::ALL {
         let model = Model::of(kind);
         let limits = model.joint_limits();
         let mut random = Random::new(81);
-        for _ in 0..50_000 {
+        for case in 0..CASES {
             let q = random.posture(model);
             let target = flange(&q);
-            let real = all(&target, q[6]);
-            assert!([4, 8].contains(&real.len()), "{} solutions", real.len());
-            for solution in real.iter() {
-                assert!(miss(&solution.q, &target) < 1e-12);
+            for (given, of) in parameters(&q) {
+                let found = solve(model, &target, &EndEffector::default(), given);
+                let found = found.expect("finite");
+                for solution in found.iter() {
+                    let miss = miss(&solution.q, &target);
+                    assert!(miss < 1e-12, "{kind:?} {case} {given:?}: {miss:e}");
+                    assert!(limits.contains(&solution.q));
+                    assert_eq!(solution.branch, branch(&solution.q), "{case} {given:?}");
+                    let off = parameter_miss(&solution.q, given, of);
+                    // The swivel of a wrist some micrometres off axis 1 is known no better.
+                    assert!(off < 1e-7, "{kind:?} {case} {given:?}: {off:e} rad");
+                }
+                // Near a double root an angle is known to the root of the rounding.
+                let seed = found
+                    .nearest(&q)
+                    .unwrap_or_else(|| panic!("{case} {given:?}"));
+                let off = (seed.q - q).amax();
+                assert!(
+                    off < 2e-6,
+                    "{kind:?} {case} {given:?}: {off:e} from the seed"
+                );
             }
-            let found = real.within(&limits.lower, &limits.upper);
-            for solution in found.iter() {
-                assert!(limits.contains(&solution.q));
-                assert!(miss(&solution.q, &target) < 1e-12);
-                assert_eq!(solution.branch, branch(&solution.q));
-            }
-            // Near a double root an angle is known to the root of the rounding.
-            let seed = found.nearest(&q).expect("the seeding posture");
-            assert!((seed.q - q).amax() < 1e-6, "{}", (seed.q - q).amax());
         }
     }
 }
 
 #[test]
+fn joint_7_gives_none_four_or_eight_solutions_with_the_seed_among_them() {
+    let mut random = Random::new(82);
+    for _ in 0..2_000 {
+        let target = flange(&random.posture(Model::fr3()));
+        let real = all(&target, Redundancy::Joint7(random.uniform(-PI, PI)));
+        assert!([0, 4, 8].contains(&real.len()), "{} solutions", real.len());
+        assert!(
+            real.iter()
+                .all(|solution| miss(&solution.q, &target) < 1e-12)
+        );
+    }
+}
+
+/// Swivel angles of all postures of a pose along joint 7, per branch, counted where they pass the
+/// one given: what a search that knows nothing of the equation finds.
+fn count_by_scanning(target: &Isometry3<f64>, angle: f64, steps: u32) -> usize {
+    let mut last: [Option<f64>; 8] = [None; 8];
+    let mut count = 0;
+    for step in 0..=steps {
+        let q7 = -PI + TAU * f64::from(step) / f64::from(steps);
+        let mut now = [None; 8];
+        for solution in all(target, Redundancy::Joint7(q7)).iter() {
+            let index = solution.branch.index();
+            let off = elbow::swivel(&solution.q).map(|found| found - angle);
+            now[index] = off.map(|off| off - TAU * (off / TAU).round());
+        }
+        for (before, after) in last.iter().zip(&now) {
+            if let (Some(before), Some(after)) = (before, after) {
+                let passes = (*before > 0.0) != (*after > 0.0);
+                count += usize::from(passes && (before - after).abs() < 1.0);
+            }
+        }
+        last = now;
+    }
+    count
+}
+
+#[test]
+fn the_solutions_for_a_swivel_angle_are_those_that_a_scan_of_joint_7_finds() {
+    let mut random = Random::new(83);
+    let (mut fewer, mut total) = (0, 0);
+    for _ in 0..60 {
+        let target = flange(&random.posture(Model::fr3()));
+        let angle = random.uniform(-PI, PI);
+        let found = all(&target, Redundancy::Swivel(angle)).len();
+        let scanned = count_by_scanning(&target, angle, 20_000);
+        // A scan misses what lies between its last step and the end of a branch.
+        assert!(scanned <= found, "{scanned} scanned, {found} found");
+        fewer += found - scanned;
+        total += found;
+    }
+    assert!(total > 300 && fewer * 50 < total, "{fewer} of {total}");
+}
+
+#[test]
 fn the_ready_pose_has_eight_solutions_and_one_within_the_limits() {
-    let target = flange(&READY);
-    assert_eq!(all(&target, READY[6]).len(), 8);
+    let (target, given) = (flange(&READY), Redundancy::Joint7(READY[6]));
+    assert_eq!(all(&target, given).len(), 8);
     for kind in RobotKind::ALL {
-        let found = solve(Model::of(kind), &target, &EndEffector::default(), READY[6]);
+        let model = Model::of(kind);
+        let found = solve(model, &target, &EndEffector::default(), given);
         let found = found.expect("finite");
         assert_eq!(found.len(), 1);
         assert!((found[0].q - READY).amax() < 1e-13);
+        let limits = model.joint_limits();
+        assert_eq!(found[0].room(limits), READY[3] - limits.lower[3]);
+        let singularity = found[0].singularity();
+        let expected = (
+            FRAC_PI_2 / 2.0,
+            FRAC_PI_2,
+            -1.5 * FRAC_PI_2 - elbow::FLIP_ANGLE,
+        );
+        assert!((singularity.shoulder - expected.0).abs() < 1e-13);
+        assert!((singularity.wrist - expected.1).abs() < 1e-13);
+        assert!((singularity.elbow - expected.2.abs()).abs() < 1e-13);
+        assert_eq!(singularity.least(), singularity.shoulder);
     }
 }
 
@@ -72,72 +176,192 @@ fn the_tool_is_taken_off_first() {
         f_t_ee: transform::matrix(&tool),
         ..EndEffector::default()
     };
-    let target = flange(&READY) * tool;
-    let found = solve(Model::fr3(), &target, &ee, READY[6]).expect("finite");
-    assert!((found[0].q - READY).amax() < 1e-12);
+    let q = READY + JointVector::from_fn(|i, _| 0.1 * i as f64);
+    let target = flange(&q) * tool;
+    for (given, _) in parameters(&q) {
+        let found = solve(Model::fr3(), &target, &ee, given).expect("finite");
+        let off = (found.nearest(&q).expect("one").q - q).amax();
+        assert!(off < 1e-9, "{given:?}: {off:e}");
+    }
 }
 
 #[test]
-fn with_joint_2_at_zero_joints_1_and_3_share_the_turn() {
+fn with_joint_2_at_zero_joints_1_and_3_share_the_turn_and_slide() {
     let mut q = READY;
     (q[0], q[1], q[2]) = (0.3, 0.0, 0.5);
     let limits = Model::fr3().joint_limits();
     let target = flange(&q);
-    let found = all(&target, q[6]).within(&limits.lower, &limits.upper);
-    let solution = found.nearest(&q).expect("a solution");
-    assert!(miss(&solution.q, &target) < 1e-12);
-    // Rounding leaves a sine of about 1e-16, or none.
-    assert!((solution.q[0] - 0.4).abs() < 1e-12 && (solution.q[2] - 0.4).abs() < 1e-12);
+    for (given, _) in &parameters(&q)[..2] {
+        let found = all(&target, *given).within(&limits.lower, &limits.upper);
+        // Rounding leaves a sine of about 1e-16, or none.
+        let half = found.iter().find(|s| (s.q[0] - 0.4).abs() < 1e-12);
+        let half = half.expect("a solution");
+        assert!((half.q[2] - 0.4).abs() < 1e-12);
+        assert!(miss(&half.q, &target) < 1e-12);
+        let [back, on] = half.slide.expect("in line");
+        for step in [back, on] {
+            let mut slid = half.q;
+            slid[0] += step;
+            slid[2] -= step;
+            assert!(miss(&slid, &target) < 1e-12);
+            let room = (slid - limits.lower).inf(&(limits.upper - slid)).min();
+            assert!(room.abs() < 1e-12, "the slide ends at a limit: {room:e}");
+        }
+        let nearest = found.nearest(&q).expect("a solution");
+        assert!((nearest.q - q).amax() < 1e-12);
+    }
+}
+
+#[test]
+fn a_turn_that_joints_1_and_3_cannot_share_evenly_is_shared_as_the_limits_let() {
+    let limits = Model::fr3().joint_limits();
+    let mut q = READY;
+    (q[0], q[1], q[2]) = (limits.upper[0] - 0.01, 0.0, limits.upper[2] - 0.01);
+    let target = flange(&q);
+    let found = all(&target, Redundancy::Joint7(q[6])).within(&limits.lower, &limits.upper);
+    let nearest = found.nearest(&q).expect("the posture itself");
+    assert!((nearest.q - q).amax() < 1e-12);
+    assert!(found.iter().all(|solution| limits.contains(&solution.q)));
+}
+
+#[test]
+fn a_path_straight_through_the_shoulder_singularity_is_followed_without_a_jump() {
+    // Joint 2 goes through zero, the others move on evenly.
+    let at = |step: i32| {
+        let share = f64::from(step) * 1e-3;
+        let mut q = READY + JointVector::repeat(0.2 * share);
+        q[1] = 0.1 * share;
+        q
+    };
+    let mut last = at(-101);
+    for step in -100..=100 {
+        let q = at(step);
+        let target = flange(&q);
+        let found = all(&target, Redundancy::Joint7(q[6]));
+        let nearest = found.nearest(&last).expect("a solution");
+        assert!(miss(&nearest.q, &target) < 1e-12);
+        assert!((nearest.q - last).amax() < 3e-4, "step {step}");
+        assert!((nearest.q - q).amax() < 1e-9, "step {step}");
+        last = nearest.q;
+    }
 }
 
 #[test]
 fn near_joint_2_at_zero_poses_are_met_all_the_same() {
-    let mut random = Random::new(82);
+    let mut random = Random::new(84);
     for exponent in 3..16 {
         for _ in 0..100 {
             let mut q = random.posture(Model::fr3());
             q[1] = 10f64.powi(-exponent);
             let target = flange(&q);
-            for solution in all(&target, q[6]).iter() {
-                assert!(miss(&solution.q, &target) < 1e-12, "{exponent}");
+            for (given, _) in parameters(&q) {
+                for solution in all(&target, given).iter() {
+                    assert!(miss(&solution.q, &target) < 1e-12, "{exponent} {given:?}");
+                }
             }
         }
     }
 }
 
 #[test]
-fn a_stretched_arm_is_found_twice() {
-    let mut q = READY;
-    q[3] = elbow::FLIP_ANGLE;
-    let target = flange(&q);
-    let near = all(&target, q[6]);
-    let near = near.iter().filter(|s| (s.q - q).amax() < 1e-5);
-    for solution in near.clone() {
-        // The cosine is known to a few roundings, its angle to the root of them.
-        assert!(miss(&solution.q, &target) < 1e-7);
+fn two_solutions_meet_like_square_roots_at_a_stretched_elbow_and_a_turned_wrist() {
+    let fold = |index: usize, place: f64| {
+        let mut last: Option<f64> = None;
+        for exponent in 1..8 {
+            let gap = 10f64.powi(-exponent);
+            let mut q = READY;
+            q[index] = place - gap;
+            let target = flange(&q);
+            let found = all(&target, Redundancy::Joint7(q[6]));
+            // The posture and its mirror image beyond the fold.
+            let near = found.iter().filter(|s| (s.q - q).amax() < 8.0 * gap);
+            assert_eq!(near.clone().count(), 2, "joint {index}, {gap:e}");
+            assert!(near.clone().all(|s| miss(&s.q, &target) < 1e-12));
+            let mirrored = near.map(|s| s.q[index] - place).fold(f64::MIN, f64::max);
+            assert!((mirrored / gap - 1.0).abs() < 0.3 && mirrored < last.unwrap_or(1.0));
+            last = Some(mirrored);
+        }
+        let mut q = READY;
+        q[index] = place;
+        let target = flange(&q);
+        let found = all(&target, Redundancy::Joint7(q[6]));
+        let near = found.iter().filter(|s| (s.q - q).amax() < 3e-6);
+        assert!(near.clone().all(|s| miss(&s.q, &target) < 2e-12));
+        assert_eq!(near.count(), 2, "on the fold of joint {index}");
+    };
+    fold(3, elbow::FLIP_ANGLE);
+    fold(4, FRAC_PI_2);
+}
+
+#[test]
+fn with_the_shoulder_on_axis_7_joint_4_leaves_joint_7_at_zero() {
+    // The flange straight above the shoulder, its axis down through it.
+    let down = rotation::exp(&(Vector3::x() * PI));
+    let pose = Isometry3::from_parts(Translation3::new(0.0, 0.0, 0.333 + 0.6), down);
+    // The wrist is then the same distance off for every angle of joint 7.
+    let posture = all(&pose, Redundancy::Joint7(1.0))[0].q;
+    let found = all(&pose, Redundancy::Joint4(posture[3]));
+    assert!(!found.is_empty());
+    for solution in found.iter() {
+        assert_eq!(solution.q[6], 0.0);
+        assert!(miss(&solution.q, &pose) < 1e-12);
     }
-    assert_eq!(near.count(), 2);
+}
+
+#[test]
+fn the_nearest_posture_is_no_further_than_the_one_that_the_pose_is_of() {
+    let mut random = Random::new(85);
+    let (model, ee) = (Model::fr3(), EndEffector::default());
+    let mut further = 0;
+    for _ in 0..200 {
+        let q = random.posture(model);
+        let from = q + random.joints(0.3);
+        let target = flange(&q);
+        let found = nearest(model, &target, &ee, &from).expect("finite");
+        let found = found.expect("the posture itself is one");
+        assert!(model.joint_limits().contains(&found.q));
+        assert!(miss(&found.q, &target) < 1e-12);
+        // A sweep misses minima that are narrow.
+        further += usize::from((found.q - from).norm() > (q - from).norm() + 1e-6);
+        // From a posture of the pose, it is that.
+        let same = nearest(model, &target, &ee, &q)
+            .expect("finite")
+            .expect("one");
+        assert!((same.q - q).amax() < 2e-6);
+    }
+    assert!(further <= 2, "{further} of 200");
+    let mut nowhere = flange(&READY);
+    nowhere.translation.vector.x = 2.0;
+    assert_eq!(nearest(model, &nowhere, &ee, &READY), Ok(None));
 }
 
 #[test]
 fn out_of_reach_there_is_none() {
     let mut target = flange(&READY);
     target.translation.vector.x += 1.0;
-    assert!(all(&target, 0.0).is_empty());
+    for (given, _) in parameters(&READY) {
+        assert!(all(&target, given).is_empty());
+    }
 }
 
 #[test]
 fn input_that_means_nothing_is_refused() {
     let (model, ee, target) = (Model::fr3(), EndEffector::default(), flange(&READY));
-    let error = |target, ee, q7| solve(model, target, ee, q7).expect_err("nonsense");
-    assert_eq!(error(&target, &ee, f64::NAN), IkError::NotFinite);
+    let error = |target, ee, given| solve(model, target, ee, given).expect_err("nonsense");
     let mut nowhere = target;
     nowhere.translation.vector.z = f64::INFINITY;
-    assert_eq!(error(&nowhere, &ee, 0.0), IkError::NotFinite);
-    assert!(all(&nowhere, 0.0).is_empty());
     let flat = EndEffector {
         f_t_ee: Matrix4::zeros(),
         ..ee
     };
-    assert_eq!(error(&target, &flat, 0.0), IkError::EndEffectorNotRigid);
+    for kind in [Redundancy::Joint7, Redundancy::Joint4, Redundancy::Swivel] {
+        assert_eq!(error(&target, &ee, kind(f64::NAN)), IkError::NotFinite);
+        assert_eq!(error(&nowhere, &ee, kind(0.5)), IkError::NotFinite);
+        assert!(all(&nowhere, kind(-0.5)).is_empty());
+        assert!(all(&target, kind(f64::INFINITY)).is_empty());
+        assert_eq!(
+            error(&target, &flat, kind(0.0)),
+            IkError::EndEffectorNotRigid
+        );
+    }
 }

@@ -1,0 +1,48 @@
+//! Joint 7 from joint 4, in closed form.
+
+use nalgebra::Isometry3;
+
+use super::joint_7::{Elbow, Flange, Hand, cosine, push_all};
+use super::solutions::Solutions;
+use super::wrapped;
+use crate::geometry::WRIST;
+use crate::inertia::dot;
+use crate::scalar::{acos, atan2, sqrt};
+
+/// All solutions with joint 4 at `q4`: at most eight.
+///
+/// The wrist is on a circle about axis 7; joint 4 tells its distance from the shoulder, and a
+/// circle has two points at a distance.
+pub(super) fn all(flange: &Isometry3<f64>, q4: f64) -> Solutions {
+    let mut found = Solutions::NONE;
+    let flange = Flange::of(flange);
+    if let Some(elbow) = Elbow::at(q4) {
+        for q7 in circle(&flange, elbow.squared_distance())
+            .into_iter()
+            .flatten()
+        {
+            push_all(&mut found, &Hand::of(&flange, q7), &elbow, q4);
+        }
+    }
+    found
+}
+
+/// Angles of joint 7 with the wrist at a distance from the shoulder.
+fn circle(flange: &Flange, squared_distance: f64) -> [Option<f64>; 2] {
+    let d = &flange.from_shoulder;
+    let (p, q) = (dot(d, &flange.x), dot(d, &flange.y));
+    let radius = sqrt(p * p + q * q);
+    let along = (dot(d, d) + WRIST * WRIST - squared_distance) / (2.0 * WRIST);
+    if radius < AXIS {
+        // Shoulder on axis 7: all angles do, or none.
+        return [(along.abs() < AXIS).then_some(0.0), None];
+    }
+    let Some(cos) = cosine(along / radius) else {
+        return [None, None];
+    };
+    let (nearest, off) = (atan2(-q, p), acos(cos));
+    [Some(wrapped(nearest + off)), Some(wrapped(nearest - off))]
+}
+
+/// Distance from axis 7, `[m]`, below which the shoulder is on it.
+const AXIS: f64 = 1e-12;

@@ -1,0 +1,80 @@
+//! The posture nearest to another among all that meet a pose.
+
+use nalgebra::Isometry3;
+
+use super::{Solution, flange_of, joint_7, sweep};
+use crate::JointVector;
+use crate::frame::EndEffector;
+use crate::inverse_kinematics::{self, IkError};
+use crate::limits::JointLimits;
+use crate::model::Model;
+
+/// The posture within the limits, whatever its redundancy parameter, that brings the end effector
+/// to `target` and is nearest to `q` in the sense of the sum of squares; `None` if none was found.
+///
+/// Joint 7 is swept through its range and the best place of every branch refined, some 0.3 ms. A pose that only a
+/// hundredth of a radian of joint 7 can meet may be missed; [`reach`](super::reach) looks closer.
+///
+/// # Errors
+/// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
+pub fn nearest(
+    model: &Model,
+    target: &Isometry3<f64>,
+    ee: &EndEffector,
+    q: &JointVector,
+) -> Result<Option<Solution>, IkError> {
+    let flange = flange_of(target, ee)?;
+    if !q.iter().all(|x| x.is_finite()) {
+        return Err(IkError::NotFinite);
+    }
+    let limits = model.joint_limits();
+    // Per branch: along joint 7 the postures of one are continuous.
+    let mut least = [None; 8];
+    let near = inverse_kinematics::from_seed(model, &flange, q).unwrap_or(*q)[6];
+    let places = [q[6], near].into_iter();
+    let places = places.flat_map(|q7| at(&flange, limits, q7));
+    for solution in sweep(model, &flange, STEPS).chain(places) {
+        let solution = solution.slid_towards(q);
+        let place: &mut Option<Solution> = &mut least[solution.branch.index()];
+        *place = best([*place, Some(solution)].into_iter().flatten(), q);
+    }
+    // Between samples: steps that halve, downhill.
+    for found in least.iter_mut().flatten() {
+        let mut step = (limits.upper[6] - limits.lower[6]) / f64::from(STEPS);
+        while step > RESOLUTION {
+            let (centre, branch) = (found.q[6], found.branch);
+            let around = [centre - step, centre + step].into_iter();
+            let around = around
+                .flat_map(|q7| at(&flange, limits, q7))
+                .filter(|solution| solution.branch == branch)
+                .map(|solution| solution.slid_towards(q));
+            match best(around, q) {
+                Some(nearer) if distance(&nearer, q) < distance(found, q) => *found = nearer,
+                _ => step *= 0.5,
+            }
+        }
+    }
+    Ok(best(least.into_iter().flatten(), q))
+}
+
+fn at(
+    flange: &Isometry3<f64>,
+    limits: &JointLimits,
+    q7: f64,
+) -> impl Iterator<Item = Solution> + use<> {
+    let found = joint_7::all(flange, q7).within(&limits.lower, &limits.upper);
+    (0..found.len()).map(move |index| found[index])
+}
+
+fn best(solutions: impl Iterator<Item = Solution>, q: &JointVector) -> Option<Solution> {
+    solutions.min_by(|a, b| distance(a, q).total_cmp(&distance(b, q)))
+}
+
+fn distance(solution: &Solution, q: &JointVector) -> f64 {
+    (solution.q - q).norm_squared()
+}
+
+/// Intervals of the sweep.
+const STEPS: u32 = 96;
+/// Of joint 7, `[rad]`.
+const RESOLUTION: f64 = 1e-9;

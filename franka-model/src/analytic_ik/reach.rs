@@ -1,0 +1,253 @@
+//! Whether a pose or a point is within reach, and how far it is from the boundary of what is.
+//!
+//! Both questions are for planning, not for a cycle: they take from some 10 µs (well inside) to
+//! some 10 ms (far outside).
+
+use nalgebra::{Isometry3, Vector3};
+
+use super::{Solution, flange_of, joint_7, sweep};
+use crate::JointVector;
+use crate::frame::EndEffector;
+use crate::geometry::SHOULDER;
+use crate::inverse_kinematics::{self, IkError};
+use crate::limits::JointLimits;
+use crate::model::Model;
+
+/// What is known about a target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// A posture within the limits that meets the target: of those looked at, the one whose joints
+    /// keep most off their limits. `None` if the target is out of reach.
+    pub posture: Option<JointVector>,
+    /// How far, `[m]`, the target may move along the line through the shoulder, out or in, before
+    /// it leaves what can be reached, up to [`FAR`]; negative for a target out of reach, by how far
+    /// it has to move along that line to come within; −∞ where nothing on the line can be reached
+    /// with that orientation. Exact to a micrometre, if what can be reached has no gaps of less
+    /// than 5 mm on the line.
+    pub margin: f64,
+}
+
+impl Reach {
+    /// Whether there is a posture.
+    pub fn within(&self) -> bool {
+        self.posture.is_some()
+    }
+}
+
+/// Whether the end effector can be brought to `target`, with its orientation.
+///
+/// # Errors
+/// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
+pub fn pose(model: &Model, target: &Isometry3<f64>, ee: &EndEffector) -> Result<Reach, IkError> {
+    let flange = flange_of(target, ee)?;
+    let limits = model.joint_limits();
+    let mut search = PoseSearch { model, seed: None };
+    let posture = roomiest(model, &flange)
+        .map(|solution| solution.q)
+        .or_else(|| search.posture(&flange));
+    search.seed = posture;
+    let margin = margin(posture.is_some(), &target.translation.vector, |shift| {
+        let mut moved = flange;
+        moved.translation.vector += shift;
+        search.reaches(&moved, limits)
+    });
+    Ok(Reach { posture, margin })
+}
+
+/// Whether the end effector's origin can be brought to `point` `[m]`, in the base frame, with any
+/// orientation.
+///
+/// The search is by iteration from several starts: a refusal is strong evidence, not a proof.
+///
+/// # Errors
+/// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
+pub fn position(model: &Model, point: &Vector3<f64>, ee: &EndEffector) -> Result<Reach, IkError> {
+    let mut seed = crate::READY;
+    let mut find =
+        |point: &Vector3<f64>| match inverse_kinematics::solve_position(model, point, ee, &seed) {
+            Ok(q) => {
+                seed = q;
+                Ok(Some(q))
+            }
+            Err(IkError::Unreachable { .. }) => Ok(None),
+            Err(other) => Err(other),
+        };
+    let posture = find(point)?;
+    let margin = margin(posture.is_some(), point, |shift| {
+        matches!(find(&(point + shift)), Ok(Some(_)))
+    });
+    Ok(Reach { posture, margin })
+}
+
+/// Distances beyond this are not looked at, `[m]`: no point of the arm is further from the shoulder.
+pub const FAR: f64 = 1.2;
+
+/// Postures for poses that are next to each other.
+struct PoseSearch<'a> {
+    model: &'a Model,
+    /// The last posture found.
+    seed: Option<JointVector>,
+}
+
+impl PoseSearch<'_> {
+    fn reaches(&mut self, flange: &Isometry3<f64>, limits: &JointLimits) -> bool {
+        // Joint 7 where it last was, before all of its range.
+        if let Some(q) = self.seed {
+            let found = joint_7::all(flange, q[6]).within(&limits.lower, &limits.upper);
+            if !found.is_empty() {
+                return true;
+            }
+        }
+        let swept = sweep(self.model, flange, STEPS).next().map(|s| s.q);
+        match swept.or_else(|| self.posture(flange)) {
+            Some(q) => {
+                self.seed = Some(q);
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// By iteration from the last posture: the boundary is where joint 7 has one angle left, which
+    /// no sweep meets.
+    fn posture(&self, flange: &Isometry3<f64>) -> Option<JointVector> {
+        let seed = self.seed.unwrap_or(crate::READY);
+        inverse_kinematics::from_seed(self.model, flange, &seed).ok()
+    }
+}
+
+fn roomiest(model: &Model, flange: &Isometry3<f64>) -> Option<Solution> {
+    let limits = model.joint_limits();
+    sweep(model, flange, STEPS).max_by(|a, b| a.room(limits).total_cmp(&b.room(limits)))
+}
+
+/// Signed distance along the line through the shoulder at which `reaches(shift)` changes.
+fn margin(
+    inside: bool,
+    point: &Vector3<f64>,
+    mut reaches: impl FnMut(&Vector3<f64>) -> bool,
+) -> f64 {
+    let from_shoulder = point - Vector3::new(0.0, 0.0, SHOULDER);
+    let distance = from_shoulder.norm();
+    let outward = if distance > 0.0 {
+        from_shoulder / distance
+    } else {
+        Vector3::z()
+    };
+    let steps = (FAR.max(distance) / STRIDE) as u32 + 1;
+    for step in 1..=steps {
+        let far = f64::from(step) * STRIDE;
+        for direction in [1.0, -1.0] {
+            if reaches(&(outward * (direction * far))) == inside {
+                continue;
+            }
+            // Between the last place that was like the target and this one.
+            let (mut same, mut other) = (far - STRIDE, far);
+            while other - same > PRECISION {
+                let middle = 0.5 * (same + other);
+                if reaches(&(outward * (direction * middle))) == inside {
+                    same = middle;
+                } else {
+                    other = middle;
+                }
+            }
+            return if inside { same } else { -other };
+        }
+    }
+    if inside { FAR } else { f64::NEG_INFINITY }
+}
+
+/// Intervals of a sweep of joint 7.
+const STEPS: u32 = 32;
+/// Distance of the places looked at, `[m]`.
+const STRIDE: f64 = 5e-3;
+/// `[m]`.
+const PRECISION: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{flange, miss};
+    use super::*;
+    use crate::random::Random;
+    use crate::{Frame, READY};
+
+    #[test]
+    fn every_pose_of_the_arm_is_within_reach_with_a_posture_that_meets_it() {
+        let mut random = Random::new(91);
+        let model = Model::fr3();
+        for _ in 0..40 {
+            let target = flange(&random.posture(model));
+            let reach = pose(model, &target, &EndEffector::default()).expect("finite");
+            let posture = reach.posture.expect("the posture it is of");
+            assert!(model.joint_limits().contains(&posture));
+            assert!(miss(&posture, &target) < 2e-9);
+            assert!(reach.margin >= 0.0);
+        }
+    }
+
+    #[test]
+    fn the_margin_of_a_pose_ends_at_the_stretched_arm() {
+        // Hand forward, axis 7 on the line from the shoulder through a wrist on the level of it:
+        // the wrist's distance is then a right triangle's with the offset of the wrist.
+        let forward = nalgebra::UnitQuaternion::from_axis_angle(
+            &Vector3::y_axis(),
+            core::f64::consts::FRAC_PI_2,
+        );
+        let (wrist, flange) = (crate::geometry::WRIST, crate::geometry::FLANGE);
+        let side = |a: f64, b: f64| a * a + b * b;
+        let (upper, fore) = (
+            side(crate::geometry::UPPER_ARM, crate::geometry::ELBOW).sqrt(),
+            side(crate::geometry::FOREARM, crate::geometry::ELBOW).sqrt(),
+        );
+        let far = ((upper + fore).powi(2) - wrist * wrist).sqrt() + flange;
+        let target = |x: f64| Isometry3::from_parts(Vector3::new(x, 0.0, SHOULDER).into(), forward);
+        for off in [-0.1, -0.02, -0.001, 0.001, 0.02, 0.1] {
+            let reach = pose(Model::fr3(), &target(far + off), &EndEffector::default());
+            let reach = reach.expect("finite");
+            assert_eq!(reach.within(), off < 0.0);
+            assert!((reach.margin + off).abs() < 2e-6, "{off}: {}", reach.margin);
+        }
+    }
+
+    #[test]
+    fn a_pose_that_no_place_on_the_line_allows_is_infinitely_far() {
+        // Straight up above the base, hand up: joint 6 cannot bend back that far.
+        let up = Isometry3::translation(0.0, 0.0, 0.2);
+        let reach = pose(Model::fr3(), &up, &EndEffector::default()).expect("finite");
+        let high = Isometry3::translation(3.0, 0.0, 0.333);
+        let beyond = pose(Model::fr3(), &high, &EndEffector::default()).expect("finite");
+        assert!(!beyond.within() && beyond.margin < 0.0);
+        assert_eq!(reach.within(), reach.margin >= 0.0);
+    }
+
+    #[test]
+    fn a_point_is_reached_up_to_the_stretched_arm_with_the_hand_in_line() {
+        let mut random = Random::new(92);
+        let (model, ee) = (Model::fr3(), EndEffector::default());
+        for _ in 0..10 {
+            let point = flange(&random.posture(model)).translation.vector;
+            let reach = position(model, &point, &ee).expect("finite");
+            let q = reach.posture.expect("the posture it is of");
+            let found = model.pose(Frame::Flange, &q, &ee);
+            assert!((found.fixed_view::<3, 1>(0, 3) - point).norm() < 2e-9);
+            assert!(reach.margin >= 0.0);
+        }
+        // Beyond everything: the two ends of the negative margin meet at the boundary.
+        let near = position(model, &Vector3::new(1.1, 0.0, 0.4), &ee).expect("finite");
+        let far = position(model, &Vector3::new(1.3, 0.0, 0.4), &ee).expect("finite");
+        assert!(!near.within() && !far.within());
+        let apart = near.margin - far.margin;
+        let line = |x: f64| (x * x + 0.067f64 * 0.067).sqrt();
+        assert!((apart - (line(1.3) - line(1.1))).abs() < 5e-4, "{apart}");
+    }
+
+    #[test]
+    fn input_that_means_nothing_is_refused() {
+        let (model, ee) = (Model::fr3(), EndEffector::default());
+        let nowhere = Vector3::new(f64::NAN, 0.0, 0.0);
+        assert_eq!(position(model, &nowhere, &ee), Err(IkError::NotFinite));
+        let mut target = flange(&READY);
+        target.translation.vector = nowhere;
+        assert_eq!(pose(model, &target, &ee), Err(IkError::NotFinite));
+    }
+}

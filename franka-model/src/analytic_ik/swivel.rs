@@ -1,0 +1,252 @@
+//! Joint 7 from the swivel angle: the roots of one equation.
+//!
+//! With joint 7 at some angle the wrist is known, with it the bend of the elbow, and the swivel
+//! angle then places the elbow: the axis of the forearm, y4, follows. It is the axis of joint 5,
+//! so it has to be at right angles to that of joint 6:
+//!
+//! ```text
+//! g(q7) = y4 · z6 = 0        one equation for each side of the elbow
+//! ```
+//!
+//! `g` is sought on the arcs of joint 7 on which shoulder and wrist are as far apart as joint 4
+//! allows. It is sampled there, densely where the half plane of the elbow turns quickly (the wrist
+//! passes near axis 1); sign changes are bracketed, and between samples that approach zero without
+//! reaching it the extremum is looked up, so that two close roots are not missed. At the ends of an
+//! arc `g` behaves like a square root; the samples are spaced like a cosine, which undoes that.
+
+use core::f64::consts::PI;
+
+use nalgebra::{Isometry3, Vector3};
+
+use super::bracket;
+use super::joint_7::{Elbow, Flange, Forearm, Hand, push_both};
+use super::solutions::Solutions;
+use crate::elbow::FLIP_ANGLE;
+use crate::geometry::WRIST;
+use crate::inertia::dot;
+use crate::scalar::{acos, atan2, sin_cos, sqrt};
+
+/// All solutions with the elbow at `angle` and joint 4 within `q4_range`, a part of the turn about
+/// the flip angle.
+pub(super) fn all(flange: &Isometry3<f64>, angle: f64, q4_range: [f64; 2]) -> Solutions {
+    let mut found = Solutions::NONE;
+    let flange = Flange::of(flange);
+    let (sin, cos) = sin_cos(angle);
+    let [lower, upper] = q4_range;
+    for (above, far) in [(false, lower), (true, upper)] {
+        if above == (far < FLIP_ANGLE) {
+            continue; // nothing of the range on this side
+        }
+        let side = Side {
+            flange: &flange,
+            above,
+            sin,
+            cos,
+        };
+        for arc in side.arcs(far).into_iter().flatten() {
+            arc.roots(&side, |q7| side.push(&mut found, q7));
+        }
+    }
+    found
+}
+
+/// The equation for one side of the elbow.
+struct Side<'a> {
+    flange: &'a Flange,
+    above: bool,
+    /// Of the swivel angle.
+    sin: f64,
+    cos: f64,
+}
+
+/// The equation at one angle of joint 7.
+struct Forming {
+    hand: Hand,
+    elbow: Elbow,
+    y4: Vector3<f64>,
+    g: f64,
+    /// Horizontal way from the shoulder to the wrist, `[m]`.
+    horizontal: [f64; 2],
+}
+
+impl Side<'_> {
+    fn at(&self, q7: f64) -> Forming {
+        let hand = Hand::of(self.flange, q7);
+        let w = -hand.to_shoulder;
+        let squared = dot(&w, &w);
+        let elbow = Elbow::on_side(self.above, squared);
+        let (length, offset) = (sqrt(squared), sqrt(w.x * w.x + w.y * w.y));
+        // Unit vector at right angles to w, towards the elbow: up, and turned about w.
+        let (up, turned) = (self.cos / (length * offset), self.sin / offset);
+        let towards = Vector3::new(
+            -w.x * w.z * up + w.y * turned,
+            -w.y * w.z * up - w.x * turned,
+            offset * offset * up,
+        );
+        let f = if self.above { -elbow.f } else { elbow.f };
+        let y4 = w * (-elbow.h / squared) - towards * (f / length);
+        Forming {
+            g: dot(&y4, &hand.z6),
+            horizontal: [w.x, w.y],
+            hand,
+            elbow,
+            y4,
+        }
+    }
+
+    fn push(&self, found: &mut Solutions, q7: f64) {
+        let Forming {
+            hand, elbow, y4, g, ..
+        } = self.at(q7);
+        // Where the half plane jumps there is a change of sign without a root.
+        if g.abs() > JUMP || g.is_nan() {
+            return;
+        }
+        let (s6, c6) = (dot(&y4, &hand.x6), dot(&y4, &hand.y6));
+        let norm = sqrt(s6 * s6 + c6 * c6);
+        let mut forearm = Forearm::of(&hand, &elbow, (s6 / norm, c6 / norm), None);
+        if g.abs() > ROUNDING {
+            // The equation is so steep that no number is closer to its root. Meet the pose exactly
+            // then, and the swivel angle as it comes.
+            let same =
+                |other: &Forearm| Some(other.straight) == forearm.as_ref().map(|f| f.straight);
+            let exact = Forearm::both(&hand, &elbow).into_iter().flatten();
+            forearm = exact.into_iter().find(same).or(forearm);
+        }
+        if let Some(forearm) = forearm {
+            push_both(found, &hand, &elbow, elbow.q4(), &forearm);
+        }
+    }
+
+    /// Where joint 4 is between the flip angle and `far`.
+    fn arcs(&self, far: f64) -> [Option<Arc>; 2] {
+        let d = &self.flange.from_shoulder;
+        let (p, q) = (dot(d, &self.flange.x), dot(d, &self.flange.y));
+        let radius = sqrt(p * p + q * q);
+        let squared = dot(d, d) + WRIST * WRIST;
+        let reach = |q4| Elbow::at(q4).map_or(0.0, |elbow| elbow.squared_distance());
+        // The wrist's squared distance is `squared − 2 WRIST radius cos(off)`.
+        let off = |squared_distance: f64| {
+            let cos = (squared - squared_distance) / (2.0 * WRIST * radius.max(f64::MIN_POSITIVE));
+            acos(cos.clamp(-1.0, 1.0))
+        };
+        let slack = 1e-12;
+        let (least, most) = (off(reach(far) - slack), off(reach(FLIP_ANGLE) + slack));
+        if least >= most {
+            return [None, None]; // also for what is not a number
+        }
+        let nearest = atan2(-q, p);
+        [1.0, -1.0].map(|direction| {
+            Some(Arc {
+                middle: nearest + direction * 0.5 * (least + most),
+                half: direction * 0.5 * (most - least),
+            })
+        })
+    }
+}
+
+/// An interval of joint 7, walked through by an angle from 0 to π.
+struct Arc {
+    middle: f64,
+    half: f64,
+}
+
+/// The equation at one place of the walk.
+#[derive(Clone, Copy)]
+struct Sample {
+    place: f64,
+    g: f64,
+    horizontal: [f64; 2],
+}
+
+impl Sample {
+    /// On the way to `other` the half plane of the elbow turns by much, or there is a root or
+    /// nearly one, which may not be the only one.
+    fn hides_something_before(&self, other: &Self) -> bool {
+        let ([a, b], [c, d]) = (self.horizontal, other.horizontal);
+        let (along, across) = (a * c + b * d, a * d - b * c);
+        let turns = across.abs() > TURN * along;
+        let near_root = (self.g - other.g).abs() > self.g.abs().min(other.g.abs());
+        turns || (near_root && other.place - self.place > FINE)
+    }
+
+    fn point(&self) -> (f64, f64) {
+        (self.place, self.g)
+    }
+
+    fn opposes(&self, other: &Self) -> bool {
+        (self.g > 0.0) != (other.g > 0.0)
+    }
+}
+
+impl Arc {
+    fn q7(&self, place: f64) -> f64 {
+        self.middle - self.half * sin_cos(place).1
+    }
+
+    fn sample(&self, side: &Side<'_>, place: f64) -> Sample {
+        let Forming { g, horizontal, .. } = side.at(self.q7(place));
+        Sample {
+            place,
+            g,
+            horizontal,
+        }
+    }
+
+    /// Calls `visit` with the joint angle of every root.
+    fn roots(&self, side: &Side<'_>, mut visit: impl FnMut(f64)) {
+        let sample = |place: f64| self.sample(side, place);
+        let g = |place: f64| side.at(self.q7(place)).g;
+        let mut visit = |place: f64| visit(self.q7(place));
+        let mut before: Option<Sample> = None;
+        let mut left = sample(0.0);
+        for step in 1..=STEPS {
+            // Samples to come, the nearest last.
+            let mut pending = [sample(PI * f64::from(step) / f64::from(STEPS)); HALVINGS + 1];
+            let mut count = 1;
+            while count > 0 {
+                let right = pending[count - 1];
+                if count <= HALVINGS && left.hides_something_before(&right) {
+                    pending[count] = sample(0.5 * (left.place + right.place));
+                    count += 1;
+                    continue;
+                }
+                count -= 1;
+                if left.opposes(&right) {
+                    visit(bracket::root(g, left.point(), right.point()));
+                } else if left.g.abs() <= right.g.abs() {
+                    match before {
+                        Some(before) if before.opposes(&left) => {}
+                        Some(before) if before.g.abs() < left.g.abs() => {}
+                        Some(before) => {
+                            let points = [before.point(), left.point(), right.point()];
+                            bracket::dip(g, points, &mut visit);
+                        }
+                        None => bracket::dip_at_end(g, left.point(), right.point(), &mut visit),
+                    }
+                }
+                before = Some(left);
+                left = right;
+            }
+        }
+        if let Some(before) = before
+            && !before.opposes(&left)
+            && left.g.abs() < before.g.abs()
+        {
+            bracket::dip_at_end(g, left.point(), before.point(), &mut visit);
+        }
+    }
+}
+
+/// Samples of an arc beyond its first.
+const STEPS: u32 = 24;
+/// How often an interval between samples is halved at most.
+const HALVINGS: usize = 24;
+/// Distance of samples around a root, `[rad]` of the walk.
+const FINE: f64 = 0.13 * PI / STEPS as f64;
+/// Tangent of the angle by which the half plane of the elbow turns between samples at most.
+const TURN: f64 = 0.3;
+/// What `g` is at a root, unless it is steep there: the wrist within millimetres of axis 1.
+const ROUNDING: f64 = 1e-14;
+/// What `g` is at any root at most.
+const JUMP: f64 = 1e-9;
