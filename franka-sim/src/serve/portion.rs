@@ -11,7 +11,7 @@ use super::device::Device;
 
 /// How long the rest of a message may take to come. Clients write each in one piece; one that
 /// breaks off in the middle must not keep others out.
-const UNFINISHED: Duration = Duration::from_millis(500);
+const UNFINISHED: Duration = Duration::from_millis(300);
 
 /// Why no message comes any more.
 pub(super) enum Silence {

@@ -3,17 +3,17 @@
 use std::net::{IpAddr, SocketAddr, UdpSocket};
 
 use bytes::Bytes;
-use franka_proto::RobotCommand;
+use franka_proto::{RobotCommand, server};
 use tokio::sync::mpsc;
 
 use super::cycle::Pace;
 use super::device::Device;
 
-/// What is done with a device between two milliseconds.
-type Hands<D> = Box<dyn FnOnce(&mut D, Pace) + Send>;
+/// Something to do with a device between two milliseconds.
+pub(super) type Hands<D> = Box<dyn FnOnce(&mut D, Pace) + Send>;
 
-/// What the Tokio side asks of the thread.
-pub(super) enum Order<D> {
+/// What the stream asks of the thread.
+pub(super) enum Order {
     /// A client is there: where it is, and where its replies go.
     Connect {
         peer: IpAddr,
@@ -23,39 +23,49 @@ pub(super) enum Order<D> {
     Receive(Bytes),
     /// The client has gone.
     Disconnect,
-    /// Something to do with the device.
-    Hands(Hands<D>),
 }
 
 /// Datagrams read per cycle, at most: a flood must not stop the clock.
 const DATAGRAMS: usize = 64;
 
-/// Orders taken per cycle, at most, for the same reason. Fewer than the replies that may wait for
-/// a client, so that one that reads is never taken for one that does not.
+/// Orders taken per cycle, at most, for the same reason.
 const ORDERS: usize = 32;
 
-/// Device, UDP socket and the two queues.
+/// Replies that may wait for a client. One that has no room for the answers to what is open and to
+/// one request more is not heard until it has read some.
+pub(super) const REPLIES: usize = 2 * ANSWERS;
+const ANSWERS: usize = 1 + <server::Session>::PENDING_LIMIT;
+
+/// Device, UDP socket and the queues.
 pub(super) struct Seat<D> {
     device: D,
     socket: UdpSocket,
-    orders: mpsc::Receiver<Order<D>>,
+    orders: mpsc::Receiver<Order>,
+    hands: mpsc::Receiver<Hands<D>>,
     client: Option<(IpAddr, mpsc::Sender<Bytes>)>,
 }
 
 impl<D: Device> Seat<D> {
-    pub(super) fn new(device: D, socket: UdpSocket, orders: mpsc::Receiver<Order<D>>) -> Self {
+    pub(super) fn new(
+        device: D,
+        socket: UdpSocket,
+        orders: mpsc::Receiver<Order>,
+        hands: mpsc::Receiver<Hands<D>>,
+    ) -> Self {
         Self {
             device,
             socket,
             orders,
+            hands,
             client: None,
         }
     }
 
-    /// One millisecond: commands, orders, state, replies. False at the end.
+    /// One millisecond: commands, orders, hands, state, replies. False at the end.
     pub(super) fn cycle(&mut self, pace: Pace) -> bool {
         self.take_commands();
-        if !self.take_orders(pace) {
+        self.take_orders();
+        if !self.lend_hands(pace) {
             return false;
         }
         self.send_replies();
@@ -86,8 +96,11 @@ impl<D: Device> Seat<D> {
         }
     }
 
-    fn take_orders(&mut self, pace: Pace) -> bool {
+    fn take_orders(&mut self) {
         for _ in 0..ORDERS {
+            if !self.has_room() {
+                return;
+            }
             match self.orders.try_recv() {
                 Ok(Order::Connect { peer, replies }) => {
                     self.device.disconnect();
@@ -106,7 +119,27 @@ impl<D: Device> Seat<D> {
                     self.device.disconnect();
                     self.client = None;
                 }
-                Ok(Order::Hands(hands)) => hands(&mut self.device, pace),
+                Err(_) => return,
+            }
+        }
+    }
+
+    /// Whether the client has room for what may be answered to one more order. One that has gone
+    /// needs none.
+    fn has_room(&self) -> bool {
+        let full =
+            |replies: &mpsc::Sender<Bytes>| !replies.is_closed() && replies.capacity() < ANSWERS;
+        !self
+            .client
+            .as_ref()
+            .is_some_and(|(_, replies)| full(replies))
+    }
+
+    /// False if nobody is left who could lend any.
+    fn lend_hands(&mut self, pace: Pace) -> bool {
+        for _ in 0..ORDERS {
+            match self.hands.try_recv() {
+                Ok(hands) => hands(&mut self.device, pace),
                 Err(mpsc::error::TryRecvError::Empty) => return true,
                 Err(mpsc::error::TryRecvError::Disconnected) => return false,
             }
@@ -116,12 +149,12 @@ impl<D: Device> Seat<D> {
 
     fn send_replies(&mut self) {
         while let Some(reply) = self.device.take_reply() {
-            let full = match &self.client {
+            let gone = match &self.client {
                 Some((_, replies)) => replies.try_send(reply).is_err(),
                 None => false,
             };
-            if full {
-                // It does not read, or has gone: without the sender the connection closes.
+            if gone {
+                // It has gone: without the sender the connection closes.
                 self.device.disconnect();
                 self.client = None;
             }

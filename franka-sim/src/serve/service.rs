@@ -10,13 +10,13 @@ use tokio::task::JoinHandle;
 
 use super::cycle::Pace;
 use super::device::Device;
-use super::seat::{Order, Seat};
+use super::seat::{Hands, Seat};
 use super::tcp;
 
 /// A device that is being served. Dropping it closes its sockets.
 pub struct Service<D> {
     address: SocketAddr,
-    orders: mpsc::Sender<Order<D>>,
+    hands: mpsc::Sender<Hands<D>>,
     server: JoinHandle<()>,
 }
 
@@ -37,14 +37,15 @@ pub(super) async fn open<D: Device>(
     let address = listener.local_addr()?;
     let socket = UdpSocket::bind(SocketAddr::new(address.ip(), 0))?;
     socket.set_nonblocking(true)?;
-    let (orders, inbox) = mpsc::channel(QUEUE);
-    let server = tokio::spawn(tcp::serve(listener, orders.clone(), device.name()));
+    let (orders, stream) = mpsc::channel(QUEUE);
+    let (hands, lent) = mpsc::channel(QUEUE);
+    let server = tokio::spawn(tcp::serve::<D>(listener, orders, device.name()));
     let service = Service {
         address,
-        orders,
+        hands,
         server,
     };
-    Ok((service, Seat::new(device, socket, inbox)))
+    Ok((service, Seat::new(device, socket, stream, lent)))
 }
 
 impl<D: 'static> Service<D> {
@@ -78,11 +79,11 @@ impl<D: 'static> Service<D> {
         hands: impl FnOnce(&mut D, Pace) -> R + Send + 'static,
     ) -> Result<R, Stopped> {
         let (answer, result) = oneshot::channel();
-        let order = Order::Hands(Box::new(move |device: &mut D, pace| {
+        let hands: Hands<D> = Box::new(move |device, pace| {
             // Whoever asked may have gone.
             let _ = answer.send(hands(device, pace));
-        }));
-        self.orders.send(order).await.map_err(|_| Stopped)?;
+        });
+        self.hands.send(hands).await.map_err(|_| Stopped)?;
         result.await.map_err(|_| Stopped)
     }
 
@@ -108,6 +109,6 @@ impl<D> Drop for Service<D> {
     }
 }
 
-/// Orders that may wait for the thread: portions of stream bytes and hands. It takes all of them
-/// every millisecond.
+/// Messages of the client, and hands, that may wait for the thread, which takes some of them every
+/// millisecond.
 const QUEUE: usize = 64;

@@ -19,10 +19,7 @@ use tokio::time::{Instant, sleep_until, timeout};
 use super::device::Device;
 use super::lobby::{Lobby, Visitor};
 use super::portion::{Silence, portion};
-use super::seat::Order;
-
-/// Replies that may wait for a client that does not read.
-const REPLIES: usize = 64;
+use super::seat::{Order, REPLIES};
 
 /// How long a client may leave no room for a reply. One that does not read must not keep others out.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
@@ -34,7 +31,7 @@ const HANDOVER: Duration = Duration::from_millis(50);
 /// Serves clients until the thread has gone or the task is aborted.
 pub(super) async fn serve<D: Device>(
     listener: TcpListener,
-    orders: mpsc::Sender<Order<D>>,
+    orders: mpsc::Sender<Order>,
     name: &'static str,
 ) {
     let mut lobby = Lobby::<D>::new(listener, name);
@@ -44,7 +41,7 @@ pub(super) async fn serve<D: Device>(
             Some(visitor) => visitor,
             None => lobby.next().await,
         };
-        let mut session = std::pin::pin!(session(visitor, orders.clone(), name));
+        let mut session = std::pin::pin!(session::<D>(visitor, orders.clone(), name));
         let mut waiting: Option<(Visitor, Instant)> = None;
         loop {
             let patience = waiting.as_ref().map(|(_, deadline)| *deadline);
@@ -82,7 +79,7 @@ async fn until(deadline: Option<Instant>) {
 }
 
 /// One client from first message to last.
-async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order<D>>, name: &str) {
+async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order>, name: &str) {
     let peer = visitor.peer;
     tracing::info!(%peer, "client of the {name} connected");
     let (sender, replies) = mpsc::channel(REPLIES);
@@ -91,7 +88,7 @@ async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order<D>>, na
         replies: sender,
     };
     if orders.send(connect).await.is_ok() {
-        transfer(visitor, &orders, replies, name).await;
+        transfer::<D>(visitor, &orders, replies, name).await;
         // If the thread has gone, so has the robot.
         let _ = orders.send(Order::Disconnect).await;
     }
@@ -101,7 +98,7 @@ async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order<D>>, na
 /// Moves messages both ways until either side is done.
 async fn transfer<D: Device>(
     visitor: Visitor,
-    orders: &mpsc::Sender<Order<D>>,
+    orders: &mpsc::Sender<Order>,
     mut replies: mpsc::Receiver<Bytes>,
     name: &str,
 ) {

@@ -1,0 +1,123 @@
+//! The simulator as a process.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use franka_proto::Version;
+
+use crate::port::Port;
+
+/// A running simulator on free ports of 127.0.0.1. It ends with this value.
+pub(crate) struct Binary {
+    child: Mutex<Child>,
+    version: Version,
+    ports: [Port; 3],
+    log: Arc<Mutex<Vec<String>>>,
+}
+
+impl Binary {
+    /// Starts `franka-sim --robot kind` and waits until it listens.
+    pub(crate) fn start(kind: &str) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_franka-sim"))
+            .args(["--robot", kind, "--port", "0"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the simulator starts");
+        let output = child.stdout.take().expect("a pipe");
+        let mut addresses = BufReader::new(output).lines().map(|line| {
+            let line = line.expect("text");
+            let address = line.rsplit(' ').next().expect("a word");
+            address.parse::<SocketAddr>().expect("an address")
+        });
+        let mut address = || addresses.next().expect("three lines");
+        let version = match kind {
+            "fer" => Version::V5,
+            _ => Version::V10,
+        };
+        let ports = [
+            Port::robot(version, address()),
+            Port::hand(address()),
+            Port::vacuum_gripper(address()),
+        ];
+        let log = Arc::new(Mutex::new(Vec::new()));
+        let errors = child.stderr.take().expect("a pipe");
+        let written = log.clone();
+        std::thread::spawn(move || {
+            for line in BufReader::new(errors).lines().map_while(Result::ok) {
+                written.lock().expect("no panic").push(line);
+            }
+        });
+        Self {
+            child: Mutex::new(child),
+            version,
+            ports,
+            log,
+        }
+    }
+
+    pub(crate) fn version(&self) -> Version {
+        self.version
+    }
+
+    /// Robot, hand and vacuum gripper.
+    pub(crate) fn ports(&self) -> &[Port; 3] {
+        &self.ports
+    }
+
+    pub(crate) fn robot(&self) -> &Port {
+        &self.ports[0]
+    }
+
+    /// Fails unless the process that was started is still there.
+    pub(crate) fn assert_alive(&self) {
+        let ended = self.child.lock().expect("no panic").try_wait();
+        let ended = ended.expect("a child of this process");
+        assert!(ended.is_none(), "it ended: {ended:?}\n{}", self.log());
+    }
+
+    /// Waits until the simulator has logged a line that contains `text`.
+    pub(crate) fn assert_logged(&self, text: &str) {
+        let deadline = Instant::now() + Duration::from_secs(2);
+        while !self.log().contains(text) {
+            assert!(Instant::now() < deadline, "no {text:?} in\n{}", self.log());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    fn log(&self) -> String {
+        self.log.lock().expect("no panic").join("\n")
+    }
+
+    /// Memory that the process has and shares with no file, `[KiB]`.
+    pub(crate) fn memory(&self) -> usize {
+        let status = fs::read_to_string(self.proc("status")).expect("Linux");
+        let line = status
+            .lines()
+            .find_map(|line| line.strip_prefix("RssAnon:"));
+        let text = line.expect("Linux 4.5").trim();
+        text.trim_end_matches(" kB").parse().expect("a number")
+    }
+
+    /// File descriptors that the process has open.
+    pub(crate) fn descriptors(&self) -> usize {
+        fs::read_dir(self.proc("fd")).expect("Linux").count()
+    }
+
+    fn proc(&self, file: &str) -> String {
+        let process = self.child.lock().expect("no panic").id();
+        format!("/proc/{process}/{file}")
+    }
+}
+
+impl Drop for Binary {
+    fn drop(&mut self) {
+        let mut child = self.child.lock().expect("no panic");
+        child.kill().expect("a child of this process");
+        child.wait().expect("a child of this process");
+    }
+}

@@ -1,0 +1,134 @@
+//! Sessions whose client leaves the protocol.
+
+use std::time::Instant;
+
+use crate::each_robot;
+use crate::good::assert_served;
+use crate::port::Connection;
+
+#[test]
+fn a_message_that_is_none_ends_the_session() {
+    each_robot(|binary| {
+        for port in binary.ports() {
+            let stop = port.stop;
+            for (what, bytes) in [
+                ("no message", vec![0xff; 200]),
+                ("zeros", vec![0; 200]),
+                ("a size of nothing", port.announcing(0, stop, 1)),
+                (
+                    "a size below the header's",
+                    port.announcing(port.header() as u32 - 1, stop, 1),
+                ),
+                ("a size above the bound", port.announcing(1025, stop, 1)),
+                ("4 GiB", port.announcing(u32::MAX, stop, 1)),
+                ("a second Connect", port.connect(port.version, 4711)),
+                ("an unknown command", port.message(14, 1, &[])),
+                ("a far unknown command", port.message(0xfffe, 1, &[])),
+                (
+                    "less than the parameters",
+                    port.message(port.setter, 1, &[0; 3]),
+                ),
+                ("no parameters", port.message(port.setter, 1, &[])),
+            ] {
+                let (mut connection, _udp) = port.shake_hands();
+                connection.send(&bytes);
+                assert_eq!(connection.read_to_end(), [], "{}: {what}", port.name);
+                assert_served(binary);
+            }
+            binary.assert_logged(&format!("client of the {} disconnected", port.name));
+        }
+    });
+}
+
+#[test]
+fn a_message_that_breaks_off_ends_the_session() {
+    each_robot(|binary| {
+        for port in binary.ports() {
+            let setter = port.message(port.setter, 1, &[0; 400]);
+            for length in [1, port.header() + 1] {
+                // Silence: the session goes on, and then it does not.
+                let (mut connection, udp) = port.shake_hands();
+                connection.send(&setter[..length]);
+                udp.recv(&mut []).expect("a state");
+                assert_served(binary);
+                assert_eq!(connection.read_to_end(), [], "{length} bytes");
+                for end in [drop, Connection::reset] {
+                    let (mut connection, _udp) = port.shake_hands();
+                    connection.send(&setter[..length]);
+                    end(connection);
+                    assert_served(binary);
+                }
+            }
+            binary.assert_logged(&format!("client of the {} disconnected: half", port.name));
+        }
+    });
+}
+
+#[test]
+fn what_is_only_unusual_is_answered() {
+    each_robot(|binary| {
+        for port in binary.ports() {
+            let (mut connection, _udp) = port.shake_hands();
+            let status = |connection: &mut Connection, id: u32| {
+                // One byte on the robot's stream, two on the others.
+                let length = port.header() + if port.name == "robot" { 1 } else { 2 };
+                let answer = connection.read(length).expect("an answer");
+                let place = port.header() - 8;
+                assert_eq!(answer[place..place + 4], id.to_le_bytes(), "{}", port.name);
+                answer[port.header()]
+            };
+            // Byte by byte.
+            connection.trickle(&port.message(port.stop, 1, &[]));
+            assert_eq!(status(&mut connection, 1), 0);
+            // Longer than needed.
+            connection.send(&port.message(port.stop, 2, &[0xff; 64]));
+            assert_eq!(status(&mut connection, 2), 0);
+            // An id again, once it is answered; ids backwards.
+            for id in [2, 2, 1, 0, u32::MAX] {
+                connection.send(&port.message(port.stop, id, &[]));
+                assert_eq!(status(&mut connection, id), 0);
+            }
+            // Many at once, all read.
+            let burst: Vec<u8> = (10..60)
+                .flat_map(|id| port.message(port.stop, id, &[]))
+                .collect();
+            connection.send(&burst);
+            for id in 10..60 {
+                assert_eq!(status(&mut connection, id), 0);
+            }
+            drop(connection);
+            assert_served(binary);
+        }
+    });
+}
+
+#[test]
+fn a_flood_of_requests_holds_up_no_state() {
+    each_robot(|binary| {
+        let port = binary.robot();
+        let (mut connection, udp) = port.shake_hands();
+        let count = 30_000;
+        let flood: Vec<u8> = (1..=count)
+            .flat_map(|id| port.message(port.stop, id, &[]))
+            .collect();
+        let mut writer = connection.another();
+        let begun = Instant::now();
+        let mut states = 0;
+        let answers = count as usize * (port.header() + 1);
+        std::thread::scope(|scope| {
+            scope.spawn(|| writer.send(&flood));
+            let reading = scope.spawn(|| connection.read(answers));
+            while !reading.is_finished() {
+                udp.recv(&mut []).expect("a state");
+                states += 1;
+            }
+            let answered = reading.join().expect("no panic");
+            assert!(answered.is_some(), "every request is answered");
+        });
+        // On a busy machine not every millisecond is kept; in a thread that is held up, hardly any.
+        let due = begun.elapsed().as_millis() / 4;
+        assert!(states > due, "{states} states, at least {due} expected");
+        drop((connection, writer));
+        assert_served(binary);
+    });
+}

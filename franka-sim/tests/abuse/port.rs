@@ -1,0 +1,184 @@
+//! A service as bytes see it.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{SocketAddr, TcpStream, UdpSocket};
+use std::time::{Duration, Instant};
+
+use franka_proto::framing::Header;
+use franka_proto::{Command, Version, gripper, vacuum};
+use socket2::SockRef;
+
+/// Time for whatever happens at once, on a loaded machine too.
+pub(crate) const SOON: Duration = Duration::from_secs(2);
+
+/// The robot's port, the hand's or the vacuum gripper's.
+pub(crate) struct Port {
+    pub(crate) name: &'static str,
+    pub(crate) address: SocketAddr,
+    /// The version that it speaks.
+    pub(crate) version: u16,
+    /// Bytes of a command number: four on the robot's stream, two on the others.
+    number: usize,
+    /// The command that only stops.
+    pub(crate) stop: u32,
+    /// A command with parameters.
+    pub(crate) setter: u32,
+    /// Bytes of the answer to the handshake.
+    greeting: usize,
+}
+
+impl Port {
+    pub(crate) fn robot(version: Version, address: SocketAddr) -> Self {
+        let number = |command| version.command_number(command).expect("both have it");
+        Self {
+            name: "robot",
+            address,
+            version: version.number(),
+            number: 4,
+            stop: number(Command::StopMove),
+            setter: number(Command::SetLoad),
+            greeting: Header::SIZE + 3,
+        }
+    }
+
+    pub(crate) fn hand(address: SocketAddr) -> Self {
+        Self {
+            name: "Franka Hand",
+            address,
+            version: 3,
+            number: 2,
+            stop: 4,
+            setter: gripper::Command::Move as u32,
+            greeting: 14,
+        }
+    }
+
+    pub(crate) fn vacuum_gripper(address: SocketAddr) -> Self {
+        Self {
+            name: "vacuum gripper",
+            address,
+            version: 1,
+            number: 2,
+            stop: 3,
+            setter: vacuum::Command::DropOff as u32,
+            greeting: 14,
+        }
+    }
+
+    /// Bytes of a header.
+    pub(crate) fn header(&self) -> usize {
+        self.number + 8
+    }
+
+    /// A message, with the size that it has.
+    pub(crate) fn message(&self, command: u32, id: u32, payload: &[u8]) -> Vec<u8> {
+        let size = (self.header() + payload.len()) as u32;
+        [&self.announcing(size, command, id), payload].concat()
+    }
+
+    /// A header that announces `size`.
+    pub(crate) fn announcing(&self, size: u32, command: u32, id: u32) -> Vec<u8> {
+        let mut bytes = command.to_le_bytes()[..self.number].to_vec();
+        bytes.extend(id.to_le_bytes());
+        bytes.extend(size.to_le_bytes());
+        bytes
+    }
+
+    /// The first message of a client.
+    pub(crate) fn connect(&self, version: u16, udp_port: u16) -> Vec<u8> {
+        let payload = [version.to_le_bytes(), udp_port.to_le_bytes()].concat();
+        self.message(0, 0, &payload)
+    }
+
+    pub(crate) fn dial(&self) -> Connection {
+        Connection::new(TcpStream::connect(self.address).expect("a listener"))
+    }
+
+    /// A connection with the handshake done, and the socket that gets the states.
+    pub(crate) fn shake_hands(&self) -> (Connection, UdpSocket) {
+        let begun = Instant::now();
+        loop {
+            let udp = UdpSocket::bind("127.0.0.1:0").expect("a port");
+            udp.set_read_timeout(Some(SOON)).expect("an option");
+            let port = udp.local_addr().expect("bound").port();
+            let mut connection = self.dial();
+            connection.send(&self.connect(self.version, port));
+            if let Some(answer) = connection.read(self.greeting) {
+                assert_eq!(answer[self.header()..][..1], [0], "{}", self.name);
+                return (connection, udp);
+            }
+            // The client before has not been taken leave of yet.
+            assert!(begun.elapsed() < SOON, "{} lets nobody in", self.name);
+        }
+    }
+}
+
+/// A client's stream.
+pub(crate) struct Connection {
+    stream: TcpStream,
+}
+
+impl Connection {
+    fn new(stream: TcpStream) -> Self {
+        stream.set_read_timeout(Some(SOON)).expect("an option");
+        stream.set_write_timeout(Some(SOON)).expect("an option");
+        stream.set_nodelay(true).expect("an option");
+        Self { stream }
+    }
+
+    /// The same stream, for another thread.
+    pub(crate) fn another(&self) -> Self {
+        let stream = self.stream.try_clone().expect("a descriptor");
+        Self { stream }
+    }
+
+    /// Writes; a peer that has closed already is as good.
+    pub(crate) fn send(&mut self, bytes: &[u8]) {
+        if let Err(error) = self.stream.write_all(bytes) {
+            assert!(is_end(error.kind()), "{error}");
+        }
+    }
+
+    /// Writes a byte at a time, each in a segment of its own.
+    pub(crate) fn trickle(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.send(&[*byte]);
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// The next bytes, unless the stream ends before.
+    pub(crate) fn read(&mut self, length: usize) -> Option<Vec<u8>> {
+        let mut bytes = vec![0; length];
+        match self.stream.read_exact(&mut bytes) {
+            Ok(()) => Some(bytes),
+            Err(error) if is_end(error.kind()) => None,
+            Err(error) => panic!("no answer: {error}"),
+        }
+    }
+
+    /// Reads to the end, which has to come.
+    pub(crate) fn read_to_end(&mut self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        match self.stream.read_to_end(&mut bytes) {
+            Ok(_) => {}
+            Err(error) if is_end(error.kind()) => {}
+            Err(error) => panic!("the connection stays open: {error}"),
+        }
+        bytes
+    }
+
+    /// Ends with a reset in place of an orderly end.
+    pub(crate) fn reset(self) {
+        let socket = SockRef::from(&self.stream);
+        let now = Some(Duration::ZERO);
+        socket.set_linger(now).expect("an option");
+    }
+}
+
+fn is_end(kind: ErrorKind) -> bool {
+    matches!(
+        kind,
+        ErrorKind::UnexpectedEof | ErrorKind::ConnectionReset | ErrorKind::BrokenPipe
+    )
+}

@@ -1,0 +1,83 @@
+//! More than one client at a time, and clients that leave without a word.
+
+use std::net::UdpSocket;
+
+use crate::each_robot;
+use crate::good::{assert_moves_during, assert_served};
+use crate::port::{Connection, Port};
+
+/// A request of the client that has the seat is answered, and states come.
+fn assert_undisturbed(port: &Port, connection: &mut Connection, udp: &UdpSocket, id: u32) {
+    connection.send(&port.message(port.stop, id, &[]));
+    let answer = connection.read(port.header() + 1).expect("an answer");
+    assert_eq!(answer[port.header()], 0, "{}", port.name);
+    if port.name != "robot" {
+        // The second byte of a status.
+        connection.read(1).expect("the rest of the answer");
+    }
+    udp.recv(&mut []).expect("a state");
+}
+
+#[test]
+fn a_second_client_is_refused_and_the_first_not_disturbed() {
+    each_robot(|binary| {
+        for port in binary.ports() {
+            let (mut first, udp) = port.shake_hands();
+            for id in 1..=10 {
+                let mut second = port.dial();
+                second.send(&port.connect(port.version, 4711));
+                assert_undisturbed(port, &mut first, &udp, 2 * id);
+                // In order: whoever waits hears of it at once.
+                assert_eq!(second.read_to_end(), []);
+                assert_undisturbed(port, &mut first, &udp, 2 * id + 1);
+            }
+            // Nor by second clients that leave the protocol, say nothing, or vanish.
+            let mut garbage = port.dial();
+            garbage.send(&[0xff; 100]);
+            let silent: Vec<_> = (0..20).map(|_| port.dial()).collect();
+            port.dial().reset();
+            assert_undisturbed(port, &mut first, &udp, 100);
+            assert_eq!(garbage.read_to_end(), []);
+            drop(silent);
+            assert_undisturbed(port, &mut first, &udp, 101);
+            binary.assert_logged(&format!("refused: the {} has a client", port.name));
+            drop(first);
+            assert_served(binary);
+        }
+    });
+}
+
+#[test]
+fn clients_that_crowd_at_the_door_do_not_disturb_a_motion() {
+    each_robot(|binary| {
+        let port = binary.robot();
+        assert_moves_during(binary, || {
+            for round in 0..50 {
+                let mut connection = port.dial();
+                match round % 3 {
+                    0 => connection.send(&port.connect(port.version, 4711)),
+                    1 => connection.send(&[0; 50]),
+                    _ => connection.reset(),
+                }
+            }
+        });
+        assert_served(binary);
+    });
+}
+
+#[test]
+fn a_client_that_leaves_makes_room_at_once() {
+    each_robot(|binary| {
+        for port in binary.ports() {
+            for end in [drop, Connection::reset] {
+                for _ in 0..5 {
+                    let (connection, udp) = port.shake_hands();
+                    // The states go on for a moment, to a port that is closed.
+                    drop(udp);
+                    end(connection);
+                }
+                assert_served(binary);
+            }
+        }
+    });
+}
