@@ -25,6 +25,7 @@
 //! | [`elbow`] | the vendor's elbow parameter, and the swivel angle |
 //! | [`collision`] | distances to itself, planes and boxes, with gradients |
 //! | `urdf` (a feature) | models from the description that a robot serves |
+//! | `model_library` (a feature) | the code that a Franka Emika Robot computes with |
 //!
 //! # Conventions
 //!
@@ -55,9 +56,9 @@
 //! Friction, rotor inertia and joint elasticity are not part of the model, as they are not part of
 //! the vendor's.
 #![no_std]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "model-library"), forbid(unsafe_code))]
 
-#[cfg(any(test, feature = "urdf"))]
+#[cfg(any(test, feature = "urdf", feature = "model-library"))]
 extern crate std;
 
 mod bodies;
@@ -82,6 +83,8 @@ pub mod geometry;
 pub mod inverse_kinematics;
 pub mod limits;
 pub mod load;
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+pub mod model_library;
 pub mod rotation;
 pub mod transform;
 #[cfg(feature = "urdf")]
