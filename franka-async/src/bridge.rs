@@ -7,11 +7,10 @@ use std::collections::HashMap;
 use std::io;
 use std::time::Duration;
 
-use franka_model::Model;
-use franka_proto::{RobotState, Version};
+use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order, Record};
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output};
-use franka_rt::session::{Goal, GoalError, GoalId, Target};
+use franka_rt::session::{GoalError, GoalId, Target};
 use franka_rt::thread::{Handle, Notice, Thread};
 use franka_rt::wake::Wake;
 use tokio::io::Interest;
@@ -21,6 +20,7 @@ use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use crate::channel::{CLOSED_BY_US, Channel, Connection, Report};
+use crate::motion::Work;
 
 /// Records that a slow listener may lag behind before it misses some: two seconds.
 const RECORDS: usize = 2048;
@@ -34,8 +34,8 @@ pub(crate) type Outcome = Result<MotionReport, MotionError>;
 /// What handles and motions ask of the bridge.
 #[derive(Debug)]
 pub(crate) enum Input {
-    Submit {
-        goal: Box<Goal>,
+    Begin {
+        work: Work,
         done: oneshot::Sender<Outcome>,
     },
     /// `taken` hears whether the goal is still the newest.
@@ -111,15 +111,14 @@ pub(crate) struct Bridge {
 
 impl Bridge {
     pub(crate) fn new(
-        model: &'static Model,
-        version: Version,
+        lifecycle: Lifecycle,
         handle: Handle,
         bell: AsyncFd<Wake>,
         (channel, connection): (Channel, Connection),
         states: watch::Sender<RobotState>,
     ) -> Self {
         Self {
-            lifecycle: Lifecycle::new(model, version),
+            lifecycle,
             bell,
             orders: handle.orders,
             notices: handle.notices,
@@ -268,11 +267,19 @@ impl Bridge {
     fn on_input(&mut self, input: Input) {
         let now = self.now();
         match input {
-            Input::Submit { goal, done } => {
-                let submitted = self.lifecycle.submit(*goal, &self.states.borrow(), now);
-                match submitted {
+            Input::Begin { work, done } => {
+                let id = work.id();
+                let begun = match work {
+                    Work::Goal(goal) => self.lifecycle.submit(*goal, &self.states.borrow(), now),
+                    Work::Program {
+                        id,
+                        program,
+                        request,
+                    } => self.lifecycle.control(id, program, *request, now),
+                };
+                match begun {
                     Ok(()) => {
-                        self.waiting.insert(goal.id, done);
+                        self.waiting.insert(id, done);
                     }
                     Err(error) => {
                         let _ = done.send(Err(error));

@@ -4,6 +4,7 @@ use std::net::{IpAddr, SocketAddr};
 use std::time::Duration;
 
 use franka_proto::Version;
+use franka_rt::driver::ControlLog;
 use franka_rt::sched::{Realtime, Scheduling};
 use tokio_util::sync::CancellationToken;
 
@@ -87,6 +88,7 @@ pub struct Builder {
     pub(crate) scheduling: Scheduling,
     pub(crate) connect_timeout: Duration,
     pub(crate) link_timeout: Duration,
+    pub(crate) log_size: usize,
     pub(crate) cancellation: CancellationToken,
 }
 
@@ -98,6 +100,7 @@ impl Builder {
             scheduling: Scheduling::default(),
             connect_timeout: connect::TCP_TIMEOUT,
             link_timeout: franka_rt::driver::LINK_TIMEOUT,
+            log_size: ControlLog::DEFAULT_CAPACITY,
             cancellation: CancellationToken::new(),
         }
     }
@@ -149,6 +152,14 @@ impl Builder {
     /// Silence of the robot after which a running motion fails with `LinkLost`. 1 s by default.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
+        self
+    }
+
+    /// How many of its last cycles an error carries when the robot ends a motion: see
+    /// [`ControlError::log`](crate::ControlError::log). 50 by default; 0 for none, and then without the success rate in
+    /// its text.
+    pub fn log_size(mut self, cycles: usize) -> Self {
+        self.log_size = cycles;
         self
     }
 

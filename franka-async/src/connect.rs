@@ -8,6 +8,7 @@ use franka_proto::client::{Event, Session};
 use franka_proto::{Protocol, RobotState, Version};
 use franka_rt::driver::Driver;
 use franka_rt::exchange;
+use franka_rt::lifecycle::Lifecycle;
 use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
 use franka_rt::wake::Wake;
 use futures::{SinkExt, StreamExt};
@@ -46,9 +47,9 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let (channel, connection, reports) =
         Channel::start(opened.stream, opened.session, published.clone());
     let stats = opened.handle.stats.clone();
+    let lifecycle = Lifecycle::new(opened.model, opened.version).with_log_size(builder.log_size);
     let bridge = Bridge::new(
-        opened.model,
-        opened.version,
+        lifecycle,
         opened.handle,
         opened.bell,
         (channel.clone(), connection),

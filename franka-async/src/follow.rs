@@ -83,7 +83,7 @@ impl Follow {
             gains,
             tolerance,
         };
-        let mut moving = Moving::new(robot.clone(), goal);
+        let mut moving = Moving::new(robot.clone(), goal.into());
         loop {
             tokio::select! {
                 biased;

@@ -9,6 +9,8 @@
 //!
 //! * [`Robot`]: a cheap, cloneable handle, fit for the state of a web service. [`Builder`] connects it.
 //! * [`Motion`]: `move_to`, `move_joints`: built, then awaited. [`Follow`]: targets from a `watch` at their own rate.
+//! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`AsynchronousControl`]: sparse joint
+//!   targets between which the robot plans.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
 //! * [`error`]: what can go wrong, grouped by who can act on it.
 //!
@@ -36,11 +38,13 @@
 //! It holds no control loop: no task of the runtime is on the path from a state to its command, so a blocked worker
 //! delays new goals and nothing else. It does not reconnect by itself. It has not been run against a real arm yet.
 
+mod asynchronous;
 mod bridge;
 mod builder;
 mod channel;
 mod codec;
 mod connect;
+mod control;
 mod end_effector;
 pub mod error;
 mod follow;
@@ -50,7 +54,9 @@ mod parameters;
 mod robot;
 mod vacuum;
 
+pub use asynchronous::{AsynchronousControl, AsynchronousOptions};
 pub use builder::{Builder, Endpoint, VersionPolicy};
+pub use control::Control;
 pub use error::{ActionError, CommandError, ConnectError, MotionError};
 pub use follow::Follow;
 pub use gripper::{Gripper, GripperError};
@@ -64,9 +70,13 @@ pub use franka_proto::vacuum::{Profile, State as VacuumGripperState, Vacuum};
 pub use franka_proto::{
     CollisionBehavior, Errors, Filters, Load, RobotMode, RobotState, Version, VirtualWall,
 };
-pub use franka_rt::driver::Record;
+pub use franka_rt::control::{
+    AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next,
+    TargetStatus, Torques,
+};
+pub use franka_rt::driver::{ControlLog, LogEntry, Record};
 pub use franka_rt::law::Gains;
-pub use franka_rt::lifecycle::{MotionReport, Reflex};
+pub use franka_rt::lifecycle::{ControlError, MotionReport, Party};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::Realtime;
 pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};
@@ -87,6 +97,8 @@ const _: () = {
     shared::<Canceller>();
     shared::<Motion>();
     shared::<Follow>();
+    shared::<std::sync::Arc<AsynchronousControl>>();
+    spawned::<Control>();
     spawned::<Moving>();
     spawned::<<Follow as IntoFuture>::IntoFuture>();
 };

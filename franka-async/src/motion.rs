@@ -4,13 +4,42 @@ use std::future::IntoFuture;
 use std::pin::Pin;
 use std::task::{Context, Poll};
 
+use franka_proto::MoveRequest;
+use franka_rt::driver::Program;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::{Budget, Goal, GoalId, Target, Then, Tolerance};
 use tokio::sync::oneshot;
 
 use crate::Robot;
-use crate::bridge::{Input, Outcome};
+use crate::bridge::Outcome;
+
+/// What a motion does, on its way to the bridge.
+#[derive(Debug)]
+pub(crate) enum Work {
+    Goal(Box<Goal>),
+    Program {
+        id: GoalId,
+        program: Program,
+        request: Box<MoveRequest>,
+    },
+}
+
+impl Work {
+    /// Names it, and whoever awaits it.
+    pub(crate) fn id(&self) -> GoalId {
+        match self {
+            Self::Goal(goal) => goal.id,
+            Self::Program { id, .. } => *id,
+        }
+    }
+}
+
+impl From<Goal> for Work {
+    fn from(goal: Goal) -> Self {
+        Self::Goal(Box::new(goal))
+    }
+}
 
 /// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a motion of its own, with its
 /// own [`canceller`](Self::canceller).
@@ -85,19 +114,12 @@ impl Motion {
 
     /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log.
     pub fn detach(self) {
-        let (done, _) = oneshot::channel();
-        self.robot.send(Input::Submit {
-            goal: Box::new(self.goal),
-            done,
-        });
+        self.robot.begin(self.goal.into());
     }
 
     /// A way to brake the motion from elsewhere.
     pub fn canceller(&self) -> Canceller {
-        Canceller {
-            robot: self.robot.clone(),
-            goal: self.goal.id,
-        }
+        Canceller::new(self.robot.clone(), self.goal.id)
     }
 }
 
@@ -106,7 +128,7 @@ impl IntoFuture for Motion {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        Moving::new(self.robot, self.goal)
+        Moving::new(self.robot, self.goal.into())
     }
 }
 
@@ -118,10 +140,14 @@ pub struct Canceller {
 }
 
 impl Canceller {
+    pub(crate) fn new(robot: Robot, goal: GoalId) -> Self {
+        Self { robot, goal }
+    }
+
     /// Brakes the motion, which resolves as [`MotionError::Stopped`]. Without effect before it begins and after it has
     /// ended or was superseded.
     pub fn cancel(&self) {
-        self.robot.send(Input::Cancel { goal: self.goal });
+        self.robot.cancel(self.goal);
     }
 }
 
@@ -143,18 +169,17 @@ pub struct Moving {
 
 #[derive(Debug)]
 enum Stage {
-    /// Boxed: a goal is larger than everything else here.
-    Ready(Box<Goal>),
+    Ready(Work),
     Begun(oneshot::Receiver<Outcome>),
     Over,
 }
 
 impl Moving {
-    pub(crate) fn new(robot: Robot, goal: Goal) -> Self {
+    pub(crate) fn new(robot: Robot, work: Work) -> Self {
         Self {
             robot,
-            goal: goal.id,
-            stage: Stage::Ready(Box::new(goal)),
+            goal: work.id(),
+            stage: Stage::Ready(work),
         }
     }
 
@@ -167,19 +192,15 @@ impl Future for Moving {
     type Output = Outcome;
 
     fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Outcome> {
-        if let Stage::Ready(goal) = &self.stage {
-            let (done, outcome) = oneshot::channel();
-            let goal = goal.clone();
-            self.robot.send(Input::Submit { goal, done });
-            self.stage = Stage::Begun(outcome);
-        }
-        let Stage::Begun(outcome) = &mut self.stage else {
-            panic!("a motion is not polled after it has resolved");
+        let mut outcome = match std::mem::replace(&mut self.stage, Stage::Over) {
+            Stage::Ready(work) => self.robot.begin(work),
+            Stage::Begun(outcome) => outcome,
+            Stage::Over => panic!("a motion is not polled after it has resolved"),
         };
-        let Poll::Ready(outcome) = Pin::new(outcome).poll(context) else {
+        let Poll::Ready(outcome) = Pin::new(&mut outcome).poll(context) else {
+            self.stage = Stage::Begun(outcome);
             return Poll::Pending;
         };
-        self.stage = Stage::Over;
         Poll::Ready(outcome.unwrap_or_else(|_| self.robot.closed()))
     }
 }
@@ -187,7 +208,7 @@ impl Future for Moving {
 impl Drop for Moving {
     fn drop(&mut self) {
         if matches!(self.stage, Stage::Begun(_)) {
-            self.robot.send(Input::Cancel { goal: self.goal });
+            self.robot.cancel(self.goal);
         }
     }
 }

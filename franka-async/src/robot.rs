@@ -14,6 +14,7 @@ use tokio::sync::{broadcast, oneshot, watch};
 use crate::bridge::{Input, Inputs, Outcome};
 use crate::builder::{Builder, Endpoint};
 use crate::channel::Channel;
+use crate::motion::Work;
 use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 
 /// A connected robot.
@@ -203,6 +204,18 @@ impl Robot {
     /// A name for a goal that was never used before.
     pub(crate) fn next_goal(&self) -> GoalId {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
+    }
+
+    /// Has the bridge begin something. Whoever waits for the answer hears nothing if the bridge has ended.
+    pub(crate) fn begin(&self, work: Work) -> oneshot::Receiver<Outcome> {
+        let (done, outcome) = oneshot::channel();
+        self.send(Input::Begin { work, done });
+        outcome
+    }
+
+    /// Takes back what was begun under this name.
+    pub(crate) fn cancel(&self, goal: GoalId) {
+        self.send(Input::Cancel { goal });
     }
 
     /// Sends to the bridge. One that has ended drops the input, and with it the sender of its answer, which is how

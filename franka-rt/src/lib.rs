@@ -8,6 +8,7 @@
 //!
 //! * [`driver`]: what one robot state calls for; phases from watching to finishing. No clock, no socket.
 //! * [`session`]: target control: goals in, one continuous joint-space reference out.
+//! * [`control`]: control at 1 kHz by the user's own functions; [`shaping`]: filters, limiters and checks of their commands.
 //! * [`law`]: joint torques from a reference and a state.
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`otg`]: jerk-limited trajectories to rest.
@@ -23,6 +24,7 @@ pub mod exchange;
 pub mod law;
 pub mod lifecycle;
 pub mod otg;
+mod panic;
 pub mod sched;
 pub mod session;
 pub mod shaping;

@@ -61,7 +61,7 @@ fn a_reflex_ends_the_motion_with_its_name_and_recovery_allows_the_next() {
         let (mut lockstep, goal) = moving(ready);
         lockstep.robot.trip(RobotError::CartesianReflex);
         let error = lockstep.until_resolved(goal, 3000).unwrap_err();
-        let MotionError::Reflex(reflex) = &error else {
+        let MotionError::Control(reflex) = &error else {
             panic!("{error:?}")
         };
         assert!(
@@ -109,7 +109,10 @@ fn the_user_stop_ends_the_motion() {
         let (mut lockstep, goal) = moving(ready);
         lockstep.robot.press_user_stop(true);
         let error = lockstep.until_resolved(goal, 3000).unwrap_err();
-        assert!(matches!(error, MotionError::Aborted { .. }), "{error:?}");
+        assert!(
+            matches!(&error, MotionError::Control(error) if !error.is_reflex()),
+            "{error:?}"
+        );
         assert_eq!(
             error.to_string(),
             "libfranka: Move command aborted: User Stop pressed!"

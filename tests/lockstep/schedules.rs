@@ -67,9 +67,9 @@ fn kind(outcome: &Outcome) -> &'static str {
         Err(MotionError::Superseded) => "superseded",
         Err(MotionError::Stopped) => "stopped",
         Err(MotionError::Short(_)) => "short",
-        Err(MotionError::Reflex(_)) => "reflex",
+        Err(MotionError::Control(error)) if error.is_reflex() => "reflex",
         Err(MotionError::Rejected(_)) => "rejected",
-        Err(MotionError::Aborted { .. }) => "aborted",
+        Err(MotionError::Control(_)) => "aborted",
         Err(error) => panic!("nothing in here causes {error:?}"),
     }
 }

@@ -35,6 +35,8 @@ pub(crate) struct Table {
     pub(crate) torque_generator: MoveGeneratorMode,
     pub(crate) asynchronous_motion: bool,
     pub(crate) accelerometers: bool,
+    /// Conventions of the reference client.
+    pub(crate) generator_first: bool,
     /// Where the text about an incompatible version sends the reader: for updates, and for the
     /// table of images.
     pub(crate) incompatible_advice: [&'static str; 2],
@@ -101,6 +103,7 @@ pub(crate) static V5: Table = Table {
     torque_generator: MoveGeneratorMode::JointVelocity,
     asynchronous_motion: <() as AsynchronousPart>::EXISTS,
     accelerometers: <() as AccelerometerBlock>::EXISTS,
+    generator_first: true,
     incompatible_advice: [
         "https://frankaemika.github.io for Panda system updates",
         "https://frankaemika.github.io/docs/compatibility.html",
@@ -175,6 +178,7 @@ pub(crate) static V10: Table = Table {
     torque_generator: MoveGeneratorMode::None,
     asynchronous_motion: <wire::service::AsynchronousMotion as AsynchronousPart>::EXISTS,
     accelerometers: <wire::Accelerometers as AccelerometerBlock>::EXISTS,
+    generator_first: false,
     incompatible_advice: [
         "https://frankarobotics.github.io for system updates",
         "https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html",

@@ -1,6 +1,8 @@
 //! What a program commands in a cycle, in the robot's own terms.
 
-use franka_proto::{MoveGeneratorMode, RobotCommand};
+use franka_proto::{MoveGeneratorMode, RobotCommand, RobotState};
+
+use crate::shaping::{InvalidCommand, Shaper, check};
 
 /// Joint torques without gravity and friction, `[N m]`. The robot adds both.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +60,45 @@ impl MotionCommand {
         }
     }
 
+    /// Whether the robot can take its numbers.
+    ///
+    /// # Errors
+    /// [`InvalidCommand`], the first that applies.
+    pub fn validate(&self) -> Result<(), InvalidCommand> {
+        let elbow = match self {
+            Self::JointPositions(JointPositions(values))
+            | Self::JointVelocities(JointVelocities(values)) => {
+                return check::finite(values);
+            }
+            Self::CartesianPose(CartesianPose { O_T_EE, elbow }) => {
+                check::pose(O_T_EE)?;
+                elbow
+            }
+            Self::CartesianVelocities(CartesianVelocities { O_dP_EE, elbow }) => {
+                check::finite(O_dP_EE)?;
+                elbow
+            }
+        };
+        elbow.as_ref().map_or(Ok(()), check::elbow)
+    }
+
+    /// Passes it through the shaper; `first` of its motion or not.
+    pub(super) fn shaped(
+        &self,
+        shaper: &Shaper,
+        state: &RobotState,
+        first: bool,
+    ) -> Result<Self, InvalidCommand> {
+        match self {
+            Self::JointPositions(q) => Ok(shaper.joint_positions(q, state, first)?.into()),
+            Self::JointVelocities(dq) => Ok(shaper.joint_velocities(dq, state)?.into()),
+            Self::CartesianPose(pose) => Ok(shaper.cartesian_pose(pose, state, first)?.into()),
+            Self::CartesianVelocities(twist) => {
+                Ok(shaper.cartesian_velocities(twist, state)?.into())
+            }
+        }
+    }
+
     /// Writes it into the fields of its generator; all others stay as they are.
     pub(crate) fn write_to(&self, command: &mut RobotCommand) {
         match *self {
@@ -73,6 +114,43 @@ impl MotionCommand {
             }
         }
     }
+}
+
+/// Commands of one kind, for one motion generator.
+pub trait GeneratorCommand: Into<MotionCommand> + Copy + Send + private::Sealed + 'static {
+    /// All numbers zero, without an elbow: what is sent while there is no command.
+    const ZERO: Self;
+}
+
+mod private {
+    pub trait Sealed {}
+}
+
+impl private::Sealed for JointPositions {}
+impl private::Sealed for JointVelocities {}
+impl private::Sealed for CartesianPose {}
+impl private::Sealed for CartesianVelocities {}
+
+impl GeneratorCommand for JointPositions {
+    const ZERO: Self = Self([0.0; 7]);
+}
+
+impl GeneratorCommand for JointVelocities {
+    const ZERO: Self = Self([0.0; 7]);
+}
+
+impl GeneratorCommand for CartesianPose {
+    const ZERO: Self = Self {
+        O_T_EE: [0.0; 16],
+        elbow: None,
+    };
+}
+
+impl GeneratorCommand for CartesianVelocities {
+    const ZERO: Self = Self {
+        O_dP_EE: [0.0; 6],
+        elbow: None,
+    };
 }
 
 impl From<JointPositions> for MotionCommand {

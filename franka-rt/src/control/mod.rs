@@ -1,9 +1,25 @@
-//! Control at 1 kHz by the user's own code: what it commands.
+//! Control at 1 kHz by the user's own code.
 //!
-//! * [`Torques`] and the four [`MotionCommand`]s: the values, in the robot's own terms.
+//! * [`Torques`] and the four [`MotionCommand`]s: what is commanded, in the robot's own terms.
+//! * [`Next`]: what a control function answers a state with.
+//! * [`Callback`]: control functions as the program of a motion, with the order, filter and limiter of the reference client.
+//! * [`ActiveControl`]: a motion whose commands are written from outside.
+//! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and what became of them.
+//! * [`Command`]: what goes into one datagram, and whether the motion that runs takes it.
 
+mod active;
+mod asynchronous;
+mod callback;
 mod command;
+mod datagram;
+mod next;
 
+pub use active::{ActiveControl, WriteError};
+pub use asynchronous::{AbortReason, AsynchronousPositions, AsynchronousTarget, TargetStatus};
+pub use callback::Callback;
 pub use command::{
-    CartesianPose, CartesianVelocities, JointPositions, JointVelocities, MotionCommand, Torques,
+    CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions, JointVelocities,
+    MotionCommand, Torques,
 };
+pub use datagram::{Command, Misfit};
+pub use next::{Finish, Next};

@@ -2,9 +2,9 @@
 
 use core::time::Duration;
 
-use franka_proto::{Errors, RobotMode, RobotState, SuccessRate};
+use franka_proto::{Errors, RobotMode, RobotState};
 
-use crate::driver::{MotionId, Program};
+use crate::driver::{ControlLog, Failure, MotionId, Program};
 use crate::session::SessionEvent;
 
 /// Something that happened in the thread. Events cross in order and none is dropped.
@@ -30,6 +30,13 @@ pub enum Event {
     Finishing {
         /// The motion.
         motion: MotionId,
+    },
+    /// The motion's program could not go on. No command leaves any more; the robot has to be told to stop.
+    Failed {
+        /// The motion.
+        motion: MotionId,
+        /// What went wrong.
+        failure: Failure,
     },
     /// The motion is over for the thread. Its program comes along to be freed.
     Ended(Ended),
@@ -57,6 +64,8 @@ pub struct Ended {
     pub statistics: MotionStatistics,
     /// The program, with whatever it learned.
     pub program: Program,
+    /// Its last cycles.
+    pub log: ControlLog,
 }
 
 /// How a motion ended, as the thread saw it. The robot's own word on it is its last reply to the `Move`.
@@ -88,8 +97,8 @@ pub struct MotionStatistics {
     pub success_rate_min: f64,
     success_rate_sum: f64,
     success_rate_count: u64,
-    /// Time and success rate of the last two states, the older one first.
-    last: [(u64, f64); 2],
+    /// `message_id` of the first and the last state.
+    span: Option<(u64, u64)>,
     /// Longest time from the receipt of a state to the departure of its command.
     pub worst_turnaround: Duration,
 }
@@ -102,7 +111,7 @@ impl Default for MotionStatistics {
             success_rate_min: 1.0,
             success_rate_sum: 0.0,
             success_rate_count: 0,
-            last: [(0, 0.0); 2],
+            span: None,
             worst_turnaround: Duration::ZERO,
         }
     }
@@ -118,11 +127,9 @@ impl MotionStatistics {
         }
     }
 
-    /// The success rate at the end of an aborted motion, as libfranka reports it: the last state always shows 0, so it
-    /// is that of the state before. `None` for a motion of a single state.
-    pub fn success_rate_at_the_end(&self) -> Option<SuccessRate> {
-        let [(time, rate), (last_time, _)] = self.last;
-        (self.cycles >= 2).then(|| SuccessRate::of_log(rate, time, last_time))
+    /// Time from the first state of the motion to the last, `[ms]` of the robot's clock.
+    pub fn duration_ms(&self) -> u64 {
+        self.span.map_or(0, |(first, last)| last - first)
     }
 
     /// Counts one state of the running motion. The first and the final state of a motion report a success rate of 0
@@ -131,7 +138,8 @@ impl MotionStatistics {
         self.cycles += 1;
         self.lost_states += skipped;
         let rate = state.control_command_success_rate;
-        self.last = [self.last[1], (state.message_id, rate)];
+        let first = self.span.map_or(state.message_id, |(first, _)| first);
+        self.span = Some((first, state.message_id));
         if rate > 0.0 {
             self.success_rate_min = self.success_rate_min.min(rate);
             self.success_rate_sum += rate;
@@ -142,7 +150,7 @@ impl MotionStatistics {
 
 /// Events that wait for the thread to carry them out.
 ///
-/// A motion causes at most `Started`, a report per goal, `Finishing`, `Ended` and `LinkLost`, and needs orders from
+/// A motion causes at most `Started`, a report per goal, `Failed` or `Finishing`, `Ended` and `LinkLost`, and needs orders from
 /// outside; the thread empties the queue every cycle unless the world outside has stopped listening altogether. A link
 /// that comes and goes meanwhile fills one slot and no more, so that there is room for the end of a motion.
 #[derive(Debug, Default)]

@@ -10,13 +10,17 @@
 //!              the state leaves the motion's modes, or the link falls silent
 //! ```
 //!
+//! A program that fails, in place of finishing, leaves the motion `Silent`: no command, until the robot has left its modes.
+//!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are the command that
 //! `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. No clock, socket, allocation or log: the thread,
 //! and the lockstep tests, supply time and carry the effects out. A program that has ended leaves inside an [`Event`],
 //! so that its memory is freed elsewhere.
 
 mod event;
+mod log;
 mod order;
+mod program;
 mod record;
 #[cfg(test)]
 mod tests;
@@ -25,12 +29,16 @@ use core::time::Duration;
 
 use franka_proto::{RobotCommand, RobotMode, RobotState, Version};
 
+use crate::control::{Command, WriteError};
+
 pub use event::{Ended, Ending, Event, MotionStatistics};
-pub(crate) use order::{Command, Step};
-pub use order::{Modes, MotionId, Order, Program};
+pub use log::{ControlLog, LogEntry};
+pub use order::{Modes, MotionId, Order};
+pub use program::{Failure, Program};
 pub use record::{Activity, Record};
 
 use event::EventQueue;
+use program::Answer;
 
 /// Silence of the robot after which the link counts as lost.
 ///
@@ -52,16 +60,14 @@ pub struct Driver {
 }
 
 #[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "one per driver, and a box would allocate on the thread"
-)]
 enum Phase {
     Watching,
     Armed(Motion),
     Running(Motion),
     /// The finishing command is repeated until the robot leaves the motion's modes.
-    Finishing(Motion, RobotCommand),
+    Finishing(Motion),
+    /// The program has failed: nothing is sent until the robot leaves the motion's modes.
+    Silent(Motion),
 }
 
 /// What a motion owns from arming to its end.
@@ -71,6 +77,17 @@ struct Motion {
     modes: Modes,
     program: Program,
     statistics: MotionStatistics,
+    log: ControlLog,
+    /// The newest command that was sent; zeros before the first.
+    sent: RobotCommand,
+}
+
+impl Motion {
+    /// Counts and notes a state of the motion.
+    fn note(&mut self, state: &RobotState, skipped: u64) {
+        self.statistics.note(state, skipped);
+        self.log.push(state, &self.sent);
+    }
 }
 
 impl Driver {
@@ -112,7 +129,7 @@ impl Driver {
     /// Tells how long the command of this cycle took to leave, from the receipt of its state.
     pub fn note_turnaround(&mut self, turnaround: Duration) {
         self.record.turnaround = turnaround;
-        if let Phase::Running(motion) | Phase::Finishing(motion, _) = &mut self.phase {
+        if let Phase::Running(motion) | Phase::Finishing(motion) = &mut self.phase {
             motion.statistics.worst_turnaround = motion.statistics.worst_turnaround.max(turnaround);
         }
     }
@@ -124,12 +141,15 @@ impl Driver {
                 motion,
                 modes,
                 program,
+                log,
             } => {
                 let armed = Motion {
                     id: motion,
                     modes,
                     program,
                     statistics: MotionStatistics::default(),
+                    log,
+                    sent: RobotCommand::default(),
                 };
                 match (self.lost, self.is_watching()) {
                     (None, true) => self.phase = Phase::Armed(armed),
@@ -139,7 +159,9 @@ impl Driver {
             }
             Order::Disarm { motion } => {
                 match core::mem::replace(&mut self.phase, Phase::Watching) {
-                    Phase::Armed(armed) if armed.id == motion => self.end(armed, Ending::Disarmed),
+                    Phase::Armed(armed) if armed.id == motion => {
+                        self.end(armed, Ending::Disarmed);
+                    }
                     // The motion has ended by itself, and has said so; or another one is under way.
                     other => self.phase = other,
                 }
@@ -163,11 +185,12 @@ impl Driver {
         self.record = Record::watching(state, skipped);
         match core::mem::replace(&mut self.phase, Phase::Watching) {
             Phase::Watching => None,
-            Phase::Armed(motion) if motion.modes.shown_by(state) && is_sound(state) => {
+            Phase::Armed(mut motion) if motion.modes.shown_by(state) && is_sound(state) => {
                 self.events.push(Event::Started {
                     motion: motion.id,
                     time: state.message_id,
                 });
+                motion.note(state, 0);
                 self.run(motion, state)
             }
             Phase::Armed(motion) => {
@@ -175,35 +198,66 @@ impl Driver {
                 self.phase = Phase::Armed(motion);
                 None
             }
-            Phase::Running(mut motion) if has_left(&motion, state) => {
-                motion.statistics.note(state, skipped);
-                self.end(motion, Ending::Aborted);
-                None
-            }
-            Phase::Finishing(mut motion, _) if has_left(&motion, state) => {
-                motion.statistics.note(state, skipped);
-                self.end(motion, Ending::Finished);
-                None
-            }
-            Phase::Running(mut motion) if !is_sound(state) => {
-                motion.statistics.note(state, skipped);
-                self.record.activity = Activity::Running;
-                self.phase = Phase::Running(motion);
-                None
-            }
             Phase::Running(mut motion) => {
-                motion.statistics.note(state, skipped);
-                self.run(motion, state)
+                motion.note(state, skipped);
+                if has_left(&motion, state) {
+                    self.end(motion, Ending::Aborted)
+                } else if is_sound(state) {
+                    self.run(motion, state)
+                } else {
+                    self.record.activity = Activity::Running;
+                    self.phase = Phase::Running(motion);
+                    None
+                }
             }
-            Phase::Finishing(mut motion, mut command) => {
-                motion.statistics.note(state, skipped);
-                command.message_id = state.message_id;
+            Phase::Finishing(mut motion) => {
+                motion.note(state, skipped);
+                if has_left(&motion, state) {
+                    return self.end(motion, Ending::Finished);
+                }
+                motion.sent.message_id = state.message_id;
+                let command = motion.sent;
                 self.record.activity = Activity::Finishing;
                 self.record.tau_c = command.tau_J_d;
-                self.phase = Phase::Finishing(motion, command);
+                self.phase = Phase::Finishing(motion);
                 Some(command)
             }
+            Phase::Silent(mut motion) => {
+                motion.note(state, skipped);
+                if has_left(&motion, state) {
+                    return self.end(motion, Ending::Aborted);
+                }
+                self.record.activity = Activity::Silent;
+                self.phase = Phase::Silent(motion);
+                None
+            }
         }
+    }
+
+    /// Writes a command for the newest state of a motion under [`Program::Active`], to be sent at once. The last one says
+    /// so; it is then repeated with every state until the robot has left the motion's modes.
+    ///
+    /// # Errors
+    /// [`WriteError`]; nothing is to be sent then, and the motion goes on.
+    pub fn write(&mut self, command: &Command, finished: bool) -> Result<RobotCommand, WriteError> {
+        let (Phase::Running(motion), Some(newest)) = (&mut self.phase, self.newest) else {
+            return Err(WriteError::NotRunning);
+        };
+        let Program::Active(active) = &motion.program else {
+            return Err(WriteError::NotRunning);
+        };
+        active.check(command, motion.modes, finished)?;
+        let sent = command.datagram(newest, finished);
+        motion.sent = sent;
+        self.record.tau_c = sent.tau_J_d;
+        if finished {
+            self.events.push(Event::Finishing { motion: motion.id });
+            let running = core::mem::replace(&mut self.phase, Phase::Watching);
+            if let Phase::Running(motion) = running {
+                self.phase = Phase::Finishing(motion);
+            }
+        }
+        Ok(sent)
     }
 
     /// Tells that no state has come for `silence`. At the link timeout a motion ends with [`Ending::LinkLost`].
@@ -214,7 +268,10 @@ impl Driver {
         self.lost = Some(silence);
         match core::mem::replace(&mut self.phase, Phase::Watching) {
             Phase::Watching => {}
-            Phase::Armed(motion) | Phase::Running(motion) | Phase::Finishing(motion, _) => {
+            Phase::Armed(motion)
+            | Phase::Running(motion)
+            | Phase::Finishing(motion)
+            | Phase::Silent(motion) => {
                 self.end(motion, Ending::LinkLost { silence });
             }
         }
@@ -222,11 +279,7 @@ impl Driver {
     }
 
     fn run(&mut self, mut motion: Motion, state: &RobotState) -> Option<RobotCommand> {
-        let step = motion.program.step(state, &mut self.record);
-        let command = step
-            .command
-            .on_wire(self.version, state.message_id, step.finished);
-        self.record.tau_c = command.tau_J_d;
+        let step = motion.program.step(self.version, state, &mut self.record);
         if let Some(event) = step.event {
             self.events.push(Event::Program {
                 motion: motion.id,
@@ -234,20 +287,43 @@ impl Driver {
                 statistics: motion.statistics,
             });
         }
-        self.phase = if step.finished {
-            self.record.activity = Activity::Finishing;
-            self.events.push(Event::Finishing { motion: motion.id });
-            Phase::Finishing(motion, command)
-        } else {
-            self.record.activity = Activity::Running;
-            Phase::Running(motion)
-        };
-        Some(command)
+        match step.answer {
+            Answer::Command { command, finished } => {
+                motion.sent = command.datagram(state.message_id, finished);
+                let sent = motion.sent;
+                self.record.tau_c = sent.tau_J_d;
+                self.phase = if finished {
+                    self.record.activity = Activity::Finishing;
+                    self.events.push(Event::Finishing { motion: motion.id });
+                    Phase::Finishing(motion)
+                } else {
+                    self.record.activity = Activity::Running;
+                    Phase::Running(motion)
+                };
+                Some(sent)
+            }
+            Answer::Open => {
+                self.record.activity = Activity::Running;
+                self.phase = Phase::Running(motion);
+                None
+            }
+            Answer::Failed(failure) => {
+                self.record.activity = Activity::Silent;
+                self.events.push(Event::Failed {
+                    motion: motion.id,
+                    failure,
+                });
+                self.phase = Phase::Silent(motion);
+                None
+            }
+        }
     }
 
-    fn end(&mut self, motion: Motion, ending: Ending) {
+    /// Ends a motion. There is nothing to answer then.
+    fn end(&mut self, motion: Motion, ending: Ending) -> Option<RobotCommand> {
         self.phase = Phase::Watching;
         self.give_back(motion, ending);
+        None
     }
 
     fn give_back(&mut self, motion: Motion, ending: Ending) {
@@ -255,6 +331,7 @@ impl Driver {
             id,
             program,
             statistics,
+            log,
             ..
         } = motion;
         self.events.push(Event::Ended(Ended {
@@ -265,6 +342,7 @@ impl Driver {
             reflex_reason: self.record.reflex_reason,
             statistics,
             program,
+            log,
         }));
     }
 }

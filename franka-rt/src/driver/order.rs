@@ -1,11 +1,8 @@
 //! What the world outside asks of the driver.
 
-use franka_proto::{
-    ControllerMode, MotionGeneratorMode, MoveGeneratorMode, RobotCommand, RobotState, Version,
-};
+use franka_proto::{ControllerMode, MotionGeneratorMode, MoveRequest, RobotState};
 
-use crate::driver::Record;
-use crate::session::{SessionEvent, TargetSession};
+use crate::driver::{ControlLog, Program};
 
 /// Names one motion for the life of a driver, from arming to its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -22,6 +19,8 @@ pub enum Order {
         modes: Modes,
         /// What answers the states.
         program: Program,
+        /// Where its last cycles are noted; empty.
+        log: ControlLog,
     },
     /// Forget the armed motion: its `Move` was refused. Has no effect once the motion runs.
     Disarm {
@@ -40,58 +39,29 @@ pub struct Modes {
 }
 
 impl Modes {
+    /// The modes of the motion that `request` asks for.
+    pub fn of(request: &MoveRequest) -> Self {
+        Self {
+            generator: request.generator.in_state(),
+            controller: request.controller.in_state(),
+        }
+    }
+
+    /// Whether a motion generator takes commands.
+    pub fn has_generator(self) -> bool {
+        !matches!(
+            self.generator,
+            MotionGeneratorMode::Idle | MotionGeneratorMode::None
+        )
+    }
+
+    /// Whether the joints take torques.
+    pub fn is_external(self) -> bool {
+        self.controller == ControllerMode::ExternalController
+    }
+
     /// Whether `state` shows both modes. `robot_mode` is no part of it: it may still be on its way at the start.
     pub fn shown_by(&self, state: &RobotState) -> bool {
         state.motion_generator_mode == self.generator && state.controller_mode == self.controller
-    }
-}
-
-/// What answers the states of a running motion. Built outside the thread and freed outside it.
-#[derive(Debug)]
-pub enum Program {
-    /// Goals from a slot, turned into torques.
-    Target(Box<TargetSession>),
-}
-
-impl Program {
-    pub(super) fn step(&mut self, state: &RobotState, record: &mut Record) -> Step {
-        match self {
-            Self::Target(session) => session.step(state, record),
-        }
-    }
-}
-
-/// What a program answers a state with.
-#[derive(Debug)]
-pub(crate) struct Step {
-    pub(crate) command: Command,
-    /// The last command: the motion ends once the robot has taken it.
-    pub(crate) finished: bool,
-    pub(crate) event: Option<SessionEvent>,
-}
-
-/// The command of one cycle, in the terms of what is controlled.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Command {
-    /// Joint torques without gravity and friction, `[N m]`.
-    Torques([f64; 7]),
-}
-
-impl Command {
-    /// The datagram that says it. Whichever of the two finishing flags the version has is set.
-    pub(super) fn on_wire(self, version: Version, message_id: u64, finished: bool) -> RobotCommand {
-        match self {
-            Self::Torques(tau) => {
-                let beside = version.torque_generator() != MoveGeneratorMode::None;
-                RobotCommand {
-                    message_id,
-                    tau_J_d: tau,
-                    torque_command_finished: finished && !beside,
-                    // Protocol 5 has a generator of zero velocities run beside the torques, and ends the motion by it.
-                    motion_generation_finished: finished && beside,
-                    ..RobotCommand::default()
-                }
-            }
-        }
     }
 }

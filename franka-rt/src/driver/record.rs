@@ -8,6 +8,7 @@ use crate::session::Bindings;
 
 /// One cycle of the driver. All joint quantities are in joint order, SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Record {
     /// `message_id` of the state, `[ms]` of the robot's clock.
     pub time: u64,
@@ -45,6 +46,7 @@ pub struct Record {
 
 /// What the driver was doing in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Activity {
     /// No motion.
     #[default]
@@ -55,6 +57,8 @@ pub enum Activity {
     Running,
     /// The finishing command is being repeated.
     Finishing,
+    /// The motion's program has failed, and the robot has not left the motion yet.
+    Silent,
 }
 
 impl Record {

@@ -39,6 +39,7 @@ fn armed(target: Target) -> Driver {
         motion: MotionId(1),
         modes: MODES,
         program: Program::Target(Box::new(TargetSession::new(Model::fr3(), reader))),
+        log: ControlLog::with_capacity(5),
     });
     driver
 }

@@ -1,11 +1,13 @@
-//! One motion: what the two sides have said of it, and what that makes of its goal.
+//! One motion: what the two sides have said of it, and what that makes of its outcome.
 
 use core::time::Duration;
+use std::sync::Arc;
 
 use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 
-use super::{MotionError, MotionReport, Reflex};
-use crate::driver::{Ended, Ending, MotionId, MotionStatistics, Program};
+use super::{ControlError, MotionError, MotionReport};
+use crate::driver::{Ended, Ending, Failure, MotionId, MotionStatistics, Program};
+use crate::panic;
 use crate::session::{Goal, GoalError, GoalId, Settlement, Target, Then};
 use crate::slot::SlotWriter;
 
@@ -20,13 +22,45 @@ pub(super) struct Waiting {
 #[derive(Debug)]
 pub(super) struct Active {
     pub(super) motion: MotionId,
+    pub(super) work: Work,
+    pub(super) command: CommandSide,
+    pub(super) thread: ThreadSide,
+    pub(super) deadline: Option<Duration>,
+}
+
+/// What the motion is for.
+#[derive(Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one per motion, in a box of its own already"
+)]
+pub(super) enum Work {
+    /// Goals, one superseding the other.
+    Goals(Goals),
+    /// A program of the user's.
+    Program(Programmed),
+}
+
+/// The goals of a motion under target control.
+#[derive(Debug)]
+pub(super) struct Goals {
     pub(super) slot: SlotWriter<Goal>,
     pub(super) current: Waiting,
     pub(super) settled: Option<Settled>,
     pub(super) bad_tool: bool,
-    pub(super) command: CommandSide,
-    pub(super) thread: ThreadSide,
-    pub(super) deadline: Option<Duration>,
+}
+
+/// A motion under a program of the user's.
+#[derive(Debug)]
+pub(super) struct Programmed {
+    /// Names whoever awaits its end.
+    pub(super) id: GoalId,
+    /// Why the program could not go on.
+    pub(super) failure: Option<MotionError>,
+    /// Whether a `StopMove` is out, or about to be.
+    pub(super) stopped: bool,
+    /// Whoever else awaits the end, having asked for it.
+    pub(super) stops: Vec<GoalId>,
 }
 
 /// What the session said of the goal it settled.
@@ -58,27 +92,12 @@ pub(super) enum ThreadSide {
 }
 
 impl Active {
-    /// Has the thread come to rest and finish, whatever it was doing: nobody waits for this motion any more.
-    pub(super) fn brake(&mut self) {
-        self.slot.write(&Goal {
-            target: Target::Rest,
-            then: Then::Finish,
-            ..self.current.goal
-        });
-    }
-
-    /// Whether the motion ended well with an older goal than the current one.
-    pub(super) fn came_too_late(&self, ended: &Ended) -> bool {
-        let Program::Target(session) = &ended.program;
-        ended.ending == Ending::Finished
-            && self.command == CommandSide::Ended(MoveStatus::Success)
-            && session
-                .last_goal()
-                .is_some_and(|last| last != self.current.goal.id)
-    }
-
-    /// How the current goal turned out, both sides having ended.
+    /// How it turned out, both sides having ended.
     pub(super) fn verdict(&self, ended: &Ended) -> Result<MotionReport, MotionError> {
+        // What came after a failure is its consequence.
+        if let Some(failure) = self.work.failure() {
+            return Err(failure.clone());
+        }
         let status = match (ended.ending, self.command) {
             (Ending::LinkLost { silence }, _) => return Err(MotionError::LinkLost { silence }),
             (Ending::Refused, _) => {
@@ -94,33 +113,122 @@ impl Active {
             }
         };
         let refusal = Refusal::new(Command::Move, Status::Move(status), ended.robot_mode);
-        match (refusal, ended.ending, &self.settled) {
-            (Some(refusal), ending, _) if status == MoveStatus::ReflexAborted => {
-                Err(MotionError::Reflex(Reflex {
-                    failure: ControlFailure {
-                        refusal,
-                        reflex_reason: ended.reflex_reason,
-                        success_rate: ended.statistics.success_rate_at_the_end(),
-                    },
-                    while_finishing: ending == Ending::Finished,
-                }))
+        match refusal {
+            Some(refusal) if ended.ending == Ending::Disarmed && is_rejection(status) => {
+                return Err(MotionError::Rejected(refusal));
             }
-            (Some(refusal), Ending::Disarmed, _) if is_rejection(status) => {
-                Err(MotionError::Rejected(refusal))
+            // A stop that was asked for ends a program's motion in this way.
+            Some(refusal) if status != MoveStatus::Preempted || !self.work.stopped() => {
+                return Err(ControlError::new(refusal, ended).into());
             }
-            (None, Ending::Finished, _) if self.bad_tool => Err(GoalError::Tool.into()),
-            (Some(refusal), _, _) => Err(MotionError::Aborted {
-                refusal,
-                errors: ended.errors,
-            }),
-            (None, Ending::Finished, Some(settled)) if settled.goal == self.current.goal.id => {
-                settled.result(self.current.cancelled)
-            }
-            // libfranka, `robot_impl.cpp`, has this text for it.
-            (None, _, _) => Err(MotionError::Protocol {
-                what: "Unexpected reply to a Move command",
-            }),
+            _ => {}
         }
+        let outcome = match &self.work {
+            Work::Goals(goals) if ended.ending == Ending::Finished => goals.outcome(),
+            Work::Goals(_) => None,
+            Work::Program(program) => program.outcome(ended),
+        };
+        // libfranka, `robot_impl.cpp`, has this text for it.
+        outcome.unwrap_or(Err(MotionError::Protocol {
+            what: "Unexpected reply to a Move command",
+        }))
+    }
+}
+
+impl Work {
+    /// Has the thread come to rest and finish, if that is in its hands: nobody waits for this motion any more.
+    pub(super) fn brake(&mut self) {
+        if let Self::Goals(goals) = self {
+            goals.slot.write(&Goal {
+                target: Target::Rest,
+                then: Then::Finish,
+                ..goals.current.goal
+            });
+        }
+    }
+
+    fn failure(&self) -> Option<&MotionError> {
+        match self {
+            Self::Program(program) => program.failure.as_ref(),
+            Self::Goals(_) => None,
+        }
+    }
+
+    fn stopped(&self) -> bool {
+        matches!(self, Self::Program(program) if program.stopped)
+    }
+}
+
+impl Goals {
+    /// Whether the motion ended well with an older goal than the current one.
+    pub(super) fn came_too_late(&self, command: CommandSide, ended: &Ended) -> bool {
+        let Program::Target(session) = &ended.program else {
+            return false;
+        };
+        ended.ending == Ending::Finished
+            && command == CommandSide::Ended(MoveStatus::Success)
+            && session
+                .last_goal()
+                .is_some_and(|last| last != self.current.goal.id)
+    }
+
+    /// How the current goal turned out in a motion that finished well, if the session said so.
+    fn outcome(&self) -> Option<Result<MotionReport, MotionError>> {
+        if self.bad_tool {
+            return Some(Err(GoalError::Tool.into()));
+        }
+        let settled = self.settled.as_ref()?;
+        (settled.goal == self.current.goal.id).then(|| settled.result(self.current.cancelled))
+    }
+}
+
+impl Programmed {
+    pub(super) fn new(id: GoalId) -> Self {
+        Self {
+            id,
+            failure: None,
+            stopped: false,
+            stops: Vec::new(),
+        }
+    }
+
+    /// Notes why the program could not go on, in words that can cross tasks.
+    pub(super) fn note_failure(&mut self, failure: Failure) {
+        self.failure = Some(match failure {
+            Failure::Invalid(invalid) => MotionError::Invalid(invalid),
+            Failure::Panicked(payload) => MotionError::Panicked {
+                message: panic::message(&*payload),
+            },
+        });
+    }
+
+    /// How a motion turned out that finished well or was stopped as asked.
+    fn outcome(&self, ended: &Ended) -> Option<Result<MotionReport, MotionError>> {
+        match ended.ending {
+            Ending::Finished => {
+                let statistics = &ended.statistics;
+                let report = MotionReport::new(statistics, statistics.duration_ms(), None);
+                Some(Ok(report))
+            }
+            _ if self.stopped => Some(Err(MotionError::Stopped)),
+            _ => None,
+        }
+    }
+}
+
+impl ControlError {
+    /// The robot ended a motion with `refusal`.
+    fn new(refusal: Refusal, ended: &Ended) -> Box<Self> {
+        Box::new(Self {
+            failure: ControlFailure {
+                refusal,
+                reflex_reason: ended.reflex_reason,
+                success_rate: ended.log.success_rate(),
+            },
+            errors: ended.errors,
+            while_finishing: ended.ending == Ending::Finished,
+            log: Arc::new(ended.log.clone()),
+        })
     }
 }
 

@@ -9,29 +9,29 @@
 //!
 //! The thread is told to arm before the `Move` goes out, so the first state of the motion finds it ready. The two sides
 //! then report in any order; the motion is over when both have. Goals come and go meanwhile: a newer one supersedes the
-//! older within the same motion, one that came too late for it gets a motion of its own.
+//! older within the same motion, one that came too late for it gets a motion of its own. A program of the user's has the
+//! motion for itself.
 //!
-//! Inputs are `submit`, `update`, `close`, `cancel`, `stop` (from users), the `on_*` methods (from the command
+//! Inputs are `submit`, `update`, `close`, `control`, `cancel`, `stop` (from users), the `on_*` methods (from the command
 //! connection, the thread and the clock); effects come out of [`Lifecycle::poll`]. No clock, socket or task in here:
 //! `now` is an argument, counted from any fixed moment.
 
 mod active;
+mod goals;
 mod outcome;
+mod programs;
 
 use core::time::Duration;
 use std::collections::VecDeque;
 
 use franka_model::Model;
-use franka_proto::{
-    MoveControllerMode, MoveRequest, MoveStatus, Request, RobotState, Version, Violation,
-};
+use franka_proto::{MoveRequest, MoveStatus, Request, Version, Violation};
 
-use crate::driver::{Ending, Event, Modes, MotionId, MotionStatistics, Order, Program};
-use crate::session::{Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then};
-use crate::slot;
+use crate::driver::{ControlLog, Ending, Event, Modes, MotionId, MotionStatistics, Order, Program};
+use crate::session::GoalId;
 
-use active::{Active, CommandSide, Settled, ThreadSide, Waiting};
-pub use outcome::{MotionError, MotionReport, Reflex};
+use active::{Active, CommandSide, ThreadSide, Waiting, Work};
+pub use outcome::{ControlError, MotionError, MotionReport, Party};
 
 /// Time for the robot to answer a `Move`, and to show the motion's modes after that.
 pub const START_TIMEOUT: Duration = Duration::from_secs(5);
@@ -74,6 +74,8 @@ pub struct Lifecycle {
     /// A goal that waits for the running motion to end.
     next: Option<Waiting>,
     motions: u64,
+    /// Cycles that the log of a motion holds.
+    log_size: usize,
     outputs: VecDeque<Output>,
 }
 
@@ -94,115 +96,21 @@ impl Lifecycle {
             phase: Phase::Idle,
             next: None,
             motions: 0,
+            log_size: ControlLog::DEFAULT_CAPACITY,
             outputs: VecDeque::new(),
         }
+    }
+
+    /// Replaces the number of cycles that the log of a motion holds, [`ControlLog::DEFAULT_CAPACITY`] by default.
+    #[must_use]
+    pub fn with_log_size(mut self, cycles: usize) -> Self {
+        self.log_size = cycles;
+        self
     }
 
     /// Whether nothing moves and nothing waits to move.
     pub fn is_idle(&self) -> bool {
         matches!(self.phase, Phase::Idle | Phase::Closed(_)) && self.next.is_none()
-    }
-
-    /// Takes a goal, for a robot in `state`, and starts towards it or hands it to the running motion. It supersedes every
-    /// goal before it. Its `id` has to be one that was never used before.
-    ///
-    /// # Errors
-    /// [`MotionError::Goal`] for a goal that is not accepted, which leaves everything as it was;
-    /// [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved in either case.
-    pub fn submit(
-        &mut self,
-        goal: Goal,
-        state: &RobotState,
-        now: Duration,
-    ) -> Result<(), MotionError> {
-        if let Phase::Closed(reason) = &self.phase {
-            return Err(MotionError::ConnectionClosed {
-                reason: reason.clone(),
-            });
-        }
-        goal.check(self.model, state)?;
-        self.replace(
-            Waiting {
-                goal,
-                cancelled: false,
-            },
-            MotionError::Superseded,
-            now,
-        );
-        Ok(())
-    }
-
-    /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the goal is still the
-    /// one being followed: one that was taken back is not, whatever was still on its way for it.
-    ///
-    /// # Errors
-    /// [`GoalError`] for a target that is not accepted; the previous one stays.
-    pub fn update(
-        &mut self,
-        id: GoalId,
-        target: Target,
-        state: &RobotState,
-    ) -> Result<bool, GoalError> {
-        self.amend(id, |goal| Goal { target, ..*goal }, Some(state))
-    }
-
-    /// Lets a goal that is held come to its end: the motion settles at the newest target and finishes.
-    pub fn close(&mut self, id: GoalId) {
-        let amended = self.amend(
-            id,
-            |goal| Goal {
-                then: Then::Finish,
-                ..*goal
-            },
-            None,
-        );
-        debug_assert!(amended.is_ok(), "only targets are checked");
-    }
-
-    /// Takes back a goal: an arm on its way to it is braked as by a stop, and the goal resolves as
-    /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest.
-    pub fn cancel(&mut self, id: GoalId) {
-        if let Some(next) = self.next.take_if(|next| next.goal.id == id) {
-            return self.resolve(next.goal.id, Err(MotionError::Stopped));
-        }
-        let amended = self.amend(
-            id,
-            |goal| Goal {
-                target: Target::Rest,
-                then: Then::Finish,
-                ..*goal
-            },
-            None,
-        );
-        debug_assert!(amended.is_ok(), "only targets are checked");
-        if let Phase::Active(active) = &mut self.phase
-            && active.current.goal.id == id
-        {
-            active.current.cancelled = true;
-        }
-    }
-
-    /// Brakes whatever moves, as a goal of its own named `id`, which resolves once the arm rests and the motion has ended.
-    /// The goals before it resolve as [`MotionError::Stopped`]. Returns false, and does nothing, if there is no motion.
-    pub fn stop(&mut self, id: GoalId, now: Duration) -> bool {
-        let Phase::Active(active) = &self.phase else {
-            return false;
-        };
-        let goal = Goal {
-            id,
-            target: Target::Rest,
-            then: Then::Finish,
-            ..active.current.goal
-        };
-        self.replace(
-            Waiting {
-                goal,
-                cancelled: false,
-            },
-            MotionError::Stopped,
-            now,
-        );
-        true
     }
 
     /// Takes a reply to the `Move` of `motion`. Replies to motions that are over are ignored.
@@ -224,8 +132,7 @@ impl Lifecycle {
                 active.command = CommandSide::Ended(status);
                 active.deadline = Some(now + END_TIMEOUT);
                 if matches!(active.thread, ThreadSide::Armed) {
-                    self.outputs
-                        .push_back(Output::Order(Order::Disarm { motion }));
+                    self.disarm(motion);
                 }
             }
         }
@@ -239,8 +146,7 @@ impl Lifecycle {
             return;
         };
         if matches!(active.thread, ThreadSide::Armed) {
-            self.outputs
-                .push_back(Output::Order(Order::Disarm { motion }));
+            self.disarm(motion);
         }
         self.finish(now, Some(MotionError::Violation(violation)));
     }
@@ -262,6 +168,7 @@ impl Lifecycle {
                 event,
                 statistics,
             } => self.on_session_event(motion, event, statistics),
+            Event::Failed { motion, failure } => self.on_failure(motion, failure),
             Event::Finishing { motion } => {
                 if let Some(active) = self.active(motion)
                     && active.command == CommandSide::Started
@@ -289,13 +196,11 @@ impl Lifecycle {
             reason: reason.to_owned(),
         };
         if let Phase::Active(mut active) = phase {
-            active.brake();
+            active.work.brake();
             if matches!(active.thread, ThreadSide::Armed) {
-                self.outputs.push_back(Output::Order(Order::Disarm {
-                    motion: active.motion,
-                }));
+                self.disarm(active.motion);
             }
-            self.resolve(active.current.goal.id, Err(error.clone()));
+            self.resolve_work(active.work, &Err(error.clone()), &Err(error.clone()));
         }
         if let Some(next) = self.next.take() {
             self.resolve(next.goal.id, Err(error));
@@ -326,15 +231,11 @@ impl Lifecycle {
             ) => {
                 active.command = CommandSide::Cancelled;
                 active.deadline = Some(now + END_TIMEOUT);
-                active.brake();
+                active.work.brake();
                 if matches!(active.thread, ThreadSide::Armed) {
-                    self.outputs
-                        .push_back(Output::Order(Order::Disarm { motion }));
+                    self.disarm(motion);
                 }
-                self.outputs.push_back(Output::Send {
-                    motion,
-                    request: Request::StopMove,
-                });
+                self.send(motion, Request::StopMove);
             }
             (command, _) => {
                 let what = match command {
@@ -363,131 +264,63 @@ impl Lifecycle {
         }
     }
 
+    fn check_open(&self) -> Result<(), MotionError> {
+        match &self.phase {
+            Phase::Closed(reason) => Err(MotionError::ConnectionClosed {
+                reason: reason.clone(),
+            }),
+            Phase::Idle | Phase::Active(_) => Ok(()),
+        }
+    }
+
+    fn send(&mut self, motion: MotionId, request: Request) {
+        self.outputs.push_back(Output::Send { motion, request });
+    }
+
+    fn disarm(&mut self, motion: MotionId) {
+        let order = Order::Disarm { motion };
+        self.outputs.push_back(Output::Order(order));
+    }
+
+    /// Tells everybody who awaits a motion how it turned out; those who asked for its stop, whether it rests.
+    fn resolve_work(
+        &mut self,
+        work: Work,
+        result: &Result<MotionReport, MotionError>,
+        rest: &Result<MotionReport, MotionError>,
+    ) {
+        match work {
+            Work::Goals(goals) => self.resolve(goals.current.goal.id, result.clone()),
+            Work::Program(program) => {
+                self.resolve(program.id, result.clone());
+                for stop in program.stops {
+                    self.resolve(stop, rest.clone());
+                }
+            }
+        }
+    }
+
     fn resolve(&mut self, goal: GoalId, result: Result<MotionReport, MotionError>) {
         self.outputs.push_back(Output::Resolve { goal, result });
     }
 
-    /// Puts a goal in the place of all others, which resolve with `reason`.
-    fn replace(&mut self, waiting: Waiting, reason: MotionError, now: Duration) {
-        if let Some(next) = self.next.take() {
-            self.resolve(next.goal.id, Err(reason.clone()));
-        }
-        match &mut self.phase {
-            Phase::Idle | Phase::Closed(_) => self.start(waiting, now),
-            Phase::Active(active) if matches!(active.thread, ThreadSide::Ended(_)) => {
-                self.next = Some(waiting)
-            }
-            Phase::Active(active)
-                if matches!(
-                    active.command,
-                    CommandSide::Ended(_) | CommandSide::Cancelled
-                ) =>
-            {
-                self.next = Some(waiting);
-            }
-            Phase::Active(active) => {
-                active.slot.write(&waiting.goal);
-                let previous = core::mem::replace(&mut active.current, waiting);
-                let settled = active.settled.take();
-                // A goal that has settled was reached, whatever comes after it.
-                let result = match settled {
-                    Some(settled) if settled.goal == previous.goal.id => {
-                        settled.result(previous.cancelled)
-                    }
-                    _ => Err(reason),
-                };
-                self.resolve(previous.goal.id, result);
-            }
-        }
-    }
-
-    /// Changes a goal that has not been superseded. Returns whether there was one of that name.
-    fn amend(
-        &mut self,
-        id: GoalId,
-        change: impl FnOnce(&Goal) -> Goal,
-        state: Option<&RobotState>,
-    ) -> Result<bool, GoalError> {
-        let waiting = match (&mut self.next, &mut self.phase) {
-            (Some(next), _) if next.goal.id == id => next,
-            (_, Phase::Active(active)) if active.current.goal.id == id => &mut active.current,
-            _ => return Ok(false),
-        };
-        if waiting.cancelled {
-            return Ok(false);
-        }
-        let goal = change(&waiting.goal);
-        if let Some(state) = state {
-            goal.check(self.model, state)?;
-        }
-        waiting.goal = goal;
-        if let Phase::Active(active) = &mut self.phase
-            && active.current.goal.id == id
-        {
-            active.slot.write(&goal);
-        }
-        Ok(true)
-    }
-
-    fn start(&mut self, waiting: Waiting, now: Duration) {
+    fn start(&mut self, work: Work, program: Program, request: MoveRequest, now: Duration) {
         self.motions += 1;
         let motion = MotionId(self.motions);
-        let (mut writer, reader) = slot::slot();
-        writer.write(&waiting.goal);
-        let program = Program::Target(Box::new(TargetSession::new(self.model, reader)));
-        let request = MoveRequest::new(
-            MoveControllerMode::ExternalController,
-            self.version.torque_generator(),
-        );
-        let modes = Modes {
-            generator: request.generator.in_state(),
-            controller: request.controller.in_state(),
-        };
         self.outputs.push_back(Output::Order(Order::Arm {
             motion,
-            modes,
+            modes: Modes::of(&request),
             program,
+            log: ControlLog::with_capacity(self.log_size),
         }));
-        self.outputs.push_back(Output::Send {
-            motion,
-            request: Request::Move(request),
-        });
+        self.send(motion, Request::Move(request));
         self.phase = Phase::Active(Box::new(Active {
             motion,
-            slot: writer,
-            current: waiting,
-            settled: None,
-            bad_tool: false,
+            work,
             command: CommandSide::Requested,
             thread: ThreadSide::Armed,
             deadline: Some(now + START_TIMEOUT),
         }));
-    }
-
-    fn on_session_event(
-        &mut self,
-        motion: MotionId,
-        event: SessionEvent,
-        statistics: MotionStatistics,
-    ) {
-        let Some(active) = self.active(motion) else {
-            return;
-        };
-        match event {
-            SessionEvent::Settled {
-                goal,
-                settlement,
-                duration_ms,
-            } => {
-                active.settled = Some(Settled {
-                    goal,
-                    settlement,
-                    duration_ms,
-                    statistics,
-                });
-            }
-            SessionEvent::BadTool => active.bad_tool = true,
-        }
     }
 
     /// Ends the motion if both sides have.
@@ -518,24 +351,23 @@ impl Lifecycle {
             active.command,
             CommandSide::Requested | CommandSide::Started
         ) {
-            self.outputs.push_back(Output::Send {
-                motion: active.motion,
-                request: Request::StopMove,
-            });
+            self.send(active.motion, Request::StopMove);
         }
         let (result, statistics) = match (error, &active.thread) {
             (Some(error), _) => {
-                active.brake();
+                active.work.brake();
                 (Err(error), MotionStatistics::default())
             }
             (None, ThreadSide::Ended(ended)) => {
-                if active.came_too_late(ended) {
+                if let Work::Goals(goals) = &active.work
+                    && goals.came_too_late(active.command, ended)
+                {
                     // The session had let go before it saw this goal: the goal gets a motion of its own.
                     debug_assert!(
                         self.next.is_none(),
                         "a newer goal would have taken its place"
                     );
-                    return self.follow(active.current, &Ok(()), &ended.statistics, now);
+                    return self.follow(goals.current, &Ok(()), &ended.statistics, now);
                 }
                 (active.verdict(ended), ended.statistics)
             }
@@ -543,34 +375,13 @@ impl Lifecycle {
                 unreachable!("a motion concludes when its thread side has ended")
             }
         };
-        self.resolve(active.current.goal.id, result.clone());
+        let rest = match &result {
+            Err(error) if !error.is_ready_for_more() => Err(error.clone()),
+            _ => Ok(MotionReport::new(&statistics, 0, None)),
+        };
+        self.resolve_work(active.work, &result, &rest);
         if let Some(next) = self.next.take() {
             self.follow(next, &result.map(drop), &statistics, now);
         }
-    }
-
-    /// Takes up a goal that waited for the motion before it, which has ended with `before`. If rest is all that it asks
-    /// for, the end of that motion has brought it, and no motion is started to brake nothing.
-    fn follow(
-        &mut self,
-        waiting: Waiting,
-        before: &Result<(), MotionError>,
-        statistics: &MotionStatistics,
-        now: Duration,
-    ) {
-        if waiting.goal.target != Target::Rest || waiting.goal.then != Then::Finish {
-            return self.start(waiting, now);
-        }
-        let result = match before {
-            // Nobody knows, or the robot sees to it, whether the arm rests.
-            Err(error)
-                if !error.is_ready_for_more() && !matches!(error, MotionError::Rejected(_)) =>
-            {
-                Err(error.clone())
-            }
-            _ if waiting.cancelled => Err(MotionError::Stopped),
-            _ => Ok(MotionReport::new(statistics, 0, None)),
-        };
-        self.resolve(waiting.goal.id, result);
     }
 }

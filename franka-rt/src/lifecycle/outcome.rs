@@ -1,18 +1,22 @@
 //! How a motion turned out, for whoever awaited it.
 
 use core::time::Duration;
+use std::sync::Arc;
 
-use franka_proto::{ControlFailure, Errors, Refusal, Violation};
+use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
 
-use crate::driver::MotionStatistics;
+use crate::driver::{ControlLog, MotionStatistics};
 use crate::session::{GoalError, PoseError};
+use crate::shaping::InvalidCommand;
 
 /// A motion that came to its end as asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionReport {
-    /// From the first state that the goal answered to the arrival, in the robot's time.
+    /// From the first state that the goal answered to the arrival, in the robot's time; of a control function, to the
+    /// end of the motion.
     pub duration: Duration,
-    /// Distance of the measured end effector from its target; `None` for a motion that was only to come to rest.
+    /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,
     /// States that never arrived, or were skipped for a newer one, while the motion ran.
     pub lost_states: u64,
@@ -54,20 +58,30 @@ pub enum MotionError {
     /// Caller: a stop was asked for; the arm was braked and rests.
     #[error("stopped on request")]
     Stopped,
+    /// Caller: something else controls the arm, and does not give way.
+    #[error(
+        "libfranka robot: Cannot perform this operation while another control or read operation is running."
+    )]
+    Busy,
+    /// Caller: the protocol version has no such motion. Nothing was sent.
+    #[error(transparent)]
+    Unsupported(#[from] RequestError),
+    /// Caller: what a control function returned cannot be sent. The robot was told to stop.
+    #[error(transparent)]
+    Invalid(#[from] InvalidCommand),
+    /// Caller: a control function panicked. The robot was told to stop.
+    #[error("the control function panicked: {message}")]
+    Panicked {
+        /// What the panic said, if it was text.
+        message: String,
+    },
     /// Robot: it refused to start the motion.
     #[error("{0}")]
     Rejected(Refusal),
-    /// Robot: it stopped itself. Clear the cause, then recover.
-    #[error("{0}")]
-    Reflex(Reflex),
-    /// Robot: it ended the motion for another reason: a user stop, another client's stop, a safety function.
-    #[error("{refusal}")]
-    Aborted {
-        /// What the robot answered.
-        refusal: Refusal,
-        /// Errors that hold, as far as the last state told.
-        errors: Errors,
-    },
+    /// Robot: it ended the motion: a reflex, a user stop, another client's stop, a safety function. Clear the cause;
+    /// after a reflex, recover.
+    #[error(transparent)]
+    Control(#[from] Box<ControlError>),
     /// Robot or surroundings: the reference reached the target and the arm did not follow. It rests where it is.
     #[error(
         "the arm came to rest {:.1} mm and {:.1} mrad from the target: something holds it, or its load differs from \
@@ -105,38 +119,104 @@ impl MotionError {
     pub fn is_ready_for_more(&self) -> bool {
         matches!(
             self,
-            Self::Goal(_) | Self::Superseded | Self::Stopped | Self::Short(_)
+            Self::Goal(_)
+                | Self::Superseded
+                | Self::Stopped
+                | Self::Busy
+                | Self::Unsupported(_)
+                | Self::Invalid(_)
+                | Self::Panicked { .. }
+                | Self::Short(_)
         )
+    }
+
+    /// What the robot said and did when it ended the motion, if that is what happened.
+    pub fn control(&self) -> Option<&ControlError> {
+        match self {
+            Self::Control(error) => Some(error),
+            _ => None,
+        }
+    }
+
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Goal(_)
+            | Self::Superseded
+            | Self::Stopped
+            | Self::Busy
+            | Self::Unsupported(_)
+            | Self::Invalid(_)
+            | Self::Panicked { .. } => Party::Caller,
+            Self::Rejected(_) | Self::Control(_) | Self::Short(_) => Party::Robot,
+            Self::LinkLost { .. } | Self::ConnectionClosed { .. } => Party::Link,
+            Self::Violation(_) | Self::Protocol { .. } => Party::Peer,
+        }
     }
 }
 
-/// The robot stopped itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reflex {
+/// Who can act on an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Party {
+    /// The program: it asked for what cannot be, or it ended something itself.
+    Caller,
+    /// Whoever stands at the robot: it refused, stopped itself, or something is in its way.
+    Robot,
+    /// Whoever looks after the network.
+    Link,
+    /// Whoever looks after this computer: privileges, kernel, resources.
+    Host,
+    /// Nobody but a developer: the other side does not keep to the protocol, or is of another version.
+    Peer,
+}
+
+/// The robot ended a motion.
+///
+/// `Display` is the message of libfranka's `ControlException` for the same event.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct ControlError {
     /// What the robot answered, what stopped it (`reflex_reason` of the state that ended the motion) and the success
     /// rate before it.
     pub failure: ControlFailure,
+    /// Errors that hold, as far as the last state told.
+    pub errors: Errors,
     /// Whether the finishing command was already out: the robot refused to finish a moving command.
     pub while_finishing: bool,
+    /// The last cycles of the motion, the newest of which shows its end. How many is an option of the connection.
+    pub log: Arc<ControlLog>,
 }
 
-impl core::fmt::Display for Reflex {
-    /// The text that libfranka prints for the same event.
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        if self.while_finishing {
-            // libfranka 0.21, `robot_impl.cpp`: this text takes the place of the refusal's.
-            write!(
-                f,
-                "Motion finished commanded, but the robot is still moving! {}",
-                self.failure.reflex_reason
-            )?;
-            return self
-                .failure
-                .success_rate
-                .map_or(Ok(()), |rate| write!(f, "{rate}"));
-        }
-        write!(f, "{}", self.failure)
+impl ControlError {
+    /// The robot's last word on the motion.
+    pub fn refusal(&self) -> Refusal {
+        self.failure.refusal
+    }
+
+    /// Whether the robot stopped itself for one of the reasons in [`ControlFailure::reflex_reason`], and has to be
+    /// recovered.
+    pub fn is_reflex(&self) -> bool {
+        self.failure.refusal.status() == Status::Move(MoveStatus::ReflexAborted)
     }
 }
 
-impl std::error::Error for Reflex {}
+impl core::fmt::Display for ControlError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        if !(self.while_finishing && self.is_reflex()) {
+            return write!(f, "{}", self.failure);
+        }
+        // libfranka 0.21, `robot_impl.cpp`: this text takes the place of the refusal's.
+        write!(
+            f,
+            "Motion finished commanded, but the robot is still moving! {}",
+            self.failure.reflex_reason
+        )?;
+        let rate = self.failure.success_rate;
+        rate.map_or(Ok(()), |rate| write!(f, "{rate}"))
+    }
+}
+
+impl std::error::Error for ControlError {}

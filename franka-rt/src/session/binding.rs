@@ -2,6 +2,7 @@
 
 /// A guard that can hold a command back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum Guard {
     /// The reference ran ahead of the measured arm by the length of the leash and was held there.
@@ -16,6 +17,7 @@ pub enum Guard {
 
 /// A set of guards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bindings(u8);
 
 impl Bindings {

@@ -9,6 +9,7 @@ use crate::slot::Words;
 
 /// Names one goal for the life of a connection. Updates of a followed target keep the name of the goal they belong to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GoalId(pub u64);
 
 /// Where to go.

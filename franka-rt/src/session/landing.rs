@@ -27,6 +27,7 @@ pub const RELEASE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Distance of the measured end effector from its target.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PoseError {
     /// Distance, `[m]`.
     pub translation: f64,

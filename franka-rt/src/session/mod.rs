@@ -28,7 +28,8 @@ use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model, 
 use franka_proto::RobotState;
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
-use crate::driver::{Command, Record, Step};
+use crate::control::Torques;
+use crate::driver::Record;
 use crate::law::hybrid::{self, Reference};
 use crate::law::{Gains, shaping};
 use crate::slot::{Read, SlotReader};
@@ -76,6 +77,15 @@ pub enum Settlement {
     AtRest,
     /// The reference reached the target, the arm did not: something holds it, or its load is not what was declared.
     Short(PoseError),
+}
+
+/// What a session answers a state with.
+#[derive(Debug)]
+pub(crate) struct Step {
+    pub(crate) torques: Torques,
+    /// The last command: the motion ends once the robot has taken it.
+    pub(crate) finished: bool,
+    pub(crate) event: Option<SessionEvent>,
 }
 
 /// One torque session. Created outside the thread, moved into it, handed back when it has ended.
@@ -179,7 +189,7 @@ impl TargetSession {
                 None => {
                     let event = Some(SessionEvent::BadTool);
                     return Step {
-                        command: Command::Torques([0.0; 7]),
+                        torques: Torques([0.0; 7]),
                         finished: true,
                         event,
                     };
@@ -188,7 +198,7 @@ impl TargetSession {
             // The first goal is torn: without torques, gravity compensation holds the arm for this cycle.
             (None, None) => {
                 return Step {
-                    command: Command::Torques([0.0; 7]),
+                    torques: Torques([0.0; 7]),
                     finished: false,
                     event: None,
                 };
@@ -285,7 +295,7 @@ impl Active {
         record.ddq_ref = self.reference.ddq.into();
         record.bindings = bindings;
         Step {
-            command: Command::Torques(tau.into()),
+            torques: Torques(tau.into()),
             finished: matches!(self.stage, Stage::Finished),
             event,
         }

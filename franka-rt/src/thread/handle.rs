@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use franka_proto::{RobotState, Version};
 
 use crate::driver::Driver;
+use crate::panic;
 use crate::sched::Granted;
 use crate::slot::{Read, SlotReader, Words};
 use crate::stats::Stats;
@@ -119,10 +120,8 @@ pub struct Panicked {
 
 impl Panicked {
     pub(super) fn new(payload: &(dyn Any + Send)) -> Self {
-        let text = payload.downcast_ref::<&str>().copied();
-        let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
         Self {
-            message: text.unwrap_or("without a message").to_owned(),
+            message: panic::message(payload),
         }
     }
 }
@@ -198,7 +197,7 @@ mod tests {
         for (payload, message) in [
             (Box::new("static") as Box<dyn Any + Send>, "static"),
             (Box::new(String::from("formatted")), "formatted"),
-            (Box::new(5), "without a message"),
+            (Box::new(5), "no text came with it"),
         ] {
             assert_eq!(Panicked::new(&*payload).message, message);
         }

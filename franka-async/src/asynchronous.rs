@@ -1,0 +1,196 @@
+//! Asynchronous joint positions: the robot itself moves from target to target.
+
+use std::sync::{Mutex, PoisonError};
+
+use franka_proto::{RequestError, RobotState};
+use franka_rt::control::{AbortReason, AsynchronousPositions, AsynchronousTarget, TargetStatus};
+use franka_rt::driver::{Modes, Program};
+use franka_rt::session::GoalId;
+use franka_rt::shaping::check;
+use franka_rt::slot::SlotWriter;
+use futures::FutureExt;
+use futures::future::{BoxFuture, Shared};
+
+use crate::bridge::Outcome;
+use crate::motion::Work;
+use crate::{MotionError, Robot};
+
+/// Options of [`Robot::asynchronous_joint_positions`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AsynchronousOptions {
+    /// Bounds of the joint velocities, `[rad/s]`.
+    pub maximum_joint_velocities: [f64; 7],
+    /// Distance of the desired joint positions from the target that counts as reached, as Euclidean norm, `[rad]`.
+    pub goal_tolerance: f64,
+}
+
+impl Default for AsynchronousOptions {
+    /// 0.655 rad/s for joints 1 to 4 and 1.315 rad/s for the others, as in the example of libfranka 0.21; its tolerance of
+    /// 1 mrad.
+    fn default() -> Self {
+        Self {
+            maximum_joint_velocities: [0.655, 0.655, 0.655, 0.655, 1.315, 1.315, 1.315],
+            goal_tolerance: TargetStatus::GOAL_TOLERANCE,
+        }
+    }
+}
+
+impl Robot {
+    /// Starts a motion in which the robot itself moves to sparse joint targets, and resolves when it runs. Protocol 10
+    /// only, and experimental there.
+    ///
+    /// # Errors
+    /// [`MotionError::Unsupported`] for a version without it, before a byte is sent; [`MotionError::Busy`] while anything
+    /// else controls the arm; otherwise what ended the motion before it ran.
+    ///
+    /// # Cancel safety
+    /// Dropping the future has the robot stop.
+    pub async fn asynchronous_joint_positions(
+        &self,
+        options: AsynchronousOptions,
+    ) -> Result<AsynchronousControl, MotionError> {
+        let version = self.version();
+        if !version.has_asynchronous_motion() {
+            let what = "an asynchronous motion";
+            return Err(RequestError::Unsupported { what, version }.into());
+        }
+        let (program, targets) = AsynchronousPositions::new();
+        let request = AsynchronousPositions::request(options.maximum_joint_velocities);
+        let modes = Modes::of(&request);
+        let id = self.next_goal();
+        let outcome = self.begin(Work::Program {
+            id,
+            program: Program::Asynchronous(program),
+            request: Box::new(request),
+        });
+        let robot = self.clone();
+        let end = outcome.map(move |outcome| outcome.unwrap_or_else(|_| robot.closed()));
+        let control = AsynchronousControl {
+            robot: self.clone(),
+            id,
+            targets: Mutex::new(Targets {
+                writer: targets,
+                newest: None,
+            }),
+            goal_tolerance: options.goal_tolerance,
+            end: end.boxed().shared(),
+        };
+        control
+            .until(|state| modes.shown_by(state).then_some(()))
+            .await?;
+        Ok(control)
+    }
+}
+
+/// A motion from target to target, which the robot itself plans. May be shared between tasks.
+///
+/// Dropping it has the robot stop.
+#[derive(Debug)]
+pub struct AsynchronousControl {
+    robot: Robot,
+    id: GoalId,
+    targets: Mutex<Targets>,
+    goal_tolerance: f64,
+    /// How the motion ended.
+    end: Shared<BoxFuture<'static, Outcome>>,
+}
+
+#[derive(Debug)]
+struct Targets {
+    writer: SlotWriter<AsynchronousTarget>,
+    newest: Option<[f64; 7]>,
+}
+
+impl AsynchronousControl {
+    /// Sends the robot to `q`, `[rad]`, where it comes to rest; wherever it was going before. Sent with the next state.
+    ///
+    /// # Errors
+    /// [`MotionError::Invalid`] for numbers that are not finite; what ended the motion, if it has ended.
+    pub fn set_target(&self, q: [f64; 7]) -> Result<(), MotionError> {
+        check::finite(&q)?;
+        if let Some(outcome) = self.end.clone().now_or_never() {
+            return Err(end_of(outcome));
+        }
+        self.write(q, false);
+        Ok(())
+    }
+
+    /// How far the newest target has been followed.
+    pub fn status(&self) -> TargetStatus {
+        if self.end.clone().now_or_never().is_some() {
+            return TargetStatus::Aborted(AbortReason::Ended);
+        }
+        self.status_in(&self.robot.state())
+    }
+
+    /// Resolves when the newest target is reached.
+    ///
+    /// # Errors
+    /// What ended the motion before; [`MotionError::Goal`] never, as the robot does the planning.
+    ///
+    /// # Cancel safety
+    /// Nothing is lost: the robot goes on.
+    pub async fn reached(&self) -> Result<(), MotionError> {
+        self.until(|state| (self.status_in(state) == TargetStatus::TargetReached).then_some(()))
+            .await
+    }
+
+    /// Ends the motion at the newest target, or where the arm is without one, and resolves when the robot has. Best after
+    /// [`Self::reached`]: the robot may refuse to end a motion that still moves.
+    ///
+    /// # Errors
+    /// What ended the motion instead.
+    ///
+    /// # Cancel safety
+    /// Once polled the motion ends; dropping the future has the robot stop at once.
+    pub async fn finish(self) -> Outcome {
+        let newest = self.lock().newest;
+        self.write(newest.unwrap_or(self.robot.state().q_d), true);
+        self.end.clone().await
+    }
+
+    /// Waits for a state that `answer` has an answer to, or for the end of the motion.
+    async fn until<T>(
+        &self,
+        mut answer: impl FnMut(&RobotState) -> Option<T>,
+    ) -> Result<T, MotionError> {
+        let mut states = self.robot.states();
+        loop {
+            if let Some(answer) = answer(&states.borrow_and_update()) {
+                return Ok(answer);
+            }
+            tokio::select! {
+                outcome = self.end.clone() => return Err(end_of(outcome)),
+                changed = states.changed() => if changed.is_err() {
+                    return Err(end_of(self.end.clone().await));
+                },
+            }
+        }
+    }
+
+    fn status_in(&self, state: &RobotState) -> TargetStatus {
+        TargetStatus::of(state, self.lock().newest.as_ref(), self.goal_tolerance)
+    }
+
+    fn write(&self, q: [f64; 7], finished: bool) {
+        let mut targets = self.lock();
+        targets.newest = Some(q);
+        targets.writer.write(&AsynchronousTarget { q, finished });
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Targets> {
+        // Nothing in here can be half done.
+        self.targets.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for AsynchronousControl {
+    fn drop(&mut self) {
+        self.robot.cancel(self.id);
+    }
+}
+
+/// What the end of a motion means to somebody who wanted more of it.
+fn end_of(outcome: Outcome) -> MotionError {
+    outcome.err().unwrap_or(MotionError::Stopped)
+}

@@ -1,0 +1,160 @@
+//! Control functions: the user's own code, called with every state on the real-time thread.
+
+use std::future::IntoFuture;
+use std::time::Duration;
+
+use franka_proto::{MoveControllerMode, RobotState};
+use franka_rt::control::{
+    Callback, CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions,
+    JointVelocities, Next, Torques,
+};
+use franka_rt::driver::Program;
+use franka_rt::session::GoalId;
+use franka_rt::shaping::{DEFAULT_CUTOFF_FREQUENCY, Shaper};
+
+use crate::motion::Work;
+use crate::{Canceller, Moving, Robot};
+
+impl Robot {
+    /// Control by torques alone: `function` gets every state, and the robot's time since the state before, which is zero
+    /// at first and more than a millisecond after a loss. It returns [`Torques`], or `torques.finish()` for the last.
+    ///
+    /// The function runs on the real-time thread, once a millisecond, with some 300 us to answer: it must not lock,
+    /// allocate, print or wait. If it panics, the robot is told to stop and the motion resolves as
+    /// [`MotionError::Panicked`](crate::MotionError::Panicked); the thread lives on.
+    pub fn control_torques<R: Into<Next<Torques>>>(
+        &self,
+        function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Control {
+        Control::new(self.clone(), Callback::torques(self.version(), function))
+    }
+
+    /// Control by joint positions for the robot's own controller; see [`Self::control_torques`] for what a function may
+    /// do, and [`Control::controller`] and [`Control::with_torques`] for who turns them into torques.
+    pub fn control_joint_positions<R: Into<Next<JointPositions>>>(
+        &self,
+        function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Control {
+        self.control_motion(function)
+    }
+
+    /// Control by joint velocities; otherwise like [`Self::control_joint_positions`].
+    pub fn control_joint_velocities<R: Into<Next<JointVelocities>>>(
+        &self,
+        function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Control {
+        self.control_motion(function)
+    }
+
+    /// Control by poses of the end effector; otherwise like [`Self::control_joint_positions`].
+    pub fn control_cartesian_pose<R: Into<Next<CartesianPose>>>(
+        &self,
+        function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Control {
+        self.control_motion(function)
+    }
+
+    /// Control by twists of the end effector; otherwise like [`Self::control_joint_positions`].
+    pub fn control_cartesian_velocities<R: Into<Next<CartesianVelocities>>>(
+        &self,
+        function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Control {
+        self.control_motion(function)
+    }
+
+    fn control_motion<C: GeneratorCommand, R: Into<Next<C>>>(
+        &self,
+        function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Control {
+        Control::new(self.clone(), Callback::motion(self.version(), function))
+    }
+}
+
+/// A motion under a control function, before it begins: nothing is sent until it is awaited or detached.
+///
+/// Awaiting it resolves when the function has finished and the robot has ended the motion. Unlike goals, it neither
+/// supersedes what runs nor is superseded: it is refused as [`MotionError::Busy`](crate::MotionError::Busy) while
+/// anything else controls the arm, and so is everything else while it does. **Dropping the future has the robot stop**;
+/// the function may still be called for the few cycles that this takes.
+#[derive(Debug)]
+#[must_use = "a motion does nothing until it is awaited or detached"]
+pub struct Control {
+    robot: Robot,
+    id: GoalId,
+    callback: Callback,
+    controller: MoveControllerMode,
+    limit_rate: bool,
+    cutoff_frequency: f64,
+}
+
+impl Control {
+    fn new(robot: Robot, callback: Callback) -> Self {
+        Self {
+            id: robot.next_goal(),
+            callback,
+            controller: MoveControllerMode::JointImpedance,
+            limit_rate: Shaper::limits_by_default(robot.version()),
+            cutoff_frequency: DEFAULT_CUTOFF_FREQUENCY,
+            robot,
+        }
+    }
+
+    /// Which of the robot's own controllers follows the commands; joint impedance by default. Without effect where
+    /// torques are commanded.
+    pub fn controller(mut self, controller: MoveControllerMode) -> Self {
+        self.controller = controller;
+        self
+    }
+
+    /// Adds torques beside the commands to the motion generator, in the place of the robot's own controller.
+    pub fn with_torques<R: Into<Next<Torques>>>(
+        mut self,
+        function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Self {
+        self.callback = self.callback.with_torques(function);
+        self
+    }
+
+    /// Whether commands pass the limiter; by default they do for protocol 5 and do not for protocol 10, as in libfranka.
+    pub fn limit_rate(mut self, limit: bool) -> Self {
+        self.limit_rate = limit;
+        self
+    }
+
+    /// Cutoff of the low-pass filter, `[Hz]`: 100 by default, 1000 switches it off.
+    pub fn cutoff_frequency(mut self, cutoff_frequency: f64) -> Self {
+        self.cutoff_frequency = cutoff_frequency;
+        self
+    }
+
+    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log.
+    pub fn detach(self) {
+        let robot = self.robot.clone();
+        robot.begin(self.work());
+    }
+
+    /// A way to stop the motion from elsewhere.
+    pub fn canceller(&self) -> Canceller {
+        Canceller::new(self.robot.clone(), self.id)
+    }
+
+    fn work(self) -> Work {
+        let version = self.robot.version();
+        let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency);
+        let request = self.callback.request(version, self.controller);
+        Work::Program {
+            id: self.id,
+            program: Program::Callback(Box::new(self.callback.with_shaper(shaper))),
+            request: Box::new(request),
+        }
+    }
+}
+
+impl IntoFuture for Control {
+    type Output = <Moving as Future>::Output;
+    type IntoFuture = Moving;
+
+    fn into_future(self) -> Moving {
+        Moving::new(self.robot.clone(), self.work())
+    }
+}

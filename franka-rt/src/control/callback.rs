@@ -1,0 +1,181 @@
+//! Control functions as the program of a motion.
+
+use core::fmt;
+use core::time::Duration;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use franka_proto::{MoveControllerMode, MoveRequest, RobotState, Version};
+
+use super::{Command, GeneratorCommand, MotionCommand, Next, Torques};
+use crate::driver::Failure;
+use crate::shaping::Shaper;
+
+/// A control function, boxed: a state, and the robot's time since the state before, to a command.
+type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
+
+/// One or two control functions, called with every state of a motion.
+///
+/// As in libfranka's control loops: a function gets a state and the robot's time since the state before, which is zero at
+/// first and more than a millisecond after a loss. What it returns passes the low-pass filter, the limiter and the checks.
+/// Two functions see the same state and step; once one finishes, the other is not called any more, and its command of the
+/// cycle before goes out with the last one. In protocol 10 the torque function is called first, in protocol 5 the motion
+/// function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
+pub struct Callback {
+    shaper: Shaper,
+    generator_first: bool,
+    motion: Option<Source<MotionCommand>>,
+    torques: Option<Source<Torques>>,
+    /// `message_id` of the state before.
+    previous: Option<u64>,
+}
+
+/// A function, and the newest command made of what it returned.
+struct Source<T> {
+    function: Function<T>,
+    newest: T,
+}
+
+impl Callback {
+    /// Torques alone, shaped as by default. A version without such motions runs a generator beside that is told to stand
+    /// still.
+    pub fn torques<R: Into<Next<Torques>>>(
+        version: Version,
+        torques: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Self {
+        let idle = Command::torques(version, NO_TORQUES).motion;
+        let stand = idle.map(|idle| Source {
+            function: Box::new(move |_, _| idle.into()),
+            newest: idle,
+        });
+        Self::new(version, stand).with_torques(torques)
+    }
+
+    /// Commands to a motion generator, shaped as by default, for one of the robot's own controllers.
+    pub fn motion<C: GeneratorCommand, R: Into<Next<C>>>(
+        version: Version,
+        mut motion: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Self {
+        let motion = move |state: &RobotState, step| motion(state, step).into().map(C::into);
+        Self::new(version, Some(Source::new(motion, C::ZERO.into())))
+    }
+
+    /// Adds torques beside the commands to a motion generator, in the place of the robot's own controller.
+    #[must_use]
+    pub fn with_torques<R: Into<Next<Torques>>>(
+        self,
+        torques: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+    ) -> Self {
+        Self {
+            torques: Some(Source::new(torques, NO_TORQUES)),
+            ..self
+        }
+    }
+
+    /// Replaces the shaper, [`Shaper::by_default`] at first.
+    #[must_use]
+    pub fn with_shaper(self, shaper: Shaper) -> Self {
+        Self { shaper, ..self }
+    }
+
+    fn new(version: Version, motion: Option<Source<MotionCommand>>) -> Self {
+        Self {
+            shaper: Shaper::by_default(version),
+            generator_first: version.generator_first(),
+            motion,
+            torques: None,
+            previous: None,
+        }
+    }
+
+    /// The request for a motion that it can run. `controller` counts where it commands no torques.
+    pub fn request(&self, version: Version, controller: MoveControllerMode) -> MoveRequest {
+        let controller = match &self.torques {
+            Some(_) => MoveControllerMode::ExternalController,
+            None => controller,
+        };
+        let generator = match &self.motion {
+            Some(motion) => motion.newest.generator(),
+            None => version.torque_generator(),
+        };
+        MoveRequest::new(controller, generator)
+    }
+
+    /// The command that answers a state, and whether it is the last.
+    pub(crate) fn step(&mut self, state: &RobotState) -> Result<(Command, bool), Failure> {
+        let first = self.previous.is_none();
+        let previous = self.previous.replace(state.message_id);
+        let step = Duration::from_millis(state.message_id - previous.unwrap_or(state.message_id));
+        // The first to finish ends the cycle.
+        let finished = if self.generator_first {
+            self.step_motion(state, step, first)? || self.step_torques(state, step)?
+        } else {
+            let torques = self.step_torques(state, step)?;
+            torques || self.step_motion(state, step, first)?
+        };
+        let command = Command {
+            motion: self.motion.as_ref().map(|source| source.newest),
+            torques: self.torques.as_ref().map(|source| source.newest),
+        };
+        Ok((command, finished))
+    }
+
+    /// Returns whether the motion function has finished.
+    fn step_motion(
+        &mut self,
+        state: &RobotState,
+        step: Duration,
+        first: bool,
+    ) -> Result<bool, Failure> {
+        let Some(source) = &mut self.motion else {
+            return Ok(false);
+        };
+        let (command, finished) = source.call(state, step)?;
+        let shaped = command.shaped(&self.shaper, state, first);
+        source.newest = shaped.map_err(Failure::Invalid)?;
+        Ok(finished)
+    }
+
+    fn step_torques(&mut self, state: &RobotState, step: Duration) -> Result<bool, Failure> {
+        let Some(source) = &mut self.torques else {
+            return Ok(false);
+        };
+        let (command, finished) = source.call(state, step)?;
+        let shaped = self.shaper.torques(&command, state);
+        source.newest = shaped.map_err(Failure::Invalid)?;
+        Ok(finished)
+    }
+}
+
+impl<T> Source<T> {
+    fn new<R: Into<Next<T>>>(
+        mut function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+        newest: T,
+    ) -> Self {
+        Self {
+            function: Box::new(move |state, step| function(state, step).into()),
+            newest,
+        }
+    }
+
+    /// What the function returns, and whether it is done. A panic of it stays inside.
+    fn call(&mut self, state: &RobotState, step: Duration) -> Result<(T, bool), Failure> {
+        // A function that has panicked is never called again, so nobody sees what it left half done.
+        let called = catch_unwind(AssertUnwindSafe(|| (self.function)(state, step)));
+        called.map(Next::into_parts).map_err(Failure::Panicked)
+    }
+}
+
+impl fmt::Debug for Callback {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Callback")
+            .field("motion", &self.motion.as_ref().map(|source| &source.newest))
+            .field(
+                "torques",
+                &self.torques.as_ref().map(|source| &source.newest),
+            )
+            .field("previous", &self.previous)
+            .finish_non_exhaustive()
+    }
+}
+
+const NO_TORQUES: Torques = Torques([0.0; 7]);

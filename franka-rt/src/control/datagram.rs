@@ -1,0 +1,158 @@
+//! From commands to the datagram that says them, with the checks of the reference client.
+
+use franka_proto::{MoveGeneratorMode, RobotCommand, Version};
+
+use super::{GeneratorCommand, JointVelocities, MotionCommand, Torques};
+use crate::driver::Modes;
+
+/// What is sent in a cycle: a command to the motion generator, torques, or both, as the motion wants.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Command {
+    /// For the motion generator.
+    pub motion: Option<MotionCommand>,
+    /// For the joints.
+    pub torques: Option<Torques>,
+}
+
+/// A command that does not fit the motion that runs. Texts are those of libfranka 0.21, `robot_impl.cpp`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Misfit {
+    /// A motion command, and no motion generator runs.
+    #[error("libfranka robot: Trying to send motion command, but no motion generator running!")]
+    NoGenerator,
+    /// Torques, and the robot's own controller runs.
+    #[error("libfranka robot: Trying to send control command, but no controller running!")]
+    NoController,
+    /// One of two commands that the motion wants together.
+    #[error("libfranka robot: Trying to send partial robot command!")]
+    Partial,
+}
+
+impl Command {
+    /// Torques of a motion without commands to a generator. A version without such motions runs a generator beside, which
+    /// is told to stand still.
+    pub fn torques(version: Version, torques: Torques) -> Self {
+        let idle = JointVelocities::ZERO.into();
+        Self {
+            motion: (version.torque_generator() != MoveGeneratorMode::None).then_some(idle),
+            torques: Some(torques),
+        }
+    }
+
+    /// Whether a motion in `modes` takes it.
+    ///
+    /// # Errors
+    /// [`Misfit`], the first that applies in its order.
+    pub fn check(&self, modes: Modes) -> Result<(), Misfit> {
+        let (generator, external) = (modes.has_generator(), modes.is_external());
+        match (self.motion.is_some(), self.torques.is_some()) {
+            (true, _) if !generator => Err(Misfit::NoGenerator),
+            (_, true) if !external => Err(Misfit::NoController),
+            (motion, torques) if generator && external && motion != torques => Err(Misfit::Partial),
+            _ => Ok(()),
+        }
+    }
+
+    /// The datagram that answers the state `message_id`. What is not commanded is zero. The finishing flag is that of the
+    /// motion generator where there is a command to it, and that of the torques otherwise.
+    pub fn datagram(&self, message_id: u64, finished: bool) -> RobotCommand {
+        let mut command = RobotCommand {
+            message_id,
+            motion_generation_finished: finished && self.motion.is_some(),
+            torque_command_finished: finished && self.motion.is_none(),
+            ..RobotCommand::default()
+        };
+        if let Some(motion) = &self.motion {
+            motion.write_to(&mut command);
+        }
+        if let Some(Torques(tau)) = self.torques {
+            command.tau_J_d = tau;
+        }
+        command
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use franka_proto::{ControllerMode, MotionGeneratorMode};
+
+    use super::*;
+    use crate::control::JointPositions;
+
+    const MOTION: MotionCommand = MotionCommand::JointPositions(JointPositions([0.5; 7]));
+    const TORQUES: Torques = Torques([2.0; 7]);
+
+    fn modes(generator: MotionGeneratorMode, controller: ControllerMode) -> Modes {
+        Modes {
+            generator,
+            controller,
+        }
+    }
+
+    #[test]
+    fn a_command_fits_the_modes_that_want_it() {
+        use ControllerMode::{ExternalController, JointImpedance};
+        use MotionGeneratorMode::{Idle, JointPosition, None as Nothing};
+        let both = (Some(MOTION), Some(TORQUES));
+        let motion = (Some(MOTION), None);
+        let torques = (None, Some(TORQUES));
+        for (generator, controller, (motion, torques), expected) in [
+            (JointPosition, JointImpedance, motion, Ok(())),
+            (
+                JointPosition,
+                JointImpedance,
+                torques,
+                Err(Misfit::NoController),
+            ),
+            (
+                JointPosition,
+                JointImpedance,
+                both,
+                Err(Misfit::NoController),
+            ),
+            (JointPosition, ExternalController, both, Ok(())),
+            (
+                JointPosition,
+                ExternalController,
+                motion,
+                Err(Misfit::Partial),
+            ),
+            (
+                JointPosition,
+                ExternalController,
+                torques,
+                Err(Misfit::Partial),
+            ),
+            (Nothing, ExternalController, torques, Ok(())),
+            (Nothing, ExternalController, both, Err(Misfit::NoGenerator)),
+            (Idle, JointImpedance, motion, Err(Misfit::NoGenerator)),
+            (Idle, JointImpedance, torques, Err(Misfit::NoController)),
+        ] {
+            let command = Command { motion, torques };
+            let checked = command.check(modes(generator, controller));
+            assert_eq!(
+                checked, expected,
+                "{generator:?} {controller:?} {command:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_generators_flag_ends_a_motion_that_has_one() {
+        let both = Command {
+            motion: Some(MOTION),
+            torques: Some(TORQUES),
+        };
+        let sent = both.datagram(7, true);
+        assert_eq!(sent.message_id, 7);
+        assert_eq!((sent.q_c, sent.tau_J_d), ([0.5; 7], [2.0; 7]));
+        assert!(sent.motion_generation_finished && !sent.torque_command_finished);
+        let alone = Command::torques(Version::V10, TORQUES).datagram(7, true);
+        assert!(!alone.motion_generation_finished && alone.torque_command_finished);
+        let beside = Command::torques(Version::V5, TORQUES).datagram(7, true);
+        assert!(beside.motion_generation_finished && !beside.torque_command_finished);
+        let going_on = both.datagram(7, false);
+        assert!(!going_on.motion_generation_finished && !going_on.torque_command_finished);
+    }
+}

@@ -1,0 +1,251 @@
+//! The last cycles of a motion, for the error that ends it.
+
+use core::fmt;
+
+use franka_proto::{General, RobotCommand, RobotState, SuccessRate};
+
+/// One cycle of a motion: a state, and the command that left before it came.
+///
+/// As in libfranka 0.21 (`logger.h`), so that each entry shows what a command did: the state carries the number `n + 1`
+/// if the command answered the state `n`. The first entry of a motion has a command of zeros.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LogEntry {
+    /// The state.
+    pub state: RobotState,
+    /// The newest command before it, as sent; zeros before the first.
+    pub command: RobotCommand,
+}
+
+/// The last cycles of one motion, oldest first, up to a capacity.
+///
+/// Its memory is laid out when it is made: writing to it neither allocates nor frees.
+#[derive(Clone, Default)]
+pub struct ControlLog {
+    entries: Box<[LogEntry]>,
+    /// Where the next entry goes.
+    next: usize,
+    len: usize,
+}
+
+impl ControlLog {
+    /// Cycles kept unless asked otherwise. Source: `log_size` of libfranka 0.21, `robot.h`.
+    pub const DEFAULT_CAPACITY: usize = 50;
+
+    /// An empty log of the newest `capacity` cycles; 0 keeps none.
+    pub fn with_capacity(capacity: usize) -> Self {
+        Self {
+            entries: vec![LogEntry::default(); capacity].into(),
+            next: 0,
+            len: 0,
+        }
+    }
+
+    /// How many cycles it keeps.
+    pub fn capacity(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// How many cycles it holds.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether it holds none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The cycles, oldest first.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &LogEntry> {
+        let (newer, older) = self.entries.split_at(self.next);
+        let full = self.len == self.entries.len();
+        let (older, newer) = if full {
+            (older, newer)
+        } else {
+            (&[][..], newer)
+        };
+        older.iter().chain(newer)
+    }
+
+    /// The success rate at the end, as libfranka 0.21 reports it: the last state always shows 0, so it is that of the
+    /// state before. `None` with fewer than two entries.
+    pub fn success_rate(&self) -> Option<SuccessRate> {
+        let mut newest = self.iter().rev();
+        let (last, before) = (newest.next()?, newest.next()?);
+        Some(SuccessRate::of_log(
+            before.state.control_command_success_rate,
+            before.state.message_id,
+            last.state.message_id,
+        ))
+    }
+
+    /// The log as a table with one row per cycle, times in milliseconds, columns named and numbers printed as by
+    /// `franka::logToCSV` of libfranka 0.21. Empty for an empty log.
+    pub fn to_csv(&self) -> String {
+        let mut text = String::new();
+        if !self.is_empty() {
+            csv(self.iter(), &mut text).expect("a string takes any text");
+        }
+        text
+    }
+
+    /// Notes a cycle, in the place of the oldest if it is full.
+    pub(super) fn push(&mut self, state: &RobotState, command: &RobotCommand) {
+        let Some(entry) = self.entries.get_mut(self.next) else {
+            return; // No capacity.
+        };
+        entry.state = *state;
+        entry.command = *command;
+        self.next = (self.next + 1) % self.entries.len();
+        self.len = (self.len + 1).min(self.entries.len());
+    }
+}
+
+impl PartialEq for ControlLog {
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
+    }
+}
+
+impl fmt::Debug for ControlLog {
+    /// Entries are pages of numbers; this names the cycles.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let times = |entry: &LogEntry| entry.state.message_id;
+        f.debug_struct("ControlLog")
+            .field("len", &self.len)
+            .field("first", &self.iter().next().map(times))
+            .field("last", &self.iter().next_back().map(times))
+            .finish()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for ControlLog {
+    /// A sequence of the entries, oldest first.
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.iter())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for ControlLog {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let entries = Vec::<LogEntry>::deserialize(deserializer)?;
+        Ok(Self {
+            next: 0,
+            len: entries.len(),
+            entries: entries.into(),
+        })
+    }
+}
+
+/// A group of columns: its name, and where its numbers are.
+type Columns = (&'static str, fn(&LogEntry) -> &[f64]);
+
+const COLUMNS: [Columns; 11] = [
+    ("state.q", |entry| &entry.state.q),
+    ("state.q_d", |entry| &entry.state.q_d),
+    ("state.dq", |entry| &entry.state.dq),
+    ("state.dq_d", |entry| &entry.state.dq_d),
+    ("state.tau_J", |entry| &entry.state.tau_J),
+    ("state.tau_ext_hat_filtered", |entry| {
+        &entry.state.tau_ext_hat_filtered
+    }),
+    ("cmd.q_d", |entry| &entry.command.q_c),
+    ("cmd.dq_d", |entry| &entry.command.dq_c),
+    ("cmd.O_T_EE_d", |entry| &entry.command.O_T_EE_c),
+    ("cmd.O_dP_EE_d", |entry| &entry.command.O_dP_EE_c),
+    ("cmd.tau_J_d", |entry| &entry.command.tau_J_d),
+];
+
+fn csv<'a>(entries: impl Iterator<Item = &'a LogEntry>, to: &mut impl fmt::Write) -> fmt::Result {
+    let shape = LogEntry::default();
+    write!(to, "time,success_rate")?;
+    for (name, numbers) in COLUMNS {
+        for index in 0..numbers(&shape).len() {
+            write!(to, ",{name}[{index}]")?;
+        }
+    }
+    writeln!(to)?;
+    for entry in entries {
+        let rate = General(entry.state.control_command_success_rate);
+        write!(to, "{},{rate}", entry.state.message_id)?;
+        for number in COLUMNS.iter().flat_map(|(_, numbers)| numbers(entry)) {
+            write!(to, ",{}", General(*number))?;
+        }
+        writeln!(to)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn log(capacity: usize, times: core::ops::RangeInclusive<u64>) -> ControlLog {
+        let mut log = ControlLog::with_capacity(capacity);
+        for time in times {
+            let state = RobotState {
+                message_id: time,
+                control_command_success_rate: 0.25,
+                ..RobotState::default()
+            };
+            let command = RobotCommand {
+                message_id: time - 1,
+                ..RobotCommand::default()
+            };
+            log.push(&state, &command);
+        }
+        log
+    }
+
+    #[test]
+    fn holds_the_newest_cycles_oldest_first() {
+        for (capacity, pushed, expected) in [
+            (5, 11, vec![7, 8, 9, 10, 11]),
+            (5, 5, vec![1, 2, 3, 4, 5]),
+            (5, 3, vec![1, 2, 3]),
+            (1, 3, vec![3]),
+            (0, 3, vec![]),
+        ] {
+            let log = log(capacity, 1..=pushed);
+            let times = |entry: &LogEntry| entry.state.message_id;
+            assert_eq!(log.iter().map(times).collect::<Vec<_>>(), expected);
+            assert_eq!(log.len(), expected.len());
+            let backwards: Vec<_> = log.iter().rev().map(times).collect();
+            assert!(backwards.iter().rev().eq(&expected));
+        }
+    }
+
+    #[test]
+    fn the_success_rate_is_that_of_the_last_but_one() {
+        assert_eq!(log(50, 1..=1).success_rate(), None);
+        assert_eq!(log(1, 1..=9).success_rate(), None);
+        let mut log = log(3, 1..=4);
+        let last = RobotState {
+            message_id: 8,
+            ..RobotState::default()
+        };
+        log.push(&last, &RobotCommand::default());
+        let rate = log.success_rate().unwrap();
+        assert_eq!(rate.lost, 3);
+        assert!((rate.rate - 0.25 * 0.97).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_table_has_a_header_and_a_row_per_cycle() {
+        assert_eq!(ControlLog::with_capacity(50).to_csv(), "");
+        let text = log(50, 1..=2).to_csv();
+        let lines: Vec<_> = text.split('\n').collect();
+        assert_eq!(lines.len(), 4, "two rows below the header, each ended");
+        assert_eq!(lines[3], "");
+        assert!(lines[0].starts_with("time,success_rate,state.q[0],state.q[1],"));
+        assert!(lines[0].contains(",state.tau_ext_hat_filtered[6],cmd.q_d[0],"));
+        assert!(lines[0].ends_with(",cmd.O_dP_EE_d[5],cmd.tau_J_d[0],cmd.tau_J_d[1],cmd.tau_J_d[2],cmd.tau_J_d[3],cmd.tau_J_d[4],cmd.tau_J_d[5],cmd.tau_J_d[6]"));
+        let columns = |line: &str| line.split(',').count();
+        assert_eq!(columns(lines[0]), 2 + 6 * 7 + 2 * 7 + 16 + 6 + 7);
+        assert_eq!(columns(lines[0]), columns(lines[1]));
+        assert!(lines[2].starts_with("2,0.25,0,0,"));
+    }
+}

@@ -1,0 +1,266 @@
+//! Goals of target control: taken, changed, taken back, superseded.
+
+use core::time::Duration;
+
+use franka_proto::{MoveControllerMode, MoveRequest, RobotState};
+
+use super::active::{CommandSide, Goals, Settled, ThreadSide, Waiting, Work};
+use super::{Lifecycle, MotionError, MotionReport, Phase};
+use crate::driver::{MotionId, MotionStatistics, Program};
+use crate::session::{Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then};
+use crate::slot;
+
+impl Lifecycle {
+    /// Takes a goal, for a robot in `state`, and starts towards it or hands it to the running motion. It supersedes every
+    /// goal before it. Its `id` has to be one that was never used before.
+    ///
+    /// # Errors
+    /// [`MotionError::Goal`] for a goal that is not accepted, which leaves everything as it was; [`MotionError::Busy`]
+    /// while a program of the user's controls the arm; [`MotionError::ConnectionClosed`] after the connection was lost.
+    /// Nothing is resolved in any of these cases.
+    pub fn submit(
+        &mut self,
+        goal: Goal,
+        state: &RobotState,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        self.check_open()?;
+        if self.runs_program() {
+            return Err(MotionError::Busy);
+        }
+        goal.check(self.model, state)?;
+        self.replace(
+            Waiting {
+                goal,
+                cancelled: false,
+            },
+            MotionError::Superseded,
+            now,
+        );
+        Ok(())
+    }
+
+    /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the goal is still the
+    /// one being followed: one that was taken back is not, whatever was still on its way for it.
+    ///
+    /// # Errors
+    /// [`GoalError`] for a target that is not accepted; the previous one stays.
+    pub fn update(
+        &mut self,
+        id: GoalId,
+        target: Target,
+        state: &RobotState,
+    ) -> Result<bool, GoalError> {
+        self.amend(id, |goal| Goal { target, ..*goal }, Some(state))
+    }
+
+    /// Lets a goal that is held come to its end: the motion settles at the newest target and finishes.
+    pub fn close(&mut self, id: GoalId) {
+        let amended = self.amend(
+            id,
+            |goal| Goal {
+                then: Then::Finish,
+                ..*goal
+            },
+            None,
+        );
+        debug_assert!(amended.is_ok(), "only targets are checked");
+    }
+
+    /// Takes back a goal: an arm on its way to it is braked as by a stop, and the goal resolves as
+    /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest. A program is taken back in the
+    /// same way, by having the robot stop.
+    pub fn cancel(&mut self, id: GoalId) {
+        if let Some(next) = self.next.take_if(|next| next.goal.id == id) {
+            return self.resolve(next.goal.id, Err(MotionError::Stopped));
+        }
+        if self.cancel_program(id) {
+            return;
+        }
+        let amended = self.amend(
+            id,
+            |goal| Goal {
+                target: Target::Rest,
+                then: Then::Finish,
+                ..*goal
+            },
+            None,
+        );
+        debug_assert!(amended.is_ok(), "only targets are checked");
+        if let Some(goals) = self.goals()
+            && goals.current.goal.id == id
+        {
+            goals.current.cancelled = true;
+        }
+    }
+
+    /// Brakes whatever moves, as a goal of its own named `id`, which resolves once the arm rests and the motion has ended.
+    /// The goals before it resolve as [`MotionError::Stopped`]. Returns false, and does nothing, if there is no motion.
+    pub fn stop(&mut self, id: GoalId, now: Duration) -> bool {
+        if self.stop_program(id) {
+            return true;
+        }
+        let Some(goals) = self.goals() else {
+            return false;
+        };
+        let goal = Goal {
+            id,
+            target: Target::Rest,
+            then: Then::Finish,
+            ..goals.current.goal
+        };
+        self.replace(
+            Waiting {
+                goal,
+                cancelled: false,
+            },
+            MotionError::Stopped,
+            now,
+        );
+        true
+    }
+
+    pub(super) fn on_session_event(
+        &mut self,
+        motion: MotionId,
+        event: SessionEvent,
+        statistics: MotionStatistics,
+    ) {
+        let Some(active) = self.active(motion) else {
+            return;
+        };
+        let Work::Goals(goals) = &mut active.work else {
+            return;
+        };
+        match event {
+            SessionEvent::Settled {
+                goal,
+                settlement,
+                duration_ms,
+            } => {
+                goals.settled = Some(Settled {
+                    goal,
+                    settlement,
+                    duration_ms,
+                    statistics,
+                });
+            }
+            SessionEvent::BadTool => goals.bad_tool = true,
+        }
+    }
+
+    /// Takes up a goal that waited for the motion before it, which has ended with `before`. If rest is all that it asks
+    /// for, the end of that motion has brought it, and no motion is started to brake nothing.
+    pub(super) fn follow(
+        &mut self,
+        waiting: Waiting,
+        before: &Result<(), MotionError>,
+        statistics: &MotionStatistics,
+        now: Duration,
+    ) {
+        if waiting.goal.target != Target::Rest || waiting.goal.then != Then::Finish {
+            return self.start_goal(waiting, now);
+        }
+        let result = match before {
+            // Nobody knows, or the robot sees to it, whether the arm rests.
+            Err(error)
+                if !error.is_ready_for_more() && !matches!(error, MotionError::Rejected(_)) =>
+            {
+                Err(error.clone())
+            }
+            _ if waiting.cancelled => Err(MotionError::Stopped),
+            _ => Ok(MotionReport::new(statistics, 0, None)),
+        };
+        self.resolve(waiting.goal.id, result);
+    }
+
+    /// The goals of the motion under way, if target control runs it.
+    fn goals(&mut self) -> Option<&mut Goals> {
+        match &mut self.phase {
+            Phase::Active(active) => match &mut active.work {
+                Work::Goals(goals) => Some(goals),
+                Work::Program(_) => None,
+            },
+            Phase::Idle | Phase::Closed(_) => None,
+        }
+    }
+
+    /// Puts a goal in the place of all others, which resolve with `reason`. No program may be running.
+    fn replace(&mut self, waiting: Waiting, reason: MotionError, now: Duration) {
+        if let Some(next) = self.next.take() {
+            self.resolve(next.goal.id, Err(reason.clone()));
+        }
+        let Phase::Active(active) = &mut self.phase else {
+            return self.start_goal(waiting, now);
+        };
+        let ending = matches!(active.thread, ThreadSide::Ended(_))
+            || matches!(
+                active.command,
+                CommandSide::Ended(_) | CommandSide::Cancelled
+            );
+        match &mut active.work {
+            Work::Goals(goals) if !ending => {
+                goals.slot.write(&waiting.goal);
+                let previous = core::mem::replace(&mut goals.current, waiting);
+                let settled = goals.settled.take();
+                // A goal that has settled was reached, whatever comes after it.
+                let result = match settled {
+                    Some(settled) if settled.goal == previous.goal.id => {
+                        settled.result(previous.cancelled)
+                    }
+                    _ => Err(reason),
+                };
+                self.resolve(previous.goal.id, result);
+            }
+            Work::Goals(_) | Work::Program(_) => self.next = Some(waiting),
+        }
+    }
+
+    /// Changes a goal that has not been superseded. Returns whether there was one of that name.
+    fn amend(
+        &mut self,
+        id: GoalId,
+        change: impl FnOnce(&Goal) -> Goal,
+        state: Option<&RobotState>,
+    ) -> Result<bool, GoalError> {
+        let model = self.model;
+        let (waiting, slot) = match &mut self.next {
+            Some(next) if next.goal.id == id => (next, None),
+            _ => match self.goals() {
+                Some(goals) if goals.current.goal.id == id => {
+                    (&mut goals.current, Some(&mut goals.slot))
+                }
+                _ => return Ok(false),
+            },
+        };
+        if waiting.cancelled {
+            return Ok(false);
+        }
+        let goal = change(&waiting.goal);
+        if let Some(state) = state {
+            goal.check(model, state)?;
+        }
+        waiting.goal = goal;
+        if let Some(slot) = slot {
+            slot.write(&goal);
+        }
+        Ok(true)
+    }
+
+    fn start_goal(&mut self, waiting: Waiting, now: Duration) {
+        let (mut slot, reader) = slot::slot();
+        slot.write(&waiting.goal);
+        let program = Program::Target(Box::new(TargetSession::new(self.model, reader)));
+        let request = MoveRequest::new(
+            MoveControllerMode::ExternalController,
+            self.version.torque_generator(),
+        );
+        let work = Work::Goals(Goals {
+            slot,
+            current: waiting,
+            settled: None,
+            bad_tool: false,
+        });
+        self.start(work, program, request, now);
+    }
+}

@@ -1,0 +1,93 @@
+//! Programs of the user's: control functions and commands from outside, one per motion.
+
+use core::time::Duration;
+
+use franka_proto::{MoveRequest, Request};
+
+use super::active::{CommandSide, Programmed, Work};
+use super::{Lifecycle, MotionError, Phase};
+use crate::driver::{Failure, MotionId, Program};
+use crate::session::GoalId;
+
+impl Lifecycle {
+    /// Starts the motion that `request` asks for under a program of the user's, as work named `id`, which resolves once
+    /// the motion has ended. Its `id` has to be one that was never used before.
+    ///
+    /// # Errors
+    /// [`MotionError::Busy`] while anything else controls the arm, [`MotionError::ConnectionClosed`] after the connection
+    /// was lost. Nothing is resolved then.
+    pub fn control(
+        &mut self,
+        id: GoalId,
+        program: Program,
+        request: MoveRequest,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        self.check_open()?;
+        if !self.is_idle() {
+            return Err(MotionError::Busy);
+        }
+        let work = Work::Program(Programmed::new(id));
+        self.start(work, program, request, now);
+        Ok(())
+    }
+
+    /// Whether a program of the user's controls the arm.
+    pub(super) fn runs_program(&self) -> bool {
+        matches!(&self.phase, Phase::Active(active) if matches!(active.work, Work::Program(_)))
+    }
+
+    /// Has the robot stop the program of that name. Returns whether it is the one that runs.
+    pub(super) fn cancel_program(&mut self, id: GoalId) -> bool {
+        let named = self.program().is_some_and(|program| program.id == id);
+        if named {
+            self.send_stop();
+        }
+        named
+    }
+
+    /// Has the robot stop the program that runs, and `id` resolve when it has. Returns whether there is one.
+    pub(super) fn stop_program(&mut self, id: GoalId) -> bool {
+        let Some(program) = self.program() else {
+            return false;
+        };
+        program.stops.push(id);
+        self.send_stop();
+        true
+    }
+
+    /// Takes note that the program of a motion could not go on.
+    pub(super) fn on_failure(&mut self, motion: MotionId, failure: Failure) {
+        if self.active(motion).is_some()
+            && let Some(program) = self.program()
+        {
+            program.note_failure(failure);
+            self.send_stop();
+        }
+    }
+
+    fn program(&mut self) -> Option<&mut Programmed> {
+        match &mut self.phase {
+            Phase::Active(active) => match &mut active.work {
+                Work::Program(program) => Some(program),
+                Work::Goals(_) => None,
+            },
+            Phase::Idle | Phase::Closed(_) => None,
+        }
+    }
+
+    /// Asks the robot to stop the program's motion, unless it has been asked or the motion is over for it.
+    fn send_stop(&mut self) {
+        let Phase::Active(active) = &mut self.phase else {
+            return;
+        };
+        let (motion, command) = (active.motion, active.command);
+        let Work::Program(program) = &mut active.work else {
+            return;
+        };
+        let open = matches!(command, CommandSide::Requested | CommandSide::Started);
+        if open && !core::mem::replace(&mut program.stopped, true) {
+            self.send(motion, Request::StopMove);
+        }
+    }
+}
