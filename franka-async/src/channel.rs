@@ -91,6 +91,8 @@ pub(crate) enum Answer {
     Done,
     /// The robot's description, URDF.
     Model(Vec<u8>),
+    /// The model library, in the format of the system that was named.
+    Library(Vec<u8>),
     Wall(VirtualWall),
 }
 
@@ -368,6 +370,7 @@ impl Task {
         let outcome = match (Refusal::from_reply(command, reply, mode), reply) {
             (Some(refusal), _) => Err(refusal.into()),
             (None, Reply::Model { text, .. }) => Ok(Answer::Model(text.to_vec())),
+            (None, Reply::ModelLibrary { library, .. }) => Ok(Answer::Library(library.to_vec())),
             (None, Reply::CartesianLimit { wall, .. }) => Ok(Answer::Wall(*wall)),
             (None, _) => Ok(Answer::Done),
         };

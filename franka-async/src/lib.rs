@@ -12,6 +12,8 @@
 //! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`AsynchronousControl`]: sparse joint
 //!   targets between which the robot plans.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
+//! * `Robot::model` (feature `urdf`, on by default): the model of the connected arm, from its own description.
+//!   `Robot::model_library` (feature `model-library`, off by default): the code that a Franka Emika Robot hands out.
 //! * [`error`]: what can go wrong, grouped by who can act on it.
 //!
 //! ```no_run
@@ -49,6 +51,7 @@ mod end_effector;
 pub mod error;
 mod follow;
 mod gripper;
+mod model;
 mod motion;
 mod parameters;
 mod robot;
@@ -60,15 +63,24 @@ pub use control::Control;
 pub use error::{ActionError, CommandError, ConnectError, MotionError};
 pub use follow::Follow;
 pub use gripper::{Gripper, GripperError};
+#[cfg(feature = "urdf")]
+pub use model::ModelError;
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+pub use model::ModelLibraryError;
 pub use motion::{Canceller, Motion, Moving};
 pub use robot::Robot;
 pub use vacuum::{VacuumGripper, VacuumGripperError};
 
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+pub use franka_model::model_library::{LibraryError, ModelLibrary};
+#[cfg(feature = "urdf")]
+pub use franka_model::urdf::UrdfError;
 pub use franka_model::{JointVector, Model};
 pub use franka_proto::gripper::{Grasp, State as GripperState};
 pub use franka_proto::vacuum::{Profile, State as VacuumGripperState, Vacuum};
 pub use franka_proto::{
-    CollisionBehavior, Errors, Filters, Load, RobotMode, RobotState, Version, VirtualWall,
+    Architecture, CollisionBehavior, Errors, Filters, Load, RobotMode, RobotState, System, Version,
+    VirtualWall,
 };
 pub use franka_rt::control::{
     AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next,
@@ -117,6 +129,9 @@ mod tests {
             sent(robot.recover());
             sent(robot.set_joint_impedance([0.0; 7]));
             sent(robot.urdf());
+            sent(robot.load_model_library(Architecture::X64, System::Linux));
+            #[cfg(feature = "urdf")]
+            sent(robot.model());
             sent(robot.shutdown());
         };
     }

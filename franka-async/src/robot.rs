@@ -123,12 +123,15 @@ impl Robot {
             f_t_ee: transform::matrix(&ee),
             ..EndEffector::default()
         };
-        let pose = self.model().pose(Frame::EndEffector, &q.into(), &ee);
+        let model = self.nominal_model();
+        let pose = model.pose(Frame::EndEffector, &q.into(), &ee);
         transform::isometry(&pose).unwrap_or_default()
     }
 
-    /// The model of the connected robot.
-    pub fn model(&self) -> &'static Model {
+    /// The model of the connected robot's kind, as the vendor's constants have it: what control computes with.
+    ///
+    /// See `Robot::model` for the model of this very arm.
+    pub fn nominal_model(&self) -> &'static Model {
         self.shared.model
     }
 

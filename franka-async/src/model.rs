@@ -1,0 +1,135 @@
+//! The model of the connected arm: from what the robot says of itself, where it says something.
+
+use std::time::Duration;
+
+use franka_proto::{Architecture, Request, System};
+
+use crate::channel::Answer;
+use crate::{CommandError, Robot};
+
+/// Time for a library to come over the network.
+const DOWNLOAD: Duration = Duration::from_secs(30);
+
+#[cfg(feature = "urdf")]
+pub use described::ModelError;
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+pub use library::ModelLibraryError;
+
+impl Robot {
+    /// Asks for the model library of a Franka Emika Robot, and gives its bytes: a shared library in the format of the
+    /// system. Protocol 5 only.
+    ///
+    /// # Errors
+    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command, without asking the robot.
+    ///
+    /// # Cancel safety
+    /// Nothing is lost but the answer.
+    pub async fn load_model_library(
+        &self,
+        architecture: Architecture,
+        system: System,
+    ) -> Result<Vec<u8>, CommandError> {
+        let request = Request::LoadModelLibrary {
+            architecture,
+            system,
+        };
+        match self.channel().call(request, DOWNLOAD).await? {
+            Answer::Library(bytes) => Ok(bytes),
+            _ => unreachable!("the session matches replies to the commands they answer"),
+        }
+    }
+}
+
+#[cfg(feature = "urdf")]
+mod described {
+    use franka_model::urdf::UrdfError;
+    use franka_model::{Model, RobotKind};
+
+    use crate::{CommandError, Robot};
+
+    impl Robot {
+        /// The model of the connected arm. A Franka Research 3 describes itself: its masses and limits are those of the
+        /// description ([`Robot::urdf`]). A Franka Emika Robot does not: it has the constants that its own library
+        /// is known to compute with, [`Model::fer`].
+        ///
+        /// Control does not wait for it: it computes with [`Robot::nominal_model`]. Needs the feature `urdf`, which is
+        /// on by default.
+        ///
+        /// # Errors
+        /// [`ModelError`].
+        ///
+        /// # Cancel safety
+        /// Nothing is lost but the answer.
+        pub async fn model(&self) -> Result<Model, ModelError> {
+            match self.nominal_model().kind() {
+                RobotKind::Fer => Ok(Model::fer().clone()),
+                _ => Ok(Model::from_urdf(&self.urdf().await?)?),
+            }
+        }
+    }
+
+    /// Why there is no model of the connected arm.
+    #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum ModelError {
+        /// The robot was asked for its description and did not give it.
+        #[error(transparent)]
+        Command(#[from] CommandError),
+        /// Robot: its description is not that of an arm that this driver knows.
+        #[error(transparent)]
+        Urdf(#[from] UrdfError),
+    }
+}
+
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+mod library {
+    use franka_model::model_library::{LibraryError, ModelLibrary};
+    use franka_proto::{Architecture, System};
+
+    use crate::{CommandError, Robot};
+
+    impl Robot {
+        /// Asks a Franka Emika Robot for its model library and loads it into this process. Needs the feature
+        /// `model-library`, and Linux.
+        ///
+        /// The call is unsafe, the future is not: `unsafe { robot.model_library() }.await`.
+        ///
+        /// # Errors
+        /// [`ModelLibraryError`].
+        ///
+        /// # Cancel safety
+        /// Nothing is lost but the answer.
+        ///
+        /// # Safety
+        /// The robot must be one that may run code in this process: see [`ModelLibrary::load`].
+        pub async unsafe fn model_library(&self) -> Result<ModelLibrary, ModelLibraryError> {
+            let architecture = host_architecture().ok_or(LibraryError::Architecture)?;
+            let bytes = self.load_model_library(architecture, System::Linux).await?;
+            // SAFETY: the caller vouches for what the robot sends.
+            Ok(unsafe { ModelLibrary::load(&bytes) }?)
+        }
+    }
+
+    /// What the protocol calls the processor that this was compiled for, if it has a name for it.
+    fn host_architecture() -> Option<Architecture> {
+        Some(match std::env::consts::ARCH {
+            "x86_64" => Architecture::X64,
+            "x86" => Architecture::X86,
+            "arm" => Architecture::Arm,
+            "aarch64" => Architecture::Arm64,
+            _ => return None,
+        })
+    }
+
+    /// Why the robot's model library cannot be used.
+    #[derive(Debug, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum ModelLibraryError {
+        /// The robot was asked for it and did not give it.
+        #[error(transparent)]
+        Command(#[from] CommandError),
+        /// It cannot be loaded.
+        #[error(transparent)]
+        Library(#[from] LibraryError),
+    }
+}
