@@ -7,6 +7,7 @@ mod dropping;
 mod ending;
 mod failing;
 mod fer;
+mod garbling;
 mod hands;
 mod misbehaving;
 mod moving;

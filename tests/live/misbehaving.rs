@@ -23,8 +23,17 @@ const LOAD: Load = Load {
 };
 
 /// Streams that end a connection, and what they are called.
-const GARBAGE: [(&[u8], &str); 3] = [
+const GARBAGE: [(&[u8], &str); 5] = [
     (&[0; 40], "libfranka: Incorrect TCP message size."),
+    // A size below the header's, and the largest there is.
+    (
+        &[1, 0, 0, 0, 1, 0, 0, 0, 11, 0, 0, 0],
+        "libfranka: Incorrect TCP message size.",
+    ),
+    (
+        &[1, 0, 0, 0, 1, 0, 0, 0, 0xff, 0xff, 0xff, 0xff],
+        "a message of 4294967295 bytes is announced",
+    ),
     (
         b"HTTP/1.1 400 Bad Request\r\n\r\n",
         "a message of 808465440 bytes is announced",

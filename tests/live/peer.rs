@@ -25,6 +25,8 @@ pub(crate) enum Treatment {
 pub(crate) struct Manners {
     pub(crate) request: fn(Option<Command>) -> Treatment,
     pub(crate) reply: fn(Vec<u8>) -> Vec<u8>,
+    /// Whether replies go out a byte at a time.
+    pub(crate) piecewise: bool,
 }
 
 impl Default for Manners {
@@ -32,6 +34,7 @@ impl Default for Manners {
         Self {
             request: |_| Treatment::Pass,
             reply: |reply| reply,
+            piecewise: false,
         }
     }
 }
@@ -167,7 +170,15 @@ impl Server {
                 let _ = self.udp.send_to(datagram.bytes, client);
             }
             while let Some(reply) = self.robot.take_reply() {
-                stream.write_all(&(self.manners.reply)(reply.to_vec()))?;
+                let reply = (self.manners.reply)(reply.to_vec());
+                let portion = if self.manners.piecewise {
+                    1
+                } else {
+                    reply.len().max(1)
+                };
+                for portion in reply.chunks(portion) {
+                    stream.write_all(portion)?;
+                }
             }
             for mischief in self.asked.try_iter() {
                 match mischief {
