@@ -94,14 +94,18 @@ impl Axis {
         let Motion::Through(passing) = &self.motion else {
             return duration;
         };
-        let t = duration / self.unit;
-        let left = t - self.braking;
-        let possible = passing.from(left, ROUNDING * t);
+        let left = duration / self.unit - self.braking;
+        let possible = passing.from(left, self.slack());
         if possible == left {
             duration
         } else {
             self.unit * (self.braking + possible)
         }
+    }
+
+    /// [`TOGETHER`] in units of the axis.
+    fn slack(&self) -> f64 {
+        TOGETHER / self.unit
     }
 
     /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes longer.
@@ -118,9 +122,8 @@ impl Axis {
                 self.lay_out_shape(least.sign * solution.sign, &solution.shape, 0.0, profile);
             }
             Motion::Through(passing) => {
-                match passing.way(left.max(passing.least())) {
-                    Way::Farthest(sign, reach) => {
-                        let shape = reach.shape(passing.farthest(sign));
+                match passing.way(left.max(passing.least()), self.slack()) {
+                    Way::Shape(sign, shape) => {
                         self.begin(profile);
                         self.lay_out_shape(sign, &shape, 0.0, profile);
                     }
@@ -211,6 +214,12 @@ fn append_stop(limits: AxisLimits, profile: &mut Profile) {
     profile.push(-sign * limits.jerk, t3 * unit);
     profile.finish_here();
 }
+
+/// Times, in seconds, that count as together where an axis would need a detour to lose the difference.
+///
+/// A fiftieth of a cycle, in which it goes on behind its target as the target does. The time at which another axis comes
+/// to rest is known no better: near its end it is the third root of what a position is rounded by.
+const TOGETHER: f64 = CYCLE / 50.0;
 
 /// Relative excess over a limit that counts as rounding of a target that is at the limit.
 const AT_LIMIT: f64 = 1e-12;

@@ -169,6 +169,15 @@ impl Farthest {
 }
 
 impl Reach {
+    /// How fast the end moves as the duration grows.
+    pub(super) fn rate(&self) -> f64 {
+        if self.cruise > 0.0 {
+            self.w
+        } else {
+            self.w + 0.5 * self.first.0 * self.second.0
+        }
+    }
+
     /// The shape of the motion from acceleration `a0` to `af`.
     pub(super) fn shape(&self, ends: &Farthest) -> Shape {
         let ((x, first_hold), (y, second_hold)) = (self.first, self.second);

@@ -88,6 +88,7 @@ mod limits;
 mod line;
 mod passing;
 mod plan;
+mod plateau;
 mod profile;
 mod root;
 mod segment;

@@ -9,8 +9,9 @@
 //! - the interval's ends pass the target a few times at most, and in between durations stay possible or impossible.
 //!   Each end is monotone between its turning points, which are closed too, so one bracketed search per piece finds
 //!   them all: the least duration and the ends of the blocked intervals;
-//! - a profile for a possible duration is the mean of the two farthest motions, weighted so that it ends at the target.
-//!   A mean of motions inside convex limits is inside them. No second search is needed, and none can fail.
+//! - there is a profile for each possible duration: the mean of the two farthest motions, weighted so that it ends at the
+//!   target. A mean of motions inside convex limits is inside them. It is what always works; where a constant velocity
+//!   fits in between that is the better course ([`Plateau`]).
 //!
 //! The velocity of the end has to be in reach as well, which is the same problem one derivative lower and for the same
 //! reason has a blocked interval of its own if the target accelerates: `Turn` holds both.
@@ -19,12 +20,17 @@
 //! direction, half of which fail by rounding where two families meet.
 
 use super::farthest::{Farthest, Reach};
+use super::least_time::Shape;
+use super::plateau::Plateau;
 use super::root::{Point, root};
 use super::task::{ROUNDING, Task};
 
 /// One axis and a target that moves, in units of the axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passing {
+    task: Task,
+    vf: f64,
+    af: f64,
     up: Farthest,
     /// The same with all directions reversed.
     down: Farthest,
@@ -37,9 +43,9 @@ pub(super) struct Passing {
 /// How to move for one duration.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Way {
-    /// As far as possible in a direction, 1 or -1.
-    Farthest(f64, Reach),
-    /// The mean of both, and the weight of the one upwards.
+    /// One shape in a direction, 1 or -1.
+    Shape(f64, Shape),
+    /// The mean of two.
     Mean {
         /// As far up as possible.
         up: Reach,
@@ -55,6 +61,9 @@ impl Passing {
     /// can be met inside them.
     pub(super) fn new(task: &Task, vf: f64, af: f64) -> Self {
         let mut passing = Self {
+            task: *task,
+            vf,
+            af,
             up: Farthest::new(task, vf, af),
             down: Farthest::new(&task.mirrored(-1.0), -vf, -af),
             turn: Turn::new(task, vf, af),
@@ -75,26 +84,43 @@ impl Passing {
         self.candidates.iter().next().unwrap_or(0.0)
     }
 
-    /// The least possible duration that is not less than `t`, which is rounded by up to `slack`.
+    /// The least possible duration that is not less than `t`, or than a little before it: one that ends up to `slack` ahead
+    /// of `t` counts as `t`.
     pub(super) fn from(&self, t: f64, slack: f64) -> f64 {
-        let is_candidate = |candidate: f64| (candidate - t).abs() <= slack;
-        if self.candidates.iter().any(is_candidate) || self.is_possible(t) {
+        if self.is_possible(t) || self.just_before(t, slack).is_some() {
             return t;
         }
         // Behind the last one all durations are possible, whatever rounding says.
         self.candidates.iter().find(|&next| next > t).unwrap_or(t)
     }
 
-    /// How to move for a possible duration.
-    pub(super) fn way(&self, t: f64) -> Way {
+    /// The last candidate up to `slack` ahead of `t`.
+    fn just_before(&self, t: f64, slack: f64) -> Option<f64> {
+        let near = |&candidate: &f64| candidate <= t && t - candidate <= slack;
+        self.candidates.iter().filter(near).last()
+    }
+
+    /// How to move for a duration that [`from`](Self::from) gives for the same `slack`.
+    pub(super) fn way(&self, t: f64, slack: f64) -> Way {
+        let t = if self.is_possible(t) {
+            t
+        } else {
+            self.just_before(t, slack).unwrap_or(t)
+        };
         let (up, down) = (self.up.reach(t), self.down.reach(t));
         if up.beyond <= self.tolerance.at(t, up.w) {
-            Way::Farthest(1.0, up)
-        } else if down.beyond <= self.tolerance.at(t, down.w) {
-            Way::Farthest(-1.0, down)
-        } else {
-            let weight = down.beyond / (up.beyond + down.beyond);
-            Way::Mean { up, down, weight }
+            return Way::Shape(1.0, up.shape(&self.up));
+        }
+        if down.beyond <= self.tolerance.at(t, down.w) {
+            return Way::Shape(-1.0, down.shape(&self.down));
+        }
+        let plateau = Plateau::new(&self.task, self.vf, self.af, t);
+        match plateau.between(-down.w, up.w) {
+            Some((sign, shape)) => Way::Shape(sign, shape),
+            None => {
+                let weight = down.beyond / (up.beyond + down.beyond);
+                Way::Mean { up, down, weight }
+            }
         }
     }
 
@@ -107,8 +133,18 @@ impl Passing {
 
     fn find_candidates(&mut self) {
         let mut breaks = Times::<BREAKS>::NONE;
-        for t in self.turn.crossings().into_iter().flatten() {
-            breaks.insert(t.max(0.0));
+        for (t, rounding) in self.turn.crossings().into_iter().flatten() {
+            breaks.insert(t);
+            // Whoever follows a plan is here from some point on: both sides end at the target but for rounding, and
+            // going for the rounding could cost a detour. The velocity's is the larger one, so the time is that which
+            // meets the position.
+            let up = self.up.reach(t);
+            let later = -up.beyond / up.rate();
+            if later.abs() <= rounding && t + later >= 0.0 {
+                self.candidates.insert(t + later);
+            } else if up.beyond.abs() <= self.tolerance.at(t, up.w) {
+                self.candidates.insert(t);
+            }
         }
         let Some(first) = breaks.iter().next() else {
             return; // not for numbers that are finite
@@ -124,7 +160,7 @@ impl Passing {
         let mut left: Option<(f64, [Reach; 2])> = None;
         for right in breaks.iter() {
             let reaches = [self.up.reach(right), self.down.reach(right)];
-            // A target at a break but for rounding. Going for the rounding could cost a detour.
+            // A target at a turning point but for rounding.
             if reaches
                 .iter()
                 .any(|reach| reach.beyond.abs() <= self.tolerance.at(right, reach.w))
@@ -203,7 +239,7 @@ impl Turn {
             af,
             peak: squares + (vf - v0),
             valley: squares - (vf - v0),
-            tolerance: 2.0 * ROUNDING * (v0.abs() + vf.abs() + squares),
+            tolerance: 2.0 * DRIFT * (v0.abs() + vf.abs() + squares + typical_velocity(task)),
         }
     }
 
@@ -216,26 +252,26 @@ impl Turn {
             && area(lowest) >= self.valley - self.tolerance
     }
 
-    /// Where possible durations begin or end, in no order.
-    fn crossings(&self) -> [Option<f64>; 4] {
+    /// Where possible durations begin or end, in no order, and what the rounding of velocities makes of them.
+    fn crossings(&self) -> [Option<(f64, f64)>; 4] {
         let Self { a0, af, .. } = *self;
         let shortest = (af - a0).abs();
         let ways = [(self.peak, a0 + af), (self.valley, -a0 - af)];
         let mut times = [None; 4];
         for (i, (area, sum)) in ways.into_iter().enumerate() {
-            // Rounding may ask for less than nothing.
-            let extreme = if area > 1.0 {
-                0.5 * (area + 1.0)
-            } else {
-                area.max(-self.tolerance).max(0.0).sqrt()
-            };
             if area < -self.tolerance {
                 continue;
             }
+            let extreme = if area > 1.0 {
+                0.5 * (area + 1.0)
+            } else {
+                area.max(0.0).sqrt()
+            };
+            let rounding = self.tolerance / extreme.min(1.0).max(self.tolerance.sqrt());
             for (j, extreme) in [extreme, -extreme].into_iter().enumerate() {
                 let t = 2.0 * extreme - sum;
-                if t >= shortest - ROUNDING.sqrt() && self.is_possible(t.max(shortest)) {
-                    times[2 * i + j] = Some(t.max(shortest));
+                if t >= shortest - 2.0 * rounding && self.is_possible(t.max(shortest)) {
+                    times[2 * i + j] = Some((t.max(shortest), rounding));
                 }
             }
         }
@@ -262,16 +298,21 @@ impl Tolerance {
         let (v0, a0) = (task.v.abs(), task.a.abs());
         let (vf, af) = (vf.abs(), af.abs());
         Self {
-            fixed: task.fuzz
-                + ROUNDING * (task.d.abs() + a0 * (a0 * a0 + v0) + af * (af * af + vf)),
-            velocity: v0 + vf + a0 * a0 + af * af,
+            fixed: task.fuzz + DRIFT * (task.d.abs() + a0 * (a0 * a0 + v0) + af * (af * af + vf)),
+            velocity: v0 + vf + a0 * a0 + af * af + typical_velocity(task),
             offset: a0 + af,
         }
     }
 
     fn at(&self, t: f64, w: f64) -> f64 {
-        self.fixed + ROUNDING * (self.velocity + w.abs()) * (t + self.offset)
+        self.fixed + DRIFT * (self.velocity + w.abs()) * (t + self.offset)
     }
+}
+
+/// Velocity that the rounding of the task's velocity may come from: an axis that slows down was faster before. A limit
+/// that is much larger is seldom reached.
+fn typical_velocity(task: &Task) -> f64 {
+    task.top.min(1e3)
 }
 
 /// A few times in ascending order. If there is no room left, a new one takes the place of the last.
@@ -305,6 +346,10 @@ impl<const C: usize> Times<C> {
     }
 }
 
+/// Relative rounding of a state that some thousand plans led to, each from the state that the one before gave. Equal
+/// steps are rounded alike, so what they are rounded by adds up.
+const DRIFT: f64 = 1024.0 * ROUNDING;
+
 /// Four of the turn and six turning points of each side.
 const BREAKS: usize = 16;
 
@@ -313,3 +358,61 @@ const FOUND: usize = 48;
 
 /// Each side crosses the target five times at most, and four durations are where the velocity can be met.
 pub(super) const CANDIDATES: usize = 16;
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::otg::least_time::least_time;
+    use crate::otg::tests::cases;
+
+    proptest! {
+        #![proptest_config(cases(3000))]
+
+        /// Rest is a motion too: the other solution, which shares none of the equations, has to agree.
+        #[test]
+        fn a_target_at_rest_takes_as_long_as_by_the_other_solution(
+            exponent in -1.5_f64..2.5, coasting in -1.0_f64..1.0, bend in -1.0_f64..1.0, distance in -3.0_f64..1.0, up in any::<bool>(),
+        ) {
+            let top = 10_f64.powf(exponent);
+            let room = 2.0 * top * (1.0 + coasting * 1_f64.copysign(bend));
+            let a = bend * f64::min(1.0, room.sqrt());
+            let task = Task { d: 0.0, v: top * coasting - 0.5 * a * a.abs(), a, top, fuzz: 0.0 };
+            let way = top * (1.0 + top) * 10_f64.powf(distance);
+            let task = Task { d: task.stop_point().0 + if up { way } else { -way }, ..task };
+            let (got, expected) = (Passing::new(&task, 0.0, 0.0).least(), least_time(task).duration);
+            prop_assert!((got - expected).abs() <= 1e-9 * expected, "{got} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn an_axis_early_at_a_moving_target_has_durations_that_are_blocked() {
+        // At the target's velocity and a little behind its place: to be there later it has to go back first.
+        let task = Task {
+            d: 1e-3,
+            v: 0.5,
+            a: 0.0,
+            top: 1.0,
+            fuzz: 0.0,
+        };
+        let passing = Passing::new(&task, 0.5, 0.0);
+        let least = passing.least();
+        assert!(least < 2e-3, "{least}");
+        let next = passing.from(0.1, 0.0);
+        assert!(next > 2.0, "{next}");
+        // It slows down to nothing and less, and comes again with as much.
+        let (low, high) = (passing.down.reach(next), passing.up.reach(next));
+        assert!(low.beyond.abs() < 1e-12 && high.beyond > 0.0);
+        assert!(low.w > 0.0, "backwards, in the frame that is upside down");
+    }
+
+    #[test]
+    fn full_lists_keep_the_last_time() {
+        let mut times = Times::<3>::NONE;
+        for t in [1.0, 4.0, 2.0, 2.0, 3.0, 5.0] {
+            times.insert(t);
+        }
+        assert!(times.iter().eq([1.0, 2.0, 5.0]));
+    }
+}

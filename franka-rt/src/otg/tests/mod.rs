@@ -3,8 +3,11 @@
 mod closed_loop;
 mod least;
 mod lines;
+mod moving;
 mod oracle;
 mod random;
 mod refusals;
 mod stretched;
 mod walk;
+
+pub(super) use random::cases;

@@ -125,9 +125,36 @@ pub(super) fn many<const N: usize>(
     })
 }
 
+/// A motion that a target may have: it can be met inside `limits`, and left.
+pub(super) fn target_motion(limits: AxisLimits, speed: f64, bend: f64) -> (f64, f64) {
+    let velocity = speed * limits.velocity;
+    let room = 2.0 * limits.jerk * (limits.velocity - velocity.abs());
+    (velocity, bend * limits.acceleration.min(room.sqrt()))
+}
+
+/// Limits, states and targets in motion of `N` axes; some targets move with constant velocity, some rest.
+pub(super) fn many_moving<const N: usize>(
+    limits: impl Strategy<Value = AxisLimits>,
+) -> impl Strategy<Value = (Limits<N>, State<N>, State<N>)> {
+    let bend = || prop_oneof![2 => Just(0.0), 1 => -1.0..1.0];
+    let speed = prop_oneof![6 => -1.0..1.0, 1 => Just(0.0), 1 => -1e-9..1e-9, 1 => Just(1.0)];
+    let motion = (speed, bend());
+    (many::<N>(limits), proptest::collection::vec(motion, N)).prop_map(
+        |((limits, state, position), motions)| {
+            let mut target = State::at_rest(position);
+            for (i, (speed, bend)) in motions.into_iter().enumerate() {
+                let (velocity, acceleration) = target_motion(limits.axis(i), speed, bend);
+                target.velocity[i] = velocity;
+                target.acceleration[i] = acceleration;
+            }
+            (limits, state, target)
+        },
+    )
+}
+
 /// So many cases, without a file of seeds beside the source: a case that failed is printed, and becomes a
 /// test of its own.
-pub(super) fn cases(count: u32) -> ProptestConfig {
+pub(in crate::otg) fn cases(count: u32) -> ProptestConfig {
     ProptestConfig {
         failure_persistence: None,
         ..ProptestConfig::with_cases(count)

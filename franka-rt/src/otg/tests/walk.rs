@@ -63,6 +63,7 @@ pub(super) fn check_motion<const N: usize>(generator: &Generator<N>, samples: us
         .position
         .iter()
         .chain(generator.target())
+        .chain(generator.end())
         .fold(0.0_f64, |size, p| size.max(p.abs()));
     let dt = generator.remaining() / samples as f64;
     let mut before = *generator.state();
@@ -73,6 +74,6 @@ pub(super) fn check_motion<const N: usize>(generator: &Generator<N>, samples: us
     }
     assert_eq!(
         generator.sample(generator.remaining() + dt),
-        State::at_rest(*generator.target())
+        State::at_rest(*generator.end())
     );
 }
