@@ -220,3 +220,22 @@ const _: () = {
     const fn shared<T: Send + Sync + 'static>() {}
     shared::<ModelLibrary>();
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+
+    #[test]
+    fn a_temporary_file_is_for_this_user_only_and_gone_when_it_is_dropped() {
+        let first = Temporary::with(b"one").expect("a file");
+        let second = Temporary::with(b"two").expect("a file");
+        assert_ne!(first.path, second.path);
+        assert_eq!(fs::read(&first.path).expect("a file"), b"one");
+        let metadata = fs::metadata(&first.path).expect("a file");
+        assert_eq!(metadata.permissions().mode() & 0o777, 0o600);
+        let paths = [first.path.clone(), second.path.clone()];
+        drop((first, second));
+        assert!(paths.iter().all(|path| !path.exists()));
+    }
+}
