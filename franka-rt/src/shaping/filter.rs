@@ -6,7 +6,7 @@
 use core::f64::consts::PI;
 
 use crate::shaping::check::all_finite;
-use crate::shaping::rotation::{self, nearest_rotation, quaternion, slerp};
+use crate::shaping::rotation::{Rigid, slerp};
 use crate::shaping::{FilterFault, InvalidCommand, Signal};
 
 /// Cutoff frequency from which on a control loop does not filter, `[Hz]` (libfranka 0.21, `lowpass_filter.h`).
@@ -60,22 +60,34 @@ pub fn low_pass_pose(
     last: &[f64; 16],
     cutoff_frequency: f64,
 ) -> Result<[f64; 16], InvalidCommand> {
+    let rigid_last = Rigid::nearest(last);
+    low_pass_rigid(sample_time, current, last, &rigid_last, cutoff_frequency)
+        .map(|filtered| filtered.pose())
+}
+
+/// [`low_pass_pose`] with what [`Rigid::nearest`] makes of `last`.
+pub(super) fn low_pass_rigid(
+    sample_time: f64,
+    current: &[f64; 16],
+    last: &[f64; 16],
+    rigid_last: &Rigid,
+    cutoff_frequency: f64,
+) -> Result<Rigid, InvalidCommand> {
     let gain = checked_gain(sample_time, current, last, cutoff_frequency);
     let gain = gain.map_err(|fault| InvalidCommand::Filter {
         signal: Signal::Pose,
         fault,
     })?;
-    let orientation = |pose| quaternion(&nearest_rotation(pose));
-    let orientation = slerp(&orientation(last), &orientation(current), gain);
-    let translation = rotation::translation(current)
-        .zip_map(&rotation::translation(last), |current, last| {
-            mix(gain, current, last)
-        });
-    Ok(rotation::pose(
-        orientation.to_rotation_matrix().matrix(),
-        &translation,
-        [current[3], current[7], current[11], current[15]],
-    ))
+    let (from, to) = (rigid_last, Rigid::nearest(current));
+    let orientation = slerp(&from.orientation, &to.orientation, gain);
+    Ok(Rigid {
+        rotation: orientation.to_rotation_matrix().into_inner(),
+        orientation,
+        translation: to
+            .translation
+            .zip_map(&from.translation, |to, from| mix(gain, to, from)),
+        last_row: to.last_row,
+    })
 }
 
 /// Share of the new value.

@@ -2,36 +2,60 @@
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion, Vector3};
 
-/// The translation of a pose, `[m]`.
-pub(super) fn translation(pose: &[f64; 16]) -> Vector3<f64> {
-    Vector3::new(pose[12], pose[13], pose[14])
+/// A pose whose rotation is one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rigid {
+    pub(super) rotation: Matrix3<f64>,
+    /// The same as a quaternion.
+    pub(super) orientation: UnitQuaternion<f64>,
+    /// `[m]`.
+    pub(super) translation: Vector3<f64>,
+    /// Of the homogeneous matrix; for a pose `0 0 0 1`.
+    pub(super) last_row: [f64; 4],
 }
 
-/// The rotation nearest to the upper left block of a pose, which may be rounded to `f32`.
-///
-/// That is the orthogonal factor of its polar decomposition, turned where the block is mirrored. Any finite block gives a
-/// rotation; NaN if an element is not finite.
-pub(super) fn nearest_rotation(pose: &[f64; 16]) -> Matrix3<f64> {
-    let m = pose;
-    let block = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
-    polished(block).unwrap_or_else(|| procrustes(&block))
+impl Rigid {
+    /// Of a column-major pose, which may be rounded to `f32`: with the [`nearest_rotation`].
+    pub(super) fn nearest(pose: &[f64; 16]) -> Self {
+        let m = pose;
+        let block = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
+        let rotation = nearest_rotation(&block);
+        Self {
+            rotation,
+            orientation: quaternion(&rotation),
+            translation: Vector3::new(m[12], m[13], m[14]),
+            last_row: [m[3], m[7], m[11], m[15]],
+        }
+    }
+
+    /// The column-major pose.
+    pub(super) fn pose(&self) -> [f64; 16] {
+        pose(&self.rotation, &self.translation, self.last_row)
+    }
 }
 
-/// A pose of a rotation and a translation with the last row given.
+/// A column-major pose of its parts.
 pub(super) fn pose(
     rotation: &Matrix3<f64>,
     translation: &Vector3<f64>,
     last_row: [f64; 4],
 ) -> [f64; 16] {
-    core::array::from_fn(|i| match (i % 4, i / 4) {
-        (3, column) => last_row[column],
-        (row, 3) => translation[row],
-        (row, column) => rotation[(row, column)],
-    })
+    let (r, t) = (rotation, translation);
+    let [e, f, g, h] = last_row;
+    [
+        r.m11, r.m21, r.m31, e, r.m12, r.m22, r.m32, f, r.m13, r.m23, r.m33, g, t.x, t.y, t.z, h,
+    ]
+}
+
+/// The rotation nearest to a matrix: the orthogonal factor of its polar decomposition, turned where the matrix mirrors.
+///
+/// Any finite matrix gives a rotation; NaN if an element is not finite.
+fn nearest_rotation(block: &Matrix3<f64>) -> Matrix3<f64> {
+    polished(*block).unwrap_or_else(|| procrustes(block))
 }
 
 /// The quaternion of a rotation matrix.
-pub(super) fn quaternion(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
+fn quaternion(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
     let rotation = nalgebra::Rotation3::from_matrix_unchecked(*rotation);
     UnitQuaternion::from_rotation_matrix(&rotation)
 }
@@ -42,46 +66,105 @@ pub(super) fn slerp(
     to: &UnitQuaternion<f64>,
     t: f64,
 ) -> UnitQuaternion<f64> {
-    let cosine = from.coords.dot(&to.coords);
-    let (of_from, of_to) = if cosine.abs() >= 1.0 - f64::EPSILON {
+    let signed = from.coords.dot(&to.coords);
+    let cosine = signed.abs();
+    let (of_from, of_to) = if cosine >= 1.0 - f64::EPSILON {
         (1.0 - t, t)
     } else {
-        let angle = cosine.abs().acos();
-        let sine = angle.sin();
+        let angle = cosine.acos();
+        let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
         (((1.0 - t) * angle).sin() / sine, (t * angle).sin() / sine)
     };
-    let of_to = if cosine < 0.0 { -of_to } else { of_to };
+    let of_to = if signed < 0.0 { -of_to } else { of_to };
     let sum = from.coords * of_from + to.coords * of_to;
-    UnitQuaternion::new_normalize(Quaternion::from(sum))
+    // Its length is 1 but for rounding, where this step of Newton's is as good as a division by the root.
+    let sum = sum * (1.5 - 0.5 * sum.norm_squared());
+    UnitQuaternion::new_unchecked(Quaternion::from(sum))
 }
 
 /// The rotation about `axis`, of length 1, by `angle` radians (Rodrigues).
 pub(super) fn about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
-    let k = axis.cross_matrix();
     let (sine, cosine) = angle.sin_cos();
-    Matrix3::identity() + k * sine + k * k * (1.0 - cosine)
+    let (along, across) = (axis * (1.0 - cosine), axis * sine);
+    let beside = |i: usize, j: usize| along[i] * axis[j];
+    let (xy, yz, zx) = (beside(0, 1), beside(1, 2), beside(2, 0));
+    Matrix3::new(
+        beside(0, 0) + cosine,
+        xy - across.z,
+        zx + across.y,
+        xy + across.z,
+        beside(1, 1) + cosine,
+        yz - across.x,
+        zx - across.y,
+        yz + across.x,
+        beside(2, 2) + cosine,
+    )
 }
 
-/// The nearest rotation by Newton and Schulz's iteration `X <- X - X (X'X - 1) / 2`, whose error squares with each step.
-/// `None` where the block is not close to a rotation.
+/// The nearest rotation by `X <- X (1 - E / 2 + 3 E^2 / 8)` with `E = X'X - 1`: the start of the series of
+/// `X (X'X)^(-1/2)`, whose error cubes with each step. `None` where the block is not close to a rotation.
 fn polished(block: Matrix3<f64>) -> Option<Matrix3<f64>> {
-    let mut x = block;
+    if block.determinant() <= 0.0 {
+        return None;
+    }
+    let mut x: [Vector3<f64>; 3] = core::array::from_fn(|i| block.column(i).into_owned());
     for _ in 0..POLISH_STEPS_MAX {
-        let error = x.tr_mul(&x) - Matrix3::identity();
-        // False for NaN, which `amax` may drop.
-        let within = |bound: f64| error.iter().all(|x| x.abs() <= bound);
-        if !within(POLISH_BELOW) || x.determinant() <= 0.0 {
+        let error = Symmetric {
+            diagonal: core::array::from_fn(|i| x[i].norm_squared() - 1.0),
+            beside: [x[1].dot(&x[2]), x[2].dot(&x[0]), x[0].dot(&x[1])],
+        };
+        let size = error.size();
+        if size.is_nan() || size > POLISH_BELOW {
             return None;
         }
-        if within(ROUNDING) {
-            return Some(x);
+        if size <= ROUNDING {
+            return Some(Matrix3::from_columns(&x));
         }
-        x -= x * error * 0.5;
-        if within(SQUARES_AWAY) {
-            return Some(x);
+        let [correction_x, correction_y, correction_z] = error.correction();
+        let [a, b, c] = x;
+        let corrected = |s: [f64; 3], own: Vector3<f64>| own - (a * s[0] + b * s[1] + c * s[2]);
+        x = [
+            corrected(correction_x, a),
+            corrected(correction_y, b),
+            corrected(correction_z, c),
+        ];
+        if size <= CUBES_AWAY {
+            return Some(Matrix3::from_columns(&x));
         }
     }
     None
+}
+
+/// A symmetric 3x3 matrix.
+struct Symmetric {
+    diagonal: [f64; 3],
+    /// The elements in rows and columns yz, zx and xy.
+    beside: [f64; 3],
+}
+
+impl Symmetric {
+    /// The sizes of all elements, summed: unlike the largest, it cannot lose a NaN.
+    fn size(&self) -> f64 {
+        let sum = |x: &[f64; 3]| x[0].abs() + x[1].abs() + x[2].abs();
+        sum(&self.diagonal) + 2.0 * sum(&self.beside)
+    }
+
+    /// The columns of `E / 2 - 3 E^2 / 8`.
+    fn correction(&self) -> [[f64; 3]; 3] {
+        let ([xx, yy, zz], [yz, zx, xy]) = (self.diagonal, self.beside);
+        let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
+        let element = |i: usize, j: usize| {
+            let (a, b) = (rows[i], rows[j]);
+            let square = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            0.5 * a[j] - 0.375 * square
+        };
+        let (xy, yz, zx) = (element(0, 1), element(1, 2), element(2, 0));
+        [
+            [element(0, 0), xy, zx],
+            [xy, element(1, 1), yz],
+            [zx, yz, element(2, 2)],
+        ]
+    }
 }
 
 /// The rotation that maximises `tr(R'M)`, which is the nearest one: the eigenvector of the largest eigenvalue of a
@@ -119,13 +202,14 @@ fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
         .into_inner()
 }
 
-/// Where the iteration is used: within this of orthogonal it converges in five steps.
-const POLISH_BELOW: f64 = 0.1;
-const POLISH_STEPS_MAX: usize = 6;
-/// What is this close to orthogonal is as close after one more step as rounding allows.
-const SQUARES_AWAY: f64 = 1e-8;
+/// Where the series is used: within this of orthogonal, element sizes summed, three steps are enough.
+const POLISH_BELOW: f64 = 0.3;
+const POLISH_STEPS_MAX: usize = 4;
+/// What is this close to orthogonal, such as rotations rounded to `f32`, is as close after one more step as rounding
+/// allows.
+const CUBES_AWAY: f64 = 5e-6;
 /// What products of rotations are off by.
-const ROUNDING: f64 = 2.0 * f64::EPSILON;
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Far more than a symmetric 4x4 matrix takes.
 const EIGEN_STEPS_MAX: usize = 200;
 
@@ -145,7 +229,7 @@ mod tests {
     }
 
     fn nearest(block: &Matrix3<f64>) -> Matrix3<f64> {
-        nearest_rotation(&pose(block, &Vector3::zeros(), [0.0, 0.0, 0.0, 1.0]))
+        Rigid::nearest(&pose(block, &Vector3::zeros(), [0.0, 0.0, 0.0, 1.0])).rotation
     }
 
     fn is_rotation(r: &Matrix3<f64>) -> bool {
@@ -222,6 +306,15 @@ mod tests {
                 block[index] = bad;
                 assert!(nearest(&block).iter().all(|x| x.is_nan()));
             }
+        }
+    }
+
+    #[test]
+    fn a_turn_about_an_axis_is_its_exponential() {
+        let axis = Vector3::new(0.36, -0.48, 0.8);
+        for angle in [0.0, 1e-9, 2.5e-3, 1.0, -3.0] {
+            let expected = UnitQuaternion::from_scaled_axis(axis * angle).to_rotation_matrix();
+            assert!((about(&axis, angle) - expected.matrix()).amax() < 4e-16);
         }
     }
 

@@ -17,6 +17,7 @@
 //! | [`cycle`] | target control, datagram in to datagram out |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
 //! | [`otg`] | a new target for seven joints in motion |
+//! | [`shape`] | filter, limiter and check of torques and of a pose |
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -26,6 +27,7 @@ pub mod collision;
 pub mod cycle;
 pub mod model;
 pub mod otg;
+pub mod shape;
 
 /// One thing to measure.
 pub struct Benchmark {
@@ -77,6 +79,7 @@ pub fn all() -> Vec<Benchmark> {
         cycle::all(),
         model::all(),
         otg::all(),
+        shape::all(),
     ]
     .into_iter()
     .flatten()

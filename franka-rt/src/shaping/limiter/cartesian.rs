@@ -5,7 +5,7 @@ use franka_model::rotation;
 use nalgebra::Vector3;
 
 use crate::shaping::check::{all_finite, is_homogeneous};
-use crate::shaping::rotation::{about, nearest_rotation, pose, quaternion, translation};
+use crate::shaping::rotation::{Rigid, about, pose};
 use crate::shaping::{CYCLE, InvalidCommand, hi, lo};
 
 /// Share of the rotational bounds that a pose may use (libfranka 0.21, `kFactorCartesianRotationPoseInterface`).
@@ -34,7 +34,10 @@ pub fn cartesian_velocity(
         return Err(InvalidCommand::Twist);
     }
     let (v, w) = halves(command);
-    let (v, w) = limit_twist(bounds, v, w, last_velocity, last_acceleration);
+    let (last_v, last_w) = halves(last_velocity);
+    let (last_dv, last_dw) = halves(last_acceleration);
+    let v = limit_vector(&bounds.translation, v, last_v, last_dv);
+    let w = limit_vector(&bounds.rotation, w, last_w, last_dw);
     Ok([v.x, v.y, v.z, w.x, w.y, w.z])
 }
 
@@ -53,37 +56,51 @@ pub fn cartesian_pose(
     last_velocity: &[f64; 6],
     last_acceleration: &[f64; 6],
 ) -> Result<[f64; 16], InvalidCommand> {
+    limit_rigid(
+        bounds,
+        command,
+        &Rigid::nearest(command),
+        &Rigid::nearest(last_pose),
+        last_velocity,
+        last_acceleration,
+    )
+}
+
+/// [`cartesian_pose`] with what [`Rigid::nearest`] makes of the poses.
+pub(in crate::shaping) fn limit_rigid(
+    bounds: &CartesianBounds,
+    command: &[f64; 16],
+    rigid_command: &Rigid,
+    last: &Rigid,
+    last_velocity: &[f64; 6],
+    last_acceleration: &[f64; 6],
+) -> Result<[f64; 16], InvalidCommand> {
     if !all_finite(command) {
         return Err(InvalidCommand::Pose);
     }
     if !is_homogeneous(command) {
         return Err(InvalidCommand::LimiterTransformation);
     }
-    let last_rotation = nearest_rotation(last_pose);
-    let last_translation = translation(last_pose);
-    let turn = nearest_rotation(command) * last_rotation.transpose();
-    let bounds = CartesianBounds {
-        translation: bounds.translation,
-        rotation: MotionLimits {
-            velocity: POSE_ROTATION_SHARE * bounds.rotation.velocity,
-            acceleration: POSE_ROTATION_SHARE * bounds.rotation.acceleration,
-            jerk: POSE_ROTATION_SHARE * bounds.rotation.jerk,
-        },
+    let (last_v, last_w) = halves(last_velocity);
+    let (last_dv, last_dw) = halves(last_acceleration);
+
+    let v = (rigid_command.translation - last.translation) / CYCLE;
+    let v = limit_vector(&bounds.translation, v, last_v, last_dv);
+
+    let w = rotation::error(&rigid_command.orientation, &last.orientation) / CYCLE;
+    let share = MotionLimits {
+        velocity: POSE_ROTATION_SHARE * bounds.rotation.velocity,
+        acceleration: POSE_ROTATION_SHARE * bounds.rotation.acceleration,
+        jerk: POSE_ROTATION_SHARE * bounds.rotation.jerk,
     };
-    let (v, w) = limit_twist(
-        &bounds,
-        (translation(command) - last_translation) / CYCLE,
-        rotation::log(&quaternion(&turn)) / CYCLE,
-        last_velocity,
-        last_acceleration,
-    );
+    let w = limit_vector(&share, w, last_w, last_dw);
     let speed = w.norm();
     let rotation = if speed > f64::EPSILON {
-        about(&(w / speed), CYCLE * speed) * last_rotation
+        about(&(w / speed), CYCLE * speed) * last.rotation
     } else {
-        last_rotation
+        last.rotation
     };
-    let translation = last_translation + v * CYCLE;
+    let translation = last.translation + v * CYCLE;
     Ok(pose(&rotation, &translation, [0.0, 0.0, 0.0, 1.0]))
 }
 
@@ -93,26 +110,12 @@ fn halves(twist: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
     (Vector3::new(x, y, z), Vector3::new(rx, ry, rz))
 }
 
-fn limit_twist(
-    bounds: &CartesianBounds,
-    v: Vector3<f64>,
-    w: Vector3<f64>,
-    last_velocity: &[f64; 6],
-    last_acceleration: &[f64; 6],
-) -> (Vector3<f64>, Vector3<f64>) {
-    let (last_v, last_w) = halves(last_velocity);
-    let (last_dv, last_dw) = halves(last_acceleration);
-    (
-        limit_vector(&bounds.translation, v, last_v, last_dv),
-        limit_vector(&bounds.rotation, w, last_w, last_dw),
-    )
-}
-
 /// Limits a velocity of three components by the norms of its derivatives.
 ///
 /// The acceleration keeps its direction and may be as large as the distance to the bound of the velocity, along that
 /// direction, allows: it falls with the distance at the rate of the jerk. Where the last velocity is so far outside that
 /// no acceleration in this direction leads back, the distance is NaN and does not bound.
+#[inline(always)]
 fn limit_vector(
     most: &MotionLimits,
     command: Vector3<f64>,
@@ -123,7 +126,7 @@ fn limit_vector(
     let mut acceleration = last_acceleration;
     let size = jerk.norm();
     if size > f64::EPSILON {
-        acceleration += jerk / size * hi(lo(size, most.jerk), -most.jerk) * CYCLE;
+        acceleration += jerk * (hi(lo(size, most.jerk), -most.jerk) / size * CYCLE);
     }
     let size = acceleration.norm();
     if size > f64::EPSILON {

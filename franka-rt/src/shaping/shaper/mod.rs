@@ -8,6 +8,7 @@ use franka_proto::{RobotState, Version};
 use crate::control::{
     CartesianPose, CartesianVelocities, JointPositions, JointVelocities, Torques,
 };
+use crate::shaping::rotation::Rigid;
 use crate::shaping::{
     Bounds, CYCLE, DEFAULT_CUTOFF_FREQUENCY, InvalidCommand, MAX_CUTOFF_FREQUENCY, check, filter,
     limiter,
@@ -211,19 +212,7 @@ impl Shaper {
         } else {
             &state.O_T_EE_c
         };
-        let mut pose = command.O_T_EE;
-        if self.filters() {
-            pose = filter::low_pass_pose(CYCLE, &pose, last, self.cutoff_frequency)?;
-        }
-        if self.limit_rate {
-            pose = limiter::cartesian_pose(
-                &self.bounds.cartesian,
-                &pose,
-                last,
-                &state.O_dP_EE_c,
-                &state.O_ddP_EE_c,
-            )?;
-        }
+        let pose = self.pose(&command.O_T_EE, last, state)?;
         check::pose(&pose)?;
         Ok(CartesianPose {
             O_T_EE: pose,
@@ -254,6 +243,38 @@ impl Shaper {
             O_dP_EE: twist,
             elbow: self.elbow(command.elbow, state, false)?,
         })
+    }
+
+    /// Filters and limits a pose. Both steps need the nearest rotations of their poses, a fair share of the work: what
+    /// one has found, the other takes over.
+    fn pose(
+        &self,
+        command: &[f64; 16],
+        last: &[f64; 16],
+        state: &RobotState,
+    ) -> Result<[f64; 16], InvalidCommand> {
+        if !self.filters() && !self.limit_rate {
+            return Ok(*command);
+        }
+        let rigid_last = Rigid::nearest(last);
+        let (pose, rigid) = if self.filters() {
+            let cutoff = self.cutoff_frequency;
+            let rigid = filter::low_pass_rigid(CYCLE, command, last, &rigid_last, cutoff)?;
+            (rigid.pose(), rigid)
+        } else {
+            (*command, Rigid::nearest(command))
+        };
+        if !self.limit_rate {
+            return Ok(pose);
+        }
+        limiter::limit_rigid(
+            &self.bounds.cartesian,
+            &pose,
+            &rigid,
+            &rigid_last,
+            &state.O_dP_EE_c,
+            &state.O_ddP_EE_c,
+        )
     }
 
     /// Shapes the angle of an elbow; the sign stays. Two zeros are no elbow, as on the wire.
