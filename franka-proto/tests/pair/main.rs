@@ -1,0 +1,114 @@
+//! A client session and a server session in one thread: every message goes through its bytes.
+
+mod commands;
+mod errors;
+mod handshake;
+mod models;
+mod motions;
+
+use franka_proto::framing::{MAX_REQUEST_SIZE, Message, next_message, next_message_within};
+use franka_proto::{
+    Architecture, CommandId, MoveControllerMode, MoveGeneratorMode, MoveRequest, Outgoing, Reply,
+    Request, System, Version, Violation, client, server,
+};
+
+struct Pair {
+    client: client::Session,
+    server: server::Session,
+}
+
+impl Pair {
+    /// Both sides of the same version, with the handshake done.
+    fn connected(version: Version) -> Self {
+        let mut pair = Self::new(version, version);
+        let hello = pair.client.connect(4711);
+        let event = pair.deliver(&hello).unwrap();
+        let server::Event::Connect {
+            id,
+            udp_port,
+            reply,
+        } = event
+        else {
+            panic!("{event:?}");
+        };
+        assert_eq!((id, udp_port), (CommandId(0), 4711));
+        let event = pair.client.on_message(message(&reply)).unwrap();
+        assert_eq!(event, client::Event::Connected { version });
+        assert!(pair.client.is_connected() && pair.server.is_connected());
+        pair
+    }
+
+    fn new(client: Version, server: Version) -> Self {
+        Self {
+            client: client::Session::new(client),
+            server: server::Session::new(server),
+        }
+    }
+
+    fn deliver(&mut self, outgoing: &Outgoing) -> Result<server::Event, Violation> {
+        self.deliver_bytes(outgoing.as_bytes())
+    }
+
+    /// Gives the robot a whole message.
+    fn deliver_bytes(&mut self, bytes: &[u8]) -> Result<server::Event, Violation> {
+        let received = next_message_within(bytes, MAX_REQUEST_SIZE);
+        self.server.on_message(received.unwrap().unwrap())
+    }
+
+    /// Gives the client a whole message.
+    fn receive<'a>(&mut self, bytes: &'a [u8]) -> Result<client::Event<'a>, Violation> {
+        self.client
+            .on_message(next_message(bytes).unwrap().unwrap())
+    }
+
+    /// Sends a request and checks that the robot reads the same.
+    fn request(&mut self, request: &Request) -> CommandId {
+        let outgoing = self.client.request(request).unwrap();
+        let id = outgoing.id();
+        let event = self.deliver(&outgoing).unwrap();
+        let request = *request;
+        assert_eq!(event, server::Event::Request { id, request });
+        id
+    }
+
+    /// Answers a request and checks that the client reads the same.
+    fn reply(&mut self, id: CommandId, reply: Reply<'_>) {
+        let outgoing = self.server.reply(id, reply).unwrap();
+        match self.client.on_message(message(&outgoing)).unwrap() {
+            client::Event::Reply {
+                id: got_id,
+                reply: got,
+                ..
+            } => assert_eq!((got_id, got), (id, reply)),
+            event => panic!("{event:?}"),
+        }
+    }
+}
+
+fn message(outgoing: &Outgoing) -> Message<'_> {
+    let message = next_message(outgoing.as_bytes()).unwrap().unwrap();
+    assert_eq!(message.size(), outgoing.as_bytes().len());
+    message
+}
+
+fn joint_motion() -> Request {
+    Request::Move(MoveRequest::new(
+        MoveControllerMode::JointImpedance,
+        MoveGeneratorMode::JointPosition,
+    ))
+}
+
+/// A reply of the robot as bytes, without a session that would refuse to make it.
+fn raw_reply(id: u32, payload: &[u8]) -> Vec<u8> {
+    let size = 12 + payload.len() as u32;
+    let mut bytes: Vec<u8> = [1, id, size].iter().flat_map(|n| n.to_le_bytes()).collect();
+    bytes.extend(payload);
+    bytes
+}
+
+fn library() -> Request {
+    Request::LoadModelLibrary {
+        architecture: Architecture::Arm64,
+        system: System::Linux,
+    }
+}
