@@ -1,5 +1,6 @@
 //! The good client.
 
+use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 use franka_async::{Gripper, Pose, Realtime, Robot, VacuumGripper};
@@ -21,7 +22,7 @@ pub(crate) fn assert_served(binary: &Binary) {
     binary.assert_alive();
     runtime().block_on(async {
         let begun = Instant::now();
-        let robot = connect_until(binary, begun + SERVED).await;
+        let robot = connect(binary, begun).await;
         assert!(robot.state().message_id > 0);
         // It says what holds anyway: the robot is the same for the next client.
         let stiffness = [3000.0; 7];
@@ -30,24 +31,15 @@ pub(crate) fn assert_served(binary: &Binary) {
         in_time(begun, "robot");
         robot.shutdown().await;
 
+        let [_, hand, vacuum] = binary.ports();
         let begun = Instant::now();
-        let hand = loop {
-            match Gripper::connect(binary.ports()[1].address).await {
-                Ok(hand) => break hand,
-                Err(error) => assert!(begun.elapsed() < SERVED, "no hand: {error}"),
-            }
-        };
+        let hand = patiently(begun, || Gripper::connect(hand.address)).await;
         assert!(hand.state().message_id > 0);
         assert!(hand.stop().await.expect("a stop"));
         in_time(begun, "hand");
 
         let begun = Instant::now();
-        let vacuum = loop {
-            match VacuumGripper::connect(binary.ports()[2].address).await {
-                Ok(vacuum) => break vacuum,
-                Err(error) => assert!(begun.elapsed() < SERVED, "no vacuum gripper: {error}"),
-            }
-        };
+        let vacuum = patiently(begun, || VacuumGripper::connect(vacuum.address)).await;
         assert!(vacuum.state().message_id > 0);
         assert!(vacuum.stop().await.expect("a stop"));
         in_time(begun, "vacuum gripper");
@@ -59,21 +51,29 @@ fn in_time(begun: Instant, name: &str) {
     assert!(time < SERVED, "the {name} took {time:?}");
 }
 
-async fn connect_until(binary: &Binary, deadline: Instant) -> Robot {
+/// Tries until the time is up: the client before may not have been taken leave of yet.
+async fn patiently<T, E: Display, F: Future<Output = Result<T, E>>>(
+    begun: Instant,
+    connect: impl Fn() -> F,
+) -> T {
     loop {
-        let builder = Robot::builder(binary.robot().address).realtime(Realtime::Ignore);
-        match builder.connect().await {
-            Ok(robot) => return robot,
-            Err(error) => assert!(Instant::now() < deadline, "no robot: {error}"),
+        match connect().await {
+            Ok(connected) => return connected,
+            Err(error) => assert!(begun.elapsed() < SERVED, "not let in: {error}"),
         }
     }
+}
+
+async fn connect(binary: &Binary, begun: Instant) -> Robot {
+    let robot = || Robot::builder(binary.robot().address).realtime(Realtime::Ignore);
+    patiently(begun, || robot().connect()).await
 }
 
 /// And moves: recovery, then a centimetre up.
 pub(crate) fn assert_moves(binary: &Binary) {
     binary.assert_alive();
     runtime().block_on(async {
-        let robot = connect_until(binary, Instant::now() + SERVED).await;
+        let robot = connect(binary, Instant::now()).await;
         robot.recover().await.expect("a recovery");
         let up = Pose::translation(0.0, 0.0, 0.01) * robot.pose();
         robot.move_to(up).await.expect("a motion up");
@@ -84,7 +84,7 @@ pub(crate) fn assert_moves(binary: &Binary) {
 /// Moves a good client for a second or so and does `mischief` meanwhile. The motion arrives.
 pub(crate) fn assert_moves_during(binary: &Binary, mischief: impl FnOnce()) {
     runtime().block_on(async {
-        let robot = connect_until(binary, Instant::now() + SERVED).await;
+        let robot = connect(binary, Instant::now()).await;
         robot.recover().await.expect("a recovery");
         let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
         let moving = tokio::spawn(robot.move_to(up).into_future());
