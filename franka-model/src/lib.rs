@@ -23,6 +23,8 @@
 //! | [`inverse_kinematics`] | joint positions for a pose or a point, by iteration |
 //! | [`analytic_ik`] | every joint position for a pose and a redundancy parameter, and what is within reach |
 //! | [`elbow`] | the vendor's elbow parameter, and the swivel angle |
+//! | [`operational_space`] | the inertia that is felt at a point and in a direction |
+//! | [`layout`] | arrays as libfranka has them |
 //! | [`collision`] | distances to itself, planes and boxes, with gradients |
 //! | `urdf` (a feature) | models from the description that a robot serves |
 //! | `model_library` (a feature) | the code that a Franka Emika Robot computes with |
@@ -70,6 +72,7 @@ mod fr3;
 mod inertia;
 mod jacobian;
 mod kind;
+mod margins;
 mod merge;
 mod model;
 mod scalar;
@@ -81,10 +84,12 @@ pub mod elbow;
 pub mod frame;
 pub mod geometry;
 pub mod inverse_kinematics;
+pub mod layout;
 pub mod limits;
 pub mod load;
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 pub mod model_library;
+pub mod operational_space;
 pub mod rotation;
 pub mod transform;
 #[cfg(feature = "urdf")]
@@ -103,7 +108,9 @@ pub use inertia::{RigidBody, Symmetric3};
 pub use jacobian::manipulability;
 pub use kind::RobotKind;
 pub use load::Load;
+pub use margins::JointMargins;
 pub use model::Model;
+pub use operational_space::OperationalSpace;
 
 use nalgebra::{ArrayStorage, SMatrix, SVector, Vector3};
 
