@@ -124,6 +124,16 @@ fn positions_near_the_end_of_the_range_are_held_by_the_envelope_of_the_fr3() {
 }
 
 #[test]
+fn the_envelope_of_a_first_position_is_that_of_the_position_itself() {
+    let state = at_rest();
+    let mut q = JointPositions(state.q_d);
+    q.0[0] = 2.75;
+    let first = Shaper::new(Version::V10, true, OFF).joint_positions(&q, &state, true);
+    // At 2.75 rad joint 1 has to turn back, at 0.1 rad nothing holds it.
+    assert!(first.expect("finite").0[0] < 2.75);
+}
+
+#[test]
 fn room_for_the_echo_is_left_in_protocol_10_unless_it_is_trusted() {
     let state = RobotState {
         tau_J_d: [80.0; 7],
