@@ -58,10 +58,8 @@ fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfEr
     };
     let mass = inertial.inner("mass")?;
     let mass = match weight {
-        Weight::Needed => mass.number_where("value", "a finite number above 0", |x| x > 0.0),
-        Weight::Optional => {
-            mass.number_where("value", "a finite number, not negative", |x| x >= 0.0)
-        }
+        Weight::Needed => mass.number_where("value", "a number above 0", |x| x > 0.0),
+        Weight::Optional => mass.number_where("value", "a number not below 0", |x| x >= 0.0),
     }?;
     let tensor = inertial.inner("inertia")?;
     let inertia = Symmetric3 {

@@ -53,33 +53,34 @@ impl<'a, 'n> Element<'a, 'n> {
             })
     }
 
-    /// A finite number.
+    /// A [sane](sane) number.
     pub(super) fn number(&self, attribute: &'static str) -> Result<f64, UrdfError> {
-        self.number_where(attribute, "a finite number", |_| true)
+        let text = self.text(attribute)?;
+        sane(text.trim()).ok_or_else(|| self.unexpected(attribute, text, ONE_NUMBER))
     }
 
-    /// A finite number that meets a condition, which `expected` tells.
+    /// A number that meets a condition, which `expected` tells.
     pub(super) fn number_where(
         &self,
         attribute: &'static str,
         expected: &'static str,
         condition: impl Fn(f64) -> bool,
     ) -> Result<f64, UrdfError> {
-        let text = self.text(attribute)?;
-        match text.trim().parse::<f64>() {
-            Ok(number) if number.is_finite() && condition(number) => Ok(number),
-            _ => Err(self.unexpected(attribute, text, expected)),
+        let number = self.number(attribute)?;
+        if condition(number) {
+            Ok(number)
+        } else {
+            Err(self.unexpected(attribute, self.text(attribute)?, expected))
         }
     }
 
-    /// Three finite numbers.
+    /// Three numbers.
     pub(super) fn vector(&self, attribute: &'static str) -> Result<[f64; 3], UrdfError> {
         let text = self.text(attribute)?;
-        let mut numbers = text.split_whitespace().map(str::parse::<f64>);
-        let mut next = || numbers.next()?.ok().filter(|number| number.is_finite());
-        match (next(), next(), next(), numbers.next()) {
-            (Some(x), Some(y), Some(z), None) => Ok([x, y, z]),
-            _ => Err(self.unexpected(attribute, text, "three finite numbers")),
+        let mut numbers = text.split_whitespace().map(sane);
+        match std::array::from_fn(|_| numbers.next().flatten()) {
+            [Some(x), Some(y), Some(z)] if numbers.next().is_none() => Ok([x, y, z]),
+            _ => Err(self.unexpected(attribute, text, THREE_NUMBERS)),
         }
     }
 
@@ -92,6 +93,16 @@ impl<'a, 'n> Element<'a, 'n> {
             expected,
         }
     }
+}
+
+const ONE_NUMBER: &str = "a number of at most 1e6 in size";
+const THREE_NUMBERS: &str = "three numbers of at most 1e6 in size";
+
+/// A number that can be part of a robot in SI units. What is made of such numbers stays finite.
+fn sane(text: &str) -> Option<f64> {
+    let number: f64 = text.parse().ok()?;
+    // Not true of what is not a number.
+    (number.abs() <= 1e6).then_some(number)
 }
 
 /// The pose in the direct child `origin`: a translation `xyz`, and `rpy` about the fixed axes x, y and z in

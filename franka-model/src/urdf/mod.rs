@@ -25,7 +25,8 @@
 //!
 //! [`UrdfError`] has the list. The vendor's parsers let some of it pass: an inertia that cannot be read makes a
 //! link without mass there, and the last of two joints with one name counts. Numbers have to be
-//! numbers to their end.
+//! numbers to their end. Inertias have to be positive; that the largest moment is at most the sum of the others is
+//! not asked for, as the vendor's own descriptions of other arms break it.
 //!
 //! # Example
 //!
@@ -127,9 +128,7 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
         let limit = Element::child(joint.node, "limit", &joint.owner)?;
         limits.velocity[i] = limit.number_where("velocity", POSITIVE, |x| x > 0.0)?;
         envelope.offset[i] =
-            braking.number_where("velocity_offset", "a finite number, not negative", |x| {
-                x >= 0.0
-            })?;
+            braking.number_where("velocity_offset", "a number not below 0", |x| x >= 0.0)?;
         envelope.deceleration[i] =
             braking.number_where("deceleration_limit", POSITIVE, |x| x > 0.0)?;
         let (upper, lower) = (limit.number("upper")?, limit.number("lower")?);
@@ -153,4 +152,4 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
     Ok(limits)
 }
 
-const POSITIVE: &str = "a finite number above 0";
+const POSITIVE: &str = "a number above 0";
