@@ -66,7 +66,10 @@ fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
             cycles += 1;
         });
     }
-    assert!(wander.lockstep.record.goal > 100, "the arm was sent about");
+    assert!(
+        wander.lockstep.client.record.goal > 100,
+        "the arm was sent about"
+    );
     assert_eq!(
         calls, 0,
         "seed {seed}: calls of the allocator in {cycles} cycles"

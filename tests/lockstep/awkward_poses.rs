@@ -40,17 +40,17 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
         let mut lockstep = Lockstep::ready();
         let goal = lockstep.begin(Target::Pose(target));
         let (mut turns, mut last) = ([0; 7], [0.0; 7]);
-        while lockstep.outcome(goal).is_none() {
+        while lockstep.client.outcome(goal).is_none() {
             lockstep.tick();
             assert!(lockstep.now() < 30_000, "case {case}");
-            for (i, dq) in lockstep.record.dq_ref.into_iter().enumerate() {
+            for (i, dq) in lockstep.client.record.dq_ref.into_iter().enumerate() {
                 if dq.abs() > 0.02 {
                     turns[i] += u32::from(dq * last[i] < 0.0);
                     last[i] = dq;
                 }
             }
         }
-        let outcome = lockstep.outcome(goal).unwrap();
+        let outcome = lockstep.client.outcome(goal).unwrap();
         assert!(outcome.is_ok(), "case {case}: {outcome:?}");
         assert!(
             turns.iter().all(|&turns| turns <= MOST_TURNS),
@@ -100,21 +100,21 @@ fn an_arm_held_at_the_length_of_its_leash_is_given_up_in_time() {
     let ceiling = start.translation.z + 0.05;
     let goal = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.2) * start));
     let mut leashed = 0;
-    while lockstep.outcome(goal).is_none() {
+    while lockstep.client.outcome(goal).is_none() {
         let pressed = (lockstep.true_pose().translation.z - ceiling).max(0.0);
         lockstep.robot.let_go();
         lockstep
             .robot
             .push_end_effector(Wrench::new(0.0, 0.0, -3000.0 * pressed, 0.0, 0.0, 0.0), 2);
         lockstep.tick();
-        leashed += u64::from(lockstep.record.bindings.contains(Guard::Leash));
+        leashed += u64::from(lockstep.client.record.bindings.contains(Guard::Leash));
         let most = STALL_TIMEOUT + SETTLE_TIMEOUT + Duration::from_secs(3);
         assert!(lockstep.now() < most.as_millis() as u64, "{leashed}");
     }
     assert!(leashed > 3000, "{leashed}");
-    let error = lockstep.outcome(goal).unwrap().clone().unwrap_err();
+    let error = lockstep.client.outcome(goal).unwrap().clone().unwrap_err();
     assert!(matches!(error, MotionError::Short(_)), "{error:?}");
-    assert_eq!(lockstep.state.robot_mode, RobotMode::Idle);
+    assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
 }
 
 /// The robot allows less and less speed towards the end of a joint's range; a plan has to arrive there inside that.

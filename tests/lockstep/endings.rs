@@ -22,7 +22,10 @@ fn a_stop_brakes_and_says_so_to_both() {
     for_each_robot(|ready| {
         let (mut lockstep, goal) = moving(ready);
         let stop = lockstep.stop().expect("something moves");
-        assert_eq!(lockstep.outcome(goal), Some(&Err(MotionError::Stopped)));
+        assert_eq!(
+            lockstep.client.outcome(goal),
+            Some(&Err(MotionError::Stopped))
+        );
         let report = lockstep.until_resolved(stop, 3000).unwrap();
         assert_eq!(report.final_error, None);
         assert!(lockstep.robot.dq().amax() < 0.01);
@@ -39,7 +42,7 @@ fn a_cancelled_goal_brakes_at_any_moment_of_its_life() {
             let target = Translation3::new(0.05, 0.0, 0.05) * lockstep.true_pose();
             let goal = lockstep.begin(Target::Pose(target));
             lockstep.run(after);
-            if lockstep.outcome(goal).is_some() {
+            if lockstep.client.outcome(goal).is_some() {
                 break;
             }
             lockstep.cancel(goal);
@@ -50,7 +53,7 @@ fn a_cancelled_goal_brakes_at_any_moment_of_its_life() {
                 "after {after} ms: {outcome:?}"
             );
             assert!(lockstep.robot.dq().amax() < 0.01);
-            assert!(lockstep.lifecycle.is_idle());
+            assert!(lockstep.client.lifecycle.is_idle());
         }
     });
 }
@@ -97,7 +100,7 @@ fn a_reflex_ends_the_motion_with_its_name_and_recovery_allows_the_next() {
         lockstep.run(500);
         lockstep.request(&Request::AutomaticErrorRecovery);
         lockstep.run(1500);
-        assert_eq!(lockstep.state.robot_mode, RobotMode::Idle);
+        assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
         let again = lockstep.begin(Target::Joints(READY.into()));
         lockstep.until_resolved(again, 8000).unwrap();
     });
@@ -127,9 +130,10 @@ fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
         let timeout = LINK_TIMEOUT.as_millis() as u64;
         lockstep.link.drop_states(timeout + 200);
         lockstep.run(timeout - 1);
-        assert_eq!(lockstep.outcome(goal), None);
+        assert_eq!(lockstep.client.outcome(goal), None);
         lockstep.run(3);
         let outcome = lockstep
+            .client
             .outcome(goal)
             .expect("resolved at the timeout")
             .clone();
@@ -145,6 +149,7 @@ fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
         lockstep.run(1000);
         assert!(
             lockstep
+                .client
                 .state
                 .errors
                 .contains(RobotError::CommunicationConstraintsViolation)
@@ -159,11 +164,10 @@ fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
 #[test]
 fn a_lost_connection_resolves_everything_and_takes_nothing_more() {
     let (mut lockstep, goal) = moving(&Lockstep::ready);
-    lockstep
-        .lifecycle
-        .on_connection_closed("libfranka: server closed connection");
+    lockstep.client.close("libfranka: server closed connection");
     lockstep.tick();
     let error = lockstep
+        .client
         .outcome(goal)
         .expect("resolved")
         .clone()
@@ -223,7 +227,7 @@ fn an_arm_that_is_held_short_is_reported_and_let_go_without_a_step() {
         // 12 N against 750 N/m and what the joint springs add to it.
         assert!((0.008..0.016).contains(&error.translation), "{error:?}");
         assert_eq!(
-            lockstep.state.robot_mode,
+            lockstep.client.state.robot_mode,
             RobotMode::Idle,
             "ended without a reflex"
         );
@@ -241,7 +245,7 @@ fn an_arm_that_is_pushed_away_stays_on_the_leash_and_comes_back() {
         let mut bound = 0;
         for _ in 0..250 {
             lockstep.tick();
-            bound += u32::from(lockstep.record.bindings.contains(Guard::Leash));
+            bound += u32::from(lockstep.client.record.bindings.contains(Guard::Leash));
         }
         assert!(bound > 100, "the leash bound in {bound} of 250 cycles");
         lockstep.until_resolved(goal, 8000).unwrap();

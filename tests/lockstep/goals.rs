@@ -34,7 +34,7 @@ fn a_pose_is_reached_and_the_arm_rests_there() {
         assert_eq!(report.lost_states, 0);
         assert_eq!(report.success_rate_min, 1.0);
         assert!(report.duration.as_secs_f64() < 1.5, "{report:?}");
-        assert!(lockstep.lifecycle.is_idle() && lockstep.driver.is_watching());
+        assert!(lockstep.client.lifecycle.is_idle() && lockstep.client.driver.is_watching());
     });
 }
 
@@ -55,14 +55,17 @@ fn the_hand_moves_on_a_straight_line() {
             (passed - way * (passed.dot(&way) / way.norm_squared())).norm()
         };
         let (mut reference, mut arm): (f64, f64) = (0.0, 0.0);
-        while lockstep.outcome(goal).is_none() {
+        while lockstep.client.outcome(goal).is_none() {
             lockstep.tick();
-            if lockstep.record.activity == Activity::Running {
-                reference = reference.max(aside(&pose_of(&lockstep.record.q_ref.into(), &hand())));
+            if lockstep.client.record.activity == Activity::Running {
+                reference = reference.max(aside(&pose_of(
+                    &lockstep.client.record.q_ref.into(),
+                    &hand(),
+                )));
             }
             arm = arm.max(aside(&lockstep.true_pose()));
         }
-        assert!(lockstep.outcome(goal).unwrap().is_ok());
+        assert!(lockstep.client.outcome(goal).unwrap().is_ok());
         assert_near(&lockstep, &target);
         assert!(
             reference < 2e-5,
@@ -96,7 +99,10 @@ fn a_newer_goal_takes_over_without_a_stop() {
         let first = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.1) * start));
         lockstep.run(400);
         let second = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.1, 0.05) * start));
-        assert_eq!(lockstep.outcome(first), Some(&Err(MotionError::Superseded)));
+        assert_eq!(
+            lockstep.client.outcome(first),
+            Some(&Err(MotionError::Superseded))
+        );
         let mut slowest: f64 = f64::MAX;
         for _ in 0..100 {
             lockstep.tick();
@@ -134,7 +140,7 @@ fn a_goal_that_comes_while_the_motion_ends_gets_a_motion_of_its_own() {
             let start = lockstep.true_pose();
             let target = Translation3::new(0.0, 0.0, 0.01) * start;
             let first = lockstep.begin(Target::Pose(target));
-            while lockstep.record.activity != Activity::Finishing {
+            while lockstep.client.record.activity != Activity::Finishing {
                 lockstep.tick();
                 assert!(lockstep.now() < 4000, "the motion comes to its end");
             }
@@ -143,7 +149,7 @@ fn a_goal_that_comes_while_the_motion_ends_gets_a_motion_of_its_own() {
             let outcome = lockstep.until_resolved(second, 8000);
             assert!(outcome.is_ok(), "{after} ms after the finish: {outcome:?}");
             assert!(
-                lockstep.outcome(first).unwrap().is_ok(),
+                lockstep.client.outcome(first).unwrap().is_ok(),
                 "{after} ms: it had arrived"
             );
             assert_near(&lockstep, &start);
@@ -162,19 +168,22 @@ fn a_followed_target_may_step_as_it_likes() {
         for step in 0..40_u32 {
             let angle = f64::from(step) * 0.9;
             last = Translation3::new(0.04 * angle.cos() - 0.04, 0.08 * angle.sin(), 0.0) * start;
-            let state = lockstep.state;
+            let state = lockstep.client.state;
             assert_eq!(
-                lockstep.lifecycle.update(id, Target::Pose(last), &state),
+                lockstep
+                    .client
+                    .lifecycle
+                    .update(id, Target::Pose(last), &state),
                 Ok(true)
             );
             lockstep.run(100);
             assert_eq!(
-                lockstep.outcome(id),
+                lockstep.client.outcome(id),
                 None,
                 "a held goal does not end by itself"
             );
         }
-        lockstep.lifecycle.close(id);
+        lockstep.client.lifecycle.close(id);
         lockstep.until_resolved(id, 8000).unwrap();
         assert_near(&lockstep, &last);
     });

@@ -123,7 +123,7 @@ impl Schedule {
         self.lockstep.robot.press_user_stop(false);
         match (self.held.take(), self.random.random_range(0..3)) {
             (Some(held), 0) => self.lockstep.cancel(held),
-            (Some(held), 1) => self.lockstep.lifecycle.close(held),
+            (Some(held), 1) => self.lockstep.client.lifecycle.close(held),
             (Some(_), _) | (None, 0) => self.stop(),
             (None, _) => {}
         }
@@ -145,7 +145,7 @@ impl Schedule {
             }
             6..=7 => self.update(),
             8 => match self.held.take() {
-                Some(held) => self.lockstep.lifecycle.close(held),
+                Some(held) => self.lockstep.client.lifecycle.close(held),
                 None => self.stop(),
             },
             9 => {
@@ -182,7 +182,9 @@ impl Schedule {
                 self.lockstep.robot.press_user_stop(press);
             }
         }
-        if self.lockstep.state.robot_mode == RobotMode::Reflex && self.random.random_bool(0.7) {
+        if self.lockstep.client.state.robot_mode == RobotMode::Reflex
+            && self.random.random_bool(0.7)
+        {
             self.lockstep.request(&Request::AutomaticErrorRecovery);
         }
     }
@@ -232,7 +234,7 @@ impl Schedule {
                 self.joints()
             };
             let updated = self.lockstep.update(held, target);
-            let over = self.lockstep.outcome(held).is_some();
+            let over = self.lockstep.client.outcome(held).is_some();
             assert!(
                 over || updated != Ok(false),
                 "a held goal is being followed"
@@ -255,21 +257,27 @@ impl Schedule {
 
     fn tick(&mut self) {
         self.lockstep.tick();
-        let running = self.lockstep.record.activity == Activity::Running;
-        let rests = self.lockstep.state.dq.iter().all(|dq| dq.abs() < 5e-4);
-        let hasty = self.hasty.contains(&self.lockstep.record.goal);
+        let running = self.lockstep.client.record.activity == Activity::Running;
+        let rests = self
+            .lockstep
+            .client
+            .state
+            .dq
+            .iter()
+            .all(|dq| dq.abs() < 5e-4);
+        let hasty = self.hasty.contains(&self.lockstep.client.record.goal);
         if running && !self.running && rests && !hasty {
-            let tau = self.lockstep.record.tau_c;
+            let tau = self.lockstep.client.record.tau_c;
             let most = tau.iter().fold(0.0, |most: f64, tau| most.max(tau.abs()));
             assert!(most <= FIRST_TORQUE, "the first torques are {tau:?}");
         }
         self.running = running;
         if self.calm {
             assert!(
-                self.lockstep.state.errors.is_empty(),
+                self.lockstep.client.state.errors.is_empty(),
                 "{}: {}",
                 self.lockstep.now(),
-                self.lockstep.state.errors
+                self.lockstep.client.state.errors
             );
         }
     }
@@ -277,28 +285,28 @@ impl Schedule {
     /// Lets everything come to its end, checks it, and returns how the goals turned out.
     fn finish(&mut self) -> Vec<(GoalId, Outcome)> {
         let deadline = self.lockstep.now() + 60_000;
-        while !self.lockstep.lifecycle.is_idle() {
+        while !self.lockstep.client.lifecycle.is_idle() {
             self.tick();
             assert!(
                 self.lockstep.now() < deadline,
                 "not idle: {:?}",
-                self.lockstep.lifecycle
+                self.lockstep.client.lifecycle
             );
         }
         self.lockstep.robot.let_go();
         self.run(400);
         let dq = self.lockstep.robot.dq();
         assert!(dq.amax() < 0.02, "the arm still moves: {dq}");
-        assert!(self.lockstep.driver.is_watching());
+        assert!(self.lockstep.client.driver.is_watching());
         let outcomes: Vec<_> = self
             .goals
             .iter()
             .map(|&goal| {
-                let outcome = self.lockstep.outcome(goal);
+                let outcome = self.lockstep.client.outcome(goal);
                 (goal, outcome.expect("resolved").clone())
             })
             .collect();
-        assert_eq!(outcomes.len(), self.lockstep.resolved());
+        assert_eq!(outcomes.len(), self.lockstep.client.resolved());
         for (goal, outcome) in &outcomes {
             let fits = match kind(outcome) {
                 "ok" | "superseded" | "stopped" | "short" => true,
@@ -307,7 +315,7 @@ impl Schedule {
             assert!(fits, "{goal:?}: {outcome:?}");
         }
         // Whatever happened, the next motion works.
-        if self.lockstep.state.robot_mode != RobotMode::Idle {
+        if self.lockstep.client.state.robot_mode != RobotMode::Idle {
             assert!(!self.calm);
             self.lockstep.request(&Request::AutomaticErrorRecovery);
             self.run(1500);

@@ -22,7 +22,7 @@ fn submit_at(lockstep: &mut Lockstep, target: Target, speed: f64) -> GoalId {
 }
 
 fn fastest(lockstep: &Lockstep) -> f64 {
-    let dq = lockstep.record.dq_ref;
+    let dq = lockstep.client.record.dq_ref;
     dq.iter().fold(0.0, |most, dq| dq.abs().max(most))
 }
 
@@ -35,7 +35,7 @@ fn a_goal_that_comes_while_the_arm_is_let_go_may_take_its_time() {
         (lockstep, goal)
     };
     let (mut rehearsal, _) = first_motion();
-    while rehearsal.record.activity != Activity::Finishing {
+    while rehearsal.client.record.activity != Activity::Finishing {
         rehearsal.tick();
         assert!(rehearsal.now() < 4000, "the motion comes to its end");
     }
@@ -43,9 +43,9 @@ fn a_goal_that_comes_while_the_arm_is_let_go_may_take_its_time() {
     let (mut lockstep, first) = first_motion();
     lockstep.run(rehearsal.now() - lockstep.now() - 50);
     let target = Translation3::new(0.0, 0.1, 0.0) * lockstep.true_pose();
-    assert_eq!(lockstep.outcome(first), None);
+    assert_eq!(lockstep.client.outcome(first), None);
     let slow = submit_at(&mut lockstep, Target::Pose(target), 0.03);
-    assert!(lockstep.outcome(first).unwrap().is_ok());
+    assert!(lockstep.client.outcome(first).unwrap().is_ok());
     let report = lockstep.until_resolved(slow, 60_000).unwrap();
     assert!(report.duration > 2 * START_TIMEOUT, "{report:?}");
 }
@@ -59,17 +59,17 @@ fn an_arm_whose_motion_is_given_up_brakes() {
         lockstep.run(500);
         let here = lockstep.true_pose();
         if how == 0 {
-            lockstep.lifecycle.on_connection_closed("gone");
+            lockstep.client.lifecycle.on_connection_closed("gone");
         } else {
-            lockstep.violate();
+            lockstep.client.violate();
         }
         lockstep.run(700);
-        assert!(lockstep.outcome(goal).unwrap().is_err());
+        assert!(lockstep.client.outcome(goal).unwrap().is_err());
         assert!(lockstep.robot.dq().amax() < 0.02, "way {how}");
         let passed = PoseError::between(&lockstep.true_pose(), &here).translation;
         assert!(passed < 0.06, "way {how}: {passed} m further");
         lockstep.run(2000);
-        assert!(lockstep.driver.is_watching(), "way {how}");
+        assert!(lockstep.client.driver.is_watching(), "way {how}");
     }
 }
 
@@ -79,18 +79,18 @@ fn a_slow_goal_over_the_joints_takes_over_a_fast_one_without_running_on() {
         let mut lockstep = Lockstep::ready();
         submit_at(&mut lockstep, Target::Joints(ready_turned(0, 0.6)), 1.5);
         lockstep.run(after);
-        let (before, q) = (fastest(&lockstep), lockstep.record.q_ref[0]);
+        let (before, q) = (fastest(&lockstep), lockstep.client.record.q_ref[0]);
         let slow = submit_at(&mut lockstep, Target::Joints(ready_turned(0, 0.3)), 0.05);
         let mut furthest: f64 = 0.0;
         for _ in 0..1500 {
             lockstep.tick();
             assert!(fastest(&lockstep) < before + 0.1, "after {after} ms");
-            furthest = furthest.max(lockstep.record.q_ref[0] - q);
+            furthest = furthest.max(lockstep.client.record.q_ref[0] - q);
         }
         assert!(furthest < 0.35, "after {after} ms: {furthest} rad further");
         lockstep.stop();
         lockstep.until_idle(5000);
-        assert!(lockstep.outcome(slow).is_some());
+        assert!(lockstep.client.outcome(slow).is_some());
     }
 }
 
@@ -113,7 +113,7 @@ fn a_slow_pose_takes_over_any_fast_motion_without_running_on() {
         assert!(passed < 0.2, "kind {kind}, after {after} ms: {passed} m on");
         lockstep.stop();
         lockstep.until_idle(3000);
-        assert!(lockstep.outcome(slow).is_some());
+        assert!(lockstep.client.outcome(slow).is_some());
     }
 }
 
@@ -150,7 +150,7 @@ fn what_was_on_its_way_for_a_goal_that_was_taken_back_moves_nothing() {
     lockstep.cancel(id);
     let late = Target::Pose(Translation3::new(0.0, 0.1, 0.0) * start);
     assert_eq!(lockstep.update(id, late), Ok(false));
-    lockstep.lifecycle.close(id);
+    lockstep.client.lifecycle.close(id);
     assert_eq!(lockstep.until_resolved(id, 3000), Err(MotionError::Stopped));
     let moved = PoseError::between(&lockstep.true_pose(), &start).translation;
     assert!(moved < 1e-3, "{moved}");
@@ -163,11 +163,11 @@ fn a_stop_or_a_cancel_while_a_motion_ends_starts_no_other() {
             let mut lockstep = Lockstep::ready();
             let start = lockstep.true_pose();
             let first = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.01) * start));
-            while lockstep.record.activity != Activity::Finishing {
+            while lockstep.client.record.activity != Activity::Finishing {
                 lockstep.tick();
             }
             lockstep.run(after);
-            if lockstep.lifecycle.is_idle() {
+            if lockstep.client.lifecycle.is_idle() {
                 break;
             }
             let last = if cancelled {
@@ -183,12 +183,19 @@ fn a_stop_or_a_cancel_while_a_motion_ends_starts_no_other() {
             } else {
                 assert_eq!(outcome.unwrap().final_error, None, "{after} ms");
             }
-            assert!(lockstep.outcome(first).unwrap().is_ok(), "{after} ms");
+            assert!(
+                lockstep.client.outcome(first).unwrap().is_ok(),
+                "{after} ms"
+            );
             for _ in 0..50 {
                 lockstep.tick();
-                assert_ne!(lockstep.record.activity, Activity::Running, "{after} ms");
+                assert_ne!(
+                    lockstep.client.record.activity,
+                    Activity::Running,
+                    "{after} ms"
+                );
             }
-            assert!(lockstep.lifecycle.is_idle(), "{after} ms");
+            assert!(lockstep.client.lifecycle.is_idle(), "{after} ms");
         }
     }
 }
@@ -222,7 +229,7 @@ fn a_link_lost_before_the_first_cycle_leaves_no_motion_behind() {
     let error = lockstep.until_resolved(goal, 3000).unwrap_err();
     assert!(matches!(error, MotionError::LinkLost { .. }), "{error:?}");
     lockstep.run(500);
-    assert_eq!(lockstep.state.robot_mode, RobotMode::Idle);
+    assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
     let again = lockstep.begin(Target::Joints(ready_turned(0, 0.1)));
     lockstep.until_resolved(again, 8000).unwrap();
 }

@@ -5,30 +5,31 @@
 //!       ^  |                      |                      |
 //!       |  +--orders--> Driver <~~~~~~~datagrams~~~~~~~~~+
 //!       +------events------+ ~~~~~~~~~commands~~~~~~~~~~~^
+//!   '---------------- Client ----------------'
 //! ```
 //!
 //! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`] that loses what its seed
-//! says. One call of [`Lockstep::tick`] is one millisecond. Whatever a test does, every command that leaves the driver is
-//! held against the robot's limits.
+//! says. One call of [`Lockstep::tick`] is one millisecond. Whatever a test does, every command of target control that leaves
+//! the driver is held against the robot's limits. The [`Client`] half also runs beside robots that follow a script.
 
+mod client;
 mod guard;
 mod link;
 mod wander;
 
-use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::collections::HashSet;
 use std::time::Duration;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
-use franka_proto::client::{Event, Session};
-use franka_proto::framing::next_message;
-use franka_proto::{CommandId, Reply, Request, RobotCommand, RobotState, Version, Violation};
-use franka_rt::driver::{Driver, MotionId, Record};
+use franka_proto::{MoveRequest, Request, RobotCommand};
+use franka_rt::driver::Program;
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output};
+use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::{Budget, Goal, GoalError, GoalId, Target, Then, Tolerance};
 use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
 
+pub use client::Client;
 pub use link::Link;
 pub use wander::Wander;
 
@@ -43,24 +44,13 @@ pub struct Lockstep {
     pub robot: Robot,
     /// The network between.
     pub link: Link,
-    /// The pure core of the control thread.
-    pub driver: Driver,
-    /// The motion state machine.
-    pub lifecycle: Lifecycle,
-    /// What the driver did in the last millisecond.
-    pub record: Record,
-    /// The newest state that reached the client.
-    pub state: RobotState,
+    /// The driver, without its sockets.
+    pub client: Client,
     model: &'static Model,
-    session: Session,
-    motions: HashMap<CommandId, MotionId>,
-    to_robot: VecDeque<Vec<u8>>,
-    from_robot: Vec<u8>,
-    outcomes: BTreeMap<GoalId, Outcome>,
-    guard: CommandGuard,
+    /// Absent once a program of a test's own has run, which may command what it likes.
+    guard: Option<CommandGuard>,
     /// Goals whose way is planned over the joints.
     joint_goals: HashSet<GoalId>,
-    goals: u64,
     milliseconds: u64,
     heard: u64,
 }
@@ -77,28 +67,18 @@ impl Lockstep {
         let mut this = Self {
             robot,
             link: Link::perfect(),
-            driver: Driver::new(version),
-            lifecycle: Lifecycle::new(model, version),
-            record: Record::default(),
-            state: RobotState::default(),
+            client: Client::new(model, version),
             model,
-            session: Session::new(version),
-            motions: HashMap::new(),
-            to_robot: VecDeque::new(),
-            from_robot: Vec::new(),
-            outcomes: BTreeMap::new(),
-            guard: CommandGuard::new(model.joint_limits()),
+            guard: Some(CommandGuard::new(model.joint_limits())),
             joint_goals: HashSet::new(),
-            goals: 0,
             milliseconds: 0,
             heard: 0,
         };
         assert!(this.robot.connect(), "a fresh robot takes a client");
-        let hello = this.session.connect(40_000);
-        this.to_robot.push_back(hello.as_bytes().to_vec());
+        this.client.connect(40_000);
         this.run(5);
-        assert!(this.session.is_connected(), "the handshake is done");
-        assert!(this.state.message_id > 0, "states come");
+        assert!(this.client.is_connected(), "the handshake is done");
+        assert!(this.client.state.message_id > 0, "states come");
         this
     }
 
@@ -136,49 +116,49 @@ impl Lockstep {
     /// See [`Self::tick`]; and if `around` does not run the cycle.
     pub fn tick_around(&mut self, mut around: impl FnMut(&mut dyn FnMut())) {
         self.milliseconds += 1;
-        while let Some(bytes) = self.to_robot.pop_front() {
+        self.client.now = Duration::from_millis(self.milliseconds);
+        while let Some(bytes) = self.client.take_message() {
             self.robot
                 .receive(&bytes)
                 .expect("the client's messages are well-formed");
         }
         let state = self.robot.tick().map(|datagram| datagram.bytes.to_vec());
+        let mut replies = Vec::new();
         while let Some(reply) = self.robot.take_reply() {
-            self.from_robot.extend_from_slice(&reply);
+            replies.extend_from_slice(&reply);
         }
         match state.filter(|_| self.link.passes_state()) {
             Some(datagram) => {
                 self.heard = self.milliseconds;
-                let version = self.session.version();
                 let mut answer = None;
                 let mut command = [0; RobotCommand::MAX_SIZE];
-                around(&mut || {
-                    answer = Some(cycle(&mut self.driver, version, &datagram, &mut command))
-                });
-                let (state, size) = answer.expect("the cycle has run");
-                self.state = state;
-                self.record = *self.driver.record();
-                if let Some(size) = size {
-                    let command = &command[..size];
-                    let decoded =
-                        RobotCommand::decode(version, command).expect("a command of this version");
-                    let over_joints = self.joint_goals.contains(&GoalId(self.record.goal));
-                    self.guard
-                        .check(&decoded, &state, &self.record, over_joints);
-                    if self.link.passes_command() {
-                        self.robot.command(command);
-                    }
+                around(&mut || answer = Some(self.client.cycle(&datagram, &mut command)));
+                if let Some(size) = answer.expect("the cycle has run") {
+                    self.pass_command(&command[..size]);
                 }
             }
-            None => self
-                .driver
-                .on_silence(Duration::from_millis(self.milliseconds - self.heard)),
+            None => {
+                let silence = Duration::from_millis(self.milliseconds - self.heard);
+                self.client.driver.on_silence(silence);
+            }
         }
-        self.take_replies();
-        while let Some(event) = self.driver.take_event() {
-            self.lifecycle.on_event(event, self.time());
+        self.client.on_bytes(&replies);
+        self.client.settle();
+    }
+
+    /// Holds a command against the limits, and sends it.
+    fn pass_command(&mut self, command: &[u8]) {
+        let Client { state, record, .. } = &self.client;
+        if let Some(guard) = &mut self.guard {
+            let version = self.client.version();
+            let decoded =
+                RobotCommand::decode(version, command).expect("a command of this version");
+            let over_joints = self.joint_goals.contains(&GoalId(record.goal));
+            guard.check(&decoded, state, record, over_joints);
         }
-        self.lifecycle.on_time(self.time());
-        self.carry_out();
+        if self.link.passes_command() {
+            self.robot.command(command);
+        }
     }
 
     /// So many milliseconds.
@@ -190,9 +170,8 @@ impl Lockstep {
 
     /// A goal with the defaults of the async face: see `franka_async::Motion`.
     pub fn goal(&mut self, target: Target, then: Then) -> Goal {
-        self.goals += 1;
         Goal {
-            id: GoalId(self.goals),
+            id: self.client.next_goal(),
             target,
             then,
             budget: Budget::of(self.model.joint_limits()),
@@ -209,12 +188,17 @@ impl Lockstep {
     /// # Errors
     /// As the lifecycle.
     pub fn submit(&mut self, goal: Goal) -> Result<GoalId, MotionError> {
-        let state = self.state;
         if !matches!(goal.target, Target::Pose(_)) {
             self.joint_goals.insert(goal.id);
         }
-        let submitted = self.lifecycle.submit(goal, &state, self.time());
-        self.carry_out();
+        let Client {
+            lifecycle,
+            state,
+            now,
+            ..
+        } = &mut self.client;
+        let submitted = lifecycle.submit(goal, state, *now);
+        self.client.carry_out();
         submitted.map(|()| goal.id)
     }
 
@@ -227,21 +211,31 @@ impl Lockstep {
         self.submit(goal).expect("the goal is accepted")
     }
 
+    /// Starts a motion under a program of the test's own. From then on no command is held against the limits: the simulated
+    /// robot is the judge.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn control(
+        &mut self,
+        program: Program,
+        request: MoveRequest,
+    ) -> Result<GoalId, MotionError> {
+        self.guard = None;
+        self.client.control(program, request)
+    }
+
     /// Brakes; `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
-        self.goals += 1;
-        let id = GoalId(self.goals);
-        self.joint_goals.insert(id);
-        let stopping = self.lifecycle.stop(id, self.time());
-        self.carry_out();
-        stopping.then_some(id)
+        let id = self.client.stop();
+        self.joint_goals.extend(id);
+        id
     }
 
     /// Takes a goal back, as dropping its future does.
     pub fn cancel(&mut self, goal: GoalId) {
         self.joint_goals.insert(goal);
-        self.lifecycle.cancel(goal);
-        self.carry_out();
+        self.client.cancel(goal);
     }
 
     /// Moves the target of a goal that is held; returns whether it still is.
@@ -252,34 +246,10 @@ impl Lockstep {
         if matches!(target, Target::Pose(_)) {
             self.joint_goals.remove(&goal);
         }
-        let state = self.state;
-        self.lifecycle.update(goal, target, &state)
-    }
-
-    /// Has the newest motion's command connection bring a reply that cannot be read.
-    ///
-    /// # Panics
-    /// If there was no motion yet.
-    pub fn violate(&mut self) {
-        let (&id, &motion) = self
-            .motions
-            .iter()
-            .max_by_key(|(_, motion)| **motion)
-            .expect("a motion has begun");
-        let violation = Violation::SecondMotionStarted { id };
-        self.lifecycle
-            .on_move_violation(motion, violation, self.time());
-        self.carry_out();
-    }
-
-    /// Goals that have been resolved so far.
-    pub fn resolved(&self) -> usize {
-        self.outcomes.len()
-    }
-
-    /// How a goal turned out, if it has.
-    pub fn outcome(&self, goal: GoalId) -> Option<&Outcome> {
-        self.outcomes.get(&goal)
+        let Client {
+            lifecycle, state, ..
+        } = &mut self.client;
+        lifecycle.update(goal, target, state)
     }
 
     /// Runs until the goal is resolved.
@@ -288,14 +258,14 @@ impl Lockstep {
     /// If that takes longer than `most` milliseconds.
     pub fn until_resolved(&mut self, goal: GoalId, most: u64) -> Outcome {
         for _ in 0..most {
-            if let Some(outcome) = self.outcomes.get(&goal) {
+            if let Some(outcome) = self.client.outcome(goal) {
                 return outcome.clone();
             }
             self.tick();
         }
         panic!(
             "goal {goal:?} is unresolved after {most} ms: {:?}",
-            self.lifecycle
+            self.client.lifecycle
         );
     }
 
@@ -305,12 +275,12 @@ impl Lockstep {
     /// If that takes longer than `most` milliseconds.
     pub fn until_idle(&mut self, most: u64) {
         for _ in 0..most {
-            if self.lifecycle.is_idle() {
+            if self.client.lifecycle.is_idle() {
                 return;
             }
             self.tick();
         }
-        panic!("not idle after {most} ms: {:?}", self.lifecycle);
+        panic!("not idle after {most} ms: {:?}", self.client.lifecycle);
     }
 
     /// Sends a request that is not a motion; its answer is not awaited.
@@ -318,8 +288,7 @@ impl Lockstep {
     /// # Panics
     /// If the session refuses it.
     pub fn request(&mut self, request: &Request) {
-        let outgoing = self.session.request(request).expect("the session takes it");
-        self.to_robot.push_back(outgoing.as_bytes().to_vec());
+        self.client.request(request);
     }
 
     /// The true pose of the end effector, not rounded by the wire.
@@ -332,67 +301,6 @@ impl Lockstep {
         };
         pose_of(self.robot.q(), &ee)
     }
-
-    fn time(&self) -> Duration {
-        Duration::from_millis(self.milliseconds)
-    }
-
-    fn take_replies(&mut self) {
-        let received = std::mem::take(&mut self.from_robot);
-        let mut rest = &received[..];
-        while let Some(message) = next_message(rest).expect("the robot's messages are well-formed")
-        {
-            rest = &rest[message.header.size as usize..];
-            let event = self
-                .session
-                .on_message(message)
-                .expect("the robot keeps to the protocol");
-            if let Event::Reply {
-                id,
-                reply: Reply::Move(status),
-                ..
-            } = event
-            {
-                let motion = self.motions[&id];
-                self.lifecycle.on_move_reply(motion, status, self.time());
-            }
-        }
-        self.from_robot = rest.to_vec();
-    }
-
-    fn carry_out(&mut self) {
-        while let Some(output) = self.lifecycle.poll() {
-            match output {
-                Output::Order(order) => self.driver.on_order(order),
-                Output::Send { motion, request } => {
-                    let outgoing = self
-                        .session
-                        .request(&request)
-                        .expect("the session takes it");
-                    self.motions.insert(outgoing.id(), motion);
-                    self.to_robot.push_back(outgoing.as_bytes().to_vec());
-                }
-                Output::Resolve { goal, result } => {
-                    let twice = self.outcomes.insert(goal, result);
-                    assert!(twice.is_none(), "goal {goal:?} is resolved once");
-                }
-            }
-        }
-    }
-}
-
-/// What the control thread does between a state and its command: returns the state, and the size of the command if there
-/// is one.
-fn cycle(
-    driver: &mut Driver,
-    version: Version,
-    datagram: &[u8],
-    command: &mut [u8],
-) -> (RobotState, Option<usize>) {
-    let state = RobotState::decode(version, datagram).expect("a state of this version");
-    let answer = driver.on_state(&state);
-    let size = answer.map(|answer| answer.encode(version, command).expect("it fits"));
-    (state, size)
 }
 
 /// Runs `test` for every kind of robot, each time with what makes one: see [`Lockstep::ready_of`].

@@ -1,0 +1,234 @@
+//! The client's half of a connection: driver, command session and motion state machine, on virtual time.
+
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::time::Duration;
+
+use franka_model::Model;
+use franka_proto::client::{Event, Session};
+use franka_proto::framing::next_message;
+use franka_proto::{CommandId, MoveRequest, Reply, Request, RobotState, Version, Violation};
+use franka_rt::driver::{Driver, MotionId, Program, Record};
+use franka_rt::lifecycle::{Lifecycle, MotionError, Output};
+use franka_rt::session::GoalId;
+
+use super::Outcome;
+
+/// All of the driver but its sockets and its clock: bytes and time go in, bytes come out.
+pub struct Client {
+    /// The pure core of the control thread.
+    pub driver: Driver,
+    /// The motion state machine.
+    pub lifecycle: Lifecycle,
+    /// What the driver did in its last cycle.
+    pub record: Record,
+    /// The newest state that arrived.
+    pub state: RobotState,
+    /// The time, from any fixed moment.
+    pub now: Duration,
+    session: Session,
+    motions: HashMap<CommandId, MotionId>,
+    to_robot: VecDeque<Vec<u8>>,
+    from_robot: Vec<u8>,
+    outcomes: BTreeMap<GoalId, Outcome>,
+    goals: u64,
+}
+
+impl Client {
+    /// A client that has not connected, for a robot of this model that speaks `version`.
+    pub fn new(model: &'static Model, version: Version) -> Self {
+        Self {
+            driver: Driver::new(version),
+            lifecycle: Lifecycle::new(model, version),
+            record: Record::default(),
+            state: RobotState::default(),
+            now: Duration::ZERO,
+            session: Session::new(version),
+            motions: HashMap::new(),
+            to_robot: VecDeque::new(),
+            from_robot: Vec::new(),
+            outcomes: BTreeMap::new(),
+            goals: 0,
+        }
+    }
+
+    /// Replaces the number of cycles that the log of a motion holds.
+    #[must_use]
+    pub fn with_log_size(mut self, cycles: usize) -> Self {
+        self.lifecycle = self.lifecycle.with_log_size(cycles);
+        self
+    }
+
+    /// The version that it speaks.
+    pub fn version(&self) -> Version {
+        self.session.version()
+    }
+
+    /// Whether the handshake is done.
+    pub fn is_connected(&self) -> bool {
+        self.session.is_connected()
+    }
+
+    /// Requests whose answers have not all come.
+    pub fn pending(&self) -> usize {
+        self.session.pending()
+    }
+
+    /// Begins the handshake; states are expected at `udp_port`.
+    pub fn connect(&mut self, udp_port: u16) {
+        let hello = self.session.connect(udp_port);
+        self.to_robot.push_back(hello.as_bytes().to_vec());
+    }
+
+    /// Sends a request that is not a motion; what the answer says is not kept.
+    ///
+    /// # Panics
+    /// If the session refuses it.
+    pub fn request(&mut self, request: &Request) {
+        let outgoing = self.session.request(request).expect("the session takes it");
+        self.to_robot.push_back(outgoing.as_bytes().to_vec());
+    }
+
+    /// The next message for the robot.
+    pub fn take_message(&mut self) -> Option<Vec<u8>> {
+        self.to_robot.pop_front()
+    }
+
+    /// Takes bytes of the robot's stream, cut anywhere.
+    ///
+    /// # Panics
+    /// If the robot leaves the protocol.
+    pub fn on_bytes(&mut self, bytes: &[u8]) {
+        let mut received = std::mem::take(&mut self.from_robot);
+        received.extend_from_slice(bytes);
+        let mut rest = &received[..];
+        while let Some(message) = next_message(rest).expect("the robot's messages are well-formed")
+        {
+            rest = &rest[message.header.size as usize..];
+            let event = self
+                .session
+                .on_message(message)
+                .expect("the robot keeps to the protocol");
+            if let Event::Reply {
+                id,
+                reply: Reply::Move(status),
+                ..
+            } = event
+            {
+                let motion = self.motions[&id];
+                self.lifecycle.on_move_reply(motion, status, self.now);
+            }
+        }
+        self.from_robot = rest.to_vec();
+    }
+
+    /// What the control thread does between a state and its command: takes the datagram, and returns the size of the
+    /// command that answers it, if one does.
+    ///
+    /// # Panics
+    /// If the datagram is no state.
+    pub fn cycle(&mut self, datagram: &[u8], command: &mut [u8]) -> Option<usize> {
+        let version = self.session.version();
+        self.state = RobotState::decode(version, datagram).expect("a state of this version");
+        let answer = self.driver.on_state(&self.state);
+        let size = answer.map(|answer| answer.encode(version, command).expect("it fits"));
+        self.record = *self.driver.record();
+        size
+    }
+
+    /// Passes on what the driver has to tell, watches deadlines, and carries out what follows from both.
+    pub fn settle(&mut self) {
+        while let Some(event) = self.driver.take_event() {
+            self.lifecycle.on_event(event, self.now);
+        }
+        self.lifecycle.on_time(self.now);
+        self.carry_out();
+    }
+
+    /// A name for a goal that no other has.
+    pub fn next_goal(&mut self) -> GoalId {
+        self.goals += 1;
+        GoalId(self.goals)
+    }
+
+    /// Starts a motion under a program of the test's own.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn control(
+        &mut self,
+        program: Program,
+        request: MoveRequest,
+    ) -> Result<GoalId, MotionError> {
+        let id = self.next_goal();
+        let begun = self.lifecycle.control(id, program, request, self.now);
+        self.carry_out();
+        begun.map(|()| id)
+    }
+
+    /// Brakes; `None` if nothing moves.
+    pub fn stop(&mut self) -> Option<GoalId> {
+        let id = self.next_goal();
+        let stopping = self.lifecycle.stop(id, self.now);
+        self.carry_out();
+        stopping.then_some(id)
+    }
+
+    /// Takes work back, as dropping its future does.
+    pub fn cancel(&mut self, id: GoalId) {
+        self.lifecycle.cancel(id);
+        self.carry_out();
+    }
+
+    /// Has the newest motion's command connection bring a reply that cannot be read.
+    ///
+    /// # Panics
+    /// If there was no motion yet.
+    pub fn violate(&mut self) {
+        let (&id, &motion) = self
+            .motions
+            .iter()
+            .max_by_key(|(_, motion)| **motion)
+            .expect("a motion has begun");
+        let violation = Violation::SecondMotionStarted { id };
+        self.lifecycle
+            .on_move_violation(motion, violation, self.now);
+        self.carry_out();
+    }
+
+    /// The command connection has ended, in the words of its reader.
+    pub fn close(&mut self, reason: &str) {
+        self.lifecycle.on_connection_closed(reason);
+        self.carry_out();
+    }
+
+    /// Goals and programs that have been resolved so far.
+    pub fn resolved(&self) -> usize {
+        self.outcomes.len()
+    }
+
+    /// How a goal or a program turned out, if it has.
+    pub fn outcome(&self, id: GoalId) -> Option<&Outcome> {
+        self.outcomes.get(&id)
+    }
+
+    /// Carries out what the lifecycle has decided, in its order.
+    pub(super) fn carry_out(&mut self) {
+        while let Some(output) = self.lifecycle.poll() {
+            match output {
+                Output::Order(order) => self.driver.on_order(order),
+                Output::Send { motion, request } => {
+                    let outgoing = self
+                        .session
+                        .request(&request)
+                        .expect("the session takes it");
+                    self.motions.insert(outgoing.id(), motion);
+                    self.to_robot.push_back(outgoing.as_bytes().to_vec());
+                }
+                Output::Resolve { goal, result } => {
+                    let twice = self.outcomes.insert(goal, result);
+                    assert!(twice.is_none(), "goal {goal:?} is resolved once");
+                }
+            }
+        }
+    }
+}
