@@ -295,7 +295,7 @@ impl Bridge {
                 let _ = taken.send(updated);
             }
             Input::Close { goal } => self.lifecycle.close(goal),
-            Input::Cancel { goal } => self.lifecycle.cancel(goal),
+            Input::Cancel { goal } => self.lifecycle.cancel(goal, now),
             Input::Stop { goal, done } => {
                 if self.lifecycle.stop(goal, now) {
                     self.waiting.insert(goal, done);

@@ -11,6 +11,7 @@
 //! ```
 //!
 //! A program that fails, in place of finishing, leaves the motion `Silent`: no command, until the robot has left its modes.
+//! So does `Order::Silence`, when nobody is in charge of the program any more.
 //!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are the command that
 //! `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. No clock, socket, allocation or log: the thread,
@@ -66,7 +67,7 @@ enum Phase {
     Running(Motion),
     /// The finishing command is repeated until the robot leaves the motion's modes.
     Finishing(Motion),
-    /// The program has failed: nothing is sent until the robot leaves the motion's modes.
+    /// The program has failed, or was left alone: nothing is sent until the robot leaves the motion's modes.
     Silent(Motion),
 }
 
@@ -163,6 +164,17 @@ impl Driver {
                         self.end(armed, Ending::Disarmed);
                     }
                     // The motion has ended by itself, and has said so; or another one is under way.
+                    other => self.phase = other,
+                }
+            }
+            Order::Silence { motion } => {
+                match core::mem::replace(&mut self.phase, Phase::Watching) {
+                    Phase::Armed(armed) if armed.id == motion => {
+                        self.end(armed, Ending::Disarmed);
+                    }
+                    Phase::Running(left) | Phase::Finishing(left) if left.id == motion => {
+                        self.phase = Phase::Silent(left);
+                    }
                     other => self.phase = other,
                 }
             }

@@ -27,6 +27,12 @@ pub enum Order {
         /// The motion to forget.
         motion: MotionId,
     },
+    /// Answer no more states of the motion: nobody is in charge of its program any more. The robot stops by itself when
+    /// its commands stay away. An armed motion is disarmed.
+    Silence {
+        /// The motion to leave alone.
+        motion: MotionId,
+    },
 }
 
 /// The two modes that the states of a running motion show.

@@ -57,7 +57,7 @@ pub enum Activity {
     Running,
     /// The finishing command is being repeated.
     Finishing,
-    /// The motion's program has failed, and the robot has not left the motion yet.
+    /// The motion's program has failed or was given up, and the robot has not left the motion yet.
     Silent,
 }
 

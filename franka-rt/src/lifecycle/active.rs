@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 
-use super::{ControlError, MotionError, MotionReport};
-use crate::driver::{Ended, Ending, Failure, MotionId, MotionStatistics, Program};
+use super::{ControlError, END_TIMEOUT, MotionError, MotionReport};
+use crate::driver::{Ended, Ending, Failure, MotionId, MotionStatistics, Order, Program};
 use crate::panic;
 use crate::session::{Goal, GoalError, GoalId, Settlement, Target, Then};
 use crate::slot::SlotWriter;
@@ -57,8 +57,8 @@ pub(super) struct Programmed {
     pub(super) id: GoalId,
     /// Why the program could not go on.
     pub(super) failure: Option<MotionError>,
-    /// Whether a `StopMove` is out, or about to be.
-    pub(super) stopped: bool,
+    /// Since when a `StopMove` is out, or about to be.
+    pub(super) stopped: Option<Duration>,
     /// Whoever else awaits the end, having asked for it.
     pub(super) stops: Vec<GoalId>,
 }
@@ -133,17 +133,34 @@ impl Active {
             what: "Unexpected reply to a Move command",
         }))
     }
+
+    /// Until when a motion under way may go on: without end, unless a stop was asked for.
+    pub(super) fn running_deadline(&self) -> Option<Duration> {
+        self.work.stopped_since().map(|since| since + END_TIMEOUT)
+    }
+
+    /// Has the thread end the motion by what is in its hands, and returns the order that this takes: nobody waits for it
+    /// any more. Goals come to rest; a program is left alone, and the robot stops for want of commands.
+    pub(super) fn abandon(&mut self) -> Option<Order> {
+        let motion = self.motion;
+        match (&mut self.work, &self.thread) {
+            (_, ThreadSide::Ended(_)) => None,
+            (Work::Program(_), ThreadSide::Armed | ThreadSide::Running) => {
+                Some(Order::Silence { motion })
+            }
+            (Work::Goals(goals), thread) => {
+                goals.brake();
+                matches!(thread, ThreadSide::Armed).then_some(Order::Disarm { motion })
+            }
+        }
+    }
 }
 
 impl Work {
-    /// Has the thread come to rest and finish, if that is in its hands: nobody waits for this motion any more.
-    pub(super) fn brake(&mut self) {
-        if let Self::Goals(goals) = self {
-            goals.slot.write(&Goal {
-                target: Target::Rest,
-                then: Then::Finish,
-                ..goals.current.goal
-            });
+    fn stopped_since(&self) -> Option<Duration> {
+        match self {
+            Self::Program(program) => program.stopped,
+            Self::Goals(_) => None,
         }
     }
 
@@ -155,11 +172,19 @@ impl Work {
     }
 
     fn stopped(&self) -> bool {
-        matches!(self, Self::Program(program) if program.stopped)
+        self.stopped_since().is_some()
     }
 }
 
 impl Goals {
+    fn brake(&mut self) {
+        self.slot.write(&Goal {
+            target: Target::Rest,
+            then: Then::Finish,
+            ..self.current.goal
+        });
+    }
+
     /// Whether the motion ended well with an older goal than the current one.
     pub(super) fn came_too_late(&self, command: CommandSide, ended: &Ended) -> bool {
         let Program::Target(session) = &ended.program else {
@@ -187,7 +212,7 @@ impl Programmed {
         Self {
             id,
             failure: None,
-            stopped: false,
+            stopped: None,
             stops: Vec::new(),
         }
     }
@@ -210,7 +235,7 @@ impl Programmed {
                 let report = MotionReport::new(statistics, statistics.duration_ms(), None);
                 Some(Ok(report))
             }
-            _ if self.stopped => Some(Err(MotionError::Stopped)),
+            _ if self.stopped.is_some() => Some(Err(MotionError::Stopped)),
             _ => None,
         }
     }

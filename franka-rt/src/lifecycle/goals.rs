@@ -70,11 +70,11 @@ impl Lifecycle {
     /// Takes back a goal: an arm on its way to it is braked as by a stop, and the goal resolves as
     /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest. A program is taken back in the
     /// same way, by having the robot stop.
-    pub fn cancel(&mut self, id: GoalId) {
+    pub fn cancel(&mut self, id: GoalId, now: Duration) {
         if let Some(next) = self.next.take_if(|next| next.goal.id == id) {
             return self.resolve(next.goal.id, Err(MotionError::Stopped));
         }
-        if self.cancel_program(id) {
+        if self.cancel_program(id, now) {
             return;
         }
         let amended = self.amend(
@@ -97,7 +97,7 @@ impl Lifecycle {
     /// Brakes whatever moves, as a goal of its own named `id`, which resolves once the arm rests and the motion has ended.
     /// The goals before it resolve as [`MotionError::Stopped`]. Returns false, and does nothing, if there is no motion.
     pub fn stop(&mut self, id: GoalId, now: Duration) -> bool {
-        if self.stop_program(id) {
+        if self.stop_program(id, now) {
             return true;
         }
         let Some(goals) = self.goals() else {

@@ -123,7 +123,7 @@ impl Lifecycle {
                 active.command = CommandSide::Started;
                 active.deadline = match active.thread {
                     ThreadSide::Armed => Some(now + START_TIMEOUT),
-                    ThreadSide::Running => None,
+                    ThreadSide::Running => active.running_deadline(),
                     ThreadSide::Ended(_) => Some(now + END_TIMEOUT),
                 };
             }
@@ -142,13 +142,9 @@ impl Lifecycle {
     /// Takes note that a reply to the `Move` of `motion` could not be read: nobody knows what the robot is doing, so the arm
     /// is braked, the robot told to stop, and the goal resolves.
     pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
-        let Some(active) = self.active(motion) else {
-            return;
-        };
-        if matches!(active.thread, ThreadSide::Armed) {
-            self.disarm(motion);
+        if self.active(motion).is_some() {
+            self.finish(now, Some(MotionError::Violation(violation)));
         }
-        self.finish(now, Some(MotionError::Violation(violation)));
     }
 
     /// Takes an event of the thread.
@@ -160,7 +156,7 @@ impl Lifecycle {
                 };
                 active.thread = ThreadSide::Running;
                 if active.command == CommandSide::Started {
-                    active.deadline = None;
+                    active.deadline = active.running_deadline();
                 }
             }
             Event::Program {
@@ -168,7 +164,7 @@ impl Lifecycle {
                 event,
                 statistics,
             } => self.on_session_event(motion, event, statistics),
-            Event::Failed { motion, failure } => self.on_failure(motion, failure),
+            Event::Failed { motion, failure } => self.on_failure(motion, failure, now),
             Event::Finishing { motion } => {
                 if let Some(active) = self.active(motion)
                     && active.command == CommandSide::Started
@@ -189,17 +185,16 @@ impl Lifecycle {
         }
     }
 
-    /// The command connection is gone: every goal resolves, an arm that moves is braked, nothing starts any more.
+    /// The command connection is gone: every goal resolves, an arm that moves is braked (by the robot itself, if a program of
+    /// the user's moves it: it gets no more commands), nothing starts any more.
     pub fn on_connection_closed(&mut self, reason: &str) {
         let phase = core::mem::replace(&mut self.phase, Phase::Closed(reason.to_owned()));
         let error = MotionError::ConnectionClosed {
             reason: reason.to_owned(),
         };
         if let Phase::Active(mut active) = phase {
-            active.work.brake();
-            if matches!(active.thread, ThreadSide::Armed) {
-                self.disarm(active.motion);
-            }
+            let order = active.abandon();
+            self.outputs.extend(order.map(Output::Order));
             self.resolve_work(active.work, &Err(error.clone()), &Err(error.clone()));
         }
         if let Some(next) = self.next.take() {
@@ -231,10 +226,8 @@ impl Lifecycle {
             ) => {
                 active.command = CommandSide::Cancelled;
                 active.deadline = Some(now + END_TIMEOUT);
-                active.work.brake();
-                if matches!(active.thread, ThreadSide::Armed) {
-                    self.disarm(motion);
-                }
+                let order = active.abandon();
+                self.outputs.extend(order.map(Output::Order));
                 self.send(motion, Request::StopMove);
             }
             (command, _) => {
@@ -355,7 +348,8 @@ impl Lifecycle {
         }
         let (result, statistics) = match (error, &active.thread) {
             (Some(error), _) => {
-                active.work.brake();
+                let order = active.abandon();
+                self.outputs.extend(order.map(Output::Order));
                 (Err(error), MotionStatistics::default())
             }
             (None, ThreadSide::Ended(ended)) => {

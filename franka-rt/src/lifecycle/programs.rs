@@ -38,31 +38,31 @@ impl Lifecycle {
     }
 
     /// Has the robot stop the program of that name. Returns whether it is the one that runs.
-    pub(super) fn cancel_program(&mut self, id: GoalId) -> bool {
+    pub(super) fn cancel_program(&mut self, id: GoalId, now: Duration) -> bool {
         let named = self.program().is_some_and(|program| program.id == id);
         if named {
-            self.send_stop();
+            self.send_stop(now);
         }
         named
     }
 
     /// Has the robot stop the program that runs, and `id` resolve when it has. Returns whether there is one.
-    pub(super) fn stop_program(&mut self, id: GoalId) -> bool {
+    pub(super) fn stop_program(&mut self, id: GoalId, now: Duration) -> bool {
         let Some(program) = self.program() else {
             return false;
         };
         program.stops.push(id);
-        self.send_stop();
+        self.send_stop(now);
         true
     }
 
     /// Takes note that the program of a motion could not go on.
-    pub(super) fn on_failure(&mut self, motion: MotionId, failure: Failure) {
+    pub(super) fn on_failure(&mut self, motion: MotionId, failure: Failure, now: Duration) {
         if self.active(motion).is_some()
             && let Some(program) = self.program()
         {
             program.note_failure(failure);
-            self.send_stop();
+            self.send_stop(now);
         }
     }
 
@@ -76,8 +76,9 @@ impl Lifecycle {
         }
     }
 
-    /// Asks the robot to stop the program's motion, unless it has been asked or the motion is over for it.
-    fn send_stop(&mut self) {
+    /// Asks the robot to stop the program's motion, unless it has been asked or the motion is over for it. Its answer is not
+    /// awaited: that the motion has ended is what counts, and a robot that goes on is told once more, then given up.
+    fn send_stop(&mut self, now: Duration) {
         let Phase::Active(active) = &mut self.phase else {
             return;
         };
@@ -86,7 +87,10 @@ impl Lifecycle {
             return;
         };
         let open = matches!(command, CommandSide::Requested | CommandSide::Started);
-        if open && !core::mem::replace(&mut program.stopped, true) {
+        if open && program.stopped.is_none() {
+            program.stopped = Some(now);
+            let ending = active.running_deadline();
+            active.deadline = active.deadline.or(ending);
             self.send(motion, Request::StopMove);
         }
     }

@@ -175,7 +175,7 @@ impl Client {
 
     /// Takes work back, as dropping its future does.
     pub fn cancel(&mut self, id: GoalId) {
-        self.lifecycle.cancel(id);
+        self.lifecycle.cancel(id, self.now);
         self.carry_out();
     }
 
