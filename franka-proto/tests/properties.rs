@@ -64,7 +64,8 @@ fn request() -> impl Strategy<Value = Request> {
             elbow,
         })
     };
-    let motion = (controller, generator, deviation(), deviation());
+    let velocities = prop::option::of(uniform7(number()));
+    let motion = (controller, generator, deviation(), deviation(), velocities);
     let thresholds = (
         uniform7(number()),
         uniform7(number()),
@@ -78,12 +79,12 @@ fn request() -> impl Strategy<Value = Request> {
     );
     prop_oneof![
         motion.prop_map(
-            |(controller, generator, path, goal)| Request::Move(MoveRequest {
+            |(controller, generator, path, goal, asynchronous)| Request::Move(MoveRequest {
                 controller,
                 generator,
                 maximum_path_deviation: path,
                 maximum_goal_pose_deviation: goal,
-                asynchronous: None,
+                asynchronous,
             })
         ),
         thresholds.prop_map(|(a, b, c, d)| {
@@ -171,7 +172,13 @@ proptest! {
         version in version(), request in request(), id in any::<u32>()
     ) {
         let encoded = request.encode(version, CommandId(id));
-        prop_assert_eq!(encoded.is_ok(), version.supports(request.command()));
+        let exists = match request {
+            Request::Move(motion) if motion.asynchronous.is_some() => {
+                version.has_asynchronous_motion()
+            }
+            request => version.supports(request.command()),
+        };
+        prop_assert_eq!(encoded.is_ok(), exists);
         let Ok(outgoing) = encoded else { return Ok(()) };
         let message = next_message(outgoing.as_bytes()).unwrap().unwrap();
         prop_assert_eq!(message.header.command_id, id);

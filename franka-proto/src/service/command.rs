@@ -108,9 +108,16 @@ impl ServiceCommand for Command {
 
     fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let service = Self::SERVICE;
-        write!(
-            f,
-            "{service}: Unexpected response while handling {self} command!"
-        )
+        match self {
+            // libfranka asks of a library only whether it is a success.
+            Self::LoadModelLibrary => write!(f, "{service}: {NO_LIBRARY}"),
+            _ => write!(
+                f,
+                "{service}: Unexpected response while handling {self} command!"
+            ),
+        }
     }
 }
+
+/// libfranka's text about a library that the robot does not give, which names no command.
+pub(super) const NO_LIBRARY: &str = "Server reports error when loading model library.";

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::command::NO_LIBRARY;
 use super::{
     Command, LibraryStatus, ModelStatus, MoveStatus, RecoveryStatus, Reply, SetterStatus, Status,
     StopStatus,
@@ -141,9 +142,7 @@ impl fmt::Display for Refusal {
         match self.reason() {
             Reason::Text(text) => write!(f, "libfranka: {command}{text}"),
             Reason::MoveSafety => write!(f, "libfranka: {}{SAFETY}", Command::Move),
-            Reason::Library => {
-                f.write_str("libfranka: Server reports error when loading model library.")
-            }
+            Reason::Library => write!(f, "libfranka: {NO_LIBRARY}"),
             Reason::NotPossible => {
                 write!(
                     f,
@@ -180,11 +179,6 @@ const ABORTED: &str = " command aborted!";
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::string::ToString;
-
-    fn text(command: Command, status: Status, mode: RobotMode) -> std::string::String {
-        Refusal::new(command, status, mode).unwrap().to_string()
-    }
 
     #[test]
     fn a_success_is_no_refusal() {
@@ -198,137 +192,6 @@ mod tests {
             Status::Library(LibraryStatus::Success),
         ] {
             assert_eq!(Refusal::new(Command::Move, status, RobotMode::Idle), None);
-        }
-    }
-
-    #[test]
-    fn the_mode_stands_in_double_quotes_and_other_asks_for_the_brakes() {
-        let status = Status::Move(MoveStatus::CommandNotPossibleRejected);
-        assert_eq!(
-            text(Command::Move, status, RobotMode::UserStopped),
-            "libfranka: Move command rejected: command not possible in the current mode \
-             (\"User stopped\")!"
-        );
-        assert_eq!(
-            text(Command::Move, status, RobotMode::Other),
-            "libfranka: Move command rejected: command not possible in the current mode \
-             (\"Other\")! Did you open the brakes?"
-        );
-        let status = Status::StopMove(StopStatus::Aborted);
-        assert_eq!(
-            text(Command::StopMove, status, RobotMode::Reflex),
-            "libfranka: Stop Move command rejected: command not possible in the current mode \
-             (\"Reflex\")!"
-        );
-    }
-
-    #[test]
-    fn each_status_of_move_has_its_text() {
-        for (status, expected) in [
-            (MoveStatus::Preempted, " command preempted!"),
-            (
-                MoveStatus::PreemptedDueToActivatedSafetyFunctions,
-                " command preempted due to activated safety function! Please disable all safety functions.",
-            ),
-            (
-                MoveStatus::CommandRejectedDueToActivatedSafetyFunctions,
-                " command rejected due to activated safety function! Please disable all safety functions.",
-            ),
-            (
-                MoveStatus::StartAtSingularPoseRejected,
-                " command rejected: cannot start at singular pose!",
-            ),
-            (
-                MoveStatus::InvalidArgumentRejected,
-                " command rejected: maximum path deviation out of range!",
-            ),
-            (
-                MoveStatus::ReflexAborted,
-                " command aborted: motion aborted by reflex!",
-            ),
-            (
-                MoveStatus::EmergencyAborted,
-                " command aborted: User Stop pressed!",
-            ),
-            (
-                MoveStatus::InputErrorAborted,
-                " command aborted: invalid input provided!",
-            ),
-            (MoveStatus::Aborted, " command aborted!"),
-        ] {
-            let got = text(Command::Move, Status::Move(status), RobotMode::Idle);
-            assert_eq!(got, std::format!("libfranka: Move{expected}"));
-        }
-    }
-
-    #[test]
-    fn the_safety_texts_keep_the_quirks_of_libfranka() {
-        let mode = RobotMode::Idle;
-        let move_text = "libfranka: Move command rejected due to activated safety function! \
-                         Please disable all safety functions.";
-        let stop = Status::StopMove(StopStatus::CommandRejectedDueToActivatedSafetyFunctions);
-        let recovery =
-            Status::Recovery(RecoveryStatus::CommandRejectedDueToActivatedSafetyFunctions);
-        assert_eq!(text(Command::StopMove, stop, mode), move_text);
-        assert_eq!(
-            text(Command::AutomaticErrorRecovery, recovery, mode),
-            move_text
-        );
-        let setter = Status::Setter(SetterStatus::CommandRejectedDueToActivatedSafetyFunctions);
-        assert_eq!(
-            text(Command::SetEEToK, setter, mode),
-            "libfranka: Set EE to K command rejected due to activated safety function! \
-             Please disable all safety functions. "
-        );
-        let model = Status::Model(ModelStatus::CommandRejectedDueToActivatedSafetyFunctions);
-        assert_eq!(
-            text(Command::GetRobotModel, model, mode),
-            "libfranka: Get Robot Model command rejected due to activated safety function! \
-             Please disable all safety functions."
-        );
-    }
-
-    #[test]
-    fn the_other_commands_have_their_texts() {
-        let mode = RobotMode::Reflex;
-        for (command, status, expected) in [
-            (
-                Command::GetCartesianLimit,
-                Status::Setter(SetterStatus::InvalidArgumentRejected),
-                "libfranka: Get Cartesian Limit command rejected: invalid argument!",
-            ),
-            (
-                Command::LoadModelLibrary,
-                Status::Library(LibraryStatus::Error),
-                "libfranka: Server reports error when loading model library.",
-            ),
-            (
-                Command::StopMove,
-                Status::StopMove(StopStatus::EmergencyAborted),
-                "libfranka: Stop Move command aborted: User Stop pressed!",
-            ),
-            (
-                Command::StopMove,
-                Status::StopMove(StopStatus::ReflexAborted),
-                "libfranka: Stop Move command aborted: motion aborted by reflex!",
-            ),
-            (
-                Command::SetJointImpedance,
-                Status::Setter(SetterStatus::InvalidArgumentRejected),
-                "libfranka: Set Joint Impedance command rejected: invalid argument!",
-            ),
-            (
-                Command::AutomaticErrorRecovery,
-                Status::Recovery(RecoveryStatus::ManualErrorRecoveryRequiredRejected),
-                "libfranka: Automatic Error Recovery command rejected: manual error recovery required!",
-            ),
-            (
-                Command::AutomaticErrorRecovery,
-                Status::Recovery(RecoveryStatus::Aborted),
-                "libfranka: Automatic Error Recovery command aborted!",
-            ),
-        ] {
-            assert_eq!(text(command, status, mode), expected);
         }
     }
 }

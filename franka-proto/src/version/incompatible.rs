@@ -140,6 +140,18 @@ mod tests {
                 )
             );
         }
+        for (number, robot, system) in [
+            (5, "Franka Emika Robot (Panda)", "4.2.1"),
+            (10, "Franka Research 3", "5.9.0"),
+        ] {
+            assert_eq!(
+                explanation(number),
+                std::format!(
+                    "version {number} is that of a {robot} with system image {system} or later: \
+                     connect with version {number}, which is understood here as well"
+                )
+            );
+        }
         assert_eq!(
             explanation(11),
             "no robot with version 11 is known here; understood are 5 and 10"
