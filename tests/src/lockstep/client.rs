@@ -135,13 +135,14 @@ impl Client {
         size
     }
 
-    /// Passes on what the driver has to tell, watches deadlines, and carries out what follows from both.
-    pub fn settle(&mut self) {
+    /// Passes on what the driver has to tell, watches deadlines, and carries out what follows from both. Returns whether
+    /// anything did: the driver may have more to tell then.
+    pub fn settle(&mut self) -> bool {
         while let Some(event) = self.driver.take_event() {
             self.lifecycle.on_event(event, self.now);
         }
         self.lifecycle.on_time(self.now);
-        self.carry_out();
+        self.carry_out()
     }
 
     /// A name for a goal that no other has.
@@ -211,9 +212,11 @@ impl Client {
         self.outcomes.get(&id)
     }
 
-    /// Carries out what the lifecycle has decided, in its order.
-    pub(super) fn carry_out(&mut self) {
+    /// Carries out what the lifecycle has decided, in its order. Returns whether that was anything.
+    pub(super) fn carry_out(&mut self) -> bool {
+        let mut any = false;
         while let Some(output) = self.lifecycle.poll() {
+            any = true;
             match output {
                 Output::Order(order) => self.driver.on_order(order),
                 Output::Send { motion, request } => {
@@ -230,5 +233,6 @@ impl Client {
                 }
             }
         }
+        any
     }
 }

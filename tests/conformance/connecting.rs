@@ -1,0 +1,73 @@
+//! No robot, or one of another version.
+
+use std::net::{Ipv4Addr, TcpListener};
+
+use franka_async::{ConnectError, Realtime, Robot};
+use franka_proto::framing::next_message;
+use franka_proto::{Version, client, server};
+
+use crate::for_each_version;
+
+/// Over a real socket, since that is what there is to it; more of the kind in `tests/live/connecting.rs`.
+#[tokio::test]
+async fn scenario_17_nobody_listens() {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
+    let address = listener.local_addr().expect("bound");
+    drop(listener);
+    let connected = Robot::builder(address).realtime(Realtime::Ignore).connect();
+    let error = connected.await.expect_err("nobody listens");
+    assert!(matches!(error, ConnectError::Refused), "{error:?}");
+    assert_eq!(
+        error.to_string(),
+        "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk."
+    );
+}
+
+#[test]
+fn scenario_17_a_robot_of_the_other_version_names_both() {
+    for_each_version(|version| {
+        let [other] = Version::ALL
+            .into_iter()
+            .filter(|other| *other != version)
+            .collect::<Vec<_>>()[..]
+        else {
+            panic!("there are two versions")
+        };
+        let mut session = client::Session::new(version);
+        let hello = session.connect(40_000);
+        let hello = next_message(hello.as_bytes()).expect("well-formed");
+        let mut robot = server::Session::new(other);
+        let event = robot.on_message(hello.expect("whole"));
+        let Ok(server::Event::Incompatible {
+            version: announced,
+            reply,
+        }) = event
+        else {
+            panic!("{event:?}")
+        };
+        assert_eq!(announced, version.number());
+        let reply = next_message(reply.as_bytes()).expect("well-formed");
+        let event = session.on_message(reply.expect("whole"));
+        let Ok(client::Event::Incompatible(error)) = event else {
+            panic!("{event:?}")
+        };
+        assert_eq!(error.server_version, other.number());
+        assert_eq!(error.library_version, version);
+        assert!(!session.is_connected());
+        let text = match version {
+            Version::V10 => {
+                "libfranka: Incompatible library version (server version: 5, library version: 10). \
+                 Please check https://frankarobotics.github.io for system updates or choose a libfranka \
+                 version that uses the server version 5 from the table at \
+                 https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html ."
+            }
+            Version::V5 => {
+                "libfranka: Incompatible library version (server version: 10, library version: 5). \
+                 Please check https://frankaemika.github.io for Panda system updates or choose a \
+                 libfranka version that uses the server version 10 from the table at \
+                 https://frankaemika.github.io/docs/compatibility.html ."
+            }
+        };
+        assert_eq!(error.to_string(), text);
+    });
+}

@@ -1,0 +1,202 @@
+//! The client beside a robot that follows a script, in one thread.
+
+use std::net::{IpAddr, Ipv4Addr};
+use std::time::Duration;
+
+use franka_model::{Model, RobotKind};
+use franka_proto::{
+    Command as ServiceCommand, CommandId, MoveRequest, MoveStatus, Request, RobotCommand, Version,
+};
+use franka_rt::control::{Command, WriteError};
+use franka_rt::driver::{ControlLog, Program};
+use franka_rt::exchange::{self, Exchange, Reception};
+use franka_rt::lifecycle::{ControlError, MotionError};
+use franka_rt::session::GoalId;
+use franka_tests::lockstep::{Client, Outcome};
+
+use crate::robot::ScriptedRobot;
+
+/// The client, the robot, and the sockets between.
+///
+/// A datagram sent over loopback is there when the call that sends it returns, so nothing here waits: time is what
+/// [`Pair::cycle`] and [`Pair::silence`] count.
+pub(crate) struct Pair {
+    pub(crate) client: Client,
+    pub(crate) robot: ScriptedRobot,
+    exchange: Exchange,
+}
+
+/// A motion that the robot has started.
+pub(crate) struct Running {
+    /// Whom it resolves for.
+    pub(crate) work: GoalId,
+    /// The robot's name for it.
+    pub(crate) id: CommandId,
+    /// What answered the first state that showed its modes.
+    pub(crate) first: Option<RobotCommand>,
+}
+
+impl Pair {
+    /// Connected as the scenarios have it: the handshake, a state with the id 1, then the robot's model where the version
+    /// has one.
+    pub(crate) fn connected(version: Version) -> Self {
+        Self::with_log_size(version, ControlLog::DEFAULT_CAPACITY)
+    }
+
+    /// The same, with so many cycles in the log of a motion.
+    pub(crate) fn with_log_size(version: Version, cycles: usize) -> Self {
+        let socket = exchange::bind().expect("a free port");
+        let port = socket.local_addr().expect("bound").port();
+        let robot = IpAddr::from(Ipv4Addr::LOCALHOST);
+        let mut pair = Self {
+            client: Client::new(model(version), version).with_log_size(cycles),
+            robot: ScriptedRobot::new(version),
+            exchange: Exchange::new(socket, robot, version.state_size()).expect("options"),
+        };
+        pair.client.connect(port);
+        pair.settle();
+        assert!(pair.client.is_connected());
+        assert_eq!(pair.step(), None);
+        assert_eq!(pair.client.state.message_id, 1);
+        if version.supports(ServiceCommand::GetRobotModel) {
+            pair.client.request(&Request::GetRobotModel);
+            pair.settle();
+            let (id, _) = pair.robot.take_request().expect("the model is asked for");
+            pair.robot.reply_model(id, "<robot name=\"fr3\"/>");
+            pair.settle();
+        }
+        assert_eq!(pair.client.pending(), 0);
+        pair
+    }
+
+    /// One wake-up of the control thread, for which a datagram has to be waiting; then whatever was said over TCP
+    /// arrives. It takes a millisecond.
+    pub(crate) fn cycle(&mut self) -> Reception {
+        let reception = self.exchange.receive();
+        if reception.fresh {
+            let mut command = [0; RobotCommand::MAX_SIZE];
+            if let Some(size) = self.client.cycle(self.exchange.state(), &mut command) {
+                self.exchange.send(&command[..size]).expect("loopback");
+            }
+        }
+        self.client.now += Duration::from_millis(1);
+        self.settle();
+        reception
+    }
+
+    /// The robot's next state, and the command that answers it.
+    pub(crate) fn step(&mut self) -> Option<RobotCommand> {
+        self.robot.send_next();
+        self.cycle();
+        let command = self.robot.take_command();
+        assert_eq!(self.robot.take_command(), None, "one answer at most");
+        command
+    }
+
+    /// Everything said over TCP arrives, in both directions, until nobody says anything more.
+    pub(crate) fn settle(&mut self) {
+        loop {
+            let mut silent = !self.client.settle();
+            while let Some(message) = self.client.take_message() {
+                self.robot.on_bytes(&message);
+                silent = false;
+            }
+            let replies = self.robot.take_bytes();
+            if silent && replies.is_empty() {
+                return;
+            }
+            self.client.on_bytes(&replies);
+        }
+    }
+
+    /// So many milliseconds in which no state comes.
+    pub(crate) fn silence(&mut self, milliseconds: std::ops::RangeInclusive<u64>) {
+        for silent in milliseconds {
+            self.client.now += Duration::from_millis(1);
+            self.client.driver.on_silence(Duration::from_millis(silent));
+            self.settle();
+        }
+    }
+
+    /// Starts a motion: the robot says that it has, and shows its modes in one state, which is answered.
+    pub(crate) fn begin(&mut self, program: Program, request: MoveRequest) -> Running {
+        let (work, id) = self.ask(program, request);
+        self.robot.reply_move(id, MoveStatus::MotionStarted);
+        self.settle();
+        self.robot.run(&request);
+        let first = self.step();
+        Running { work, id, first }
+    }
+
+    /// Asks for a motion; the robot has not answered yet.
+    pub(crate) fn ask(&mut self, program: Program, request: MoveRequest) -> (GoalId, CommandId) {
+        let begun = self.client.control(program, request);
+        let work = begun.expect("nothing else controls the arm");
+        self.settle();
+        let (id, asked) = self.robot.expect_move();
+        assert_eq!(asked, request);
+        (work, id)
+    }
+
+    /// Writes a command from outside, and returns it as the robot got it.
+    pub(crate) fn write(
+        &mut self,
+        command: Command,
+        finished: bool,
+    ) -> Result<RobotCommand, WriteError> {
+        let written = self.client.driver.write(&command, finished);
+        if let Ok(command) = &written {
+            let mut datagram = [0; RobotCommand::MAX_SIZE];
+            let size = command.encode(self.client.version(), &mut datagram);
+            let size = size.expect("it fits");
+            self.exchange.send(&datagram[..size]).expect("loopback");
+        }
+        let arrived = self.robot.take_command();
+        assert_eq!(arrived.is_some(), written.is_ok(), "{written:?}");
+        written.map(|_| arrived.expect("just so"))
+    }
+
+    /// Has the robot end a motion well: its states show rest, and it says that the motion succeeded.
+    pub(crate) fn succeed(&mut self, motion: &Running) {
+        self.robot.rest();
+        self.robot.reply_move(motion.id, MoveStatus::Success);
+        assert_eq!(self.step(), None);
+        assert!(self.outcome(motion.work).is_ok());
+        self.assert_idle();
+    }
+
+    /// How some work turned out, which has to be known.
+    pub(crate) fn outcome(&self, work: GoalId) -> Outcome {
+        let outcome = self.client.outcome(work);
+        outcome.expect("it has been resolved").clone()
+    }
+
+    /// Why some work failed.
+    pub(crate) fn error(&self, work: GoalId) -> MotionError {
+        self.outcome(work).expect_err("it has failed")
+    }
+
+    /// What the robot said when it ended a motion.
+    pub(crate) fn control_error(&self, work: GoalId) -> ControlError {
+        match self.error(work) {
+            MotionError::Control(error) => *error,
+            other => panic!("expected an end by the robot, got {other:?}"),
+        }
+    }
+
+    /// Asserts that nothing moves, nobody waits, and the robot has been asked for nothing more.
+    pub(crate) fn assert_idle(&mut self) {
+        assert!(self.client.lifecycle.is_idle());
+        assert!(self.client.driver.is_watching());
+        assert_eq!(self.client.pending(), 0, "every request has been answered");
+        assert_eq!(self.robot.take_request(), None);
+    }
+}
+
+/// The model of the robot that speaks `version`.
+fn model(version: Version) -> &'static Model {
+    Model::of(match version {
+        Version::V5 => RobotKind::Fer,
+        Version::V10 => RobotKind::Fr3,
+    })
+}
