@@ -127,6 +127,11 @@ fn every_request_of_the_vacuum_gripper_comes_back_value_for_value() {
         }));
         pair.reply(id, Status::Fail);
     }
+    let undefined = vacuum::Profile::from_byte(4).unwrap_err();
+    assert_eq!(
+        undefined.to_string(),
+        "Vacuum Gripper: Vacuum profile not defined!"
+    );
     pair.request(vacuum::Request::DropOff { timeout: i64::MAX });
     pair.request(vacuum::Request::Stop);
     assert_eq!(pair.client.pending(), 2);

@@ -9,7 +9,7 @@ mod state;
 use crate::{client, server};
 
 pub use crate::end_effector::{Failure, Reply, Status, next_message};
-pub use request::{Command, Profile, Request, Vacuum};
+pub use request::{Command, Profile, Request, UndefinedProfile, Vacuum};
 pub use state::{DeviceStatus, State};
 
 /// A version of the vacuum gripper's protocol. There is one.

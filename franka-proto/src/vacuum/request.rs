@@ -75,12 +75,14 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// The profile of a wire byte. For others libfranka says `Vacuum Gripper: Vacuum profile not
-    /// defined!` without sending anything.
-    #[must_use]
-    pub fn from_byte(byte: u8) -> Option<Self> {
+    /// The profile of a wire byte.
+    ///
+    /// # Errors
+    /// [`UndefinedProfile`] if the byte is above 3.
+    pub fn from_byte(byte: u8) -> Result<Self, UndefinedProfile> {
         let all = [Self::P0, Self::P1, Self::P2, Self::P3];
-        all.get(usize::from(byte)).copied()
+        let profile = all.get(usize::from(byte));
+        profile.copied().ok_or(UndefinedProfile(byte))
     }
 
     /// The wire byte of this profile.
@@ -89,6 +91,11 @@ impl Profile {
         self as u8
     }
 }
+
+/// A byte that is no profile. The text is libfranka's, which then sends nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("Vacuum Gripper: Vacuum profile not defined!")]
+pub struct UndefinedProfile(pub u8);
 
 impl fmt::Display for Command {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -165,13 +172,13 @@ impl EndEffector for Version {
             }
             Command::Vacuum => {
                 let payload: &wire::vacuum::Vacuum = payload(message)?;
-                let unknown = DecodeError::UnknownValue {
+                let unknown = |UndefinedProfile(byte)| DecodeError::UnknownValue {
                     field: "profile",
-                    value: payload.profile.into(),
+                    value: byte.into(),
                 };
                 Request::Vacuum(Vacuum {
                     vacuum: payload.vacuum,
-                    profile: Profile::from_byte(payload.profile).ok_or(unknown)?,
+                    profile: Profile::from_byte(payload.profile).map_err(unknown)?,
                     timeout: payload.timeout.get(),
                 })
             }

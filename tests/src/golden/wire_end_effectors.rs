@@ -124,7 +124,7 @@ impl Device for vacuum::Version {
                 vacuum::Request::Vacuum(vacuum::Vacuum {
                     vacuum: field(values, "vacuum")?,
                     profile: match (profile, values) {
-                        (None, Some(values)) => return Err(unknown(values)),
+                        (Err(_), Some(values)) => return Err(unknown(values)),
                         (profile, _) => profile.unwrap_or_default(),
                     },
                     timeout: field(values, "timeout")?,
