@@ -74,8 +74,8 @@ impl Shape<'static> {
     /// obstacles.
     ///
     /// They are up to 3.4 cm thicker than the links. So a small negative distance need not be a
-    /// collision, and its pairs are only those of the base, link 1 and link 2 with links 5 to 7: closer
-    /// ones touch in postures that the arm reaches every day.
+    /// collision, and its pairs of links are only those of the base, link 1 and link 2 with links 5 to 7:
+    /// closer ones touch in postures that the arm takes every day.
     pub const fn covering(kind: RobotKind) -> Self {
         let arm: &[LinkCapsule] = match kind {
             RobotKind::Fr3 => &FR3,
