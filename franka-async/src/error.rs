@@ -4,16 +4,72 @@ use std::io;
 use std::time::Duration;
 
 use franka_proto::framing::FrameError;
-use franka_proto::gripper::Failure;
+use franka_proto::gripper::{self, Failure};
 use franka_proto::{
     Command, IncompatibleVersion, Protocol, Refusal, RequestError, ServiceCommand, Version,
-    Violation,
+    Violation, vacuum,
 };
 use franka_rt::sched::SchedError;
 use franka_rt::thread::{LinkFault, StartError};
 
-pub use franka_rt::lifecycle::MotionError;
+pub use franka_rt::lifecycle::{ControlError, MotionError, Party};
 pub use franka_rt::session::GoalError;
+
+/// Anything that can go wrong with a robot or its end effectors: what a program with many kinds of calls returns. Every
+/// error of this crate converts into it, so that `?` does, and `Display` is that of the error inside.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// There is no connection to the robot.
+    #[error(transparent)]
+    Connect(#[from] ConnectError),
+    /// A command other than a motion was not carried out.
+    #[error(transparent)]
+    Command(#[from] CommandError),
+    /// The robot ended a motion: a reflex, a stop. The error has the log of the motion's last cycles.
+    #[error(transparent)]
+    Control(Box<ControlError>),
+    /// A motion ended short of its goal for another reason.
+    #[error(transparent)]
+    Motion(MotionError),
+    /// There is no connection to the Franka Hand.
+    #[error(transparent)]
+    ConnectGripper(#[from] ConnectError<gripper::Version>),
+    /// The Franka Hand did not do it.
+    #[error(transparent)]
+    Gripper(#[from] ActionError<gripper::Command>),
+    /// There is no connection to the vacuum gripper.
+    #[error(transparent)]
+    ConnectVacuumGripper(#[from] ConnectError<vacuum::Version>),
+    /// The vacuum gripper did not do it.
+    #[error(transparent)]
+    VacuumGripper(#[from] ActionError<vacuum::Command>),
+}
+
+impl From<MotionError> for Error {
+    fn from(error: MotionError) -> Self {
+        match error {
+            MotionError::Control(error) => Self::Control(error),
+            other => Self::Motion(other),
+        }
+    }
+}
+
+impl Error {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Connect(error) => error.party(),
+            Self::Command(error) => error.party(),
+            Self::Control(_) => Party::Robot,
+            Self::Motion(error) => error.party(),
+            Self::ConnectGripper(error) => error.party(),
+            Self::Gripper(error) => error.party(),
+            Self::ConnectVacuumGripper(error) => error.party(),
+            Self::VacuumGripper(error) => error.party(),
+        }
+    }
+}
 
 /// Why there is no connection: to a robot, unless `P` says otherwise. Nothing is left behind; connecting again is always
 /// possible.
@@ -61,6 +117,22 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Link: the handshake succeeded and no state came. A firewall in the way of UDP is the usual cause.
     #[error("libfranka: UDP receive: Timeout")]
     NoState,
+}
+
+impl<P: Protocol> ConnectError<P> {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Realtime(_) | Self::System(_) => Party::Host,
+            Self::Refused => Party::Robot,
+            Self::Timeout
+            | Self::Network { .. }
+            | Self::Link { .. }
+            | Self::HandshakeTimeout
+            | Self::NoState => Party::Link,
+            Self::IncompatibleVersion(_) | Self::Violation(_) | Self::Frame(_) => Party::Peer,
+        }
+    }
 }
 
 impl From<StartError> for ConnectError {
@@ -111,6 +183,18 @@ pub enum CommandError {
     },
 }
 
+impl CommandError {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Refused(_) => Party::Robot,
+            Self::Request(_) => Party::Caller,
+            Self::Timeout { .. } | Self::ConnectionClosed { .. } => Party::Link,
+            Self::Violation(_) => Party::Peer,
+        }
+    }
+}
+
 /// Why an action of an end effector has no result; `C` is what can be asked of it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -130,4 +214,62 @@ pub enum ActionError<C: ServiceCommand> {
         /// What ended it.
         reason: String,
     },
+}
+
+impl<C: ServiceCommand> ActionError<C> {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Failure(_) => Party::Robot,
+            Self::Request(_) => Party::Caller,
+            Self::Violation(_) => Party::Peer,
+            Self::ConnectionClosed { .. } => Party::Link,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_error_converts_and_keeps_its_text_and_party() {
+        fn check(error: impl Into<Error>, text: &str, party: Party) {
+            let error = error.into();
+            assert_eq!(error.to_string(), text);
+            assert_eq!(error.party(), party, "{error:?}");
+        }
+        check(
+            ConnectError::<Version>::Refused,
+            "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk.",
+            Party::Robot,
+        );
+        check(
+            ConnectError::<gripper::Version>::HandshakeTimeout,
+            "libfranka: TCP receive: Timeout",
+            Party::Link,
+        );
+        check(
+            MotionError::Superseded,
+            "superseded by a newer goal",
+            Party::Caller,
+        );
+        let reason = String::from("libfranka: server closed connection");
+        check(
+            CommandError::ConnectionClosed {
+                reason: reason.clone(),
+            },
+            &reason,
+            Party::Link,
+        );
+        check(
+            ActionError::<vacuum::Command>::ConnectionClosed {
+                reason: reason.clone(),
+            },
+            &reason,
+            Party::Link,
+        );
+        let what = "nothing";
+        check(MotionError::Protocol { what }, what, Party::Peer);
+    }
 }

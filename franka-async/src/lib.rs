@@ -60,7 +60,7 @@ mod vacuum;
 pub use asynchronous::{AsynchronousControl, AsynchronousOptions};
 pub use builder::{Builder, Endpoint, VersionPolicy};
 pub use control::Control;
-pub use error::{ActionError, CommandError, ConnectError, MotionError};
+pub use error::{ActionError, CommandError, ConnectError, ControlError, Error, MotionError, Party};
 pub use follow::Follow;
 pub use gripper::{Gripper, GripperError};
 #[cfg(feature = "urdf")]
@@ -88,7 +88,7 @@ pub use franka_rt::control::{
 };
 pub use franka_rt::driver::{ControlLog, LogEntry, Record};
 pub use franka_rt::law::Gains;
-pub use franka_rt::lifecycle::{ControlError, MotionReport, Party};
+pub use franka_rt::lifecycle::MotionReport;
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::Realtime;
 pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};

@@ -115,7 +115,8 @@ pub enum MotionError {
 impl MotionError {
     /// Whether the robot accepts a new motion afterwards without anybody's doing.
     ///
-    /// After a reflex the robot has to be recovered first; after a lost link or connection, reconnected to.
+    /// After a reflex the robot has to be recovered first; after a lost link or connection, reconnected to. A control
+    /// function that fails may have left it without commands for long enough to stop itself, too.
     pub fn is_ready_for_more(&self) -> bool {
         matches!(
             self,
@@ -124,8 +125,6 @@ impl MotionError {
                 | Self::Stopped
                 | Self::Busy
                 | Self::Unsupported(_)
-                | Self::Invalid(_)
-                | Self::Panicked { .. }
                 | Self::Short(_)
         )
     }

@@ -17,8 +17,16 @@ pub enum Guard {
 
 /// A set of guards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bindings(u8);
+
+impl Guard {
+    const ALL: [Self; 4] = [
+        Self::Leash,
+        Self::InverseKinematics,
+        Self::TorqueClamp,
+        Self::TorqueRate,
+    ];
+}
 
 impl Bindings {
     /// Adds `guard` where `binds`.
@@ -31,8 +39,33 @@ impl Bindings {
         self.0 & (1 << guard as u8) != 0
     }
 
+    /// The guards that did.
+    pub fn iter(self) -> impl Iterator<Item = Guard> {
+        let all = Guard::ALL.into_iter();
+        all.filter(move |guard| self.contains(*guard))
+    }
+
     /// Whether no guard did.
     pub fn is_empty(self) -> bool {
         self.0 == 0
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Bindings {
+    /// A sequence of the guards.
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.iter())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Bindings {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut bindings = Self::default();
+        for guard in Vec::<Guard>::deserialize(deserializer)? {
+            bindings.set(guard, true);
+        }
+        Ok(bindings)
     }
 }
