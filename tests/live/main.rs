@@ -3,6 +3,7 @@
 //! Run one at a time: each test has a robot, and two cores carry only so many.
 
 mod connecting;
+mod control;
 mod dropping;
 mod ending;
 mod failing;

@@ -1,0 +1,102 @@
+//! The examples as programs, against a simulator of each kind in their own process.
+
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
+use std::process::{Child, Command, Output, Stdio};
+
+/// Both robots, as the option of the examples names them.
+const ROBOTS: [&str; 2] = ["fr3", "fer"];
+
+/// The program of an example. Cargo builds examples with the tests, beside them.
+fn example(name: &str) -> Command {
+    let mut path: PathBuf = std::env::current_exe().expect("a test has a path");
+    path.pop();
+    path.pop();
+    path.push("examples");
+    path.push(name);
+    assert!(path.exists(), "{} is built with the tests", path.display());
+    Command::new(path)
+}
+
+fn run(name: &str, robot: &str) -> String {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = example(name)
+        .args(["--sim", robot])
+        .output()
+        .expect("it starts");
+    let (stdout, stderr) = (
+        String::from_utf8_lossy(&stdout),
+        String::from_utf8_lossy(&stderr),
+    );
+    assert!(
+        status.success(),
+        "{name} on {robot}: {status}\n{stdout}\n{stderr}"
+    );
+    stdout.into_owned()
+}
+
+#[test]
+fn quickstart_arrives() {
+    for robot in ROBOTS {
+        let said = run("quickstart", robot);
+        assert!(said.contains("\narrived: "), "{robot}: {said}");
+    }
+}
+
+#[test]
+fn follow_watch_follows_to_the_end() {
+    for robot in ROBOTS {
+        let said = run("follow_watch", robot);
+        assert!(said.contains("followed for "), "{robot}: {said}");
+    }
+}
+
+/// Ends a service whatever becomes of the test.
+struct Service(Child);
+
+impl Drop for Service {
+    fn drop(&mut self) {
+        // Fails only if it has ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[test]
+fn the_web_service_moves_the_arm() {
+    for robot in ROBOTS {
+        let child = example("axum_service")
+            .args(["--sim", robot, "--listen", "127.0.0.1:0"])
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("it starts");
+        let mut service = Service(child);
+        let stdout = service.0.stdout.take().expect("it is piped");
+        let mut lines = BufReader::new(stdout).lines();
+        let address = lines.by_ref().find_map(|line| {
+            let line = line.expect("it prints text");
+            line.strip_prefix("listening on ").map(str::to_owned)
+        });
+        let url = format!("http://{}", address.expect("it listens"));
+        let state = ureq::get(format!("{url}/state")).call().unwrap();
+        let before = joint_2(state);
+        let moved = ureq::post(format!("{url}/move_to"))
+            .send_json([0.0, 0.0, 0.03])
+            .unwrap()
+            .body_mut()
+            .read_to_string()
+            .unwrap();
+        assert!(moved.starts_with("arrived after "), "{robot}: {moved}");
+        let after = joint_2(ureq::get(format!("{url}/state")).call().unwrap());
+        assert!(before != after, "{robot}: the joints have moved");
+    }
+}
+
+/// Position of joint 2 in what the service says of the state.
+fn joint_2(mut answer: ureq::http::Response<ureq::Body>) -> f64 {
+    let state: serde_json::Value = answer.body_mut().read_json().unwrap();
+    state["q"][1].as_f64().expect("joint positions")
+}

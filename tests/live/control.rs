@@ -1,0 +1,338 @@
+//! The user's own control functions, and sparse targets, over sockets.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use franka_async::{
+    AbortReason, AsynchronousOptions, CartesianPose, CartesianVelocities, Finish, JointPositions,
+    JointVelocities, MotionError, Next, Pose, Robot, RobotMode, RobotState, TargetStatus, Torques,
+};
+use franka_proto::{MoveControllerMode, RequestError, RobotError};
+use franka_sim::{Running, Sim, Tool};
+
+use crate::{alone, connect};
+
+/// A simulated robot of each kind with its hand, and a handle on it. A busy machine loses cycles, which shows as a step
+/// in what a function commands: that is for lockstep to judge, so these robots mind neither unless `strict`.
+async fn each(strict: bool) -> Vec<(Robot, Running)> {
+    let mut robots = Vec::new();
+    for sim in [Sim::fr3(), Sim::fer()] {
+        let sim = sim.enforce_limits(strict).enforce_communication(strict);
+        let sim = sim
+            .tool(Tool::hand())
+            .start()
+            .await
+            .expect("a simulator starts");
+        robots.push((connect(&sim).await, sim));
+    }
+    robots
+}
+
+/// A smooth way from 0 to 1 within `seconds`, at rest at both ends; its slope per second beside it.
+fn smooth(t: f64, seconds: f64) -> (f64, f64) {
+    use std::f64::consts::PI;
+    let phase = (t / seconds).min(1.0);
+    let value = phase - (2.0 * PI * phase).sin() / (2.0 * PI);
+    (value, (1.0 - (2.0 * PI * phase).cos()) / seconds)
+}
+
+/// The command of a motion over `seconds`, made by `at` of the time; the last one once they are over.
+fn timed<C: Finish>(
+    seconds: f64,
+    mut at: impl FnMut(&RobotState, f64) -> C + Send + 'static,
+) -> impl FnMut(&RobotState, Duration) -> Next<C> + Send + 'static {
+    let mut time = 0.0;
+    move |state, step| {
+        time += step.as_secs_f64();
+        let command = at(state, time);
+        if time >= seconds {
+            command.finish()
+        } else {
+            command.into()
+        }
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn each_generator_takes_the_arm_where_the_function_says() {
+    let _alone = alone();
+    for (robot, _sim) in each(false).await {
+        let before = robot.state();
+        let mut start = None;
+        let report = robot
+            .control_joint_positions(timed(1.5, move |state, time| {
+                let mut q = *start.get_or_insert(state.q_d);
+                q[0] += 0.1 * smooth(time, 1.2).0;
+                JointPositions(q)
+            }))
+            .await
+            .unwrap();
+        assert!(report.duration >= Duration::from_millis(1500), "{report:?}");
+        let moved = robot.state().q[0] - before.q[0];
+        assert!((moved - 0.1).abs() < 5e-3, "{moved}");
+
+        robot
+            .control_joint_velocities(timed(1.5, |_, time| {
+                let mut dq = [0.0; 7];
+                dq[0] = -0.1 * smooth(time, 1.2).1 * f64::from(u8::from(time < 1.2));
+                JointVelocities(dq)
+            }))
+            .controller(MoveControllerMode::CartesianImpedance)
+            .await
+            .unwrap();
+        let moved = robot.state().q[0] - before.q[0];
+        // Velocities are open loop: what a lost cycle adds or takes stays.
+        assert!(moved.abs() < 0.03, "{moved}");
+
+        let mut start = None;
+        let from = robot.pose();
+        robot
+            .control_cartesian_pose(timed(1.5, move |state, time| {
+                let mut pose = *start.get_or_insert(state.O_T_EE_c);
+                pose[14] += 0.04 * smooth(time, 1.2).0;
+                CartesianPose {
+                    O_T_EE: pose,
+                    elbow: None,
+                }
+            }))
+            .await
+            .unwrap();
+        let up = robot.pose().translation.z - from.translation.z;
+        assert!((up - 0.04).abs() < 2e-3, "{up}");
+
+        robot
+            .control_cartesian_velocities(timed(1.5, |_, time| {
+                let mut twist = [0.0; 6];
+                twist[2] = -0.04 * smooth(time, 1.2).1 * f64::from(u8::from(time < 1.2));
+                CartesianVelocities {
+                    O_dP_EE: twist,
+                    elbow: None,
+                }
+            }))
+            .await
+            .unwrap();
+        let up = robot.pose().translation.z - from.translation.z;
+        assert!(up.abs() < 0.012, "{up}");
+        robot.shutdown().await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn torques_alone_and_beside_a_generator() {
+    let _alone = alone();
+    for (robot, _sim) in each(false).await {
+        // A damped spring to where the arm is.
+        let spring = |state: &RobotState, q: &[f64; 7]| {
+            Torques(std::array::from_fn(|i| {
+                80.0 * (q[i] - state.q[i]) - 10.0 * state.dq[i]
+            }))
+        };
+        let calls = Arc::new(AtomicU64::new(0));
+        let counted = calls.clone();
+        let mut start = None;
+        let report = robot
+            .control_torques(timed(0.5, move |state, _| {
+                counted.fetch_add(1, Ordering::Relaxed);
+                let start = *start.get_or_insert(state.q);
+                spring(state, &start)
+            }))
+            .await
+            .unwrap();
+        let calls = calls.load(Ordering::Relaxed);
+        assert!(
+            calls + report.lost_states >= 499 && calls <= 502,
+            "{calls} calls"
+        );
+
+        let before = robot.state().q[0];
+        let mut start = None;
+        robot
+            .control_joint_velocities(timed(1.5, |_, time| {
+                let mut dq = [0.0; 7];
+                dq[0] = 0.1 * smooth(time, 1.2).1 * f64::from(u8::from(time < 1.2));
+                JointVelocities(dq)
+            }))
+            .with_torques(move |state: &RobotState, _| {
+                // Follows the generator's reference; the others stay.
+                let mut q = *start.get_or_insert(state.q);
+                q[0] = state.q_d[0];
+                spring(state, &q)
+            })
+            .await
+            .unwrap();
+        let moved = robot.state().q[0] - before;
+        assert!((moved - 0.1).abs() < 0.02, "{moved}");
+        robot.shutdown().await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_panic_or_a_bad_number_stops_the_motion_and_the_thread_lives_on() {
+    let _alone = alone();
+    for (robot, _sim) in each(false).await {
+        let mut calls = 0;
+        let panicking = robot.control_joint_velocities(move |_: &RobotState, _| {
+            calls += 1;
+            assert!(calls < 100, "a bug of the user's");
+            JointVelocities([0.0; 7])
+        });
+        let error = panicking.await.unwrap_err();
+        let text = "the control function panicked: a bug of the user's";
+        assert_eq!(error.to_string(), text);
+        // Printing a panic can take longer than the robot waits for commands; it has then stopped itself.
+        robot.recover().await.unwrap();
+
+        let mut calls = 0;
+        let spoiled = robot.control_torques(move |_: &RobotState, _| {
+            calls += 1;
+            Torques([if calls < 100 { 0.0 } else { f64::NAN }; 7])
+        });
+        let error = spoiled.cutoff_frequency(1000.0).await.unwrap_err();
+        assert_eq!(error.to_string(), "Commanding value is infinite or NaN.");
+        robot.recover().await.unwrap();
+
+        let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();
+        robot.move_to(up).await.expect("the thread goes on");
+        robot.shutdown().await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_program_has_the_arm_for_itself_until_it_is_stopped_or_dropped() {
+    let _alone = alone();
+    for (robot, _sim) in each(false).await {
+        let turning =
+            || robot.control_joint_velocities(|_: &RobotState, _| JointVelocities([0.0; 7]));
+        let running = tokio::spawn(turning().into_future());
+        let mut states = robot.states();
+        let moves = |state: &RobotState| state.robot_mode == RobotMode::Move;
+        states.wait_for(moves).await.unwrap();
+
+        let busy = "libfranka robot: Cannot perform this operation while another control or read operation is running.";
+        assert_eq!(turning().await.unwrap_err().to_string(), busy);
+        let goal = robot.move_to(robot.pose()).await.unwrap_err();
+        assert_eq!(goal, MotionError::Busy);
+
+        robot.stop().await.expect("the arm rests");
+        assert_eq!(running.await.unwrap(), Err(MotionError::Stopped));
+        assert_eq!(robot.state().robot_mode, RobotMode::Idle);
+
+        let (dropped, alive) = tokio::sync::oneshot::channel::<()>();
+        let mut owned = Some(dropped);
+        let holding = robot.control_joint_velocities(move |_: &RobotState, _| {
+            assert!(owned.is_some());
+            owned.as_mut();
+            JointVelocities([0.0; 7])
+        });
+        let cut = tokio::time::timeout(Duration::from_millis(200), holding.into_future()).await;
+        assert!(cut.is_err(), "it would have gone on");
+        let freed = tokio::time::timeout(Duration::from_secs(2), alive).await;
+        assert!(
+            freed.is_ok_and(|end| end.is_err()),
+            "the function is dropped with its motion"
+        );
+        states.wait_for(|state| !moves(state)).await.unwrap();
+        robot.shutdown().await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_reflex_comes_back_with_the_cycles_that_led_to_it() {
+    let _alone = alone();
+    for (robot, _sim) in each(true).await {
+        let mut calls = 0;
+        let stepping = robot.control_joint_velocities(move |_: &RobotState, _| {
+            calls += 1;
+            let mut dq = [0.0; 7];
+            dq[3] = if calls < 100 { 0.0 } else { 0.5 };
+            JointVelocities(dq)
+        });
+        let error = stepping
+            .limit_rate(false)
+            .cutoff_frequency(1000.0)
+            .await
+            .unwrap_err();
+        let control = error.control().expect("the robot ended it");
+        assert!(control.is_reflex());
+        assert!(error.to_string().starts_with(
+            "libfranka: Move command aborted: motion aborted by reflex! [\"joint_motion_generator_"
+        ), "{error}");
+        assert_eq!(control.log.len(), 50);
+        let step = control
+            .log
+            .iter()
+            .find(|entry| entry.command.dq_c[3] == 0.5);
+        let step = step.expect("the cycle that provoked it is in the log");
+        assert_eq!(step.state.message_id, step.command.message_id + 1);
+        let last = control.log.iter().next_back().unwrap();
+        assert!(
+            last.state
+                .reflex_reason
+                .contains(RobotError::JointMotionGeneratorVelocityDiscontinuity)
+                || last
+                    .state
+                    .reflex_reason
+                    .contains(RobotError::JointMotionGeneratorAccelerationDiscontinuity),
+            "{error}"
+        );
+        assert_eq!(control.log.to_csv().lines().count(), 51);
+        robot.recover().await.unwrap();
+        robot.shutdown().await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_robot_itself_goes_from_target_to_target() {
+    let _alone = alone();
+    let robots = each(false).await;
+    let (robot, sim) = &robots[0];
+    let control = robot
+        .asynchronous_joint_positions(AsynchronousOptions::default())
+        .await
+        .unwrap();
+    assert_eq!(control.status(), TargetStatus::Idle);
+    let mut q = robot.state().q_d;
+    q[0] += 0.15;
+    control.set_target(q).unwrap();
+    tokio::time::sleep(Duration::from_millis(100)).await;
+    assert_eq!(control.status(), TargetStatus::Executing);
+    q[1] += 0.1;
+    control.set_target(q).unwrap();
+    control.reached().await.unwrap();
+    assert!((robot.state().q[1] - q[1]).abs() < 5e-3);
+    let nothing = control.set_target([f64::NAN; 7]).unwrap_err();
+    assert_eq!(nothing.to_string(), "Commanding value is infinite or NaN.");
+    control.finish().await.unwrap();
+
+    let control = robot
+        .asynchronous_joint_positions(AsynchronousOptions::default())
+        .await
+        .unwrap();
+    sim.with(|robot| robot.trip(RobotError::CartesianReflex))
+        .await
+        .expect("the simulator runs");
+    let error = control.reached().await.unwrap_err();
+    assert!(
+        error.control().is_some_and(|control| control.is_reflex()),
+        "{error}"
+    );
+    assert_eq!(control.status(), TargetStatus::Aborted(AbortReason::Ended));
+    drop(control);
+
+    let (fer, _sim) = &robots[1];
+    let error = fer
+        .asynchronous_joint_positions(AsynchronousOptions::default())
+        .await
+        .unwrap_err();
+    assert!(
+        matches!(
+            error,
+            MotionError::Unsupported(RequestError::Unsupported { .. })
+        ),
+        "{error}"
+    );
+    for (robot, _) in &robots {
+        robot.shutdown().await;
+    }
+}
