@@ -4,5 +4,6 @@ mod awkward_poses;
 mod endings;
 mod goals;
 mod random_targets;
+mod reflex_log;
 mod schedules;
 mod taking_over;

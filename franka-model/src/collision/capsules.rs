@@ -1,172 +1,6 @@
 //! The capsules of the arm and of the Hand, and which of them can meet.
 
-use nalgebra::Vector3;
-
-use crate::kind::RobotKind;
-
-/// All points within `radius` of a segment. With both ends alike: a ball.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Capsule {
-    /// One end of the axis, `[m]`.
-    pub start: Vector3<f64>,
-    /// The other end, `[m]`.
-    pub end: Vector3<f64>,
-    /// `[m]`.
-    pub radius: f64,
-}
-
-impl Capsule {
-    /// From the ends of the axis and the radius, `[m]`.
-    pub const fn new(start: [f64; 3], end: [f64; 3], radius: f64) -> Self {
-        let ([a, b, c], [x, y, z]) = (start, end);
-        Self {
-            start: Vector3::new(a, b, c),
-            end: Vector3::new(x, y, z),
-            radius,
-        }
-    }
-
-    fn is_sound(&self) -> bool {
-        let mut ends = self.start.iter().chain(self.end.iter());
-        ends.all(|x| x.is_finite()) && self.radius.is_finite() && self.radius >= 0.0
-    }
-}
-
-/// Capsules on the links of the arm and on the flange.
-///
-/// Two sets describe the arm, for different questions. Both are the same for every end effector; the
-/// [Hand](Self::with_hand) or [another tool](Self::with_tool) comes on top.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shape<'a> {
-    /// By link, the base first.
-    pub(super) arm: &'static [LinkCapsule],
-    /// Indices into `arm` of capsules that can meet, the inner one first.
-    pub(super) pairs: &'static [(u8, u8)],
-    /// In the flange frame.
-    pub(super) tool: &'a [Capsule],
-}
-
-impl Shape<'static> {
-    /// The vendor's capsules for self-collision, the same for both robots.
-    ///
-    /// They are made for links that are far from each other along the chain, and **do not cover** the
-    /// links: the elbow, for one, sticks out by several centimetres. Towards obstacles take
-    /// [`covering`](Self::covering).
-    ///
-    /// The pairs are those that come within 5 cm of each other somewhere within the position limits of
-    /// either robot, of links with another link between them. Links 1 and 3 are left out: their capsules
-    /// overlap around the shoulder, where the links themselves fit each other.
-    pub const fn vendor() -> Self {
-        Self {
-            arm: &VENDOR,
-            pairs: &VENDOR_PAIRS,
-            tool: &[],
-        }
-    }
-
-    /// Capsules that contain every vertex of the links' collision meshes: what has to stay out of
-    /// obstacles.
-    ///
-    /// They are up to 3.4 cm thicker than the links. So a small negative distance need not be a
-    /// collision, and its pairs are only those of the base, link 1 and link 2 with links 5 to 7: closer
-    /// ones touch in postures that the arm reaches every day.
-    pub const fn covering(kind: RobotKind) -> Self {
-        let arm: &[LinkCapsule] = match kind {
-            RobotKind::Fr3 => &FR3,
-            RobotKind::Fer => &FER,
-        };
-        Self {
-            arm,
-            // Both have the same number of capsules on each link.
-            pairs: &COVERING_PAIRS,
-            tool: &[],
-        }
-    }
-
-    /// With the Franka Hand on the flange, mounted as the vendor does: turned by -45° about its axis.
-    pub const fn with_hand(self) -> Self {
-        Self {
-            arm: self.arm,
-            pairs: self.pairs,
-            tool: if self.arm.len() == VENDOR.len() {
-                &VENDOR_HAND
-            } else {
-                &COVERING_HAND
-            },
-        }
-    }
-}
-
-impl Shape<'_> {
-    /// With capsules of one's own on the flange, in the flange frame, instead of any tool before.
-    ///
-    /// A tool is checked against links 0 to 5.
-    ///
-    /// # Errors
-    /// [`ToolError`] for more capsules than there is room for, and for numbers that are not finite or a
-    /// negative radius.
-    pub fn with_tool<'a>(&self, capsules: &'a [Capsule]) -> Result<Shape<'a>, ToolError> {
-        if capsules.len() > TOOL_MAX {
-            return Err(ToolError::TooMany {
-                got: capsules.len(),
-            });
-        }
-        if let Some(index) = capsules.iter().position(|capsule| !capsule.is_sound()) {
-            return Err(ToolError::NotACapsule {
-                index,
-                got: capsules[index],
-            });
-        }
-        Ok(Shape {
-            arm: self.arm,
-            pairs: self.pairs,
-            tool: capsules,
-        })
-    }
-
-    /// How many capsules there are.
-    pub(super) fn len(&self) -> usize {
-        self.arm.len() + self.tool.len()
-    }
-}
-
-/// Why capsules are no tool.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum ToolError {
-    /// There is room for 8.
-    TooMany {
-        /// How many there are.
-        got: usize,
-    },
-    /// A number is not finite, or the radius negative.
-    NotACapsule {
-        /// Which.
-        index: usize,
-        /// What was given.
-        got: Capsule,
-    },
-}
-
-impl core::fmt::Display for ToolError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::TooMany { got } => {
-                write!(f, "a tool of {got} capsules, expected at most {TOOL_MAX}")
-            }
-            Self::NotACapsule { index, got } => write!(
-                f,
-                "capsule {index} of the tool is from {:?} to {:?} with radius {}, expected finite numbers and no \
-                 negative radius",
-                got.start.as_slice(),
-                got.end.as_slice(),
-                got.radius
-            ),
-        }
-    }
-}
-
-impl core::error::Error for ToolError {}
+use super::shape::Capsule;
 
 /// A capsule in the frame of a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -182,9 +16,6 @@ const fn link(link: u8, start: [f64; 3], end: [f64; 3], radius: f64) -> LinkCaps
     }
 }
 
-/// Capsules that a tool may have.
-pub(super) const TOOL_MAX: usize = 8;
-
 /// Capsules of the arm with the most of them.
 pub(super) const ARM_MAX: usize = FR3.len();
 
@@ -192,7 +23,7 @@ pub(super) const ARM_MAX: usize = FR3.len();
 pub(super) const TOOL_MEETS: u8 = 5;
 
 /// See [`Shape::vendor`] for the rule; the tests repeat the search.
-static VENDOR_PAIRS: [(u8, u8); 23] = pairs(
+pub(super) static VENDOR_PAIRS: [(u8, u8); 23] = pairs(
     &VENDOR,
     &[
         (0, 5),
@@ -211,7 +42,7 @@ static VENDOR_PAIRS: [(u8, u8); 23] = pairs(
 );
 
 /// See [`Shape::covering`].
-static COVERING_PAIRS: [(u8, u8); 42] = pairs(
+pub(super) static COVERING_PAIRS: [(u8, u8); 42] = pairs(
     &FR3,
     &[
         (0, 5),
@@ -263,14 +94,14 @@ const fn on_hand(start: [f64; 3], end: [f64; 3], radius: f64) -> Capsule {
 }
 
 /// `franka_description` 1.0.1, `end_effectors/common/franka_hand.xacro`: body, and fingers at any width.
-static VENDOR_HAND: [Capsule; 2] = [
+pub(super) static VENDOR_HAND: [Capsule; 2] = [
     on_hand([0.0, -0.05, 0.04], [0.0, 0.05, 0.04], 0.04),
     on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
 ];
 
 /// The body fitted as the links are; the fingers as the vendor's capsule has them, and another one for
 /// where they leave the body.
-static COVERING_HAND: [Capsule; 3] = [
+pub(super) static COVERING_HAND: [Capsule; 3] = [
     on_hand(
         [-0.0007, -0.0702, 0.0228],
         [0.0001, 0.0673, 0.0254],
@@ -282,7 +113,7 @@ static COVERING_HAND: [Capsule; 3] = [
 
 /// `franka_description` 1.0.1, `robots/common/franka_arm.xacro` with a safety distance of 0, the same for
 /// the FER and the FR3; the second capsule of link 7 with the turn of 45° of its sub-link applied.
-static VENDOR: [LinkCapsule; 10] = [
+pub(super) static VENDOR: [LinkCapsule; 10] = [
     link(0, [-0.09, 0.0, 0.06], [-0.06, 0.0, 0.06], 0.06),
     link(1, [0.0, 0.0, -0.333], [0.0, 0.0, -0.05], 0.06),
     link(2, [0.0, 0.0, -0.06], [0.0, 0.0, 0.06], 0.06),
@@ -303,7 +134,7 @@ static VENDOR: [LinkCapsule; 10] = [
 /// Franka Research 3: capsules fitted to the surface of the collision meshes of `franka_description` 1.0.1
 /// by least squares. The second summand of a radius is the largest distance at which a vertex of the link's
 /// mesh sticks out of the fit.
-static FR3: [LinkCapsule; 17] = [
+pub(super) static FR3: [LinkCapsule; 17] = [
     link(
         0,
         [-0.0956, 0.0267, 0.0282],
@@ -411,7 +242,7 @@ static FR3: [LinkCapsule; 17] = [
 /// Franka Emika Robot: capsules fitted to the surface of the collision meshes of `franka_description` 1.0.1
 /// by least squares. The second summand of a radius is the largest distance at which a vertex of the link's
 /// mesh sticks out of the fit.
-static FER: [LinkCapsule; 17] = [
+pub(super) static FER: [LinkCapsule; 17] = [
     link(
         0,
         [-0.0969, -0.041, 0.0288],

@@ -50,11 +50,12 @@
 mod capsules;
 mod obstacle;
 mod segment;
+mod shape;
 #[cfg(test)]
 mod tests;
 
-pub use capsules::{Capsule, Shape, ToolError};
 pub use obstacle::Obstacle;
+pub use shape::{Capsule, Shape, ToolError};
 
 use nalgebra::Vector3;
 
@@ -111,7 +112,7 @@ pub struct Placed<'a> {
 }
 
 /// Capsules of any shape: those of the largest arm and of a tool.
-const CAPACITY: usize = capsules::ARM_MAX + capsules::TOOL_MAX;
+const CAPACITY: usize = capsules::ARM_MAX + shape::TOOL_MAX;
 
 impl<'a> Shape<'a> {
     /// The shape at the joint positions `q`, `[rad]`.

@@ -112,8 +112,17 @@ impl Axis {
 
     /// The point of the box nearest to the point at `t`.
     fn clamped(&self, t: f64) -> Vector3<f64> {
-        let point = self.at(t);
-        point.zip_map(&self.half, |x, half| x.clamp(-half, half))
+        // Unlike `f64::clamp`, without a panic for sides that are none, and not a number stays what it is.
+        let clamp = |x: f64, half: f64| {
+            if x > half || half.is_nan() {
+                half
+            } else if x < -half {
+                -half
+            } else {
+                x
+            }
+        };
+        self.at(t).zip_map(&self.half, clamp)
     }
 
     /// Half the derivative of the square of the distance from outside: piecewise linear, and never
@@ -192,7 +201,7 @@ impl Axis {
         let reach = normal.abs().dot(&self.half);
         // Of the lower end: right for a direction that rounding has turned, too.
         let height = normal.dot(&self.start) + normal.dot(&self.along).min(0.0) - reach;
-        if height > best.2 {
+        if height > best.2 || height.is_nan() {
             *best = (t, normal, height);
         }
     }

@@ -74,3 +74,167 @@ impl ActiveControl {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use franka_proto::{ControllerMode, MotionGeneratorMode};
+
+    use super::*;
+    use crate::control::{CartesianPose, CartesianVelocities, JointPositions, JointVelocities};
+    use crate::control::{MotionCommand, Torques};
+
+    const POSITIONS: MotionCommand = MotionCommand::JointPositions(JointPositions([0.5; 7]));
+    const VELOCITIES: MotionCommand = MotionCommand::JointVelocities(JointVelocities([0.5; 7]));
+    const TORQUES: Torques = Torques([2.0; 7]);
+
+    fn check(
+        modes: (MotionGeneratorMode, ControllerMode),
+        motion: Option<MotionCommand>,
+        torques: Option<Torques>,
+        finished: bool,
+    ) -> Result<(), WriteError> {
+        let modes = Modes {
+            generator: modes.0,
+            controller: modes.1,
+        };
+        ActiveControl.check(&Command { motion, torques }, modes, finished)
+    }
+
+    const INTERNAL: (MotionGeneratorMode, ControllerMode) = (
+        MotionGeneratorMode::JointPosition,
+        ControllerMode::CartesianImpedance,
+    );
+    const EXTERNAL: (MotionGeneratorMode, ControllerMode) = (
+        MotionGeneratorMode::JointPosition,
+        ControllerMode::ExternalController,
+    );
+    const ALONE: (MotionGeneratorMode, ControllerMode) = (
+        MotionGeneratorMode::None,
+        ControllerMode::ExternalController,
+    );
+
+    #[test]
+    fn what_is_wrong_is_told_in_the_order_of_the_reference_client() {
+        use WriteError as E;
+        let bad = MotionCommand::JointPositions(JointPositions([f64::NAN; 7]));
+        let bad_torques = Torques([f64::NAN; 7]);
+        for (modes, motion, torques, finished, expected) in [
+            // The kind comes before the torques, the torques before the numbers.
+            (
+                INTERNAL,
+                Some(VELOCITIES),
+                Some(bad_torques),
+                false,
+                Err(E::WrongKind),
+            ),
+            (EXTERNAL, Some(VELOCITIES), None, false, Err(E::WrongKind)),
+            (
+                INTERNAL,
+                Some(bad),
+                Some(bad_torques),
+                false,
+                Err(E::TorquesUnwanted),
+            ),
+            (EXTERNAL, Some(bad), None, true, Err(E::TorquesMissing)),
+            // Last torques alone are told of the generator, others of the misfit.
+            (
+                INTERNAL,
+                None,
+                Some(bad_torques),
+                true,
+                Err(E::GeneratorRunning),
+            ),
+            (
+                EXTERNAL,
+                None,
+                Some(TORQUES),
+                true,
+                Err(E::GeneratorRunning),
+            ),
+            (
+                INTERNAL,
+                None,
+                Some(bad_torques),
+                false,
+                Err(Misfit::NoController.into()),
+            ),
+            (
+                EXTERNAL,
+                None,
+                Some(bad_torques),
+                false,
+                Err(Misfit::Partial.into()),
+            ),
+            (
+                ALONE,
+                Some(bad),
+                Some(TORQUES),
+                false,
+                Err(Misfit::NoGenerator.into()),
+            ),
+            (
+                ALONE,
+                Some(VELOCITIES),
+                None,
+                true,
+                Err(Misfit::NoGenerator.into()),
+            ),
+            // Numbers last, those of the motion first.
+            (
+                INTERNAL,
+                Some(bad),
+                None,
+                false,
+                Err(InvalidCommand::NotFinite.into()),
+            ),
+            (
+                EXTERNAL,
+                Some(POSITIONS),
+                Some(bad_torques),
+                true,
+                Err(InvalidCommand::NotFinite.into()),
+            ),
+            (
+                ALONE,
+                None,
+                Some(bad_torques),
+                true,
+                Err(InvalidCommand::NotFinite.into()),
+            ),
+            (INTERNAL, Some(POSITIONS), None, true, Ok(())),
+            (EXTERNAL, Some(POSITIONS), Some(TORQUES), false, Ok(())),
+            (ALONE, None, Some(TORQUES), true, Ok(())),
+        ] {
+            let checked = check(modes, motion, torques, finished);
+            assert_eq!(
+                checked, expected,
+                "{modes:?} {motion:?} {torques:?} {finished}"
+            );
+        }
+    }
+
+    #[test]
+    fn cartesian_commands_are_held_against_what_they_stand_for() {
+        let cartesian = |generator| (generator, ControllerMode::JointImpedance);
+        let elbow = Some([0.1, 0.5]);
+        let mut pose = CartesianPose {
+            O_T_EE: core::array::from_fn(|i| if i % 5 == 0 { 1.0 } else { 0.0 }),
+            elbow,
+        };
+        let modes = cartesian(MotionGeneratorMode::CartesianPosition);
+        let sign = Err(InvalidCommand::ElbowSign.into());
+        assert_eq!(check(modes, Some(pose.into()), None, false), sign);
+        pose.O_T_EE[0] = 0.5;
+        assert_eq!(
+            check(modes, Some(pose.into()), None, false),
+            Err(InvalidCommand::Transformation.into()),
+            "the pose comes before its elbow"
+        );
+        let twist = CartesianVelocities {
+            O_dP_EE: [0.0; 6],
+            elbow,
+        };
+        let modes = cartesian(MotionGeneratorMode::CartesianVelocity);
+        assert_eq!(check(modes, Some(twist.into()), None, false), sign);
+    }
+}

@@ -179,3 +179,6 @@ impl fmt::Debug for Callback {
 }
 
 const NO_TORQUES: Torques = Torques([0.0; 7]);
+
+#[cfg(test)]
+mod tests;

@@ -28,6 +28,10 @@ pub(super) struct Axis {
 
 /// What follows the brake.
 #[derive(Debug, Clone, Copy)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "lives on the stack while a plan is made; a box would allocate"
+)]
 enum Motion {
     ToRest(Least),
     Through(Passing),
@@ -110,7 +114,7 @@ impl Axis {
 
     /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes longer.
     ///
-    /// Behind a target in motion it goes on for one cycle and then comes to rest in the least time.
+    /// Behind a target in motion it goes on for a cycle and then comes to rest in the least time.
     pub(super) fn lay_out(&self, duration: f64, profile: &mut Profile) {
         let left = duration / self.unit - self.braking;
         match &self.motion {
@@ -179,20 +183,20 @@ pub(super) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut P
     append_stop(limits, profile);
 }
 
-/// Appends what follows a target in motion: one cycle more of its acceleration if the limits allow it, and the
-/// least-time stop.
+/// Appends what follows a target in motion: a cycle and what counts as together more of its acceleration, if the limits
+/// allow it, and the least-time stop.
 ///
-/// The first command that counts as at the target is sent up to one cycle after it. Whoever sets a new target then finds
+/// The first command that counts as at the target is sent up to one cycle after the last axis is there. Whoever sets a new target then finds
 /// the axis where the old one would be, not already slowing down.
 fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
     let AxisState {
         velocity,
         acceleration,
         ..
-    } = profile.front().after(0.0, CYCLE);
+    } = profile.front().after(0.0, CYCLE + TOGETHER);
     let change = 0.5 * acceleration * acceleration / limits.jerk;
     if velocity.abs() + change <= limits.velocity * (1.0 + AT_LIMIT) {
-        profile.push(0.0, CYCLE);
+        profile.push(0.0, CYCLE + TOGETHER);
     }
     append_stop(limits, profile);
 }
@@ -217,9 +221,9 @@ fn append_stop(limits: AxisLimits, profile: &mut Profile) {
 
 /// Times, in seconds, that count as together where an axis would need a detour to lose the difference.
 ///
-/// A fiftieth of a cycle, in which it goes on behind its target as the target does. The time at which another axis comes
-/// to rest is known no better: near its end it is the third root of what a position is rounded by.
-const TOGETHER: f64 = CYCLE / 50.0;
+/// A quarter of a cycle, in which it goes on behind its target as the target does. The time at which another axis comes
+/// to rest is known no better: near its end it is the third root of what a position is rounded by, over its jerk.
+const TOGETHER: f64 = 0.25 * CYCLE;
 
 /// Relative excess over a limit that counts as rounding of a target that is at the limit.
 const AT_LIMIT: f64 = 1e-12;

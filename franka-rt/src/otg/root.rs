@@ -25,8 +25,8 @@ pub(super) fn root(
         let best = nearer(a, b);
         let width = (b.at - a.at).abs();
         let resolution = 2.0 * f64::EPSILON * best.at.abs() / width;
-        // Also if the width is zero: the resolution is then infinite or not a number.
-        if best.value.abs() <= close || !(resolution < 0.5) {
+        // If the width is zero the resolution is infinite, or not a number if the root is.
+        if best.value.abs() <= close || resolution >= 0.5 || resolution.is_nan() {
             return best.at;
         }
         let at = a.at + part.clamp(resolution, 1.0 - resolution) * (b.at - a.at);
@@ -73,7 +73,8 @@ mod tests {
 
     #[test]
     fn smooth_flat_and_kinked_functions_are_solved_to_rounding() {
-        let functions: [(fn(f64) -> f64, f64); 4] = [
+        type Case = (fn(f64) -> f64, f64);
+        let functions: [Case; 4] = [
             (|x| x * x * x - 2.0, 2_f64.cbrt()),
             (|x| (x - 1.25).powi(3), 1.25),
             (

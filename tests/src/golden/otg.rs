@@ -14,8 +14,8 @@ const DURATION: f64 = 1e-9;
 const SAMPLE: f64 = 1e-8;
 /// Of limits, relative.
 const EXCESS: f64 = 1e-9;
-/// Arrivals that the generator counts as simultaneous where an axis cannot wait, in seconds: a fiftieth of a cycle.
-const TOGETHER: f64 = 0.02 * CYCLE;
+/// Arrivals that the generator counts as simultaneous where an axis cannot wait, in seconds: a quarter of a cycle.
+const TOGETHER: f64 = 0.25 * CYCLE;
 /// Samples of a motion whose limits are checked.
 const SAMPLES: u32 = 200;
 /// Instants of the samples in the file, as parts of the duration.

@@ -136,6 +136,10 @@ fn a_position_that_is_no_number_gives_no_distance_that_looks_like_one() {
         // Joint 1 turns everything but the base and itself.
         assert!(placed.nearest_pair().distance.is_nan(), "joint {}", i + 1);
         assert!(placed.nearest_to(&Obstacle::floor(0.0)).distance.is_nan());
+        let pose = Isometry3::translation(0.5, 0.0, 0.5);
+        let half = Vector3::repeat(0.1);
+        let nearest = placed.nearest_to(&Obstacle::Box { pose, half });
+        assert!(nearest.distance.is_nan());
     }
 }
 
@@ -195,5 +199,29 @@ fn the_way_out_of_a_box_is_exact_for_axes_almost_parallel_to_an_edge() {
         let depth = 0.05 + (start.x - end.x);
         let nearest = obstacle.nearest(&axis);
         assert!((nearest.distance + depth).abs() < 1e-15 + 1e-6 * tilt.norm());
+    }
+}
+
+#[test]
+fn a_box_that_is_none_gives_no_panic() {
+    let placed = Shape::vendor().with_hand().at(&READY);
+    for (at, half, is_box) in [
+        (0.5, f64::NAN, false),
+        (f64::NAN, 0.1, false),
+        (f64::INFINITY, 0.1, false),
+        (0.5, f64::INFINITY, true),
+        (0.5, -0.1, true),
+        (0.5, 0.0, true),
+    ] {
+        let obstacle = Obstacle::Box {
+            pose: Isometry3::translation(at, 0.0, 0.5),
+            half: Vector3::new(0.1, half, 0.1),
+        };
+        let distance = placed.nearest_to(&obstacle).distance;
+        assert_eq!(
+            distance.is_finite(),
+            is_box,
+            "at {at}, half a side {half}: {distance}"
+        );
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::shaping::check::{all_finite, is_homogeneous};
 use crate::shaping::rotation::{Rigid, about, pose};
-use crate::shaping::{CYCLE, InvalidCommand, hi, lo};
+use crate::shaping::{CYCLE, InvalidCommand, lo};
 
 /// Share of the rotational bounds that a pose may use (libfranka 0.21, `kFactorCartesianRotationPoseInterface`).
 pub const POSE_ROTATION_SHARE: f64 = 0.99;
@@ -115,6 +115,9 @@ fn halves(twist: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
 /// The acceleration keeps its direction and may be as large as the distance to the bound of the velocity, along that
 /// direction, allows: it falls with the distance at the rate of the jerk. Where the last velocity is so far outside that
 /// no acceleration in this direction leads back, the distance is NaN and does not bound.
+///
+/// What libfranka computes from unit vectors times their lengths is computed here as shares of the vectors, in half the
+/// time: it differs by rounding.
 #[inline(always)]
 fn limit_vector(
     most: &MotionLimits,
@@ -122,23 +125,22 @@ fn limit_vector(
     last_velocity: Vector3<f64>,
     last_acceleration: Vector3<f64>,
 ) -> Vector3<f64> {
-    let jerk = ((command - last_velocity) / CYCLE - last_acceleration) / CYCLE;
-    let mut acceleration = last_acceleration;
-    let size = jerk.norm();
-    if size > f64::EPSILON {
-        acceleration += jerk * (hi(lo(size, most.jerk), -most.jerk) / size * CYCLE);
-    }
+    let change = (command - last_velocity) / CYCLE - last_acceleration;
+    let size = change.norm();
+    // These comparisons leave out NaN as well as zero.
+    let acceleration = if size > f64::EPSILON * CYCLE {
+        last_acceleration + change * lo(1.0, most.jerk * CYCLE / size)
+    } else {
+        last_acceleration
+    };
     let size = acceleration.norm();
     if size > f64::EPSILON {
-        let direction = acceleration / size;
-        let along = direction.dot(&last_velocity);
+        let along = acceleration.dot(&last_velocity) / size;
         let square = along * along - last_velocity.norm_squared() + most.velocity * most.velocity;
-        let distance = -along + square.sqrt();
-        let safe = lo(
-            (most.jerk / most.acceleration) * distance,
-            most.acceleration,
-        );
-        last_velocity + direction * lo(size, safe) * CYCLE
+        let distance = square.sqrt() - along;
+        let share = most.jerk / most.acceleration;
+        let safe = lo(share * distance, most.acceleration);
+        last_velocity + acceleration * (lo(1.0, safe / size) * CYCLE)
     } else {
         last_velocity
     }

@@ -303,6 +303,15 @@ fn far_outside_the_velocity_bound_a_vector_is_only_bounded_in_its_jerk() {
 }
 
 #[test]
+fn a_vector_with_a_last_acceleration_that_is_no_number_keeps_its_velocity() {
+    let bounds = Bounds::fr3().cartesian;
+    let last = [0.1, 0.2, 0.3, 0.0, 0.0, 0.0];
+    let acceleration = [0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0];
+    let next = cartesian_velocity(&bounds, &[0.0; 6], &last, &acceleration);
+    assert_eq!(next, Ok(last));
+}
+
+#[test]
 fn an_echo_too_large_for_the_rate_leaves_none() {
     assert_eq!(within_echo(999.999, 1e30), 0.0);
     assert_eq!(

@@ -1,0 +1,175 @@
+//! What can collide: capsules on the links and on the flange.
+
+use nalgebra::Vector3;
+
+use super::capsules::{
+    COVERING_HAND, COVERING_PAIRS, FER, FR3, LinkCapsule, VENDOR, VENDOR_HAND, VENDOR_PAIRS,
+};
+use crate::kind::RobotKind;
+
+/// All points within `radius` of a segment. With both ends alike: a ball.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capsule {
+    /// One end of the axis, `[m]`.
+    pub start: Vector3<f64>,
+    /// The other end, `[m]`.
+    pub end: Vector3<f64>,
+    /// `[m]`.
+    pub radius: f64,
+}
+
+impl Capsule {
+    /// From the ends of the axis and the radius, `[m]`.
+    pub const fn new(start: [f64; 3], end: [f64; 3], radius: f64) -> Self {
+        let ([a, b, c], [x, y, z]) = (start, end);
+        Self {
+            start: Vector3::new(a, b, c),
+            end: Vector3::new(x, y, z),
+            radius,
+        }
+    }
+
+    fn is_sound(&self) -> bool {
+        let mut ends = self.start.iter().chain(self.end.iter());
+        ends.all(|x| x.is_finite()) && self.radius.is_finite() && self.radius >= 0.0
+    }
+}
+
+/// Capsules on the links of the arm and on the flange.
+///
+/// Two sets describe the arm, for different questions. Both are the same for every end effector; the
+/// [Hand](Self::with_hand) or [another tool](Self::with_tool) comes on top.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape<'a> {
+    /// By link, the base first.
+    pub(super) arm: &'static [LinkCapsule],
+    /// Indices into `arm` of capsules that can meet, the inner one first.
+    pub(super) pairs: &'static [(u8, u8)],
+    /// In the flange frame.
+    pub(super) tool: &'a [Capsule],
+    /// The Hand in the manner of `arm`, in the flange frame.
+    hand: &'static [Capsule],
+}
+
+impl Shape<'static> {
+    /// The vendor's capsules for self-collision, the same for both robots.
+    ///
+    /// They are made for links that are far from each other along the chain, and **do not cover** the
+    /// links: the elbow, for one, sticks out by several centimetres. Towards obstacles take
+    /// [`covering`](Self::covering).
+    ///
+    /// The pairs are those that come within 5 cm of each other somewhere within the position limits of
+    /// either robot, of links with another link between them. Links 1 and 3 are left out: their capsules
+    /// overlap around the shoulder, where the links themselves fit each other.
+    pub const fn vendor() -> Self {
+        Self {
+            arm: &VENDOR,
+            pairs: &VENDOR_PAIRS,
+            tool: &[],
+            hand: &VENDOR_HAND,
+        }
+    }
+
+    /// Capsules that contain every vertex of the links' collision meshes: what has to stay out of
+    /// obstacles.
+    ///
+    /// They are up to 3.4 cm thicker than the links. So a small negative distance need not be a
+    /// collision, and its pairs of links are only those of the base, link 1 and link 2 with links 5 to 7:
+    /// closer ones touch in postures that the arm takes every day.
+    pub const fn covering(kind: RobotKind) -> Self {
+        let arm: &[LinkCapsule] = match kind {
+            RobotKind::Fr3 => &FR3,
+            RobotKind::Fer => &FER,
+        };
+        Self {
+            arm,
+            // Both have the same number of capsules on each link.
+            pairs: &COVERING_PAIRS,
+            tool: &[],
+            hand: &COVERING_HAND,
+        }
+    }
+
+    /// With the Franka Hand on the flange, mounted as the vendor does: turned by -45° about its axis.
+    pub const fn with_hand(self) -> Self {
+        Self {
+            tool: self.hand,
+            ..self
+        }
+    }
+}
+
+impl Shape<'_> {
+    /// With capsules of one's own on the flange, in the flange frame, instead of any tool before.
+    ///
+    /// A tool is checked against links 0 to 5.
+    ///
+    /// # Errors
+    /// [`ToolError`] for more capsules than there is room for, and for numbers that are not finite or a
+    /// negative radius.
+    pub fn with_tool<'a>(&self, capsules: &'a [Capsule]) -> Result<Shape<'a>, ToolError> {
+        if capsules.len() > TOOL_MAX {
+            return Err(ToolError::TooMany {
+                got: capsules.len(),
+            });
+        }
+        if let Some(index) = capsules.iter().position(|capsule| !capsule.is_sound()) {
+            return Err(ToolError::NotACapsule {
+                index,
+                got: capsules[index],
+            });
+        }
+        Ok(Shape {
+            arm: self.arm,
+            pairs: self.pairs,
+            tool: capsules,
+            hand: self.hand,
+        })
+    }
+
+    /// How many capsules there are.
+    pub(super) fn len(&self) -> usize {
+        self.arm.len() + self.tool.len()
+    }
+}
+
+/// Why capsules are no tool.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ToolError {
+    /// There is room for 8.
+    TooMany {
+        /// How many there are.
+        got: usize,
+    },
+    /// A number is not finite, or the radius negative.
+    NotACapsule {
+        /// Which.
+        index: usize,
+        /// What was given.
+        got: Capsule,
+    },
+}
+
+impl core::fmt::Display for ToolError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::TooMany { got } => {
+                write!(f, "a tool of {got} capsules, expected at most {TOOL_MAX}")
+            }
+            Self::NotACapsule { index, got } => write!(
+                f,
+                "capsule {index} of the tool is from {:?} to {:?} with radius {}, expected finite numbers and no \
+                 negative radius",
+                got.start.as_slice(),
+                got.end.as_slice(),
+                got.radius
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ToolError {}
+
+/// Capsules that a tool may have.
+pub(super) const TOOL_MAX: usize = 8;

@@ -1,0 +1,116 @@
+//! A reflex that a control function provokes, and the log that shows how.
+
+use franka_proto::{Errors, MoveControllerMode, RobotError};
+use franka_rt::control::{Callback, JointVelocities, Torques};
+use franka_rt::driver::{ControlLog, LogEntry, Program};
+use franka_rt::lifecycle::ControlError;
+use franka_rt::shaping::Shaper;
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+
+/// Cycles before the command steps: enough for a success rate over a hundred of them, and for a log that has turned over.
+const QUIET: u32 = 150;
+
+/// Runs `callback` until a reflex ends it.
+fn provoke(lockstep: &mut Lockstep, callback: Callback) -> ControlError {
+    let version = lockstep.client.version();
+    let callback = callback.with_shaper(Shaper::new(version, false, 1000.0));
+    let request = callback.request(version, MoveControllerMode::JointImpedance);
+    let program = Program::Callback(Box::new(callback));
+    let work = lockstep.control(program, request).expect("nothing moves");
+    let error = lockstep.until_resolved(work, 1000).expect_err("a reflex");
+    error.control().expect("the robot's doing").clone()
+}
+
+/// Asserts that the log is full, that only its last entry has the command that `stepped` recognises, and that the state
+/// of that entry, the first after the command, is the one with the errors.
+fn assert_shown(error: &ControlError, errors: Errors, stepped: impl Fn(&LogEntry) -> bool) {
+    let log = &error.log;
+    assert_eq!(log.len(), ControlLog::DEFAULT_CAPACITY);
+    let mut newest = log.iter().rev();
+    let last = newest.next().expect("it is full");
+    assert!(stepped(last), "{:?}", last.command);
+    assert_eq!(last.state.reflex_reason, errors);
+    assert_eq!(last.state.message_id, last.command.message_id + 1);
+    for (before, after) in newest.zip(log.iter().rev()) {
+        assert!(!stepped(before), "{:?}", before.command);
+        assert_eq!(before.state.reflex_reason, Errors::default());
+        assert_eq!(before.state.message_id + 1, after.state.message_id);
+    }
+    // The row of the table as well: the newest is the last.
+    let table = log.to_csv();
+    let row = table.lines().last().expect("rows");
+    assert!(
+        row.starts_with(&format!("{},0,", last.state.message_id)),
+        "{row}"
+    );
+}
+
+#[test]
+fn a_torque_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let mut cycle = 0;
+        let callback = Callback::torques(lockstep.client.version(), move |_, _| {
+            cycle += 1;
+            let mut tau = [0.0; 7];
+            tau[0] = if cycle > QUIET { 10.0 } else { 0.0 };
+            Torques(tau)
+        });
+        let error = provoke(&mut lockstep, callback);
+        assert_eq!(
+            error.to_string(),
+            "libfranka: Move command aborted: motion aborted by reflex! \
+             [\"controller_torque_discontinuity\"]\n\
+             control_command_success_rate: 1"
+        );
+        let errors = RobotError::ControllerTorqueDiscontinuity.into();
+        assert_shown(&error, errors, |entry| entry.command.tau_J_d[0] == 10.0);
+    });
+}
+
+#[test]
+fn a_velocity_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let mut cycle = 0;
+        let callback = Callback::motion(lockstep.client.version(), move |_, _| {
+            cycle += 1;
+            let mut dq = [0.0; 7];
+            dq[3] = if cycle > QUIET { 0.25 } else { 0.0 };
+            JointVelocities(dq)
+        });
+        let error = provoke(&mut lockstep, callback);
+        assert_eq!(
+            error.to_string(),
+            "libfranka: Move command aborted: motion aborted by reflex! \
+             [\"joint_motion_generator_acceleration_discontinuity\"]\n\
+             control_command_success_rate: 1"
+        );
+        let errors = RobotError::JointMotionGeneratorAccelerationDiscontinuity.into();
+        assert_shown(&error, errors, |entry| entry.command.dq_c[3] == 0.25);
+    });
+}
+
+/// Losses in the last sample are said, and lower the rate.
+#[test]
+fn a_reflex_for_want_of_commands_tells_how_many_states_were_lost_at_the_end() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let version = lockstep.client.version();
+        let callback = Callback::torques(version, |_, _| Torques([0.0; 7]));
+        let request = callback.request(version, MoveControllerMode::JointImpedance);
+        let program = Program::Callback(Box::new(callback));
+        let work = lockstep.control(program, request).expect("nothing moves");
+        lockstep.run(200);
+        lockstep.link.drop_states(30);
+        let error = lockstep.until_resolved(work, 1000).expect_err("a reflex");
+        let error = error.control().expect("the robot's doing");
+        // Thirty of a hundred: 1 - 30/100.
+        assert_eq!(
+            error.to_string(),
+            "libfranka: Move command aborted: motion aborted by reflex! \
+             [\"communication_constraints_violation\"]\n\
+             control_command_success_rate: 0.7 packets lost in a row in the last sample: 30"
+        );
+    });
+}

@@ -1,0 +1,201 @@
+//! One generator and what happens to it.
+
+use franka_rt::otg::{CYCLE, Generator, Limits, PlanError, State, Synchronisation};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+use crate::problem::{self, Kind};
+use crate::tally::Tally;
+use crate::watch::Watch;
+
+/// Runs the episode of a seed.
+pub(crate) fn run(seed: u64, tally: &mut Tally) {
+    let mut random = SmallRng::seed_from_u64(seed);
+    match random.random_range(0..4) {
+        0 => episode::<1>(seed, &mut random, tally),
+        1 => episode::<3>(seed, &mut random, tally),
+        2 => episode::<6>(seed, &mut random, tally),
+        _ => episode::<7>(seed, &mut random, tally),
+    }
+}
+
+fn episode<const N: usize>(seed: u64, random: &mut SmallRng, tally: &mut Tally) {
+    let kind = Kind::random(random);
+    let limits = kind.limits::<N>(random);
+    let synchronisation = if random.random_bool(0.6) {
+        Synchronisation::Time
+    } else {
+        Synchronisation::Straight
+    };
+    let state = problem::state(random, &limits);
+    let watch = Watch::new(seed, synchronisation);
+    let failures = tally.failures.len();
+    let result = if random.random_bool(0.9) {
+        Loop::new(state, limits, watch, tally).and_then(|mut run| run.kept_plans(random, kind))
+    } else {
+        Loop::new(state, limits, watch, tally).and_then(|mut run| run.plans_anew(random))
+    };
+    if let Err(error) = result {
+        let failure = format!("seed {seed}, {N} axes, {synchronisation:?}: {error}");
+        tally.failures.push(failure);
+    }
+    // One defect shows in many cycles.
+    tally.failures.truncate(failures + 1);
+}
+
+struct Loop<'a, const N: usize> {
+    generator: Generator<N>,
+    synchronisation: Synchronisation,
+    /// The target in force; without one it comes to rest.
+    target: Option<State<N>>,
+    watch: Watch<N>,
+    tally: &'a mut Tally,
+}
+
+impl<'a, const N: usize> Loop<'a, N> {
+    fn new(
+        state: State<N>,
+        limits: Limits<N>,
+        watch: Watch<N>,
+        tally: &'a mut Tally,
+    ) -> Result<Self, PlanError> {
+        let synchronisation = watch.synchronisation();
+        let generator = Generator::new(state, limits)?.with_synchronisation(synchronisation);
+        let mut new = Self {
+            generator,
+            synchronisation,
+            target: None,
+            watch,
+            tally,
+        };
+        new.planned(false);
+        Ok(new)
+    }
+
+    /// Targets in bursts, gaps, changed limits and stops; the plan is followed in between.
+    fn kept_plans(&mut self, random: &mut SmallRng, kind: Kind) -> Result<(), PlanError> {
+        for _ in 0..EVENTS {
+            match random.random_range(0..40) {
+                0 => {
+                    self.generator.brake();
+                    self.target = None;
+                    self.planned(false);
+                }
+                1 => self.change_limits(kind.limits(random))?,
+                2 => self.nudge(random)?,
+                _ => {
+                    for _ in 0..random.random_range(1..4) {
+                        self.new_target(random)?;
+                    }
+                }
+            }
+            let gap = match random.random_range(0..10) {
+                0..5 => random.random_range(0..4),
+                5..9 => random.random_range(4..40),
+                _ => random.random_range(40..400),
+            };
+            for _ in 0..gap {
+                self.step();
+            }
+        }
+        self.finish();
+        Ok(())
+    }
+
+    /// One target after the other, each planned anew in every cycle by a generator that knows nothing but the state.
+    fn plans_anew(&mut self, random: &mut SmallRng) -> Result<(), PlanError> {
+        for _ in 0..3 {
+            let target = self.new_target(random)?;
+            let duration = self.generator.time_to_target();
+            let cycles = ((duration / CYCLE) as usize).min(CYCLES_MAX);
+            for k in 1..cycles {
+                self.step();
+                let state = *self.generator.state();
+                self.generator = Generator::new(state, *self.generator.limits())?
+                    .with_synchronisation(self.synchronisation);
+                self.generator.set_moving_target(&target)?;
+                self.planned(false);
+                self.tally.anew += 1;
+                // On a line that rounding does not see any more the axes go on by themselves, and earlier.
+                let late = (self.generator.time_to_target() - duration) / CYCLE + k as f64;
+                self.tally.late.see(late, self.watch.seed());
+                if late > 1.0 {
+                    let what = format!("{late} cycles late after {k} of {cycles}");
+                    self.watch.fail(self.tally, what);
+                    return Ok(());
+                }
+            }
+        }
+        self.finish();
+        Ok(())
+    }
+
+    fn new_target(&mut self, random: &mut SmallRng) -> Result<State<N>, PlanError> {
+        let moving = random.random_bool(0.4);
+        let (now, limits) = (*self.generator.state(), *self.generator.limits());
+        let target = problem::target(random, &now, &limits, moving);
+        self.generator.set_moving_target(&target)?;
+        self.target = Some(target);
+        self.planned(random.random_bool(0.1));
+        Ok(target)
+    }
+
+    /// Other limits. A target in motion may be too fast for them; then they are refused.
+    fn change_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
+        match self.generator.set_limits(limits) {
+            Err(PlanError::TargetMotion { .. }) => return Ok(()),
+            other => other?,
+        }
+        self.watch.limits_changed();
+        self.planned(false);
+        Ok(())
+    }
+
+    /// The position is moved by something else.
+    fn nudge(&mut self, random: &mut SmallRng) -> Result<(), PlanError> {
+        let now = self.generator.state().position;
+        let position = now.map(|p| p + random.random_range(-1e-3..1e-3));
+        self.generator.set_position(position)?;
+        self.planned(false);
+        Ok(())
+    }
+
+    fn planned(&mut self, check_optimum: bool) {
+        self.watch.planned(
+            &self.generator,
+            self.target.as_ref(),
+            check_optimum,
+            self.tally,
+        );
+    }
+
+    fn step(&mut self) {
+        let before = *self.generator.state();
+        let after = *self.generator.step();
+        self.watch
+            .step(self.generator.limits(), &before, &after, self.tally);
+    }
+
+    /// Steps until rest, which is when the generator says.
+    fn finish(&mut self) {
+        let cycles = self.generator.remaining() / CYCLE;
+        if cycles > CYCLES_MAX as f64 {
+            return;
+        }
+        let mut taken = 0.0;
+        while !self.generator.is_done() && taken < cycles + 2.0 {
+            self.step();
+            taken += 1.0;
+        }
+        self.tally.arrivals += 1;
+        if taken > (cycles + 1.0).floor() || !self.generator.is_done() {
+            let what = format!("still moves after {taken} cycles of {cycles}");
+            self.watch.fail(self.tally, what);
+        }
+    }
+}
+
+/// Targets and other events of an episode.
+const EVENTS: usize = 150;
+/// Longer motions are checked as plans and not followed to their end.
+const CYCLES_MAX: usize = 4000;

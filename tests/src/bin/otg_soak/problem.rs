@@ -1,0 +1,105 @@
+//! Random limits, states and targets.
+
+use franka_rt::otg::{AxisLimits, Limits, State};
+use rand::Rng;
+use rand::rngs::SmallRng;
+
+/// What the limits of an episode are like.
+#[derive(Clone, Copy)]
+pub(crate) enum Kind {
+    /// As joints and tools of an arm have them, down to a tenth of full speed.
+    Arm,
+    /// Of all kinds: each may reach the others or not.
+    Mixed,
+    /// Up to nine decades apart.
+    Extreme,
+}
+
+impl Kind {
+    pub(crate) fn random(random: &mut SmallRng) -> Self {
+        match random.random_range(0..10) {
+            0..5 => Self::Arm,
+            5..9 => Self::Mixed,
+            _ => Self::Extreme,
+        }
+    }
+
+    pub(crate) fn limits<const N: usize>(self, random: &mut SmallRng) -> Limits<N> {
+        let limits = std::array::from_fn(|_| {
+            let [velocity, acceleration, jerk] = match self {
+                Self::Arm => [(-1.0, 0.7), (0.0, 1.3), (2.0, 4.0)],
+                Self::Mixed => [(-1.0, 1.0), (-1.0, 1.5), (0.0, 4.0)],
+                Self::Extreme => [(-3.0, 6.0); 3],
+            }
+            .map(|(low, high)| 10_f64.powf(random.random_range(low..high)));
+            AxisLimits {
+                velocity,
+                acceleration,
+                jerk,
+            }
+        });
+        Limits::per_axis(limits).expect("powers of ten are positive and finite")
+    }
+}
+
+/// A state inside the limits that can stay there; at rest as often as not.
+pub(crate) fn state<const N: usize>(random: &mut SmallRng, limits: &Limits<N>) -> State<N> {
+    let mut state = State::at_rest(std::array::from_fn(|_| random.random_range(-1.0..1.0)));
+    if random.random_bool(0.5) {
+        for i in 0..N {
+            let (velocity, acceleration) = motion(random, limits.axis(i));
+            state.velocity[i] = velocity;
+            state.acceleration[i] = acceleration;
+        }
+    }
+    state
+}
+
+/// Velocity and acceleration that can be met inside the limits, and left.
+fn motion(random: &mut SmallRng, limits: AxisLimits) -> (f64, f64) {
+    let velocity = limits.velocity * random.random_range(-1.0..=1.0);
+    if random.random_bool(0.5) {
+        return (velocity, 0.0);
+    }
+    let room = (2.0 * limits.jerk * (limits.velocity - velocity.abs())).sqrt();
+    let acceleration = limits.acceleration.min(room) * random.random_range(-1.0..=1.0);
+    (velocity, acceleration)
+}
+
+/// A new target, as far away as the axes get in some tenths of a second to some seconds, or very near.
+///
+/// Axes at rest keep their place now and then; `moving` targets move along some axes.
+pub(crate) fn target<const N: usize>(
+    random: &mut SmallRng,
+    now: &State<N>,
+    limits: &Limits<N>,
+    moving: bool,
+) -> State<N> {
+    let far = random.random_range(-1.5..0.3);
+    let mut target = State::at_rest(now.position);
+    for i in 0..N {
+        let axis = limits.axis(i);
+        let at_rest = now.velocity[i] == 0.0 && now.acceleration[i] == 0.0;
+        if at_rest && random.random_bool(0.2) {
+            continue;
+        }
+        let decades = if random.random_bool(0.1) {
+            random.random_range(-12.0..far)
+        } else {
+            far
+        };
+        // What the axis may move in the time; not more than positions are worth.
+        let t = 10_f64.powf(far);
+        let reach = (axis.velocity * t)
+            .min(axis.acceleration * t * t)
+            .min(axis.jerk * t * t * t);
+        let way = reach.min(1e3) * 10_f64.powf(decades - far);
+        target.position[i] += way * random.random_range(-1.0..1.0);
+        if moving && random.random_bool(0.7) {
+            let (velocity, acceleration) = motion(random, axis);
+            target.velocity[i] = velocity;
+            target.acceleration[i] = acceleration;
+        }
+    }
+    target
+}

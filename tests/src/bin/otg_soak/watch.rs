@@ -1,0 +1,264 @@
+//! Holds every plan, every cycle and every arrival against what the generator promises.
+
+use franka_rt::otg::{AxisLimits, AxisState, CYCLE, Generator, Limits, State, Synchronisation};
+
+use crate::oracle::{least_duration, stop_point};
+use crate::tally::Tally;
+
+/// What holds from one plan to the next.
+pub(crate) struct Watch<const N: usize> {
+    seed: u64,
+    synchronisation: Synchronisation,
+    /// The state could stay inside the limits at some cycle since they were set; then it has to.
+    inside: bool,
+    axes: [Axis; N],
+}
+
+#[derive(Clone, Copy, Default)]
+struct Axis {
+    /// At rest at its target: no bit may change.
+    still: Option<f64>,
+    /// A target at rest that can be reached without overshooting, and the direction in which it is.
+    ahead: Option<(f64, f64)>,
+    /// Magnitude of the positions of the motion.
+    size: f64,
+}
+
+/// Relative excess over a limit that is rounding.
+const EXACT: f64 = 1e-9;
+/// Relative error of a place.
+const PLACE: f64 = 1e-12;
+/// Of durations against the search, whose position is rounded: near a stop point its root counts.
+const OPTIMUM: f64 = 1e-6;
+
+impl<const N: usize> Watch<N> {
+    pub(crate) fn new(seed: u64, synchronisation: Synchronisation) -> Self {
+        Self {
+            seed,
+            synchronisation,
+            inside: false,
+            axes: [Axis::default(); N],
+        }
+    }
+
+    pub(crate) fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    pub(crate) fn synchronisation(&self) -> Synchronisation {
+        self.synchronisation
+    }
+
+    pub(crate) fn limits_changed(&mut self) {
+        self.inside = false;
+    }
+
+    /// A generator has just planned, towards a target or to rest.
+    pub(crate) fn planned(
+        &mut self,
+        generator: &Generator<N>,
+        target: Option<&State<N>>,
+        check_optimum: bool,
+        tally: &mut Tally,
+    ) {
+        tally.replans += 1;
+        let (state, limits) = (generator.state(), generator.limits());
+        self.inside |= can_stay(state, limits);
+        let duration = generator.time_to_target();
+        let on_their_own = self.synchronisation == Synchronisation::Time;
+        let mut optimum = 0.0_f64;
+        for i in 0..N {
+            let (now, limits) = (state.axis(i), limits.axis(i));
+            let start = [0.0, now.velocity, now.acceleration];
+            let to = target.map_or(AxisState::at_rest(generator.end()[i]), |to| to.axis(i));
+            let way = to.position - now.position;
+            let reach = (limits.velocity * duration)
+                .min(limits.acceleration * duration * duration)
+                .min(limits.jerk * duration.powi(3));
+            let at_rest = now == AxisState::at_rest(now.position);
+            let ends = to == AxisState::at_rest(to.position);
+            let stop = stop_point(start, limits);
+            // The end of a stop is reached in the direction of the stop.
+            let ahead = way - stop;
+            let is_stop = ahead.abs() <= PLACE * (way.abs() + stop.abs());
+            let side = 1_f64.copysign(if is_stop { stop } else { ahead });
+            self.axes[i] = Axis {
+                still: (now == to && ends).then_some(now.position),
+                ahead: (ends
+                    && self.inside
+                    && (on_their_own || at_rest)
+                    && goes_on(start, limits)
+                    && side * way >= 0.0)
+                    .then_some((to.position, side)),
+                size: now.position.abs()
+                    + to.position.abs()
+                    + now.velocity.abs() * duration
+                    + reach,
+            };
+            if check_optimum && ends && now != to {
+                optimum = optimum.max(least_duration(start, way, limits));
+            }
+        }
+        let rests = target.is_some_and(State::is_at_rest);
+        if check_optimum && rests && self.inside && on_their_own && optimum > 0.0 {
+            tally.optima += 1;
+            let slower = duration / optimum - 1.0;
+            tally.slower.see(slower, self.seed);
+            // A cycle is what an arrival is rounded to anyway.
+            if slower > OPTIMUM && duration - optimum > 1e-3 * CYCLE {
+                self.fail(tally, format!("{duration} s instead of {optimum} s"));
+            }
+        }
+        if let Some(target) = target {
+            self.landing(generator, target, tally);
+            self.together(generator, target, tally);
+        }
+    }
+
+    /// The motion leads to the target.
+    fn landing(&self, generator: &Generator<N>, target: &State<N>, tally: &mut Tally) {
+        let duration = generator.time_to_target();
+        if target.is_at_rest() && generator.sample(duration) != *target {
+            self.fail(tally, "does not end at its target".to_owned());
+        }
+        let left = 1e-6 * duration;
+        let before = generator.sample(duration - left);
+        for i in 0..N {
+            let (to, jerk) = (target.axis(i), generator.limits().axis(i).jerk);
+            let expected = to.position - left * (to.velocity - 0.5 * left * to.acceleration);
+            let miss = before.position[i] - expected;
+            // Where an axis cannot wait for the others it may be there up to a quarter of a cycle before them.
+            let early = if to.velocity != 0.0 && N > 1 {
+                (miss / to.velocity).clamp(0.0, 0.25 * CYCLE)
+            } else {
+                0.0
+            };
+            let bend = (to.acceleration.abs() + jerk * early) * early * early;
+            let error = (miss - early * to.velocity).abs() - jerk * left.powi(3) - bend;
+            let error = (error / self.axes[i].size).max(0.0);
+            tally.landing.see(error, self.seed);
+            if error > PLACE {
+                self.fail(tally, format!("axis {i} lands {error:e} off, size {:e}, {:?} to {to:?}, {duration} s, {:?} {before:?}", self.axes[i].size, generator.state().axis(i), generator.limits().axis(i)));
+            }
+        }
+    }
+
+    /// All axes that have a way to go arrive at the same time.
+    fn together(&self, generator: &Generator<N>, target: &State<N>, tally: &mut Tally) {
+        if !target.is_at_rest() {
+            return; // behind a moving target each axis comes to rest in its own time
+        }
+        let last = generator.remaining();
+        for i in 0..N {
+            let ends = generator
+                .segments(i)
+                .map(|segment| segment.start + segment.duration)
+                .last();
+            let now = generator.state().axis(i);
+            let way = target.position[i] - now.position;
+            let start = [0.0, now.velocity, now.acceleration];
+            let stop = stop_point(start, generator.limits().axis(i));
+            // A target that is where a stop ends is waited at: nothing else stays short of it.
+            let waits = (way - stop).abs() <= PLACE * self.axes[i].size;
+            if let (Some(ends), false) = (ends, waits) {
+                // Of a duration of years, seconds are a rounding.
+                let apart = last - ends - PLACE * last;
+                tally.apart.see(apart, self.seed);
+                if apart > CYCLE {
+                    self.fail(
+                        tally,
+                        format!("axis {i} arrives {} s before the last, {now:?} to {:?}, stop {stop}, {:?}", last - ends, target.axis(i), generator.limits().axis(i)),
+                    );
+                }
+            }
+        }
+    }
+
+    /// One cycle, from one state to the next.
+    pub(crate) fn step(
+        &mut self,
+        limits: &Limits<N>,
+        before: &State<N>,
+        after: &State<N>,
+        tally: &mut Tally,
+    ) {
+        tally.cycles += 1;
+        for i in 0..N {
+            let (l, p, q) = (limits.axis(i), before.axis(i), after.axis(i));
+            let Axis { still, ahead, size } = self.axes[i];
+            let rounding = 4.0 * f64::EPSILON * l.acceleration.max(p.acceleration.abs()) / CYCLE;
+            let jerk = ((q.acceleration - p.acceleration).abs() / CYCLE - rounding) / l.jerk - 1.0;
+            tally.jerk.see(jerk, self.seed);
+            let mut excess = jerk;
+            if self.inside {
+                let velocity = q.velocity.abs() / l.velocity - 1.0;
+                let acceleration = q.acceleration.abs() / l.acceleration - 1.0;
+                tally.velocity.see(velocity, self.seed);
+                tally.acceleration.see(acceleration, self.seed);
+                excess = excess.max(velocity).max(acceleration);
+            }
+            if excess > EXACT || excess.is_nan() {
+                self.fail(
+                    tally,
+                    format!("axis {i} exceeds a limit by {excess:e}: {p:?} {q:?}"),
+                );
+            }
+            // Trapezoids differ from the integrals by no more than the bounded next derivative allows.
+            let bend = 0.25 * l.jerk * CYCLE * CYCLE * (1.0 + EXACT);
+            let fastest = l.velocity.max(p.velocity.abs());
+            let gap =
+                (q.velocity - p.velocity - 0.5 * CYCLE * (p.acceleration + q.acceleration)).abs();
+            if gap > bend + 10.0 * PLACE * fastest {
+                self.fail(
+                    tally,
+                    format!("axis {i} jumps by {gap:e} in velocity: {p:?} {q:?}"),
+                );
+            }
+            let highest = l
+                .acceleration
+                .max(p.acceleration.abs())
+                .max(q.acceleration.abs());
+            let bend = 0.25 * highest * CYCLE * CYCLE * (1.0 + EXACT);
+            let gap = (q.position - p.position - 0.5 * CYCLE * (p.velocity + q.velocity)).abs();
+            if gap > bend + PLACE * size {
+                self.fail(tally, format!("axis {i} jumps by {gap:e}: {p:?} {q:?}"));
+            }
+            if let Some(position) = still
+                && q != AxisState::at_rest(position)
+            {
+                self.fail(tally, format!("axis {i} does not stay where it is: {q:?}"));
+            }
+            if let Some((target, side)) = ahead {
+                let beyond = side * (q.position - target) / size;
+                tally.overshoot.see(beyond, self.seed);
+                if beyond > PLACE {
+                    self.fail(tally, format!("axis {i} overshoots by {beyond:e}: {p:?} {q:?} target {target} side {side} {l:?}"));
+                }
+            }
+        }
+        self.inside |= can_stay(after, limits);
+    }
+
+    pub(crate) fn fail(&self, tally: &mut Tally, what: String) {
+        tally.failures.push(format!(
+            "seed {}, {N} axes, {:?}: {what}",
+            self.seed, self.synchronisation
+        ));
+    }
+}
+
+/// Whether an axis that stops does not turn round first. One that does may be at its target before it can.
+fn goes_on([_, v, a]: [f64; 3], limits: AxisLimits) -> bool {
+    v * (v + 0.5 * a * a.abs() / limits.jerk) >= 0.0
+}
+
+/// Whether the velocity limits can be kept from here on.
+fn can_stay<const N: usize>(state: &State<N>, limits: &Limits<N>) -> bool {
+    (0..N).all(|i| {
+        let (l, s) = (limits.axis(i), state.axis(i));
+        let coasting = s.velocity + 0.5 * s.acceleration * s.acceleration.abs() / l.jerk;
+        s.velocity.abs() <= l.velocity
+            && s.acceleration.abs() <= l.acceleration
+            && coasting.abs() <= l.velocity
+    })
+}
