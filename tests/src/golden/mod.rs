@@ -24,6 +24,7 @@
 //! ```
 
 mod analytic_ik;
+mod control_loop;
 mod model;
 mod node;
 mod otg;
@@ -102,5 +103,9 @@ pub const SUITES: &[Suite] = &[
     Suite {
         file: "lowpass_vectors.json",
         check: shaping_filter::filters,
+    },
+    Suite {
+        file: "control_loop_vectors.json",
+        check: control_loop::traces,
     },
 ];
