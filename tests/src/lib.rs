@@ -10,7 +10,18 @@ pub mod bench;
 pub mod golden;
 pub mod lockstep;
 
-/// Holds the program of the README to what there is.
+/// Holds the programs of the README and the book to what there is.
 #[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-struct Readme;
+mod programs {
+    #[doc = include_str!("../../README.md")]
+    struct Readme;
+
+    #[doc = include_str!("../../docs/src/control.md")]
+    struct Control;
+
+    #[doc = include_str!("../../docs/src/gripper.md")]
+    struct Gripper;
+
+    #[doc = include_str!("../../docs/src/model.md")]
+    struct Model;
+}
