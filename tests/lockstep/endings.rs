@@ -1,8 +1,13 @@
 //! How motions end when something intervenes.
 
+use std::sync::mpsc;
+
 use franka_model::{READY, Wrench};
-use franka_proto::{CollisionBehavior, MoveStatus, Request, RobotError, RobotMode, Status};
-use franka_rt::driver::LINK_TIMEOUT;
+use franka_proto::{
+    CollisionBehavior, MoveControllerMode, MoveStatus, Request, RobotError, RobotMode, Status,
+};
+use franka_rt::control::{Callback, Torques};
+use franka_rt::driver::{LINK_TIMEOUT, Program};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{GoalError, Guard, Target, Then};
 use franka_tests::lockstep::{Link, Lockstep, for_each_robot};
@@ -293,4 +298,32 @@ fn bad_goals_are_named_and_change_nothing() {
         lockstep.until_resolved(goal, 8000).is_ok(),
         "the motion under way went on"
     );
+}
+
+/// Nobody knows what the robot is doing, so a control function gets no more states, and the robot is told to stop.
+#[test]
+fn a_control_function_is_left_alone_when_a_reply_cannot_be_read() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let version = lockstep.client.version();
+        let (calls, called) = mpsc::channel();
+        let callback = Callback::torques(version, move |_, _| {
+            calls.send(()).expect("the test listens");
+            Torques([0.0; 7])
+        });
+        let request = callback.request(version, MoveControllerMode::JointImpedance);
+        let program = Program::Callback(Box::new(callback));
+        let work = lockstep.control(program, request).expect("nothing moves");
+        lockstep.run(50);
+        assert!(called.try_iter().count() > 10);
+        lockstep.client.violate();
+        let error = lockstep.until_resolved(work, 1).unwrap_err();
+        assert!(matches!(error, MotionError::Violation(_)), "{error:?}");
+        lockstep.run(1500);
+        assert_eq!(called.try_iter().count(), 0);
+        assert!(lockstep.client.driver.is_watching());
+        assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
+        let again = lockstep.begin(Target::Joints(READY.into()));
+        lockstep.until_resolved(again, 8000).unwrap();
+    });
 }
