@@ -44,6 +44,14 @@ pub enum Error {
     /// The vacuum gripper did not do it.
     #[error(transparent)]
     VacuumGripper(#[from] ActionError<vacuum::Command>),
+    /// There is no model of the connected arm.
+    #[cfg(feature = "urdf")]
+    #[error(transparent)]
+    Model(#[from] crate::ModelError),
+    /// The robot's model library cannot be used.
+    #[cfg(all(feature = "model-library", target_os = "linux"))]
+    #[error(transparent)]
+    ModelLibrary(#[from] crate::ModelLibraryError),
 }
 
 impl From<MotionError> for Error {
@@ -67,6 +75,10 @@ impl Error {
             Self::Gripper(error) => error.party(),
             Self::ConnectVacuumGripper(error) => error.party(),
             Self::VacuumGripper(error) => error.party(),
+            #[cfg(feature = "urdf")]
+            Self::Model(error) => error.party(),
+            #[cfg(all(feature = "model-library", target_os = "linux"))]
+            Self::ModelLibrary(error) => error.party(),
         }
     }
 }

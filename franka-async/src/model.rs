@@ -45,6 +45,7 @@ mod described {
     use franka_model::urdf::UrdfError;
     use franka_model::{Model, RobotKind};
 
+    use crate::error::Party;
     use crate::{CommandError, Robot};
 
     impl Robot {
@@ -79,6 +80,30 @@ mod described {
         #[error(transparent)]
         Urdf(#[from] UrdfError),
     }
+
+    impl ModelError {
+        /// Who can act on it.
+        pub fn party(&self) -> Party {
+            match self {
+                Self::Command(error) => error.party(),
+                Self::Urdf(_) => Party::Peer,
+            }
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+        use crate::error::Error;
+
+        #[test]
+        fn a_description_that_cannot_be_read_is_nobodys_fault_here() {
+            let error = Model::from_urdf("<sdf/>").expect_err("no description");
+            let text = error.to_string();
+            let error = Error::from(ModelError::from(error));
+            assert_eq!((error.to_string(), error.party()), (text, Party::Peer));
+        }
+    }
 }
 
 #[cfg(all(feature = "model-library", target_os = "linux"))]
@@ -86,6 +111,7 @@ mod library {
     use franka_model::model_library::{LibraryError, ModelLibrary};
     use franka_proto::{Architecture, System};
 
+    use crate::error::Party;
     use crate::{CommandError, Robot};
 
     impl Robot {
@@ -131,5 +157,31 @@ mod library {
         /// It cannot be loaded.
         #[error(transparent)]
         Library(#[from] LibraryError),
+    }
+
+    impl ModelLibraryError {
+        /// Who can act on it.
+        pub fn party(&self) -> Party {
+            match self {
+                Self::Command(error) => error.party(),
+                Self::Library(LibraryError::Load { .. } | LibraryError::Symbol { .. }) => {
+                    Party::Peer
+                }
+                Self::Library(_) => Party::Host,
+            }
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+        use crate::error::Error;
+
+        #[test]
+        fn an_architecture_without_a_library_is_this_computers() {
+            let error = Error::from(ModelLibraryError::from(LibraryError::Architecture));
+            assert_eq!(error.to_string(), "libfranka: Unsupported architecture!");
+            assert_eq!(error.party(), Party::Host);
+        }
     }
 }
