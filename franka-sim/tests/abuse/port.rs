@@ -126,6 +126,11 @@ impl Connection {
         Self { stream }
     }
 
+    /// The client's end.
+    pub(crate) fn address(&self) -> SocketAddr {
+        self.stream.local_addr().expect("connected")
+    }
+
     /// The same stream, for another thread.
     pub(crate) fn another(&self) -> Self {
         let stream = self.stream.try_clone().expect("a descriptor");

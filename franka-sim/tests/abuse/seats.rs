@@ -1,6 +1,6 @@
 //! More than one client at a time, and clients that leave without a word.
 
-use std::net::UdpSocket;
+use std::net::{SocketAddr, UdpSocket};
 
 use crate::each_robot;
 use crate::good::{assert_moves_during, assert_served};
@@ -62,6 +62,26 @@ fn clients_that_crowd_at_the_door_do_not_disturb_a_motion() {
             }
         });
         assert_served(binary);
+    });
+}
+
+/// One whose network has gone can say nothing of it: the kernel has to ask.
+#[test]
+fn the_host_of_an_idle_client_is_asked_whether_it_is_there() {
+    each_robot(|binary| {
+        for port in binary.ports() {
+            let (connection, _udp) = port.shake_hands();
+            let name = |address: SocketAddr| format!("0100007F:{:04X}", address.port());
+            let ends = [name(port.address), name(connection.address())];
+            let sockets = std::fs::read_to_string("/proc/net/tcp").expect("Linux");
+            let socket = sockets
+                .lines()
+                .map(|line| line.split_whitespace().collect::<Vec<_>>())
+                .find(|words| words[1..3] == ends)
+                .expect("the simulator's end of the connection");
+            // The timer of keepalive is the only one that runs on an idle connection.
+            assert!(socket[5].starts_with("02:"), "{}: {socket:?}", port.name);
+        }
     });
 }
 
