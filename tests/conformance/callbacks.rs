@@ -6,7 +6,7 @@ use std::time::Duration;
 use franka_proto::{MoveControllerMode, MoveRequest, RobotState, Version};
 use franka_rt::control::{Callback, Finish, JointPositions, JointVelocities, Next, Torques};
 use franka_rt::driver::{Activity, Program};
-use franka_rt::lifecycle::MotionError;
+use franka_rt::lifecycle::{END_TIMEOUT, MotionError};
 use franka_rt::shaping::InvalidCommand;
 
 use crate::for_each_version;
@@ -63,6 +63,26 @@ fn scenario_15_a_panic_in_a_control_function_stops_the_robot() {
         let error = assert_stopped(&mut pair, &motion);
         let message = "no more ideas".to_owned();
         assert_eq!(error, MotionError::Panicked { message });
+    });
+}
+
+/// What is told in the end is the panic, from which everything else followed.
+#[test]
+fn scenario_15_a_panic_is_told_even_if_the_robot_does_not_stop() {
+    for_each_version(|version| {
+        let mut pair = Pair::connected(version);
+        let (program, request) = torques(version, |_, _| -> Torques { panic!("no more ideas") });
+        let motion = pair.begin(program, request);
+        let patience = 2 * END_TIMEOUT.as_millis() as u64;
+        for _ in 1..patience {
+            assert_eq!(pair.step(), None);
+            assert_eq!(pair.client.outcome(motion.work), None);
+        }
+        pair.step();
+        pair.robot.expect_stop();
+        pair.robot.expect_stop();
+        let message = "no more ideas".to_owned();
+        assert_eq!(pair.error(motion.work), MotionError::Panicked { message });
     });
 }
 

@@ -164,7 +164,8 @@ impl Work {
         }
     }
 
-    fn failure(&self) -> Option<&MotionError> {
+    /// Why its program could not go on, if that has happened.
+    pub(super) fn failure(&self) -> Option<&MotionError> {
         match self {
             Self::Program(program) => program.failure.as_ref(),
             Self::Goals(_) => None,

@@ -334,8 +334,9 @@ impl Lifecycle {
         }
     }
 
-    /// Ends the motion, with `error` for its goal or else by what the two sides have said. A robot that has not said that
-    /// the motion is over is told to stop it, and a thread that goes on is told to brake.
+    /// Ends the motion, with `error` for its goal (or the failure of its program, from which everything else followed), or
+    /// else by what the two sides have said. A robot that has not said that the motion is over is told to stop it, and a thread
+    /// that goes on is told to brake or to fall silent.
     fn finish(&mut self, now: Duration, error: Option<MotionError>) {
         let Phase::Active(mut active) = core::mem::replace(&mut self.phase, Phase::Idle) else {
             return;
@@ -350,6 +351,7 @@ impl Lifecycle {
             (Some(error), _) => {
                 let order = active.abandon();
                 self.outputs.extend(order.map(Output::Order));
+                let error = active.work.failure().cloned().unwrap_or(error);
                 (Err(error), MotionStatistics::default())
             }
             (None, ThreadSide::Ended(ended)) => {
