@@ -190,7 +190,7 @@ async fn main() -> ExitCode {
     match run(&arguments).await {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("franka-sim: cannot listen on {error}");
+            eprintln!("franka-sim: {error}");
             ExitCode::FAILURE
         }
     }
@@ -199,7 +199,10 @@ async fn main() -> ExitCode {
 async fn run(arguments: &Arguments) -> std::io::Result<()> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
-    let sim = arguments.sim().start().await?;
+    let sim = arguments.sim().start().await.map_err(|error| {
+        let kind = error.kind();
+        std::io::Error::new(kind, format!("cannot listen on {error}"))
+    })?;
     println!("listening on {}", sim.addr());
     if let Some(hand) = sim.hand() {
         println!("Franka Hand on {}", hand.addr());
@@ -210,6 +213,7 @@ async fn run(arguments: &Arguments) -> std::io::Result<()> {
     tokio::select! {
         _ = interrupt.recv() => {}
         _ = terminate.recv() => {}
+        () = sim.ended() => return Err(std::io::Error::other("the simulation has ended")),
     }
     sim.stop().await;
     Ok(())

@@ -26,7 +26,7 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use bytes::Bytes;
 use franka_model::{JointVector, Load, RobotKind};
 use franka_proto::RobotState;
-use tokio::sync::oneshot;
+use tokio::sync::watch;
 
 use crate::config::{Config, Noise, Tool};
 use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
@@ -181,13 +181,12 @@ impl Sim {
             hand: hand_seat,
             vacuum: vacuum_seat,
         };
-        let (done, finished) = oneshot::channel();
+        let (done, finished) = watch::channel(());
         std::thread::Builder::new()
             .name("franka-sim".into())
             .spawn(move || {
                 cycle.run();
-                // Nobody may be waiting for it.
-                let _ = done.send(());
+                drop(done);
             })?;
         Ok(Running {
             robot,
@@ -205,7 +204,8 @@ pub struct Running {
     robot: Service<Robot>,
     hand: Option<Service<Hand>>,
     vacuum_gripper: Option<Service<VacuumGripper>>,
-    finished: oneshot::Receiver<()>,
+    /// Closed by the end of the thread, whichever it is.
+    finished: watch::Receiver<()>,
 }
 
 impl Running {
@@ -260,6 +260,16 @@ impl Running {
         self.robot.pace().await
     }
 
+    /// Completes when the simulation has ended by itself, which only a panic brings about: in the
+    /// simulator, or in what [`with`](Self::with) was given.
+    ///
+    /// # Cancel safety
+    /// Dropping the future has no effect.
+    pub async fn ended(&self) {
+        // Nothing is ever sent: an error is the end.
+        let _ = self.finished.clone().changed().await;
+    }
+
     /// Stops the simulation, disconnects its client, and returns once thread and sockets are gone.
     ///
     /// # Cancel safety
@@ -269,7 +279,7 @@ impl Running {
             robot,
             hand,
             vacuum_gripper,
-            finished,
+            mut finished,
         } = self;
         if let Some(hand) = hand {
             hand.close().await;
@@ -279,7 +289,7 @@ impl Running {
         }
         // The thread ends when nobody can give orders to the robot, or has died already.
         robot.close().await;
-        let _ = finished.await;
+        let _ = finished.changed().await;
     }
 }
 

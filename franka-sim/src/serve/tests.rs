@@ -160,6 +160,23 @@ fn hands_reach_the_robot_and_stopping_frees_the_port() {
 }
 
 #[test]
+fn a_simulation_that_dies_says_so_and_closes_its_port() {
+    let runtime = runtime();
+    runtime.block_on(async {
+        let sim = Sim::fr3().start().await.expect("a robot");
+        let still = tokio::time::timeout(Duration::from_millis(20), sim.ended());
+        still.await.expect_err("it runs");
+        let died = sim.with(|_| panic!("by a test")).await;
+        assert_eq!(died, Err(Stopped));
+        sim.ended().await;
+        sim.ended().await;
+        let address = sim.addr();
+        sim.stop().await;
+        assert!(TcpStream::connect(address).is_err());
+    });
+}
+
+#[test]
 fn robots_share_a_process() {
     let runtime = runtime();
     let sims: Vec<_> = (0..3)
