@@ -59,7 +59,13 @@ impl Check {
 
     fn run(self, workspace: &Workspace) -> anyhow::Result<Outcome> {
         match self {
-            Self::Fmt => workspace.run(workspace.cargo().args(["fmt", "--all", "--check"]))?,
+            Self::Fmt => {
+                for manifest in MANIFESTS {
+                    let mut command = workspace.cargo();
+                    command.args(["fmt", "--all", "--check", "--manifest-path", manifest]);
+                    workspace.run(&mut command)?;
+                }
+            }
             Self::Clippy => {
                 let mut command = workspace.cargo();
                 command.args(["clippy", "--workspace", "--all-targets", "--", "-Dwarnings"]);
@@ -129,6 +135,9 @@ fn installed(target: &str) -> bool {
         output.status.success() && std::path::Path::new(libraries.trim()).is_dir()
     })
 }
+
+/// The workspace, and the packages that are workspaces of their own.
+const MANIFESTS: [&str; 3] = ["Cargo.toml", "fuzz/Cargo.toml", "tests/no_std/Cargo.toml"];
 
 /// Targets without a standard library, the preferred one first.
 const BARE_TARGETS: &[&str] = &[
