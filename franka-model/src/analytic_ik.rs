@@ -33,7 +33,7 @@
 //! the determinant `L1 L2 sin(q4 − flip) · sin(q2) · f(q4) cos(q5)` of the other six joints
 //! vanishes, and each is answered in its own way:
 //!
-//! - **Stretched elbow** (joint 4 at [`FLIP_ANGLE`](crate::elbow::FLIP_ANGLE)) and **wrist** (joint 5
+//! - **Stretched elbow** (joint 4 at [`FLIP_ANGLE`]) and **wrist** (joint 5
 //!   a quarter turn off): two solutions approach each other, like the roots of `x² = ε`, and meet
 //!   in one. It is listed twice there, and a pose beyond by less than 1e-12 in the cosine counts
 //!   as on it. Both solutions are continuous up to that place; beyond there is none.
