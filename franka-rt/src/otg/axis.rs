@@ -1,7 +1,6 @@
 //! One axis from its state to its target: brake, least time, given duration, laid out as a profile.
 
 use super::brake::{Pieces, into_limits};
-use super::farthest::Reach;
 use super::generator::CYCLE;
 use super::given_duration::lasting;
 use super::least_time::{Least, Shape, least_time};
@@ -28,10 +27,6 @@ pub(super) struct Axis {
 
 /// What follows the brake.
 #[derive(Debug, Clone, Copy)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "lives on the stack while a plan is made; a box would allocate"
-)]
 enum Motion {
     ToRest(Least),
     Through(Passing),
@@ -132,8 +127,8 @@ impl Axis {
                         self.lay_out_shape(sign, &shape, 0.0, profile);
                     }
                     Way::Mean { up, down, weight } => {
-                        let up = self.farthest(passing, 1.0, &up);
-                        let down = self.farthest(passing, -1.0, &down);
+                        let up = self.farthest(1.0, &up.0, up.1);
+                        let down = self.farthest(-1.0, &down.0, down.1);
                         profile.mean_of(weight, &up, &down, self.target);
                     }
                 }
@@ -147,12 +142,11 @@ impl Axis {
         profile.push_pieces(&self.brake, self.limits.jerk, self.unit);
     }
 
-    /// The motion that gets farthest, to where it gets.
-    fn farthest(&self, passing: &Passing, sign: f64, reach: &Reach) -> Profile {
+    /// A motion that gets `beyond` the target in a direction.
+    fn farthest(&self, sign: f64, shape: &Shape, beyond: f64) -> Profile {
         let mut profile = Profile::at_rest(0.0);
-        let shape = reach.shape(passing.farthest(sign));
         self.begin(&mut profile);
-        self.lay_out_shape(sign, &shape, sign * reach.beyond, &mut profile);
+        self.lay_out_shape(sign, shape, sign * beyond, &mut profile);
         profile
     }
 

@@ -54,17 +54,18 @@
 //! | axes of a plan, groups of limits | `N` |
 //! | `least_time`, Newton steps | 60 |
 //! | `given_duration`, bracketed Newton steps | 60 |
-//! | `late_push`, one `root` around `least_time` | 80 evaluations |
-//! | `passing`, pieces between breaks: one `root` each, for two sides | 15 pieces of 80 evaluations, none of which loops |
-//! | `passing`, insertion into a sorted list | the list's capacity, at most 48 |
-//! | `plan`, common duration | 16 candidates of each axis |
+//! | `late_push`, one `root` around `least_time` | 100 evaluations |
+//! | `possible`, pieces between breaks: one `root` each, for two sides | 15 pieces of 100 evaluations, none of which loops |
+//! | `times`, insertion into a sorted list | the list's capacity, at most 48 |
+//! | `plan`, common duration | 8 candidates of each axis |
+//! | `plateau`, one `root` | 100 evaluations |
 //! | `profile`, segments laid out, merged or skipped | 20, 40, 20 |
 //!
 //! The counts of the searches are ceilings that no comparison of floating-point numbers can lift, whatever is rounded,
 //! infinite or not a number. What a search needs is a separate question, which decides accuracy and not termination:
 //! bisection alone, into which the bracketed ones fall back, halves the bracket in each step and has no more than 53 to
-//! halve. The tests count the steps on a grid over states, targets and limits, and find less than half the ceilings
-//! (`tests/bounds.rs`).
+//! halve. On a grid over states, targets and limits, flat and double roots among them, `root` never takes 80 % of what it
+//! may (`tests/bounds.rs`); Newton steps may take all of theirs at a double root, where each halves the rest.
 //!
 //! # Sources
 //!
@@ -89,13 +90,17 @@ mod line;
 mod passing;
 mod plan;
 mod plateau;
+mod possible;
 mod profile;
 mod root;
 mod segment;
 mod state;
+mod steps;
 mod task;
+mod times;
 mod transfer;
 mod turn;
+mod velocity_change;
 
 pub use error::{PlanError, Quantity};
 pub use generator::{CYCLE, Generator};

@@ -4,7 +4,7 @@ use super::axis::{Axis, Refusal, lay_out_stop};
 use super::error::PlanError;
 use super::limits::Limits;
 use super::line::Line;
-use super::passing::CANDIDATES;
+use super::possible::CANDIDATES;
 use super::profile::Profile;
 use super::segment::Segment;
 use super::state::{AxisState, State};

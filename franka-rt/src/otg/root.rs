@@ -1,5 +1,7 @@
 //! Bracketed search for the root of a continuous function.
 
+use super::steps;
+
 /// A point and the value of the function there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
@@ -21,7 +23,8 @@ pub(super) fn root(
     // `a` and `b` bracket the root, `a` is the newest point, `c` the one that it or `b` replaced.
     let (mut a, mut b) = (low, high);
     let mut part = 0.5_f64;
-    for _ in 0..MAX_STEPS {
+    for pass in 0..MAX_STEPS {
+        steps::see(pass, MAX_STEPS);
         let best = nearer(a, b);
         let width = (b.at - a.at).abs();
         let resolution = 2.0 * f64::EPSILON * best.at.abs() / width;
@@ -65,7 +68,7 @@ fn interpolate(a: Point, b: Point, c: Point) -> f64 {
 
 /// Bound of a search. Bisection alone, to which the method falls back wherever interpolation does not help, needs 53
 /// steps from any bracket within a factor of two of its root; ten are usual.
-const MAX_STEPS: usize = 80;
+const MAX_STEPS: usize = 100;
 
 #[cfg(test)]
 mod tests {

@@ -16,7 +16,7 @@
 //! | [`collision`] | distances of the arm to itself, with gradients |
 //! | [`cycle`] | target control, datagram in to datagram out |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
-//! | [`otg`] | a new target for seven joints in motion |
+//! | [`otg`] | a new target for axes in motion |
 //! | [`shape`] | filter, limiter and check of torques and of a pose |
 
 use std::collections::BTreeMap;

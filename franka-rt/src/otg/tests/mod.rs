@@ -1,6 +1,8 @@
 //! Properties of whole motions. The parts have their tests beside them.
 
+mod bounds;
 mod closed_loop;
+mod extreme;
 mod least;
 mod lines;
 mod moving;
