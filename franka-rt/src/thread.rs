@@ -14,15 +14,20 @@
 //! finds the other in the middle of an operation spins until it is done, and if the other was preempted by this very
 //! thread, on the one processor that it may run on, that never happens.
 //!
+//! One cycle of the loop is [`Cycle`], and it can be lent out: a thread of the user's then runs it in this one's place,
+//! through a [`Lease`], for as long as it likes.
+//!
 //! The clock is read here and nowhere else in the crate, for three things: how long the robot has been silent, how far
 //! apart its states arrive, and how long an answer takes. Control itself lives by the robot's clock, in the core.
 //!
 //! A panic in the core ends the loop and nothing else: the robot misses its commands and stops by itself, the bell
 //! rings, and [`Thread::join`] tells. Printing the panic is the business of the process's panic hook.
 
+mod cycle;
 mod driven;
 mod fault;
 mod handle;
+mod lease;
 
 use std::io;
 use std::net::{IpAddr, UdpSocket};
@@ -31,17 +36,20 @@ use std::sync::Arc;
 use std::sync::mpsc;
 use std::time::Instant;
 
-use franka_proto::{DecodeError, RobotCommand, RobotState, Version};
+use franka_proto::{RobotState, Version};
 
 pub use self::driven::Core;
 pub use self::fault::LinkFault;
-pub use self::handle::{Handle, Notice, Panicked, StateReader, Thread};
+pub use self::handle::{Handle, Lost, Notice, StateReader, Thread};
+pub use self::lease::{BorrowError, Lease, Lender, WriteFault};
 
+use self::cycle::Cycle;
 use self::fault::Latch;
 use self::handle::{Datagram, Lifetime};
-use crate::exchange::{Exchange, Reception};
+use self::lease::Desk;
+use crate::exchange::Exchange;
 use crate::sched::{self, SchedError, Scheduling};
-use crate::slot::{self, SlotWriter};
+use crate::slot;
 use crate::stats::Stats;
 use crate::wake::Wake;
 
@@ -115,7 +123,9 @@ pub fn spawn<C: Core>(
     let (notice_queue, notices) = rtrb::RingBuffer::new(capacity.notices.max(1));
     let (record_ring, records) = touched_ring(capacity.records.max(1), core.record());
     let (state_slot, state_reader) = slot::slot();
-    let mut cycle = Cycle {
+    let desk = Arc::new(Desk::default());
+    let now = Instant::now();
+    let mut cycle = Box::new(Cycle {
         core,
         exchange: Exchange::new(socket, robot, size)?,
         version,
@@ -129,9 +139,12 @@ pub fn spawn<C: Core>(
         wake: wake.clone(),
         lifetime: lifetime.clone(),
         newest: None,
+        received: now,
+        started: now,
         receive_faults: Latch::default(),
         send_faults: Latch::default(),
-    };
+    });
+    let lender = Lender::new(desk.clone());
     let (granted, grant) = mpsc::sync_channel(1);
     let run = move || {
         let answer = scheduling.enter();
@@ -139,18 +152,25 @@ pub fn spawn<C: Core>(
         // The one who waits for the answer cannot have gone: it does nothing else.
         let _ = granted.send(answer);
         drop(granted);
+        let lifetime = cycle.lifetime.clone();
+        let wake = cycle.wake.clone();
         // The core panics, if at all, in its own methods, and is not used after that.
-        let ended = match catch_unwind(AssertUnwindSafe(|| {
-            if !refused {
-                cycle.run()
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            while !refused && !lifetime.stop_wanted() {
+                if desk.is_wanted() {
+                    cycle = desk.lend(cycle, &lifetime)?;
+                }
+                cycle.turn();
             }
-        })) {
-            Ok(()) => Ok(()),
-            Err(payload) => Err(Panicked::new(&*payload)),
-        };
-        cycle.lifetime.note_end();
-        cycle.wake.ring();
-        ended.map(|()| cycle.core)
+            Some(cycle.core)
+        }));
+        desk.close();
+        lifetime.note_end();
+        wake.ring();
+        match ended {
+            Ok(core) => core.ok_or(Lost::Lent),
+            Err(payload) => Err(Lost::panicked(&*payload)),
+        }
     };
     let joiner = std::thread::Builder::new()
         .name("franka-rt".into())
@@ -171,170 +191,12 @@ pub fn spawn<C: Core>(
         wake,
         stats,
         granted,
+        lender,
         thread: Thread {
             shared: lifetime,
             joiner: Some(joiner),
         },
     })
-}
-
-/// What the thread owns.
-struct Cycle<C: Core> {
-    core: C,
-    exchange: Exchange,
-    version: Version,
-    /// Size of a state, in bytes.
-    size: usize,
-    orders: rtrb::Consumer<C::Order>,
-    notices: rtrb::Producer<Notice<C::Event>>,
-    records: rtrb::Producer<C::Record>,
-    states: SlotWriter<Datagram>,
-    /// The newest state on its way to the slot.
-    datagram: Box<Datagram>,
-    stats: Arc<Stats>,
-    wake: Wake,
-    lifetime: Arc<Lifetime>,
-    /// `message_id` and time of receipt of the newest state.
-    newest: Option<(u64, Instant)>,
-    receive_faults: Latch,
-    send_faults: Latch,
-}
-
-impl<C: Core> Cycle<C> {
-    fn run(&mut self) {
-        let start = Instant::now();
-        while !self.lifetime.stop_wanted() {
-            let reception = self.exchange.receive();
-            let now = Instant::now();
-            self.take_orders();
-            let decoded = reception
-                .fresh
-                .then(|| RobotState::decode(self.version, self.exchange.state()));
-            if let Some(Ok(state)) = &decoded {
-                self.answer(state, now);
-                self.publish();
-                self.note_arrival(state.message_id, now, reception.skipped);
-            } else {
-                let heard = self.newest.map_or(start, |(_, heard)| heard);
-                self.core.on_silence(now.saturating_duration_since(heard));
-            }
-            self.count(&reception);
-            let fault = self.fault_of(&reception, decoded.and_then(Result::err));
-            let told = self.report(reception.fresh, fault) | self.pass_events_on();
-            if reception.fresh || told {
-                self.wake.ring();
-            }
-        }
-    }
-
-    fn take_orders(&mut self) {
-        for _ in 0..ORDERS_PER_CYCLE {
-            match self.orders.pop() {
-                Ok(order) => self.core.on_order(order),
-                Err(_) => break,
-            }
-        }
-    }
-
-    /// Gives `state`, received at `now`, to the core and sends its answer.
-    fn answer(&mut self, state: &RobotState, now: Instant) {
-        let Some(command) = self.core.on_state(state) else {
-            return;
-        };
-        let mut bytes = [0; RobotCommand::MAX_SIZE];
-        let size = command
-            .encode(self.version, &mut bytes)
-            .expect("a command has at most `MAX_SIZE` bytes");
-        let sent = self.exchange.send(&bytes[..size]);
-        if sent.is_ok() {
-            let turnaround = now.elapsed();
-            self.core.note_turnaround(turnaround);
-            self.stats.turnaround.note(turnaround);
-            self.stats.commands.add(1);
-        } else {
-            self.stats.send_errors.add(1);
-        }
-        if let Some(fault) = self.send_faults.pass(sent.err().map(LinkFault::Send)) {
-            self.queue(fault);
-        }
-    }
-
-    fn publish(&mut self) {
-        self.datagram.0[..self.size].copy_from_slice(self.exchange.state());
-        self.states.write(&self.datagram);
-        if self.records.push(self.core.record()).is_err() {
-            self.stats.records_lost.add(1);
-        }
-    }
-
-    fn note_arrival(&mut self, message_id: u64, now: Instant, skipped: u64) {
-        self.stats.states.add(1);
-        if let Some((before, heard)) = self.newest.replace((message_id, now)) {
-            let missing = message_id.saturating_sub(before).saturating_sub(1);
-            self.stats.lost.add(missing.saturating_sub(skipped));
-            self.stats
-                .interval
-                .note(now.saturating_duration_since(heard));
-        }
-    }
-
-    fn count(&self, reception: &Reception) {
-        self.stats.skipped.add(reception.skipped);
-        self.stats.stale.add(reception.stale);
-        self.stats.foreign.add(reception.foreign);
-        self.stats.malformed.add(reception.short);
-        self.stats
-            .receive_errors
-            .add(u64::from(reception.error.is_some()));
-    }
-
-    fn fault_of(
-        &self,
-        reception: &Reception,
-        undecodable: Option<DecodeError>,
-    ) -> Option<LinkFault> {
-        self.stats.malformed.add(u64::from(undecodable.is_some()));
-        let short = DecodeError::DatagramSize {
-            got: reception.short_length,
-            expected: self.size,
-        };
-        let datagram = undecodable.or((reception.short > 0).then_some(short));
-        datagram
-            .map(LinkFault::Datagram)
-            .or(reception.error.map(LinkFault::Receive))
-    }
-
-    /// Queues a fault of the receiving side if it is news; returns whether it did.
-    fn report(&mut self, fresh: bool, fault: Option<LinkFault>) -> bool {
-        if !fresh && fault.is_none() {
-            return false; // A tick without any datagram is neither a fault nor the end of one.
-        }
-        self.receive_faults
-            .pass(fault)
-            .is_some_and(|fault| self.queue(fault))
-    }
-
-    /// Queues a report of the loop; returns whether there was room.
-    fn queue(&mut self, fault: LinkFault) -> bool {
-        let queued = self.notices.push(Notice::Link(fault)).is_ok();
-        self.stats.reports_lost.add(u64::from(!queued));
-        queued
-    }
-
-    /// Queues what the core has to say, as far as there is room; returns whether there was something.
-    fn pass_events_on(&mut self) -> bool {
-        for passed in 0..EVENTS_PER_CYCLE {
-            if self.notices.is_full() {
-                return passed > 0;
-            }
-            let Some(event) = self.core.take_event() else {
-                return passed > 0;
-            };
-            let queued = self.notices.push(Notice::Core(event));
-            debug_assert!(queued.is_ok(), "there is room, and nobody else fills it");
-        }
-        true
-    }
 }
 
 /// A ring whose memory has been written to, so that no cycle meets a page of it for the first time.
@@ -344,9 +206,3 @@ fn touched_ring<T: Copy>(capacity: usize, value: T) -> (rtrb::Producer<T>, rtrb:
     while consumer.pop().is_ok() {}
     (producer, consumer)
 }
-
-/// Orders taken in one cycle at most; the rest waits for the next.
-const ORDERS_PER_CYCLE: usize = 8;
-
-/// Events passed on in one cycle at most; the rest waits for the next.
-const EVENTS_PER_CYCLE: usize = 8;

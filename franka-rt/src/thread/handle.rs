@@ -12,7 +12,7 @@ use crate::panic;
 use crate::sched::Granted;
 use crate::slot::{Read, SlotReader, Words};
 use crate::stats::Stats;
-use crate::thread::{Core, LinkFault};
+use crate::thread::{Core, Lender, LinkFault};
 use crate::wake::Wake;
 
 /// Everything that connects the world outside to one running thread. Take it apart: each field has its own user.
@@ -34,6 +34,8 @@ pub struct Handle<C: Core = Driver> {
     pub stats: Arc<Stats>,
     /// What the operating system granted the thread.
     pub granted: Granted,
+    /// Lends the cycle to threads of the user's.
+    pub lender: Lender<C>,
     /// Stops the thread, on drop at the latest.
     pub thread: Thread<C>,
 }
@@ -51,7 +53,7 @@ pub enum Notice<E> {
 #[derive(Debug)]
 pub struct Thread<C> {
     pub(super) shared: Arc<Lifetime>,
-    pub(super) joiner: Option<JoinHandle<Result<C, Panicked>>>,
+    pub(super) joiner: Option<JoinHandle<Result<C, Lost>>>,
 }
 
 /// The two flags between the thread and its owner.
@@ -90,8 +92,8 @@ impl<C> Thread<C> {
     /// where blocking is allowed.
     ///
     /// # Errors
-    /// [`Panicked`] if the core did.
-    pub fn join(mut self) -> Result<C, Panicked> {
+    /// [`Lost`] if the core has panicked or is lent out.
+    pub fn join(mut self) -> Result<C, Lost> {
         self.stop();
         let joiner = self
             .joiner
@@ -99,7 +101,7 @@ impl<C> Thread<C> {
             .expect("only this method takes it, and it consumes the thread");
         match joiner.join() {
             Ok(ended) => ended,
-            Err(payload) => Err(Panicked::new(&*payload)),
+            Err(payload) => Err(Lost::panicked(&*payload)),
         }
     }
 }
@@ -110,17 +112,24 @@ impl<C> Drop for Thread<C> {
     }
 }
 
-/// The core panicked, which ended the thread: no command is sent any more. A defect; the process goes on.
+/// Why an ended thread has no core to give back.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the control thread panicked: {message}")]
-pub struct Panicked {
-    /// What the panic said.
-    pub message: String,
+#[non_exhaustive]
+pub enum Lost {
+    /// The core panicked, which ended the thread: no command is sent any more. A defect; the process goes on.
+    #[error("the control thread panicked: {message}")]
+    Panicked {
+        /// What the panic said.
+        message: String,
+    },
+    /// The cycle was lent out when the thread was stopped, and ends with its [`Lease`](super::Lease).
+    #[error("the control cycle is lent out")]
+    Lent,
 }
 
-impl Panicked {
-    pub(super) fn new(payload: &(dyn Any + Send)) -> Self {
-        Self {
+impl Lost {
+    pub(super) fn panicked(payload: &(dyn Any + Send)) -> Self {
+        Self::Panicked {
             message: panic::message(payload),
         }
     }
@@ -199,7 +208,8 @@ mod tests {
             (Box::new(String::from("formatted")), "formatted"),
             (Box::new(5), "no text came with it"),
         ] {
-            assert_eq!(Panicked::new(&*payload).message, message);
+            let message = message.to_owned();
+            assert_eq!(Lost::panicked(&*payload), Lost::Panicked { message });
         }
     }
 }

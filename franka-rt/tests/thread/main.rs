@@ -3,6 +3,8 @@
 //! Waits have generous deadlines and end as soon as what they wait for is there: the margins are for a loaded machine
 //! with two processors, not for the code.
 
+mod lease;
+
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
@@ -11,7 +13,7 @@ use franka_rt::driver::{Driver, Event};
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, SchedError, Scheduling, kernel_is_realtime};
 use franka_rt::thread::{
-    self, Capacity, Core, Handle, LinkFault, Notice, Panicked, StartError, ThreadConfig,
+    self, Capacity, Core, Handle, LinkFault, Lost, Notice, StartError, ThreadConfig,
 };
 
 const VERSION: Version = Version::V10;
@@ -448,7 +450,10 @@ fn a_panic_of_the_core_ends_the_thread_and_nothing_else() {
     robot.send(2);
     wait_for("end", || handle.thread.has_ended().then_some(()));
     wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
-    let Panicked { message } = handle.thread.join().expect_err("it panicked");
+    let lost = handle.thread.join().expect_err("it panicked");
+    let Lost::Panicked { message } = lost else {
+        panic!("{lost}")
+    };
     assert!(message.contains("the core fails"), "{message}");
 
     let (mut handle, robot) = start(config(), Probe::default());

@@ -1,0 +1,190 @@
+//! One turn of the loop, and everything that it needs.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use franka_proto::{DecodeError, RobotCommand, RobotState, Version};
+
+use super::Core;
+use super::fault::{Latch, LinkFault};
+use super::handle::{Datagram, Lifetime, Notice};
+use crate::exchange::{Exchange, Reception, SendError};
+use crate::slot::SlotWriter;
+use crate::stats::Stats;
+use crate::wake::Wake;
+
+/// What the thread owns.
+pub(super) struct Cycle<C: Core> {
+    pub(super) core: C,
+    pub(super) exchange: Exchange,
+    pub(super) version: Version,
+    /// Size of a state, in bytes.
+    pub(super) size: usize,
+    pub(super) orders: rtrb::Consumer<C::Order>,
+    pub(super) notices: rtrb::Producer<Notice<C::Event>>,
+    pub(super) records: rtrb::Producer<C::Record>,
+    pub(super) states: SlotWriter<Datagram>,
+    /// The newest state on its way to the slot.
+    pub(super) datagram: Box<Datagram>,
+    pub(super) stats: Arc<Stats>,
+    pub(super) wake: Wake,
+    pub(super) lifetime: Arc<Lifetime>,
+    /// `message_id` and time of receipt of the newest state.
+    pub(super) newest: Option<(u64, Instant)>,
+    /// When the newest state was received.
+    pub(super) received: Instant,
+    /// When the cycle was made.
+    pub(super) started: Instant,
+    pub(super) receive_faults: Latch,
+    pub(super) send_faults: Latch,
+}
+
+impl<C: Core> Cycle<C> {
+    /// Waits for a state, up to a tick, and does all that it calls for. Returns whether one came that could be read.
+    pub(super) fn turn(&mut self) -> bool {
+        let reception = self.exchange.receive();
+        let now = Instant::now();
+        self.take_orders();
+        let decoded = reception
+            .fresh
+            .then(|| RobotState::decode(self.version, self.exchange.state()));
+        let readable = matches!(decoded, Some(Ok(_)));
+        if let Some(Ok(state)) = &decoded {
+            self.received = now;
+            if let Some(command) = self.core.on_state(state) {
+                // A command that did not leave is counted and told; the next state may fare better.
+                let _ = self.send(&command);
+            }
+            self.publish();
+            self.note_arrival(state.message_id, now, reception.skipped);
+        } else {
+            let heard = self.newest.map_or(self.started, |(_, heard)| heard);
+            self.core.on_silence(now.saturating_duration_since(heard));
+        }
+        self.count(&reception);
+        let fault = self.fault_of(&reception, decoded.and_then(Result::err));
+        let told = self.report(reception.fresh, fault) | self.pass_events_on();
+        if reception.fresh || told {
+            self.wake.ring();
+        }
+        readable
+    }
+
+    /// The newest state that could be read, if there was one.
+    pub(super) fn state(&self) -> Option<RobotState> {
+        RobotState::decode(self.version, self.exchange.state()).ok()
+    }
+
+    fn take_orders(&mut self) {
+        for _ in 0..ORDERS_PER_CYCLE {
+            match self.orders.pop() {
+                Ok(order) => self.core.on_order(order),
+                Err(_) => break,
+            }
+        }
+    }
+
+    /// Sends a command that answers the newest state.
+    pub(super) fn send(&mut self, command: &RobotCommand) -> Result<(), SendError> {
+        let mut bytes = [0; RobotCommand::MAX_SIZE];
+        let size = command
+            .encode(self.version, &mut bytes)
+            .expect("a command has at most `MAX_SIZE` bytes");
+        let sent = self.exchange.send(&bytes[..size]);
+        if sent.is_ok() {
+            let turnaround = self.received.elapsed();
+            self.core.note_turnaround(turnaround);
+            self.stats.turnaround.note(turnaround);
+            self.stats.commands.add(1);
+        } else {
+            self.stats.send_errors.add(1);
+        }
+        if let Some(fault) = self.send_faults.pass(sent.err().map(LinkFault::Send)) {
+            self.queue(fault);
+        }
+        sent
+    }
+
+    fn publish(&mut self) {
+        self.datagram.0[..self.size].copy_from_slice(self.exchange.state());
+        self.states.write(&self.datagram);
+        if self.records.push(self.core.record()).is_err() {
+            self.stats.records_lost.add(1);
+        }
+    }
+
+    fn note_arrival(&mut self, message_id: u64, now: Instant, skipped: u64) {
+        self.stats.states.add(1);
+        if let Some((before, heard)) = self.newest.replace((message_id, now)) {
+            let missing = message_id.saturating_sub(before).saturating_sub(1);
+            self.stats.lost.add(missing.saturating_sub(skipped));
+            self.stats
+                .interval
+                .note(now.saturating_duration_since(heard));
+        }
+    }
+
+    fn count(&self, reception: &Reception) {
+        self.stats.skipped.add(reception.skipped);
+        self.stats.stale.add(reception.stale);
+        self.stats.foreign.add(reception.foreign);
+        self.stats.malformed.add(reception.short);
+        self.stats
+            .receive_errors
+            .add(u64::from(reception.error.is_some()));
+    }
+
+    fn fault_of(
+        &self,
+        reception: &Reception,
+        undecodable: Option<DecodeError>,
+    ) -> Option<LinkFault> {
+        self.stats.malformed.add(u64::from(undecodable.is_some()));
+        let short = DecodeError::DatagramSize {
+            got: reception.short_length,
+            expected: self.size,
+        };
+        let datagram = undecodable.or((reception.short > 0).then_some(short));
+        datagram
+            .map(LinkFault::Datagram)
+            .or(reception.error.map(LinkFault::Receive))
+    }
+
+    /// Queues a fault of the receiving side if it is news; returns whether it did.
+    fn report(&mut self, fresh: bool, fault: Option<LinkFault>) -> bool {
+        if !fresh && fault.is_none() {
+            return false; // A tick without any datagram is neither a fault nor the end of one.
+        }
+        self.receive_faults
+            .pass(fault)
+            .is_some_and(|fault| self.queue(fault))
+    }
+
+    /// Queues a report of the loop; returns whether there was room.
+    fn queue(&mut self, fault: LinkFault) -> bool {
+        let queued = self.notices.push(Notice::Link(fault)).is_ok();
+        self.stats.reports_lost.add(u64::from(!queued));
+        queued
+    }
+
+    /// Queues what the core has to say, as far as there is room; returns whether there was something.
+    fn pass_events_on(&mut self) -> bool {
+        for passed in 0..EVENTS_PER_CYCLE {
+            if self.notices.is_full() {
+                return passed > 0;
+            }
+            let Some(event) = self.core.take_event() else {
+                return passed > 0;
+            };
+            let queued = self.notices.push(Notice::Core(event));
+            debug_assert!(queued.is_ok(), "there is room, and nobody else fills it");
+        }
+        true
+    }
+}
+
+/// Orders taken in one cycle at most; the rest waits for the next.
+const ORDERS_PER_CYCLE: usize = 8;
+
+/// Events passed on in one cycle at most; the rest waits for the next.
+const EVENTS_PER_CYCLE: usize = 8;
