@@ -194,7 +194,7 @@ impl Pair {
 }
 
 /// The model of the robot that speaks `version`.
-fn model(version: Version) -> &'static Model {
+pub(crate) fn model(version: Version) -> &'static Model {
     Model::of(match version {
         Version::V5 => RobotKind::Fer,
         Version::V10 => RobotKind::Fr3,

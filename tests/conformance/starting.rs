@@ -6,10 +6,10 @@ use franka_rt::control::{ActiveControl, Callback, Finish, JointVelocities};
 use franka_rt::driver::{Activity, Program};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Budget, Goal, GoalId, Target, Then, Tolerance};
+use franka_rt::session::{Budget, Goal, Target, Then, Tolerance};
 
 use crate::for_each_version;
-use crate::pair::Pair;
+use crate::pair::{self, Pair};
 
 const BUSY: &str = "libfranka robot: Cannot perform this operation while another control or read \
                     operation is running.";
@@ -57,11 +57,11 @@ fn standing(version: Version, cycles: u32) -> (Program, MoveRequest) {
     (Program::Callback(Box::new(callback)), request)
 }
 
-fn to_ready(pair: &Pair, id: u64) -> Goal {
-    let limits = franka_model::Model::fr3().joint_limits();
-    assert_eq!(pair.client.outcome(GoalId(id)), None);
+/// A motion under target control.
+fn to_ready(pair: &mut Pair) -> Goal {
+    let limits = pair::model(pair.client.version()).joint_limits();
     Goal {
-        id: GoalId(id),
+        id: pair.client.next_goal(),
         target: Target::Joints(READY.into()),
         then: Then::Finish,
         budget: Budget::of(limits),
@@ -214,7 +214,7 @@ fn scenario_16_whoever_comes_second_is_told_that_another_is_at_it() {
         let error = pair.client.control(second, other).unwrap_err();
         assert_eq!(error, MotionError::Busy);
         assert_eq!(error.to_string(), BUSY);
-        let goal = to_ready(&pair, 99);
+        let goal = to_ready(&mut pair);
         let (state, now) = (pair.client.state, pair.client.now);
         let error = pair.client.lifecycle.submit(goal, &state, now).unwrap_err();
         assert_eq!(error, MotionError::Busy);
@@ -238,7 +238,7 @@ fn scenario_16_a_goal_does_not_give_way_to_a_control_function() {
         pair.robot.state.O_T_EE = core::array::from_fn(|i| if i % 5 == 0 { 1.0 } else { 0.0 });
         pair.robot.state.F_T_EE = pair.robot.state.O_T_EE;
         pair.step();
-        let goal = to_ready(&pair, 99);
+        let goal = to_ready(&mut pair);
         let (state, now) = (pair.client.state, pair.client.now);
         let submitted = pair.client.lifecycle.submit(goal, &state, now);
         assert_eq!(submitted, Ok(()));
