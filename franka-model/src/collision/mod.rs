@@ -33,18 +33,19 @@
 //! # Example
 //!
 //! ```
-//! use franka_model::READY;
-//! use franka_model::collision::{Obstacle, Shape};
+//! use franka_model::collision::{Body, Obstacle, Shape};
+//! use franka_model::{READY, RobotKind};
 //!
 //! let arm = Shape::vendor().with_hand().at(&READY);
-//! assert!(arm.nearest_pair().distance > 0.1);
+//! assert!(arm.nearest_pair().distance > 0.05);
 //!
 //! let table = Obstacle::floor(0.0);
-//! let tip = Shape::covering(franka_model::RobotKind::Fr3).with_hand().at(&READY);
-//! let nearest = tip.nearest_to(&table);
+//! let arm = Shape::covering(RobotKind::Fr3).with_hand().at(&READY);
+//! let hand = arm.to(&table).filter(|near| near.bodies == Body::Tool);
+//! let nearest = hand.min_by(|a, b| a.distance.total_cmp(&b.distance)).expect("a hand");
 //! assert!(nearest.distance > 0.3);
-//! // Lowering joint 2 brings the tool closer to the table.
-//! assert!(nearest.gradient[1] < 0.0);
+//! // Turning joint 2 forwards brings the hand closer to the table.
+//! assert!(nearest.gradient[1] < -0.2);
 //! ```
 
 mod capsules;
@@ -167,7 +168,8 @@ impl Placed<'_> {
         })
     }
 
-    /// The moving capsule that is nearest to an obstacle.
+    /// The moving capsule that is nearest to an obstacle. To a floor at the height of the base this is link 1 in most
+    /// postures, which turns in place a decimetre above it.
     pub fn nearest_to(&self, obstacle: &Obstacle) -> Proximity<Body> {
         let distances = self.moving().map(|i| {
             let nearest = obstacle.nearest(&self.segments[i]);
