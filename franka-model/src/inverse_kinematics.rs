@@ -7,7 +7,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-use crate::box_qp::{JointBox, PASSES_MAX, Start, minimise};
+use crate::box_qp::{JointBox, PASSES_MAX, Problem, minimise};
 use crate::frame::{EndEffector, Frame};
 use crate::limits::JointLimits;
 use crate::model::Model;
@@ -187,20 +187,9 @@ fn descend(model: &Model, task: &Task, start: &JointVector) -> Result<JointVecto
         // Damping in proportion to the error left converges from afar and near singularities,
         // and fades where Gauss-Newton is quadratic (Sugihara, 2011).
         let damping = 0.5 * task.norm_squared() + DAMPING_FLOOR;
-        let mut hessian = weighted.tr_mul(&weighted);
-        for i in 0..7 {
-            hessian[(i, i)] += damping;
-        }
-        let step = minimise(
-            &hessian,
-            &weighted.tr_mul(&task),
-            &step_box(limits, &q),
-            &Start {
-                near: &JointVector::zeros(),
-                active,
-                passes_max: PASSES_MAX,
-            },
-        );
+        let zero = JointVector::zeros();
+        let problem = Problem::new(&weighted, &task, &zero, damping);
+        let step = minimise(&problem, &step_box(limits, &q), active, PASSES_MAX);
         active = step.active;
         q += step.x;
     }

@@ -1,12 +1,13 @@
 //! Poses and Jacobians of the frames.
 
-use nalgebra::{Cholesky, Matrix3, Matrix4, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use crate::Jacobian;
 use crate::chain::Chain;
 use crate::frame::{EndEffector, Frame};
 use crate::geometry::SHOULDER;
 use crate::inertia::cross;
+use crate::ldl::Ldl;
 use crate::scalar::sqrt;
 
 /// Rotation block and origin of a frame, in base axes and from the shoulder.
@@ -113,9 +114,19 @@ pub fn manipulability(jacobian: &Jacobian) -> f64 {
 
 /// `det(J Jᵀ)`, zero where rounding leaves no positive definite matrix.
 pub(crate) fn squared_manipulability(jacobian: &Jacobian) -> f64 {
-    let gram = jacobian * jacobian.transpose();
-    match Cholesky::new(gram) {
-        Some(factor) => factor.determinant(),
-        None => 0.0,
+    squared_manipulabilities(jacobian)[1]
+}
+
+/// `det(J Jᵀ)` of the first three rows and of all.
+pub(crate) fn squared_manipulabilities(jacobian: &Jacobian) -> [f64; 2] {
+    let mut gram = [[0.0; 6]; 6];
+    for column in &jacobian.data.0 {
+        for i in 0..6 {
+            for j in 0..=i {
+                gram[i][j] += column[i] * column[j];
+            }
+        }
     }
+    let [_, _, position, _, _, pose] = Ldl::leading_minors(&gram);
+    [position, pose]
 }

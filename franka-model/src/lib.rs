@@ -72,6 +72,7 @@ mod fr3;
 mod inertia;
 mod jacobian;
 mod kind;
+mod ldl;
 mod margins;
 mod merge;
 mod model;
@@ -99,6 +100,8 @@ pub mod urdf;
 mod identities;
 #[cfg(test)]
 mod known_numbers;
+#[cfg(test)]
+mod oracle;
 #[cfg(test)]
 mod random;
 

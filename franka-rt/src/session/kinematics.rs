@@ -61,7 +61,7 @@ pub(super) fn follow(
     let back = (posture - reference.q) * (POSTURE * fade);
     let bounds = bounds(model.joint_limits(), reference, budget);
     let solution =
-        DifferentialIk::default().solve(&jacobian, &twist, &back, &bounds, [Side::Free; 7]);
+        DifferentialIk::smooth().solve(&jacobian, &twist, &back, &bounds, [Side::Free; 7]);
 
     let dq = solution.velocity;
     let next = Reference {

@@ -19,7 +19,7 @@ pub(super) fn solve(
     elbow: Option<f64>,
     from: &JointVector,
 ) -> JointVector {
-    let ik = DifferentialIk::default();
+    let ik = DifferentialIk::smooth();
     let goal = target.to_homogeneous();
     let mut q = *from;
     let mut active = Default::default();
