@@ -73,8 +73,12 @@ fn unit(i: usize) -> JointVector {
 
 const ZERO: JointVector = crate::joint_vector([0.0; 7]);
 const FLOATING: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
-/// Per model.
-const CASES: usize = 3400;
+/// Per model: ten thousand in all, and with `--release` of each.
+const CASES: usize = if cfg!(debug_assertions) {
+    3_400
+} else {
+    10_000
+};
 
 #[test]
 fn the_mass_matrix_is_symmetric_and_positive_definite() {
@@ -230,6 +234,67 @@ fn coriolis_torques_follow_from_the_mass_matrix() {
             assert!((coriolis[i] - expected).abs() < 1e-7);
         }
     });
+}
+
+#[test]
+fn coriolis_torques_do_no_work_but_what_changes_the_inertia() {
+    // dM/dt − 2 C does no work: the passivity that control laws rest on.
+    for_each_case(44, |model, case| {
+        let h = 1e-5;
+        let mass = |step: f64| model.mass(&(case.q + case.dq * step), &case.load);
+        let rate = (mass(h) - mass(-h)) / (2.0 * h);
+        let work = case.dq.dot(&model.coriolis(&case.q, &case.dq, &case.load));
+        let expected = 0.5 * case.dq.dot(&(rate * case.dq));
+        assert!((work - expected).abs() < 1e-7, "{work} {expected}");
+    });
+}
+
+#[test]
+fn a_free_swing_keeps_its_energy() {
+    let potential = |model: &Model, case: &Case| -> f64 {
+        let energy = |i| {
+            let (mass, com, ..) = body(model, case, i);
+            -mass * com.dot(&case.gravity)
+        };
+        (0..8).map(energy).sum()
+    };
+    let mut random = Random::new(45);
+    for kind in RobotKind::ALL {
+        let model = Model::realisable(kind);
+        for _ in 0..20 {
+            let mut case = Case {
+                q: random.posture(model),
+                dq: random.joints(1.0),
+                ddq: ZERO,
+                load: random.load(),
+                ee: EndEffector::default(),
+                gravity: GRAVITY_EARTH,
+            };
+            let energy = |case: &Case| {
+                let mass = model.mass(&case.q, &case.load);
+                0.5 * case.dq.dot(&(mass * case.dq)) + potential(model, case)
+            };
+            let before = energy(&case);
+            // Runge and Kutta's fourth order, a quarter of a second.
+            let rate = |q: JointVector, dq: JointVector| {
+                let (load, gravity) = (&case.load, &case.gravity);
+                let ddq = model.forward_dynamics(&q, &dq, &ZERO, load, gravity, &ZERO);
+                (dq, ddq.expect("positive definite"))
+            };
+            let (mut q, mut dq, h) = (case.q, case.dq, 2.5e-4);
+            for _ in 0..1000 {
+                let (a, b) = rate(q, dq);
+                let (c, d) = rate(q + a * (h / 2.0), dq + b * (h / 2.0));
+                let (e, f) = rate(q + c * (h / 2.0), dq + d * (h / 2.0));
+                let (g, k) = rate(q + e * h, dq + f * h);
+                q += (a + (c + e) * 2.0 + g) * (h / 6.0);
+                dq += (b + (d + f) * 2.0 + k) * (h / 6.0);
+            }
+            (case.q, case.dq) = (q, dq);
+            let drift = energy(&case) - before;
+            assert!(drift.abs() < 1e-6, "{kind:?}: {drift:e} J");
+        }
+    }
 }
 
 #[test]
