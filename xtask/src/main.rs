@@ -57,6 +57,9 @@ enum Task {
         /// Rounds; each runs every benchmark once.
         #[arg(long, default_value_t = 15)]
         rounds: usize,
+        /// Count the instructions of the model's calls instead; needs valgrind.
+        #[arg(long)]
+        instructions: bool,
     },
 }
 
@@ -81,7 +84,10 @@ fn run(task: Task) -> anyhow::Result<()> {
             workspace.run(workspace.cargo_release_binary("vectors").args(dir))
         }
         Task::Fuzz { runs } => fuzz::run(&workspace, runs),
-        Task::Bench { rounds } => {
+        Task::Bench {
+            instructions: true, ..
+        } => workspace.run(&mut workspace.cargo_release_binary("instructions")),
+        Task::Bench { rounds, .. } => {
             let output = workspace.target().join("bench.json");
             let mut command = workspace.cargo_release_binary("bench");
             command.arg(&output).arg(rounds.to_string());

@@ -15,6 +15,7 @@
 //! | [`codec`] | a state read, a command written |
 //! | [`collision`] | distances of the arm to itself, with gradients |
 //! | [`cycle`] | target control, datagram in to datagram out |
+//! | [`inverse`] | all postures of a pose, joint velocities in a box |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
 //! | [`otg`] | a new target for axes in motion |
 //! | [`shape`] | filter, limiter and check of torques and of a pose |
@@ -25,9 +26,13 @@ use std::time::Instant;
 pub mod codec;
 pub mod collision;
 pub mod cycle;
+pub mod inverse;
 pub mod model;
 pub mod otg;
 pub mod shape;
+mod subject;
+
+pub use subject::Subject;
 
 /// One thing to measure.
 pub struct Benchmark {
@@ -77,6 +82,7 @@ pub fn all() -> Vec<Benchmark> {
         codec::all(),
         collision::all(),
         cycle::all(),
+        inverse::all(),
         model::all(),
         otg::all(),
         shape::all(),
@@ -84,6 +90,13 @@ pub fn all() -> Vec<Benchmark> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// The calls whose instructions can be counted too: those of the model.
+pub fn subjects() -> Vec<Subject> {
+    let mut subjects = model::subjects();
+    subjects.extend(inverse::subjects());
+    subjects
 }
 
 /// Runs `rounds` interleaved rounds, at least one, and gives the median of each statistic over them.

@@ -1,52 +1,57 @@
-//! Pose, Jacobian, mass, Coriolis and gravity of the FR3 under a load: five calls, and one pass.
+//! Pose, Jacobian, mass, Coriolis and gravity of the FR3 under a load: one by one, as five calls, and in one pass.
 
-use std::hint::black_box;
-
-use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
-use nalgebra::{Matrix3, Vector3};
+use franka_model::{
+    Dynamics, EndEffector, Frame, GRAVITY_EARTH, Jacobian, JointVector, Load, MassMatrix, Model,
+};
+use nalgebra::{Matrix3, Matrix4, Vector3};
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 
-use super::{Benchmark, Inputs, Statistic, timed};
+use super::{Benchmark, Inputs, Subject};
 
-/// The same five quantities in both ways.
+/// The same five quantities in every way.
 pub fn all() -> Vec<Benchmark> {
-    vec![five_calls(), one_pass()]
+    subjects().into_iter().map(Subject::p50).collect()
 }
 
-fn five_calls() -> Benchmark {
-    let mut postures = postures();
-    let (ee, load) = (EndEffector::default(), load());
-    let model = Model::fr3();
-    Benchmark {
-        key: "model.five_calls_ns",
-        statistics: &[Statistic::P50],
-        round: Box::new(move || {
-            timed(SAMPLES, BATCH, || {
-                let (q, dq) = black_box(postures.next());
-                black_box(model.pose(Frame::EndEffector, q, &ee));
-                black_box(model.zero_jacobian(Frame::EndEffector, q, &ee));
-                black_box(model.mass(q, &load));
-                black_box(model.coriolis(q, dq, &load));
-                black_box(model.gravity(q, &load, &GRAVITY_EARTH));
-            })
+/// What is measured, with postures inside the limits and moderate velocities.
+pub fn subjects() -> Vec<Subject> {
+    let (model, ee, load, earth) = (Model::fr3(), EndEffector::default(), load(), GRAVITY_EARTH);
+    let frame = Frame::EndEffector;
+    vec![
+        Subject::new("model.pose_ns", postures(), move |(q, _)| -> Matrix4<f64> {
+            model.pose(frame, q, &ee)
         }),
-    }
-}
-
-fn one_pass() -> Benchmark {
-    let mut postures = postures();
-    let (ee, load) = (EndEffector::default(), load());
-    let model = Model::fr3();
-    Benchmark {
-        key: "model.one_pass_ns",
-        statistics: &[Statistic::P50],
-        round: Box::new(move || {
-            timed(SAMPLES, BATCH, || {
-                let (q, dq) = black_box(postures.next());
-                black_box(model.dynamics(q, dq, &ee, &load, &GRAVITY_EARTH));
-            })
+        Subject::new("model.jacobian_ns", postures(), move |(q, _)| -> Jacobian {
+            model.zero_jacobian(frame, q, &ee)
         }),
-    }
+        Subject::new("model.mass_ns", postures(), move |(q, _)| -> MassMatrix {
+            model.mass(q, &load)
+        }),
+        Subject::new(
+            "model.coriolis_ns",
+            postures(),
+            move |(q, dq)| -> JointVector { model.coriolis(q, dq, &load) },
+        ),
+        Subject::new(
+            "model.gravity_ns",
+            postures(),
+            move |(q, _)| -> JointVector { model.gravity(q, &load, &earth) },
+        ),
+        Subject::new("model.five_calls_ns", postures(), move |(q, dq)| {
+            (
+                model.pose(frame, q, &ee),
+                model.zero_jacobian(frame, q, &ee),
+                model.mass(q, &load),
+                model.coriolis(q, dq, &load),
+                model.gravity(q, &load, &earth),
+            )
+        }),
+        Subject::new(
+            "model.one_pass_ns",
+            postures(),
+            move |(q, dq)| -> Dynamics { model.dynamics(q, dq, &ee, &load, &earth) },
+        ),
+    ]
 }
 
 /// Positions inside the limits and moderate velocities.
@@ -72,5 +77,3 @@ fn load() -> Load {
 
 const SEED: u64 = 2;
 const POSTURES: usize = 256;
-const SAMPLES: usize = 400;
-const BATCH: u32 = 16;

@@ -1,0 +1,41 @@
+//! One call to measure, whether in time or in instructions.
+
+use std::hint::black_box;
+
+use super::{Benchmark, Inputs, Statistic, timed};
+
+/// A call, with the next of its inputs every time.
+pub struct Subject {
+    /// As that of [`Benchmark`].
+    pub key: &'static str,
+    /// Makes one call.
+    pub call: Box<dyn FnMut()>,
+}
+
+impl Subject {
+    /// Calls `function` with `inputs`, one after the other and from the start again.
+    pub(super) fn new<T: 'static, Output>(
+        key: &'static str,
+        mut inputs: Inputs<T>,
+        mut function: impl FnMut(&T) -> Output + 'static,
+    ) -> Self {
+        Self {
+            key,
+            call: Box::new(move || {
+                black_box(function(black_box(inputs.next())));
+            }),
+        }
+    }
+
+    /// The median time of a call.
+    pub(super) fn p50(mut self) -> Benchmark {
+        Benchmark {
+            key: self.key,
+            statistics: &[Statistic::P50],
+            round: Box::new(move || timed(SAMPLES, BATCH, &mut self.call)),
+        }
+    }
+}
+
+const SAMPLES: usize = 400;
+const BATCH: u32 = 16;
