@@ -129,7 +129,7 @@ fn control_functions_and_sparse_targets_allocate_and_free_nothing() {
             .with_torques(|_, step| Torques([step.as_secs_f64(); 7])),
         ];
         for callback in callbacks {
-            let callback = callback.with_shaper(shaper.clone());
+            let callback = callback.with_shaper(shaper);
             let request = callback.request(version, MoveControllerMode::JointImpedance);
             let program = Program::Callback(Box::new(callback));
             let calls = calls_of(version, program, &request, |_| {});

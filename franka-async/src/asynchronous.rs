@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use franka_proto::{RequestError, RobotState};
 use franka_rt::control::{AbortReason, AsynchronousPositions, AsynchronousTarget, TargetStatus};
-use franka_rt::driver::{Modes, Program};
+use franka_rt::driver::Program;
 use franka_rt::session::GoalId;
 use franka_rt::shaping::check;
 use franka_rt::slot::SlotWriter;
@@ -12,7 +12,6 @@ use futures::FutureExt;
 use futures::future::{BoxFuture, Shared};
 
 use crate::bridge::Outcome;
-use crate::motion::Work;
 use crate::{MotionError, Robot};
 
 /// Options of [`Robot::asynchronous_joint_positions`].
@@ -56,16 +55,13 @@ impl Robot {
         }
         let (program, targets) = AsynchronousPositions::new();
         let request = AsynchronousPositions::request(options.maximum_joint_velocities);
-        let modes = Modes::of(&request);
         let id = self.next_goal();
-        let outcome = self.begin(Work::Program {
-            id,
-            program: Program::Asynchronous(program),
-            request: Box::new(request),
-        });
+        let outcome = self
+            .run(id, Program::Asynchronous(program), request)
+            .await?;
         let robot = self.clone();
         let end = outcome.map(move |outcome| outcome.unwrap_or_else(|_| robot.closed()));
-        let control = AsynchronousControl {
+        Ok(AsynchronousControl {
             robot: self.clone(),
             id,
             targets: Mutex::new(Targets {
@@ -74,11 +70,7 @@ impl Robot {
             }),
             goal_tolerance: options.goal_tolerance,
             end: end.boxed().shared(),
-        };
-        control
-            .until(|state| modes.shown_by(state).then_some(()))
-            .await?;
-        Ok(control)
+        })
     }
 }
 
@@ -131,8 +123,19 @@ impl AsynchronousControl {
     /// # Cancel safety
     /// Nothing is lost: the robot goes on.
     pub async fn reached(&self) -> Result<(), MotionError> {
-        self.until(|state| (self.status_in(state) == TargetStatus::TargetReached).then_some(()))
-            .await
+        let mut states = self.robot.states();
+        loop {
+            let status = self.status_in(&states.borrow_and_update());
+            if status == TargetStatus::TargetReached {
+                return Ok(());
+            }
+            tokio::select! {
+                outcome = self.end.clone() => return Err(end_of(outcome)),
+                changed = states.changed() => if changed.is_err() {
+                    return Err(end_of(self.end.clone().await));
+                },
+            }
+        }
     }
 
     /// Ends the motion at the newest target, or where the arm is without one, and resolves when the robot has. Best after
@@ -147,25 +150,6 @@ impl AsynchronousControl {
         let newest = self.lock().newest;
         self.write(newest.unwrap_or(self.robot.state().q_d), true);
         self.end.clone().await
-    }
-
-    /// Waits for a state that `answer` has an answer to, or for the end of the motion.
-    async fn until<T>(
-        &self,
-        mut answer: impl FnMut(&RobotState) -> Option<T>,
-    ) -> Result<T, MotionError> {
-        let mut states = self.robot.states();
-        loop {
-            if let Some(answer) = answer(&states.borrow_and_update()) {
-                return Ok(answer);
-            }
-            tokio::select! {
-                outcome = self.end.clone() => return Err(end_of(outcome)),
-                changed = states.changed() => if changed.is_err() {
-                    return Err(end_of(self.end.clone().await));
-                },
-            }
-        }
     }
 
     fn status_in(&self, state: &RobotState) -> TargetStatus {

@@ -36,7 +36,7 @@ pub(crate) type Outcome = Result<MotionReport, MotionError>;
 pub(crate) enum Input {
     Begin {
         work: Work,
-        done: oneshot::Sender<Outcome>,
+        waiting: Waiting,
     },
     /// `taken` hears whether the goal is still the newest.
     Update {
@@ -58,6 +58,15 @@ pub(crate) enum Input {
     Shutdown {
         done: oneshot::Sender<()>,
     },
+}
+
+/// Whoever awaits something that was begun.
+#[derive(Debug)]
+pub(crate) struct Waiting {
+    /// Hears that a program runs.
+    pub(crate) began: Option<oneshot::Sender<()>>,
+    /// Hears how it ended.
+    pub(crate) done: oneshot::Sender<Outcome>,
 }
 
 /// The ways into the bridge, and the one way out of it that others subscribe to.
@@ -103,7 +112,7 @@ pub(crate) struct Bridge {
     connection: Option<Connection>,
     states: watch::Sender<RobotState>,
     records: broadcast::Sender<Record>,
-    waiting: HashMap<GoalId, oneshot::Sender<Outcome>>,
+    waiting: HashMap<GoalId, Waiting>,
     started: Instant,
     /// Whether robot or thread is out of reach, for good.
     lost: bool,
@@ -218,13 +227,20 @@ impl Bridge {
                     }
                 }
                 Output::Send { motion, request } => self.channel.send(motion, request),
+                Output::Began { id } => {
+                    let waiting = self.waiting.get_mut(&id);
+                    if let Some(began) = waiting.and_then(|waiting| waiting.began.take()) {
+                        // Whoever began it may have gone.
+                        let _ = began.send(());
+                    }
+                }
                 Output::Resolve { goal, result } => {
                     if let Err(error) = &result {
                         tracing::info!(goal = goal.0, %error, "motion ended");
                     }
-                    if let Some(done) = self.waiting.remove(&goal) {
+                    if let Some(waiting) = self.waiting.remove(&goal) {
                         // Nobody listens to a motion that was dropped or detached.
-                        let _ = done.send(result);
+                        let _ = waiting.done.send(result);
                     }
                 }
             }
@@ -267,7 +283,7 @@ impl Bridge {
     fn on_input(&mut self, input: Input) {
         let now = self.now();
         match input {
-            Input::Begin { work, done } => {
+            Input::Begin { work, waiting } => {
                 let id = work.id();
                 let begun = match work {
                     Work::Goal(goal) => self.lifecycle.submit(*goal, &self.states.borrow(), now),
@@ -279,10 +295,10 @@ impl Bridge {
                 };
                 match begun {
                     Ok(()) => {
-                        self.waiting.insert(id, done);
+                        self.waiting.insert(id, waiting);
                     }
                     Err(error) => {
-                        let _ = done.send(Err(error));
+                        let _ = waiting.done.send(Err(error));
                     }
                 }
             }
@@ -298,7 +314,8 @@ impl Bridge {
             Input::Cancel { goal } => self.lifecycle.cancel(goal, now),
             Input::Stop { goal, done } => {
                 if self.lifecycle.stop(goal, now) {
-                    self.waiting.insert(goal, done);
+                    let waiting = Waiting { began: None, done };
+                    self.waiting.insert(goal, waiting);
                 }
                 // Otherwise nothing moves, and dropping `done` says so.
             }

@@ -1,6 +1,7 @@
 //! From an address to a running connection.
 
 use std::net::SocketAddr;
+use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
 use franka_model::{Model, RobotKind};
@@ -23,6 +24,7 @@ use crate::bridge::{self, Bridge};
 use crate::builder::{Builder, Endpoint, VersionPolicy};
 use crate::channel::{CLOSED_BY_PEER, Channel};
 use crate::codec::{MessageCodec, StreamError, reason};
+use crate::robot::Shared;
 use crate::{ConnectError, Robot};
 
 /// Time for the TCP connection. Source: libfranka 0.21, `network.h`.
@@ -47,6 +49,7 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let (channel, connection, reports) =
         Channel::start(opened.stream, opened.session, published.clone());
     let stats = opened.handle.stats.clone();
+    let lender = opened.handle.lender.clone();
     let lifecycle = Lifecycle::new(opened.model, opened.version).with_log_size(builder.log_size);
     let bridge = Bridge::new(
         lifecycle,
@@ -56,15 +59,17 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         states,
     );
     let inputs = bridge.start(reports, builder.cancellation);
-    Ok(Robot::new(
-        opened.model,
-        opened.version,
+    Ok(Robot::new(Shared {
+        model: opened.model,
+        version: opened.version,
         address,
         inputs,
         channel,
-        published,
+        states: published,
         stats,
-    ))
+        lender,
+        goals: AtomicU64::new(0),
+    }))
 }
 
 struct Opened {

@@ -12,6 +12,8 @@ use franka_proto::{
 use franka_rt::sched::SchedError;
 use franka_rt::thread::{LinkFault, StartError};
 
+pub use crate::active::ActiveError;
+
 pub use franka_rt::lifecycle::{ControlError, MotionError, Party};
 pub use franka_rt::session::GoalError;
 
@@ -32,6 +34,9 @@ pub enum Error {
     /// A motion ended short of its goal for another reason.
     #[error(transparent)]
     Motion(MotionError),
+    /// Active control could not go on.
+    #[error(transparent)]
+    Active(ActiveError),
     /// There is no connection to the Franka Hand.
     #[error(transparent)]
     ConnectGripper(#[from] ConnectError<gripper::Version>),
@@ -63,6 +68,15 @@ impl From<MotionError> for Error {
     }
 }
 
+impl From<ActiveError> for Error {
+    fn from(error: ActiveError) -> Self {
+        match error {
+            ActiveError::Motion(error) => error.into(),
+            other => Self::Active(other),
+        }
+    }
+}
+
 impl Error {
     /// Who can act on it.
     pub fn party(&self) -> Party {
@@ -71,6 +85,7 @@ impl Error {
             Self::Command(error) => error.party(),
             Self::Control(_) => Party::Robot,
             Self::Motion(error) => error.party(),
+            Self::Active(error) => error.party(),
             Self::ConnectGripper(error) => error.party(),
             Self::Gripper(error) => error.party(),
             Self::ConnectVacuumGripper(error) => error.party(),

@@ -9,7 +9,8 @@
 //!
 //! * [`Robot`]: a cheap, cloneable handle, fit for the state of a web service. [`Builder`] connects it.
 //! * [`Motion`]: `move_to`, `move_joints`: built, then awaited. [`Follow`]: targets from a `watch` at their own rate.
-//! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`AsynchronousControl`]: sparse joint
+//! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`Active`]: the same from a thread of
+//!   the user's, which reads states and writes commands. [`AsynchronousControl`]: sparse joint
 //!   targets between which the robot plans.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
 //! * `Robot::model` (feature `urdf`, on by default): the model of the connected arm, from its own description.
@@ -40,6 +41,7 @@
 //! It holds no control loop: no task of the runtime is on the path from a state to its command, so a blocked worker
 //! delays new goals and nothing else. It does not reconnect by itself. It has not been run against a real arm yet.
 
+mod active;
 mod asynchronous;
 mod bridge;
 mod builder;
@@ -57,6 +59,7 @@ mod parameters;
 mod robot;
 mod vacuum;
 
+pub use active::{Active, ActiveError};
 pub use asynchronous::{AsynchronousControl, AsynchronousOptions};
 pub use builder::{Builder, Endpoint, VersionPolicy};
 pub use control::Control;
@@ -110,6 +113,7 @@ const _: () = {
     shared::<Motion>();
     shared::<Follow>();
     shared::<std::sync::Arc<AsynchronousControl>>();
+    spawned::<Active<Torques>>();
     spawned::<Control>();
     spawned::<Moving>();
     spawned::<<Follow as IntoFuture>::IntoFuture>();

@@ -1,17 +1,19 @@
 //! The handle that programs hold.
 
+use std::fmt;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use franka_model::{EndEffector, Frame, Model, transform};
-use franka_proto::{RobotState, Version};
-use franka_rt::driver::Record;
+use franka_proto::{MoveRequest, RobotState, Version};
+use franka_rt::driver::{Program, Record};
 use franka_rt::session::{GoalId, Target};
 use franka_rt::stats::Stats;
+use franka_rt::thread::Lender;
 use tokio::sync::{broadcast, oneshot, watch};
 
-use crate::bridge::{Input, Inputs, Outcome};
+use crate::bridge::{Input, Inputs, Outcome, Waiting};
 use crate::builder::{Builder, Endpoint};
 use crate::channel::Channel;
 use crate::motion::Work;
@@ -28,45 +30,29 @@ use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 /// with a reflex. Await [`Robot::shutdown`] before the program ends.
 ///
 /// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Robot {
     shared: Arc<Shared>,
 }
 
-#[derive(Debug)]
-struct Shared {
-    model: &'static Model,
-    version: Version,
-    address: SocketAddr,
-    inputs: Inputs,
-    channel: Channel,
-    states: watch::Receiver<RobotState>,
-    stats: Arc<Stats>,
-    goals: AtomicU64,
+/// What all handles of a connection share.
+pub(crate) struct Shared {
+    pub(crate) model: &'static Model,
+    pub(crate) version: Version,
+    pub(crate) address: SocketAddr,
+    pub(crate) inputs: Inputs,
+    pub(crate) channel: Channel,
+    pub(crate) states: watch::Receiver<RobotState>,
+    pub(crate) stats: Arc<Stats>,
+    pub(crate) lender: Lender,
+    /// How many goals were named so far.
+    pub(crate) goals: AtomicU64,
 }
 
 impl Robot {
-    pub(crate) fn new(
-        model: &'static Model,
-        version: Version,
-        address: SocketAddr,
-        inputs: Inputs,
-        channel: Channel,
-        states: watch::Receiver<RobotState>,
-        stats: Arc<Stats>,
-    ) -> Self {
-        let goals = AtomicU64::new(0);
+    pub(crate) fn new(shared: Shared) -> Self {
         Self {
-            shared: Arc::new(Shared {
-                model,
-                version,
-                address,
-                inputs,
-                channel,
-                states,
-                stats,
-                goals,
-            }),
+            shared: Arc::new(shared),
         }
     }
 
@@ -204,6 +190,10 @@ impl Robot {
         &self.shared.channel
     }
 
+    pub(crate) fn lender(&self) -> &Lender {
+        &self.shared.lender
+    }
+
     /// A name for a goal that was never used before.
     pub(crate) fn next_goal(&self) -> GoalId {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
@@ -212,8 +202,44 @@ impl Robot {
     /// Has the bridge begin something. Whoever waits for the answer hears nothing if the bridge has ended.
     pub(crate) fn begin(&self, work: Work) -> oneshot::Receiver<Outcome> {
         let (done, outcome) = oneshot::channel();
-        self.send(Input::Begin { work, done });
+        let waiting = Waiting { began: None, done };
+        self.send(Input::Begin { work, waiting });
         outcome
+    }
+
+    /// Has the bridge begin a program, and waits until it runs. Returns where its end will be heard. Dropping the future has
+    /// the robot stop.
+    ///
+    /// # Errors
+    /// What ended the motion before it ran.
+    pub(crate) async fn run(
+        &self,
+        id: GoalId,
+        program: Program,
+        request: MoveRequest,
+    ) -> Result<oneshot::Receiver<Outcome>, MotionError> {
+        let (begin, began) = oneshot::channel();
+        let (done, outcome) = oneshot::channel();
+        let request = Box::new(request);
+        let work = Work::Program {
+            id,
+            program,
+            request,
+        };
+        let waiting = Waiting {
+            began: Some(begin),
+            done,
+        };
+        self.send(Input::Begin { work, waiting });
+        let mut stop = StopOnDrop(Some((self, id)));
+        if began.await.is_err() {
+            // It never will: the end has the reason.
+            let ended = outcome.await.unwrap_or_else(|_| self.closed());
+            stop.0 = None;
+            return Err(ended.err().unwrap_or(MotionError::Stopped));
+        }
+        stop.0 = None;
+        Ok(outcome)
     }
 
     /// Takes back what was begun under this name.
@@ -232,5 +258,25 @@ impl Robot {
         Err(MotionError::ConnectionClosed {
             reason: self.shared.channel.end_reason().to_owned(),
         })
+    }
+}
+
+impl fmt::Debug for Robot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Robot")
+            .field("address", &self.shared.address)
+            .field("version", &self.shared.version)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Has the robot stop a program whose beginning nobody awaits any more.
+struct StopOnDrop<'a>(Option<(&'a Robot, GoalId)>);
+
+impl Drop for StopOnDrop<'_> {
+    fn drop(&mut self) {
+        if let Some((robot, id)) = self.0.take() {
+            robot.cancel(id);
+        }
     }
 }

@@ -14,7 +14,7 @@
 //! finds the other in the middle of an operation spins until it is done, and if the other was preempted by this very
 //! thread, on the one processor that it may run on, that never happens.
 //!
-//! One cycle of the loop is [`Cycle`], and it can be lent out: a thread of the user's then runs it in this one's place,
+//! The cycle can be lent out: a thread of the user's then runs it in this one's place,
 //! through a [`Lease`], for as long as it likes.
 //!
 //! The clock is read here and nowhere else in the crate, for three things: how long the robot has been silent, how far

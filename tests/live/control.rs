@@ -15,7 +15,7 @@ use crate::{alone, connect};
 
 /// A simulated robot of each kind with its hand, and a handle on it. A busy machine loses cycles, which shows as a step
 /// in what a function commands: that is for lockstep to judge, so these robots mind neither unless `strict`.
-async fn each(strict: bool) -> Vec<(Robot, Running)> {
+pub(crate) async fn each(strict: bool) -> Vec<(Robot, Running)> {
     let mut robots = Vec::new();
     for sim in [Sim::fr3(), Sim::fer()] {
         let sim = sim.enforce_limits(strict).enforce_communication(strict);

@@ -2,6 +2,7 @@
 //!
 //! Run one at a time: each test has a robot, and two cores carry only so many.
 
+mod active;
 mod connecting;
 mod control;
 mod dropping;

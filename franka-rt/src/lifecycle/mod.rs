@@ -56,6 +56,11 @@ pub enum Output {
         /// The request.
         request: Request,
     },
+    /// Tell whoever began this program, if they want to know, that it runs now.
+    Began {
+        /// The name of the program.
+        id: GoalId,
+    },
     /// Tell whoever awaits this goal. Each goal that was taken is told exactly once.
     Resolve {
         /// The goal.
@@ -157,6 +162,10 @@ impl Lifecycle {
                 active.thread = ThreadSide::Running;
                 if active.command == CommandSide::Started {
                     active.deadline = active.running_deadline();
+                }
+                if let Work::Program(program) = &active.work {
+                    let id = program.id;
+                    self.outputs.push_back(Output::Began { id });
                 }
             }
             Event::Program {

@@ -227,6 +227,7 @@ impl Client {
                     self.motions.insert(outgoing.id(), motion);
                     self.to_robot.push_back(outgoing.as_bytes().to_vec());
                 }
+                Output::Began { .. } => {}
                 Output::Resolve { goal, result } => {
                     let twice = self.outcomes.insert(goal, result);
                     assert!(twice.is_none(), "goal {goal:?} is resolved once");

@@ -1,0 +1,294 @@
+//! Active control: a thread of the user's reads states and writes commands, and is the control cycle meanwhile.
+
+use std::marker::PhantomData;
+use std::time::Duration;
+
+use franka_proto::{MoveControllerMode, MoveRequest, RobotState};
+use franka_rt::control::{
+    ActiveControl, CartesianPose, CartesianVelocities, Command, GeneratorCommand, JointPositions,
+    JointVelocities, Next, Torques,
+};
+use franka_rt::driver::Program;
+use franka_rt::session::GoalId;
+use franka_rt::thread::{BorrowError, Lease, WriteFault};
+use futures::FutureExt;
+use tokio::sync::oneshot;
+
+use crate::bridge::Outcome;
+use crate::{MotionError, MotionReport, Party, Robot};
+
+impl Robot {
+    /// Begins control by torques from a thread of the caller's, and resolves when the motion runs. The first command is
+    /// due within a few milliseconds: hand the result to the thread that reads and writes at once.
+    ///
+    /// # Errors
+    /// [`MotionError::Busy`] while anything else controls the arm; otherwise what ended the motion before it ran.
+    ///
+    /// # Cancel safety
+    /// Dropping the future has the robot stop.
+    pub async fn active_torques(&self) -> Result<Active<Torques>, MotionError> {
+        let generator = self.version().torque_generator();
+        let request = MoveRequest::new(MoveControllerMode::ExternalController, generator);
+        Active::begin(self, request).await
+    }
+
+    /// Begins control by joint positions, for the controller named; with [`MoveControllerMode::ExternalController`] every
+    /// command needs torques beside it. Otherwise like [`Self::active_torques`].
+    ///
+    /// # Errors
+    /// See [`Self::active_torques`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::active_torques`].
+    pub async fn active_joint_positions(
+        &self,
+        controller: MoveControllerMode,
+    ) -> Result<Active<JointPositions>, MotionError> {
+        self.active_motion(controller).await
+    }
+
+    /// Begins control by joint velocities; otherwise like [`Self::active_joint_positions`].
+    ///
+    /// # Errors
+    /// See [`Self::active_torques`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::active_torques`].
+    pub async fn active_joint_velocities(
+        &self,
+        controller: MoveControllerMode,
+    ) -> Result<Active<JointVelocities>, MotionError> {
+        self.active_motion(controller).await
+    }
+
+    /// Begins control by poses of the end effector; otherwise like [`Self::active_joint_positions`].
+    ///
+    /// # Errors
+    /// See [`Self::active_torques`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::active_torques`].
+    pub async fn active_cartesian_pose(
+        &self,
+        controller: MoveControllerMode,
+    ) -> Result<Active<CartesianPose>, MotionError> {
+        self.active_motion(controller).await
+    }
+
+    /// Begins control by twists of the end effector; otherwise like [`Self::active_joint_positions`].
+    ///
+    /// # Errors
+    /// See [`Self::active_torques`].
+    ///
+    /// # Cancel safety
+    /// See [`Self::active_torques`].
+    pub async fn active_cartesian_velocities(
+        &self,
+        controller: MoveControllerMode,
+    ) -> Result<Active<CartesianVelocities>, MotionError> {
+        self.active_motion(controller).await
+    }
+
+    async fn active_motion<C: GeneratorCommand>(
+        &self,
+        controller: MoveControllerMode,
+    ) -> Result<Active<C>, MotionError> {
+        let generator = C::ZERO.into().generator();
+        Active::begin(self, MoveRequest::new(controller, generator)).await
+    }
+}
+
+/// A motion under active control. Send it to a thread, which then is the control cycle: from the first
+/// [`read_once`](Self::read_once) until this is dropped, states are received in there and nowhere else, and a thread that
+/// neither reads nor writes leaves the robot without commands, which stops it.
+///
+/// Commands pass no filter and no limiter. All methods block; none may be called from async code. Nothing is raised but
+/// the driver's own thread: real-time scheduling of the calling thread is up to the caller, see [`franka_rt::sched`].
+///
+/// **Dropping it** before the last command has the robot stop.
+#[derive(Debug)]
+pub struct Active<C> {
+    robot: Robot,
+    id: GoalId,
+    /// `None` before the first read, and once the cycle went back.
+    lease: Option<Lease>,
+    /// `None` once the end is known.
+    outcome: Option<oneshot::Receiver<Outcome>>,
+    /// `message_id` of the newest state read.
+    previous: Option<u64>,
+    commands: PhantomData<fn(C)>,
+}
+
+/// Why a state could not be read or a command not written.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ActiveError {
+    /// The motion has ended, and how.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// The motion has ended as asked: its last command was written before.
+    #[error("writeOnce must not be called after the motion has finished.")]
+    Finished,
+    /// The command was not sent; the motion goes on.
+    #[error(transparent)]
+    Write(#[from] WriteFault),
+    /// The cycle cannot be had.
+    #[error(transparent)]
+    Borrow(#[from] BorrowError),
+}
+
+impl ActiveError {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Motion(error) => error.party(),
+            Self::Write(WriteFault::Link(_)) => Party::Link,
+            Self::Finished | Self::Write(_) | Self::Borrow(_) => Party::Caller,
+        }
+    }
+}
+
+impl<C> Active<C> {
+    async fn begin(robot: &Robot, request: MoveRequest) -> Result<Self, MotionError> {
+        let id = robot.next_goal();
+        let program = Program::Active(ActiveControl);
+        let outcome = robot.run(id, program, request).await?;
+        Ok(Self {
+            robot: robot.clone(),
+            id,
+            lease: None,
+            outcome: Some(outcome),
+            previous: None,
+            commands: PhantomData,
+        })
+    }
+
+    /// Waits for the next state of the motion; returns it with the robot's time since the state read before, which is
+    /// zero at first and more than a millisecond after a loss.
+    ///
+    /// # Errors
+    /// [`ActiveError::Motion`] when the robot has ended the motion, or has been silent for the link timeout;
+    /// [`ActiveError::Finished`] after the last command.
+    pub fn read_once(&mut self) -> Result<(RobotState, Duration), ActiveError> {
+        if self.outcome.is_none() {
+            return Err(ActiveError::Finished);
+        }
+        loop {
+            let lease = match &mut self.lease {
+                Some(lease) => lease,
+                none => none.insert(self.robot.lender().borrow()?),
+            };
+            let turned = lease.turn();
+            // The motion is over for the cycle, or the thread is: the bridge knows why.
+            if turned.is_err() || lease.core().is_watching() {
+                return Err(match self.end() {
+                    Ok(_) => ActiveError::Finished,
+                    Err(error) => error.into(),
+                });
+            }
+            if let Ok(Some(state)) = turned {
+                let previous = self.previous.replace(state.message_id);
+                let step = state.message_id - previous.unwrap_or(state.message_id);
+                return Ok((state, Duration::from_millis(step)));
+            }
+        }
+    }
+
+    /// Sends a command; the last one also waits until the robot has ended the motion.
+    fn write(
+        &mut self,
+        command: &Command,
+        finished: bool,
+    ) -> Result<Option<MotionReport>, ActiveError> {
+        if self.outcome.is_none() {
+            return Err(ActiveError::Finished);
+        }
+        let lease = match &mut self.lease {
+            Some(lease) => lease,
+            none => none.insert(self.robot.lender().borrow()?),
+        };
+        lease.write(command, finished)?;
+        if finished {
+            return Ok(Some(self.end()?));
+        }
+        Ok(None)
+    }
+
+    /// Gives the cycle back and waits for the end of the motion.
+    fn end(&mut self) -> Outcome {
+        self.lease = None;
+        match self.outcome.take() {
+            Some(outcome) => outcome
+                .blocking_recv()
+                .unwrap_or_else(|_| self.robot.closed()),
+            None => Err(MotionError::Stopped),
+        }
+    }
+}
+
+impl Active<Torques> {
+    /// Sends torques for the newest state. After the last ones (`torques.finish()`), waits until the robot has ended the
+    /// motion and returns its report.
+    ///
+    /// # Errors
+    /// [`ActiveError::Write`] for torques that cannot be sent, after which others may be; [`ActiveError::Motion`] if the
+    /// robot ended the motion otherwise than asked.
+    pub fn write_once(
+        &mut self,
+        torques: impl Into<Next<Torques>>,
+    ) -> Result<Option<MotionReport>, ActiveError> {
+        let (torques, finished) = torques.into().into_parts();
+        let command = Command::torques(self.robot.version(), torques);
+        self.write(&command, finished)
+    }
+}
+
+impl<C: GeneratorCommand> Active<C> {
+    /// Sends a command to the motion generator for the newest state, under one of the robot's own controllers. After the
+    /// last one, waits until the robot has ended the motion and returns its report.
+    ///
+    /// # Errors
+    /// As [`Active<Torques>::write_once`]; without torques where the motion wants them, refused with the vendor's text.
+    pub fn write_motion(
+        &mut self,
+        motion: impl Into<Next<C>>,
+    ) -> Result<Option<MotionReport>, ActiveError> {
+        let (motion, finished) = motion.into().into_parts();
+        let command = Command {
+            motion: Some(motion.into()),
+            torques: None,
+        };
+        self.write(&command, finished)
+    }
+
+    /// Sends a command to the motion generator and torques beside it, under an external controller. If either is the last,
+    /// waits until the robot has ended the motion and returns its report.
+    ///
+    /// # Errors
+    /// As [`Self::write_motion`]; torques that the motion does not want are refused with the vendor's text.
+    pub fn write_motion_and_torques(
+        &mut self,
+        motion: impl Into<Next<C>>,
+        torques: impl Into<Next<Torques>>,
+    ) -> Result<Option<MotionReport>, ActiveError> {
+        let (motion, finished) = motion.into().into_parts();
+        let (torques, last) = torques.into().into_parts();
+        let command = Command {
+            motion: Some(motion.into()),
+            torques: Some(torques),
+        };
+        self.write(&command, finished || last)
+    }
+}
+
+impl<C> Drop for Active<C> {
+    fn drop(&mut self) {
+        // The cycle goes back first, so that the thread sees the motion through.
+        self.lease = None;
+        if let Some(outcome) = self.outcome.take()
+            && outcome.now_or_never().is_none()
+        {
+            self.robot.cancel(self.id);
+        }
+    }
+}
