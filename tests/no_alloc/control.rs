@@ -1,7 +1,4 @@
-//! The control cycle neither allocates nor frees: an allocator counts what it does over 10^5 cycles of each program.
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+//! The control cycle, over 10^5 cycles of each program.
 
 use franka_proto::{MoveControllerMode, MoveRequest, RobotMode, RobotState, Version};
 use franka_rt::control::{
@@ -11,58 +8,10 @@ use franka_rt::driver::{ControlLog, Driver, Modes, MotionId, Order, Program};
 use franka_rt::shaping::Shaper;
 use franka_tests::lockstep::Wander;
 
-thread_local! {
-    static COUNTING: Cell<bool> = const { Cell::new(false) };
-    static CALLS: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-fn count() {
-    if COUNTING.get() {
-        CALLS.set(CALLS.get() + 1);
-    }
-}
-
-// SAFETY: every method hands its arguments to the system's allocator unchanged and returns what that returns; counting
-// touches two thread-local cells without destructors, which neither allocates nor unwinds.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: the caller's obligations are those of the system's allocator.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        count();
-        // SAFETY: as above; `pointer` came from the system's allocator.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        // SAFETY: as above.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-/// Calls of the allocator while `work` runs.
-fn calls_during(work: &mut dyn FnMut()) -> u64 {
-    CALLS.set(0);
-    COUNTING.set(true);
-    work();
-    COUNTING.set(false);
-    CALLS.get()
-}
+use crate::calls_during;
 
 #[test]
 fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
-    let seen = calls_during(&mut || drop(std::hint::black_box(Box::new(1))));
-    assert_eq!(seen, 2, "the allocator counts");
-
     let seed = 7;
     let mut wander = Wander::new(seed);
     let (mut cycles, mut calls) = (0, 0);
@@ -109,7 +58,7 @@ fn calls_of(
     for time in 1..=CYCLES {
         before(time);
         state.message_id = time;
-        calls += calls_during(&mut || commands += u64::from(driver.on_state(&state).is_some()));
+        calls += calls_during(|| commands += u64::from(driver.on_state(&state).is_some()));
     }
     assert!(commands >= CYCLES / 10, "{commands} commands");
     calls

@@ -1,9 +1,7 @@
-//! The running thread neither allocates nor frees, whatever comes over its socket and queues.
+//! The running thread, whatever comes over its socket and queues.
 //!
-//! The allocator counts per thread, and the core, which runs on the real-time thread, reads the count of that thread.
+//! The core, which runs on the real-time thread, reads the count of that thread.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::hint::black_box;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 use std::sync::Arc;
@@ -15,42 +13,6 @@ use franka_rt::driver::{Driver, Event, Record};
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, Scheduling};
 use franka_rt::thread::{self, Core, Handle, Notice, ThreadConfig};
-
-struct Counting;
-
-thread_local! {
-    static CALLS: Cell<u64> = const { Cell::new(0) };
-}
-
-fn count() {
-    CALLS.set(CALLS.get() + 1);
-}
-
-// SAFETY: every method passes its arguments on to `System`, which upholds the contract of the trait, and returns what
-// that returns. Counting touches a thread-local number that is initialised at compile time and has no destructor, so
-// it neither allocates nor fails in any phase of a thread's life.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: the caller's promise about `layout` is the one that `System` asks for.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        count();
-        // SAFETY: `block` came from `System` through this allocator, with this layout.
-        unsafe { System.dealloc(block, layout) }
-    }
-
-    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        // SAFETY: `block` came from `System` through this allocator; the caller vouches for the size.
-        unsafe { System.realloc(block, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 const VERSION: Version = Version::V10;
 
@@ -65,7 +27,7 @@ struct Watched {
 
 impl Watched {
     fn look(&mut self) {
-        let now = CALLS.get();
+        let now = crate::calls();
         let first = *self.first.get_or_insert(now);
         self.calls.store(now - first, Ordering::Relaxed);
     }
@@ -180,7 +142,6 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
     (calls.load(Ordering::Relaxed), stats.states.get())
 }
 
-/// One test, so that nothing else runs beside it.
 #[test]
 fn the_running_thread_neither_allocates_nor_frees() {
     let (calls, states) = calls_of_a_busy_thread(1);

@@ -1,0 +1,62 @@
+//! What runs on the real-time thread neither allocates nor frees: an allocator counts, thread by thread.
+
+mod control;
+mod generator;
+mod thread;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+thread_local! {
+    static CALLS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+/// How often this thread has called the allocator so far.
+fn calls() -> u64 {
+    CALLS.get()
+}
+
+/// Calls of the allocator while `work` runs.
+fn calls_during(work: impl FnOnce()) -> u64 {
+    let before = calls();
+    work();
+    calls() - before
+}
+
+fn count() {
+    CALLS.set(CALLS.get() + 1);
+}
+
+// SAFETY: every method hands its arguments to the system's allocator unchanged and returns what that returns; counting
+// touches a thread-local cell that is initialised at compile time and has no destructor, so it neither allocates nor
+// fails in any phase of a thread's life.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller's obligations are those of the system's allocator.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        count();
+        // SAFETY: as above; `pointer` came from the system's allocator.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: as above.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn the_allocator_counts() {
+    let seen = calls_during(|| drop(std::hint::black_box(Box::new(1))));
+    assert_eq!(seen, 2);
+}
