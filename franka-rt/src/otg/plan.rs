@@ -158,13 +158,14 @@ impl<const N: usize> Plan<N> {
         limits: &Limits<N>,
         until: f64,
     ) -> Result<(), PlanError> {
-        let mut axes = [None; N];
+        let axes: [_; N] =
+            core::array::from_fn(|i| Axis::new(state.axis(i), target.axis(i), limits.axis(i)));
         let mut duration = 0.0_f64;
-        for (i, axis) in axes.iter_mut().enumerate() {
-            let solved = Axis::new(state.axis(i), target.axis(i), limits.axis(i))
-                .map_err(|refusal| refusal.of_axis(i))?;
-            duration = duration.max(solved.least_duration());
-            *axis = Some(solved);
+        for (i, axis) in axes.iter().enumerate() {
+            match axis {
+                Ok(axis) => duration = duration.max(axis.least_duration()),
+                Err(refusal) => return Err(refusal.of_axis(i)),
+            }
         }
         let moves = !target.is_at_rest();
         if moves {
@@ -289,7 +290,7 @@ impl<const N: usize> Plan<N> {
 ///
 /// An axis that cannot take a duration asks for the next one that it can, which is one of its candidates; the duration
 /// only grows, so each candidate is asked for once at most.
-fn common_duration<const N: usize>(axes: &[Option<Axis>; N], at_least: f64) -> f64 {
+fn common_duration<const N: usize>(axes: &[Result<Axis, Refusal>; N], at_least: f64) -> f64 {
     let mut duration = at_least;
     for _ in 0..N * CANDIDATES {
         let next = axes

@@ -30,15 +30,13 @@ impl Task {
     pub(super) fn new(state: AxisState, target: f64, limits: AxisLimits) -> Option<(Self, f64)> {
         let (task, unit) = Self::unchecked(state, target, limits);
         let fits = |value: f64| value.abs() < FAR; // false for NaN
+        let scales = |value: f64| value < FAR && value > 1.0 / FAR;
         let representable = fits(task.d)
             && fits(task.v)
             && fits(task.a * task.a)
-            && fits(task.top)
-            && fits(1.0 / task.top)
-            && fits(unit)
-            && fits(1.0 / unit)
-            && fits(limits.acceleration * unit * unit)
-            && fits(1.0 / (limits.acceleration * unit * unit));
+            && scales(task.top)
+            && scales(unit)
+            && scales(limits.acceleration * unit * unit);
         representable.then_some((task, unit))
     }
 

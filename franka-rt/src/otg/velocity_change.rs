@@ -34,12 +34,16 @@ impl VelocityChange {
 
     /// Whether the change can take `t`.
     pub(super) fn is_possible(&self, t: f64) -> bool {
+        self.is_possible_within(t, TIGHT * self.size)
+    }
+
+    fn is_possible_within(&self, t: f64, tolerance: f64) -> bool {
         let Self { a0, af, .. } = *self;
         let shortest = (af - a0).abs();
         let (highest, lowest) = (0.5 * (t + a0 + af), 0.5 * (t - a0 - af));
         t >= shortest * (1.0 - ROUNDING)
-            && area(highest) >= self.peak - TIGHT * self.size
-            && area(lowest) >= self.valley - TIGHT * self.size
+            && area(highest) >= self.peak - tolerance
+            && area(lowest) >= self.valley - tolerance
     }
 
     /// Where possible durations begin or end, in no order, and what the rounding of velocities makes of them.
@@ -61,7 +65,9 @@ impl VelocityChange {
             let rounding = tolerance / extreme.min(1.0).max(tolerance.sqrt());
             for (j, extreme) in [extreme, -extreme].into_iter().enumerate() {
                 let t = 2.0 * extreme - sum;
-                if t >= shortest - 2.0 * rounding && self.is_possible(t.max(shortest)) {
+                if t >= shortest - 2.0 * rounding
+                    && self.is_possible_within(t.max(shortest), tolerance)
+                {
                     times[2 * i + j] = Some((t.max(shortest), rounding));
                 }
             }

@@ -2,9 +2,11 @@
 
 use proptest::prelude::*;
 
-use super::random::{arm_limits, cases, extreme_limits, many, many_moving, mixed_limits};
+use super::random::{
+    arm_limits, cases, extreme_limits, many, many_moving, mixed_limits, target_motion,
+};
 use super::walk::{check_motion, check_step};
-use crate::otg::{CYCLE, Generator, Limits, State, Synchronisation};
+use crate::otg::{AxisState, CYCLE, Generator, Limits, State, Synchronisation};
 
 fn towards<const N: usize>(limits: Limits<N>, state: State<N>, target: &State<N>) -> Generator<N> {
     let mut generator = Generator::new(state, limits)
@@ -130,6 +132,57 @@ fn replan<const N: usize>(
     Ok(())
 }
 
+/// Follows one target after the other, moving and resting, with gaps and bursts, to the end.
+fn follow<const N: usize>(
+    (limits, state, _): (Limits<N>, State<N>, [f64; N]),
+    changes: &[(usize, Vec<(f64, f64, bool)>)],
+) -> Result<(), TestCaseError> {
+    let mut generator = Generator::new(state, limits).unwrap();
+    let step = |generator: &mut Generator<N>| -> Result<(), TestCaseError> {
+        let before = *generator.state();
+        let to = *generator.target();
+        let after = *generator.step();
+        check_step(&limits, &before, &after, CYCLE, 8.0);
+        for i in 0..N {
+            // An axis at rest with nowhere to go keeps every bit.
+            let stays = generator.end()[i] == to[i] && before.axis(i) == AxisState::at_rest(to[i]);
+            prop_assert!(
+                !stays || after.axis(i) == before.axis(i),
+                "{:?}",
+                after.axis(i)
+            );
+        }
+        Ok(())
+    };
+    for (cycles, axes) in changes {
+        let mut target = State::at_rest(generator.state().position);
+        for (i, &(position, speed, changes)) in axes.iter().enumerate() {
+            if changes {
+                target.position[i] = position;
+                (target.velocity[i], target.acceleration[i]) =
+                    target_motion(limits.axis(i), speed.max(0.0), 0.5 * speed);
+            }
+        }
+        generator.set_moving_target(&target).unwrap();
+        for _ in 0..*cycles {
+            step(&mut generator)?;
+        }
+    }
+    for _ in 0..(generator.remaining() / CYCLE).ceil() as usize {
+        prop_assert!(!generator.is_done());
+        step(&mut generator)?;
+    }
+    prop_assert!(generator.is_done());
+    prop_assert_eq!(generator.state(), &State::at_rest(*generator.end()));
+    Ok(())
+}
+
+fn changes<const N: usize>() -> impl Strategy<Value = Vec<(usize, Vec<(f64, f64, bool)>)>> {
+    let axis = (-2.0..2.0, -1.0..1.0, any::<bool>());
+    let cycles = prop_oneof![0_usize..4, 0_usize..300];
+    proptest::collection::vec((cycles, proptest::collection::vec(axis, N)), 1..6)
+}
+
 fn leg() -> impl Strategy<Value = (f64, f64)> {
     let distance = prop_oneof![-3.0..3.0, -0.1..0.1];
     (distance, prop_oneof![4 => 0.0..1.0, 1 => Just(1.0)])
@@ -168,6 +221,20 @@ proptest! {
 
 proptest! {
     #![proptest_config(cases(100))]
+
+    #[test]
+    fn one_axis_follows_what_moves_and_what_rests(
+        problem in many::<1>(arm_limits()), changes in changes::<1>(),
+    ) {
+        follow(problem, &changes)?;
+    }
+
+    #[test]
+    fn six_axes_follow_what_moves_and_what_rests(
+        problem in many::<6>(arm_limits()), changes in changes::<6>(),
+    ) {
+        follow(problem, &changes)?;
+    }
 
     #[test]
     fn one_axis_replanned_in_each_cycle_arrives_when_planned(problem in many_moving::<1>(arm_limits())) {
