@@ -20,7 +20,7 @@
 //! |---|---|---|
 //! | [`Joint7`](Redundancy::Joint7) | closed form | 8 |
 //! | [`Joint4`](Redundancy::Joint4) | closed form: the distance of W from S gives two angles of joint 7 | 8 |
-//! | [`Swivel`](Redundancy::Swivel) | one equation in joint 7, whose roots are bracketed and refined | 32; 16 seen |
+//! | [`Swivel`](Redundancy::Swivel) | one equation in joint 7, whose roots are bracketed and refined | 32 listed; 12 within limits seen |
 //!
 //! | module | content |
 //! |---|---|

@@ -107,8 +107,8 @@ pub enum Outcome {
 
 /// Passes after which a search gives up.
 ///
-/// Each costs one factorisation. Half of random problems with half of the joints pinned take five,
-/// and of ten million of all kinds none took more than 26.
+/// Each costs one factorisation. Of two million random problems of differential IK, most of them
+/// with several variables on their bounds, half took seven or fewer and none more than 25.
 pub const PASSES_MAX: usize = 32;
 
 /// Passes that mend the whole guess at once.

@@ -143,8 +143,8 @@ pub struct Solutions {
     count: usize,
 }
 
-/// Room in a list: four times what joints 7 and 4 can give, twice the most that 10⁷ swivel
-/// problems gave.
+/// Room in a list: four times what joints 7 and 4 can give. Of two million swivel problems none had
+/// more than 12 solutions within the limits.
 const CAPACITY: usize = 32;
 
 impl Solutions {
