@@ -43,8 +43,10 @@ fn target(cycle: usize) -> Option<State<1>> {
     match cycle {
         100 => Some(at(0.5, 0.0)),
         500 => Some(at(0.1, 0.0)),
-        1200..1500 if cycle % 15 == 0 => Some(at(0.4 + 0.05 * (0.9 * cycle as f64).sin(), 0.0)),
-        1800..2400 if cycle % 100 == 0 => Some(at(0.7 - 0.5 * (t + 0.1 - 1.8), -0.5)),
+        1200..1500 if cycle.is_multiple_of(15) => {
+            Some(at(0.4 + 0.05 * (0.9 * cycle as f64).sin(), 0.0))
+        }
+        1800..2400 if cycle.is_multiple_of(100) => Some(at(0.7 - 0.5 * (t + 0.1 - 1.8), -0.5)),
         3000 => Some(at(0.6, 0.0)),
         _ => None,
     }
@@ -89,9 +91,9 @@ fn draw(rows: &[[f64; 5]]) -> String {
             );
         }
     }
-    let _ = write!(
+    let _ = writeln!(
         svg,
-        "<text x='790' y='{}' text-anchor='end'>0 to {END} s</text></svg>\n",
+        "<text x='790' y='{}' text-anchor='end'>0 to {END} s</text></svg>",
         height - 6.0
     );
     svg

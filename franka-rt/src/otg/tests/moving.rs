@@ -132,10 +132,13 @@ fn replan<const N: usize>(
     Ok(())
 }
 
+/// A change of mind: after so many cycles, and for each axis a place, a speed, and whether it is to move at all.
+type Change = (usize, Vec<(f64, f64, bool)>);
+
 /// Follows one target after the other, moving and resting, with gaps and bursts, to the end.
 fn follow<const N: usize>(
     (limits, state, _): (Limits<N>, State<N>, [f64; N]),
-    changes: &[(usize, Vec<(f64, f64, bool)>)],
+    changes: &[Change],
 ) -> Result<(), TestCaseError> {
     let mut generator = Generator::new(state, limits).unwrap();
     let step = |generator: &mut Generator<N>| -> Result<(), TestCaseError> {
@@ -143,9 +146,9 @@ fn follow<const N: usize>(
         let to = *generator.target();
         let after = *generator.step();
         check_step(&limits, &before, &after, CYCLE, 8.0);
-        for i in 0..N {
+        for (i, (to, end)) in to.iter().zip(generator.end()).enumerate() {
             // An axis at rest with nowhere to go keeps every bit.
-            let stays = generator.end()[i] == to[i] && before.axis(i) == AxisState::at_rest(to[i]);
+            let stays = end == to && before.axis(i) == AxisState::at_rest(*to);
             prop_assert!(
                 !stays || after.axis(i) == before.axis(i),
                 "{:?}",
@@ -177,7 +180,7 @@ fn follow<const N: usize>(
     Ok(())
 }
 
-fn changes<const N: usize>() -> impl Strategy<Value = Vec<(usize, Vec<(f64, f64, bool)>)>> {
+fn changes<const N: usize>() -> impl Strategy<Value = Vec<Change>> {
     let axis = (-2.0..2.0, -1.0..1.0, any::<bool>());
     let cycles = prop_oneof![0_usize..4, 0_usize..300];
     proptest::collection::vec((cycles, proptest::collection::vec(axis, N)), 1..6)
