@@ -2,8 +2,8 @@
 
 use anyhow::Context;
 use clap::{Args, Parser, ValueEnum};
-use franka_async::{Realtime, Robot};
-use franka_sim::{Running, Sim};
+use franka_async::{Gripper, Realtime, Robot};
+use franka_sim::{Fingers, Running, Sim, Tool};
 
 /// Options of every example.
 #[derive(Args, Clone, Debug)]
@@ -60,11 +60,30 @@ impl Connection {
             Simulated::Fr3 => Sim::fr3(),
             Simulated::Fer => Sim::fer(),
         };
-        let sim = sim.start().await.context("starting the simulator")?;
+        // With a hand, and a block of 3 cm between its fingers.
+        let block = Fingers::new().with_object(0.03);
+        let sim = sim.tool(Tool::hand()).hand(block, 0).start().await;
+        let sim = sim.context("starting the simulator")?;
         let robot = Robot::builder(sim.addr())
             .realtime(Realtime::Ignore)
             .connect()
             .await?;
         Ok((robot, Some(sim)))
+    }
+
+    /// Connects to the hand beside the robot that [`Self::open`] connected to.
+    ///
+    /// # Errors
+    /// If no hand answers there.
+    pub async fn open_gripper(
+        &self,
+        robot: &Robot,
+        sim: Option<&Running>,
+    ) -> anyhow::Result<Gripper> {
+        let gripper = match sim.and_then(Running::hand) {
+            Some(hand) => Gripper::connect(hand.addr()).await,
+            None => Gripper::connect(robot.address().ip()).await,
+        };
+        gripper.context("connecting to the hand")
     }
 }

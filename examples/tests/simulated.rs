@@ -54,6 +54,17 @@ fn follow_watch_follows_to_the_end() {
     }
 }
 
+#[test]
+fn pick_holds_the_block_and_puts_it_down() {
+    for robot in ROBOTS {
+        let said = run("pick", robot);
+        assert!(
+            said.contains("holding 30.0 mm\nput down"),
+            "{robot}: {said}"
+        );
+    }
+}
+
 /// Ends a service whatever becomes of the test.
 struct Service(Child);
 

@@ -1,0 +1,42 @@
+//! Picks a block up and puts it back: arm and hand, each awaited, neither waiting for the other.
+//!
+//! `cargo run --release --example pick [ADDRESS]`; on a robot, with the block between the fingers.
+
+use anyhow::ensure;
+use clap::Parser;
+use franka_async::{Grasp, Pose};
+use franka_examples::Arguments;
+
+/// Width of the block, `[m]`.
+const BLOCK: f64 = 0.03;
+
+#[tokio::main]
+async fn main() -> anyhow::Result<()> {
+    let connection = Arguments::parse().connection;
+    let (robot, sim) = connection.open().await?;
+    let gripper = connection.open_gripper(&robot, sim.as_ref()).await?;
+    let table = robot.pose();
+    let above = Pose::translation(0.0, 0.0, 0.08) * table;
+
+    // Homing finds out how far the fingers open; the arm may move meanwhile.
+    let (homed, moved) = tokio::join!(gripper.homing(), robot.move_to(above));
+    moved?;
+    ensure!(homed?, "the fingers did not find their ends");
+    robot.move_to(table).speed(0.5).await?;
+
+    let grasped = gripper.grasp(Grasp::new(BLOCK, 0.05, 40.0)).await?;
+    let width = gripper.state().width;
+    ensure!(
+        grasped,
+        "nothing of {BLOCK} m there: the fingers closed to {width:.4} m"
+    );
+    println!("holding {:.1} mm", width * 1e3);
+
+    robot.move_to(above).await?;
+    robot.move_to(table).speed(0.5).await?;
+    ensure!(gripper.state().is_grasped, "the block was lost on the way");
+    gripper.move_to(0.08, 0.1).await?;
+    println!("put down");
+    robot.shutdown().await;
+    Ok(())
+}
