@@ -280,7 +280,7 @@ const POSITION: f64 = 1e-4;
 /// Length of a line, `[m]`.
 const LINE: f64 = 0.12;
 /// Lines of each kind.
-const LINES: usize = if cfg!(debug_assertions) { 14 } else { 140 };
+const LINES: usize = if cfg!(debug_assertions) { 28 } else { 140 };
 
 /// Whether every point of a line is more than three centimetres within what the flange can reach.
 fn reachable(from: &JointVector, direction: &Vector3<f64>, length: f64) -> bool {
@@ -321,19 +321,20 @@ fn a_line_along_a_joint_limit_keeps_the_position_and_lets_the_orientation_give()
     );
 }
 
-/// A posture with joint 5 a quarter turn off, of least manipulability near a given one.
-fn singular_wrist(mut q: JointVector, random: &mut Random) -> JointVector {
+/// A posture with joint 5 a quarter turn off, of least manipulability around a random one.
+fn singular_wrist(random: &mut Random) -> JointVector {
     let limits = Model::fr3().joint_limits();
+    let mut q = random.posture(Model::fr3());
     q[4] = core::f64::consts::FRAC_PI_2;
     let value = |q: &JointVector| squared_manipulabilities(&jacobian(q))[1];
-    let mut step = 0.3;
-    while step > 1e-9 {
+    let mut step = 0.5;
+    while step > 1e-6 {
         let mut next = q + random.joints(step);
         next[4] = q[4];
         if limits.contains(&next) && value(&next) < value(&q) {
             q = next;
         } else {
-            step *= 0.97;
+            step *= 0.99;
         }
     }
     q
@@ -350,7 +351,7 @@ fn a_line_through_a_wrist_singularity_keeps_the_position() {
         let mut q = READY + random.joints(0.4);
         q[4] = core::f64::consts::FRAC_PI_2;
         if lines % 2 == 1 {
-            q = singular_wrist(q, &mut random);
+            q = singular_wrist(&mut random);
         }
         let direction = random.vector3(1.0).normalize();
         if !(reachable(&q, &direction, 0.5 * LINE) && reachable(&q, &-direction, 0.5 * LINE)) {
@@ -364,8 +365,8 @@ fn a_line_through_a_wrist_singularity_keeps_the_position() {
         let worst = back.max(through);
         assert!(worst < POSITION, "{worst:e} m through {q}");
         crossed += usize::from((before > q[4]) != (follower.q[4] > q[4]));
-        singular += usize::from(squared_manipulabilities(&jacobian(&q))[1] < 1e-8);
+        singular += usize::from(squared_manipulabilities(&jacobian(&q))[1] < 1e-6);
     }
     assert!(2 * crossed > lines, "{crossed} of {lines}");
-    assert!(singular > 0, "{singular} of {lines}");
+    assert!(4 * singular > lines, "{singular} of {lines}");
 }
