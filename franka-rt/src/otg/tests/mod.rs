@@ -8,6 +8,7 @@ mod lines;
 mod moving;
 mod oracle;
 mod random;
+mod reading;
 mod refusals;
 mod stretched;
 mod walk;
