@@ -19,80 +19,14 @@
 //! normal equations `AᵀA + d` know that direction to five digits; a step of refinement whose
 //! residual is computed from `A` itself makes them ten, another all. Guesses do without.
 
+mod joint_box;
+mod problem;
+
+use crate::JointVector;
 use crate::ldl::Ldl;
-use crate::{Jacobian, JointVector, Twist};
 
-/// Which bound holds a variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Side {
-    /// None: the variable is inside its interval.
-    #[default]
-    Free,
-    /// The lower one.
-    Lower,
-    /// The upper one.
-    Upper,
-}
-
-/// Intervals for seven variables, never empty.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointBox {
-    lower: JointVector,
-    upper: JointVector,
-}
-
-impl JointBox {
-    /// The box between `lower` and `upper`; infinite bounds are no bounds.
-    ///
-    /// Where they cross, which rounding does to an interval of no width, both become their
-    /// midpoint: the variable is then fixed. Whoever may demand the impossible by more than that
-    /// must decide before which demand to drop.
-    pub fn new(lower: &JointVector, upper: &JointVector) -> Self {
-        let mut bounds = Self {
-            lower: *lower,
-            upper: *upper,
-        };
-        for i in 0..7 {
-            if lower[i] > upper[i] {
-                let middle = 0.5 * lower[i] + 0.5 * upper[i];
-                bounds.lower[i] = middle;
-                bounds.upper[i] = middle;
-            }
-        }
-        bounds
-    }
-
-    /// The same interval `[-bound, bound]` for each variable.
-    pub fn symmetric(bound: &JointVector) -> Self {
-        Self::new(&-bound, bound)
-    }
-
-    /// Lower bounds.
-    pub fn lower(&self) -> &JointVector {
-        &self.lower
-    }
-
-    /// Upper bounds.
-    pub fn upper(&self) -> &JointVector {
-        &self.upper
-    }
-
-    /// The point of the box nearest to `x`.
-    pub fn clamp(&self, x: &JointVector) -> JointVector {
-        JointVector::from_fn(|i, _| x[i].max(self.lower[i]).min(self.upper[i]))
-    }
-
-    /// Which bound of variable `i` the value `x` is beyond.
-    fn side_beyond(&self, i: usize, x: f64) -> Side {
-        if x < self.lower[i] {
-            Side::Lower
-        } else if x > self.upper[i] {
-            Side::Upper
-        } else {
-            Side::Free
-        }
-    }
-}
+pub use joint_box::{JointBox, Side};
+pub(crate) use problem::Problem;
 
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,21 +47,6 @@ pub const PASSES_MAX: usize = 32;
 
 /// Passes that mend the whole guess at once.
 const GUESSES: usize = 4;
-
-/// What to minimise.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Problem<'a> {
-    /// `A`.
-    pub(crate) rows: &'a Jacobian,
-    /// `t`.
-    pub(crate) task: &'a Twist,
-    /// `x0`.
-    pub(crate) posture: &'a JointVector,
-    /// `d`, positive.
-    pub(crate) damping: f64,
-    /// `AᵀA + d`.
-    pub(crate) normal: [[f64; 7]; 7],
-}
 
 /// Where a search ended.
 pub(crate) struct Minimum {
@@ -190,69 +109,6 @@ pub(crate) fn minimise(
         active: search.active,
         outcome,
         passes,
-    }
-}
-
-impl<'a> Problem<'a> {
-    #[inline(always)]
-    pub(crate) fn new(
-        rows: &'a Jacobian,
-        task: &'a Twist,
-        posture: &'a JointVector,
-        damping: f64,
-    ) -> Self {
-        let columns = &rows.data.0;
-        let mut normal = [[0.0; 7]; 7];
-        for i in 0..7 {
-            for j in 0..=i {
-                let mut sum = 0.0;
-                for (a, b) in columns[i].iter().zip(&columns[j]) {
-                    sum += a * b;
-                }
-                normal[i][j] = sum;
-                normal[j][i] = sum;
-            }
-            normal[i][i] += damping;
-        }
-        Self {
-            rows,
-            task,
-            posture,
-            damping,
-            normal,
-        }
-    }
-
-    /// `Aᵀt + d x0`.
-    #[inline(always)]
-    fn linear(&self) -> [f64; 7] {
-        let columns = &self.rows.data.0;
-        core::array::from_fn(|i| {
-            let mut sum = self.damping * self.posture[i];
-            for (a, t) in columns[i].iter().zip(self.task.iter()) {
-                sum += a * t;
-            }
-            sum
-        })
-    }
-
-    /// `Aᵀ(A x − t) + d (x − x0)`, with the residual first.
-    #[inline(always)]
-    fn gradient(&self, x: &JointVector) -> [f64; 7] {
-        let columns = &self.rows.data.0;
-        let mut residual = self.task.data.0[0].map(|t| -t);
-        for (column, x) in columns.iter().zip(x.iter()) {
-            for (r, a) in residual.iter_mut().zip(column) {
-                *r += a * x;
-            }
-        }
-        core::array::from_fn(|i| {
-            let mut sum = self.damping * (x[i] - self.posture[i]);
-            for (a, r) in columns[i].iter().zip(&residual) {
-                sum += a * r;
-            }
-            sum
-        })
     }
 }
 

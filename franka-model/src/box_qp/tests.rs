@@ -3,6 +3,7 @@
 use super::*;
 use crate::oracle::minimum_by_enumeration;
 use crate::random::Random;
+use crate::{Jacobian, Twist};
 
 struct Case {
     rows: Jacobian,
