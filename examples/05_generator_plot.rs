@@ -70,14 +70,14 @@ fn draw(rows: &[[f64; 5]]) -> String {
             let (y, label) = (y(level * limit), level * limit);
             let _ = writeln!(
                 svg,
-                "<path d='M100 {y:.1}H790' stroke='#ccc'/><text x='94' y='{:.1}' text-anchor='end'>{label}</text>",
+                "<path d='M150 {y:.1}H790' stroke='#ccc'/><text x='144' y='{:.1}' text-anchor='end'>{label}</text>",
                 y + 4.0
             );
         }
         for (&column, colour) in columns.iter().zip(["#1f5fa8", "#d9822b"]) {
             let mut path = String::new();
             for (k, row) in rows.iter().enumerate().step_by(4) {
-                let x = 100.0 + 690.0 * k as f64 / rows.len() as f64;
+                let x = 150.0 + 640.0 * k as f64 / rows.len() as f64;
                 let _ = write!(
                     path,
                     "{}{x:.1} {:.1}",
