@@ -13,7 +13,7 @@ const NINE: f64 = 6e-10;
 const SIX: f64 = 6e-7;
 
 /// The hand's default payload in the vendor's settings.
-fn hand_load() -> Load {
+pub(crate) fn hand_load() -> Load {
     Load {
         mass: 0.73,
         com: Vector3::new(-0.01, 0.0, 0.03),
@@ -22,7 +22,7 @@ fn hand_load() -> Load {
 }
 
 /// The hand: an eighth of a turn, its tip 0.1034 m from the flange.
-fn hand() -> EndEffector {
+pub(crate) fn hand() -> EndEffector {
     let r = core::f64::consts::FRAC_1_SQRT_2;
     let mut f_t_ee = Matrix4::identity();
     (f_t_ee.m11, f_t_ee.m12, f_t_ee.m21, f_t_ee.m22) = (r, r, -r, r);

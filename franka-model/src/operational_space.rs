@@ -114,31 +114,10 @@ impl Dynamics {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::known_numbers::{hand, hand_load};
     use crate::merge::Merge;
     use crate::random::Random;
     use crate::{GRAVITY_EARTH, READY, Wrench};
-    use nalgebra::Matrix4;
-
-    /// The hand: an eighth of a turn, its tip 0.1034 m from the flange.
-    fn hand() -> EndEffector {
-        let r = core::f64::consts::FRAC_1_SQRT_2;
-        let mut f_t_ee = Matrix4::identity();
-        (f_t_ee.m11, f_t_ee.m12, f_t_ee.m21, f_t_ee.m22) = (r, r, -r, r);
-        f_t_ee.m34 = 0.1034;
-        EndEffector {
-            f_t_ee,
-            ..EndEffector::default()
-        }
-    }
-
-    /// The hand's default payload in the vendor's settings.
-    fn payload() -> Load {
-        Load {
-            mass: 0.73,
-            com: Vector3::new(-0.01, 0.0, 0.03),
-            inertia: Matrix3::from_diagonal(&Vector3::new(0.001, 0.0025, 0.0017)),
-        }
-    }
 
     /// Effective inertias along and about x, y, z; the diagonals of the translational inertia and of Λ.
     type Row = ([f64; 6], [f64; 3], [f64; 6]);
@@ -166,7 +145,7 @@ mod tests {
     /// Computed from the same parameters with Pinocchio 4.1.
     #[test]
     fn the_fr3_at_the_ready_posture() {
-        let (model, none, payload) = (Model::fr3(), &Load::NONE, &payload());
+        let (model, none, payload) = (Model::fr3(), &Load::NONE, &hand_load());
         assert_row(
             model,
             Frame::Flange,
@@ -229,7 +208,7 @@ mod tests {
         assert_row(
             &rigid,
             Frame::EndEffector,
-            &payload(),
+            &hand_load(),
             (
                 [0.746214, 0.448110, 3.798984, 0.014423, 0.031945, 0.002587],
                 [0.954371, 0.486957, 4.641412],

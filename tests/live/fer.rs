@@ -8,7 +8,6 @@ use franka_async::{
 use franka_model::RobotKind;
 use franka_proto::RequestError;
 use franka_sim::{Running, Sim, Tool};
-use tokio::sync::watch;
 
 use crate::{alone, connect, simulated};
 
@@ -49,17 +48,7 @@ async fn the_version_is_negotiated_and_a_pose_and_joints_are_reached() {
 async fn a_watch_is_followed_and_a_motion_stopped() {
     let _alone = alone();
     let (robot, _sim) = fer().await;
-    let start = robot.pose();
-    let (sender, targets) = watch::channel(start);
-    let following = tokio::spawn(robot.follow(targets).into_future());
-    let mut last = start;
-    for step in 1..=10_u32 {
-        last = Pose::translation(0.0, 0.004 * f64::from(step), 0.0) * start;
-        sender.send(last).unwrap();
-        tokio::time::sleep(Duration::from_millis(100)).await;
-    }
-    drop(sender);
-    following.await.unwrap().unwrap();
+    let last = crate::follow_steps(&robot).await;
     assert_near(&robot, &last);
 
     let moving = tokio::spawn(crate::long_way(&robot).into_future());

@@ -17,9 +17,11 @@ mod peer;
 mod starving;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use franka_async::{Motion, Pose, Realtime, Robot};
 use franka_sim::{Running, Sim, Tool};
+use tokio::sync::watch;
 
 /// Held by each test, so that they do not disturb each other's clocks.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -55,4 +57,21 @@ fn long_way(robot: &Robot) -> Motion {
     robot
         .move_to(Pose::translation(0.0, 0.0, 0.1) * robot.pose())
         .speed(0.25)
+}
+
+/// Has the arm follow ten steps of 4 mm at 10 Hz to the end; returns the last target.
+async fn follow_steps(robot: &Robot) -> Pose {
+    let start = robot.pose();
+    let (sender, targets) = watch::channel(start);
+    let following = tokio::spawn(robot.follow(targets).into_future());
+    let mut last = start;
+    for step in 1..=10_u32 {
+        last = Pose::translation(0.0, 0.004 * f64::from(step), 0.0) * start;
+        sender.send(last).expect("the motion goes on");
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    drop(sender);
+    let outcome = following.await.expect("no panic");
+    outcome.expect("the last target is reached");
+    last
 }

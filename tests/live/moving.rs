@@ -75,17 +75,7 @@ async fn nothing_moves_before_the_first_poll_and_a_canceller_brakes() {
 async fn a_watch_is_followed_to_its_last_value() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
-    let start = robot.pose();
-    let (sender, targets) = watch::channel(start);
-    let following = tokio::spawn(robot.follow(targets).into_future());
-    let mut last = start;
-    for step in 1..=10_u32 {
-        last = Pose::translation(0.0, 0.004 * f64::from(step), 0.0) * start;
-        sender.send(last).unwrap();
-        tokio::time::sleep(Duration::from_millis(100)).await;
-    }
-    drop(sender);
-    following.await.unwrap().unwrap();
+    let last = crate::follow_steps(&robot).await;
     let error = PoseError::between(&robot.pose(), &last);
     assert!(error.translation < 1e-3, "{error:?}");
 
