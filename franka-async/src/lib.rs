@@ -82,14 +82,14 @@ pub use franka_model::{JointVector, Model};
 pub use franka_proto::gripper::{Grasp, State as GripperState};
 pub use franka_proto::vacuum::{Profile, State as VacuumGripperState, Vacuum};
 pub use franka_proto::{
-    Architecture, CollisionBehavior, Errors, Filters, Load, RobotMode, RobotState, System, Version,
-    VirtualWall,
+    Architecture, CollisionBehavior, Errors, Filters, Load, MoveControllerMode, RobotError,
+    RobotMode, RobotState, System, Version, VirtualWall,
 };
 pub use franka_rt::control::{
     AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next,
     TargetStatus, Torques,
 };
-pub use franka_rt::driver::{ControlLog, LogEntry, Record};
+pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::law::Gains;
 pub use franka_rt::lifecycle::MotionReport;
 pub use franka_rt::otg::AxisLimits;

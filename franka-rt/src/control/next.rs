@@ -44,6 +44,15 @@ pub trait Finish: Sized {
     fn finish(self) -> Next<Self> {
         Next::Finish(self)
     }
+
+    /// This command, as the last one of its motion if `over`.
+    fn finish_if(self, over: bool) -> Next<Self> {
+        if over {
+            Next::Finish(self)
+        } else {
+            Next::Continue(self)
+        }
+    }
 }
 
 impl Finish for Torques {}
