@@ -12,7 +12,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 #[tokio::main]
 async fn main() -> anyhow::Result<()> {
-    let (robot, _sim) = Arguments::parse().connection.open().await?;
+    let connection = Arguments::parse().connection;
+    let (robot, _sim) = connection.open().await?;
+    connection.ask("moves its hand 5 cm up and back, then joints 1 and 7 by up to 0.3 rad")?;
     let state = robot.state();
     println!("connected to {}", robot.address());
     println!("mode: {}, joints: {:.3?} rad", state.robot_mode, state.q);

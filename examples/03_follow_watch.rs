@@ -12,7 +12,9 @@ use tokio::sync::watch;
 
 #[tokio::main]
 async fn main() -> anyhow::Result<()> {
-    let (robot, _sim) = Arguments::parse().connection.open().await?;
+    let connection = Arguments::parse().connection;
+    let (robot, _sim) = connection.open().await?;
+    connection.ask("leads its hand along a circle of 16 cm, upwards from where it is")?;
     let start = robot.pose();
     let (sender, targets) = watch::channel(start);
 

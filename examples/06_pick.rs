@@ -15,6 +15,7 @@ async fn main() -> anyhow::Result<()> {
     let connection = Arguments::parse().connection;
     let (robot, sim) = connection.open().await?;
     let gripper = connection.open_gripper(&robot, sim.as_ref()).await?;
+    connection.ask("lifts its hand by 8 cm, grasps what is below, lifts it and puts it back")?;
     let table = robot.pose();
     let above = Pose::translation(0.0, 0.0, 0.08) * table;
 

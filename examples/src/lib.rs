@@ -1,9 +1,24 @@
-//! What the examples share: a robot at the address given, or a simulated one in this process.
+//! What the examples share: a robot at the address given, or a simulated one in this process; smooth references; and the
+//! dynamics of a state.
+#![doc = include_str!("../README.md")]
 
-use anyhow::Context;
+mod dynamics;
+mod ease;
+
+pub use dynamics::dynamics;
+pub use ease::Ease;
+
+use std::fmt;
+use std::io::{BufRead, Write};
+use std::time::Duration;
+
+use anyhow::{Context, ensure};
 use clap::{Args, Parser, ValueEnum};
-use franka_async::{Gripper, Realtime, Robot};
+use franka_async::{CollisionBehavior, Gripper, MotionReport, Robot};
+use franka_model::{READY, Wrench};
+use franka_rt::sched::Scheduling;
 use franka_sim::{Fingers, Running, Sim, Tool};
+use tokio::task::JoinHandle;
 
 /// Options of every example.
 #[derive(Args, Clone, Debug)]
@@ -13,9 +28,30 @@ pub struct Connection {
     /// Which robot to simulate. A real one says itself which it is.
     #[arg(long, value_enum, default_value_t = Simulated::Fr3, conflicts_with = "address")]
     pub sim: Simulated,
-    /// Go on without a real-time kernel when driving a robot. A simulator never asks for one.
+    /// Whether the control thread may go without real-time scheduling; for a simulator in this process it always may.
+    #[arg(long, value_enum, default_value_t = Realtime::Enforce)]
+    pub realtime: Realtime,
+    /// Move at once, without asking whether somebody is at the user stop.
     #[arg(long)]
-    pub ignore_realtime: bool,
+    pub yes: bool,
+}
+
+/// What to do where the host grants no real-time scheduling, see [`franka_async::Realtime`].
+#[derive(ValueEnum, Clone, Copy, Debug)]
+pub enum Realtime {
+    /// Do not connect
+    Enforce,
+    /// Connect all the same: enough for a simulator
+    Ignore,
+}
+
+impl From<Realtime> for franka_async::Realtime {
+    fn from(realtime: Realtime) -> Self {
+        match realtime {
+            Realtime::Enforce => Self::Enforce,
+            Realtime::Ignore => Self::Ignore,
+        }
+    }
 }
 
 /// The robots that can be simulated.
@@ -42,15 +78,11 @@ impl Connection {
     /// If nothing answers at the address, or the simulator cannot start.
     pub async fn open(&self) -> anyhow::Result<(Robot, Option<Running>)> {
         if let Some(address) = &self.address {
-            let realtime = if self.ignore_realtime {
-                Realtime::Ignore
-            } else {
-                Realtime::Enforce
-            };
-            let robot = Robot::builder(address).realtime(realtime).connect().await;
-            let robot = robot.with_context(|| match realtime {
+            let builder = Robot::builder(address).realtime(self.scheduling().realtime);
+            let robot = builder.connect().await;
+            let robot = robot.with_context(|| match self.realtime {
                 Realtime::Enforce => format!(
-                    "connecting to {address} (a simulator needs no real-time kernel: --ignore-realtime)"
+                    "connecting to {address} (a simulator needs no real-time kernel: --realtime ignore)"
                 ),
                 Realtime::Ignore => format!("connecting to {address}"),
             })?;
@@ -64,11 +96,48 @@ impl Connection {
         let block = Fingers::new().with_object(0.03);
         let sim = sim.tool(Tool::hand()).hand(block, 0).start().await;
         let sim = sim.context("starting the simulator")?;
-        let robot = Robot::builder(sim.addr())
-            .realtime(Realtime::Ignore)
-            .connect()
-            .await?;
+        let builder = Robot::builder(sim.addr()).realtime(self.scheduling().realtime);
+        let robot = builder.connect().await?;
         Ok((robot, Some(sim)))
+    }
+
+    /// How to schedule a thread that controls what [`Self::open`] connects to.
+    pub fn scheduling(&self) -> Scheduling {
+        Scheduling {
+            realtime: match self.address {
+                Some(_) => self.realtime.into(),
+                None => franka_async::Realtime::Ignore,
+            },
+            ..Scheduling::default()
+        }
+    }
+
+    /// Connects like [`Self::open`], asks whether the arm may do `what`, and moves it to the ready pose.
+    ///
+    /// # Errors
+    /// Those of [`Self::open`], of [`Self::ask`] and of [`make_ready`].
+    pub async fn open_ready(&self, what: &str) -> anyhow::Result<(Robot, Option<Running>)> {
+        let (robot, sim) = self.open().await?;
+        self.ask(&format!("goes to its ready pose, then {what}"))?;
+        make_ready(&robot).await?;
+        Ok((robot, sim))
+    }
+
+    /// Says what the arm is about to do and waits for the enter key, unless it is simulated in this process or `--yes` was
+    /// given.
+    ///
+    /// # Errors
+    /// If the input ends first.
+    pub fn ask(&self, what: &str) -> anyhow::Result<()> {
+        if self.address.is_none() || self.yes {
+            return Ok(());
+        }
+        println!("The arm {what}. Clear its way, and keep the user stop at hand.");
+        print!("Enter to go on, Ctrl-C to leave it: ");
+        std::io::stdout().flush()?;
+        let read = std::io::stdin().lock().read_line(&mut String::new())?;
+        ensure!(read > 0, "nobody said that the arm may move (--yes does)");
+        Ok(())
     }
 
     /// Connects to the hand beside the robot that [`Self::open`] connected to.
@@ -85,5 +154,61 @@ impl Connection {
             None => Gripper::connect(robot.address().ip()).await,
         };
         gripper.context("connecting to the hand")
+    }
+}
+
+/// Moves the joints to [`READY`] at half speed, with thresholds that let the arm be pushed at: 20 N m and 20 N are a
+/// contact, 60 N m and 60 N a collision that stops it.
+///
+/// # Errors
+/// What kept the arm from its pose.
+pub async fn make_ready(robot: &Robot) -> anyhow::Result<()> {
+    let behavior = CollisionBehavior::uniform([20.0; 7], [60.0; 7], [20.0; 6], [60.0; 6]);
+    robot.set_collision_behavior(behavior).await?;
+    let moving = robot.move_joints(READY.into()).speed(0.5);
+    moving.await.context("moving to the ready pose")?;
+    Ok(())
+}
+
+/// Prints twice a second how far the hand is from where it is now, until the task is aborted or the connection ends.
+pub fn report_hand(robot: &Robot) -> JoinHandle<()> {
+    let (mut states, robot) = (robot.states(), robot.clone());
+    let start = robot.pose().translation.vector;
+    tokio::spawn(async move {
+        while states.changed().await.is_ok() {
+            let away = (robot.pose().translation.vector - start) * 1e3;
+            println!("hand {:+6.1} {:+6.1} {:+6.1} mm", away.x, away.y, away.z);
+            tokio::time::sleep(Duration::from_millis(500)).await;
+        }
+    })
+}
+
+/// Has somebody push the hand of a simulated robot with `force`, in base axes `[N]`, for the next two seconds.
+///
+/// # Errors
+/// If the simulation has ended.
+pub async fn push_simulated(sim: &Running, force: [f64; 3]) -> anyhow::Result<()> {
+    let [x, y, z] = force;
+    let wrench = Wrench::new(x, y, z, 0.0, 0.0, 0.0);
+    sim.with(move |robot| robot.push_end_effector(wrench, 2000))
+        .await?;
+    Ok(())
+}
+
+/// A motion's report as a line of text.
+pub struct Summary<'a>(pub &'a MotionReport);
+
+impl fmt::Display for Summary<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let report = self.0;
+        write!(
+            f,
+            "{:.3} s, {} states lost, success rate min {:.2} avg {:.4}, worst turnaround {:?}",
+            report.duration.as_secs_f64(),
+            report.lost_states,
+            report.success_rate_min,
+            report.success_rate_avg,
+            report.worst_turnaround
+        )
     }
 }

@@ -1,0 +1,29 @@
+//! Moves the joints to the ready pose: hand in front of the arm and pointing down, far from limits and singularities.
+//!
+//! `cargo run --release --example move_to_ready [ADDRESS] [--speed FACTOR]`
+
+use clap::Parser;
+use franka_examples::{Connection, Summary};
+use franka_model::READY;
+
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    connection: Connection,
+    /// How fast: 1 is the usual speed of a motion, some 50 degrees a second.
+    #[arg(long, default_value_t = 0.5)]
+    speed: f64,
+}
+
+#[tokio::main]
+async fn main() -> anyhow::Result<()> {
+    let Arguments { connection, speed } = Arguments::parse();
+    let (robot, _sim) = connection.open().await?;
+    connection.ask("goes to its ready pose, all joints at once")?;
+    println!("from {:.3?} rad", robot.state().q);
+    let report = robot.move_joints(READY.into()).speed(speed).await?;
+    println!("to   {:.3?} rad", robot.state().q);
+    println!("{}", Summary(&report));
+    robot.shutdown().await;
+    Ok(())
+}

@@ -1,0 +1,145 @@
+//! A Cartesian impedance law of one's own: the hand hangs on springs at the place where it is, and can be pushed aside.
+//! The same law as a control function, and on a thread of this program that reads states and writes commands itself.
+//!
+//! `cargo run --release --example cartesian_impedance callback [ADDRESS] [--seconds 10]`, likewise `active`
+
+use clap::{Parser, ValueEnum};
+use franka_async::{Finish, Model, MotionError, MotionReport, Pose, Robot, RobotState, Torques};
+use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
+use franka_model::{JointVector, Twist, Wrench, rotation, transform};
+use franka_rt::sched::Scheduling;
+use tokio::runtime::Handle;
+use tokio::sync::oneshot;
+
+#[derive(Parser)]
+struct Arguments {
+    way: Way,
+    #[command(flatten)]
+    connection: Connection,
+    /// How long to hold the hand, `[s]`.
+    #[arg(long, default_value_t = 10.0)]
+    seconds: f64,
+}
+
+#[derive(ValueEnum, Clone, Copy)]
+enum Way {
+    /// A function that the real-time thread calls with every state
+    Callback,
+    /// A thread of this program's own
+    Active,
+}
+
+#[tokio::main]
+async fn main() -> anyhow::Result<()> {
+    let arguments = Arguments::parse();
+    let connection = &arguments.connection;
+    let what = "holds its hand softly, to be pushed at";
+    let (robot, sim) = connection.open_ready(what).await?;
+    let start = robot.pose();
+    let springs = Springs {
+        model: robot.model().await?,
+        place: start,
+    };
+    if let Some(sim) = &sim {
+        push_simulated(sim, [0.0, 10.0, 0.0]).await?;
+    }
+    let reporter = report_hand(&robot);
+    let report = match arguments.way {
+        Way::Callback => callback(&robot, springs, arguments.seconds).await?,
+        Way::Active => {
+            let scheduling = connection.scheduling();
+            active(&robot, springs, arguments.seconds, scheduling).await?
+        }
+    };
+    reporter.abort();
+    let moved = robot.pose().translation.vector - start.translation.vector;
+    robot.shutdown().await;
+    println!("{}", Summary(&report));
+    println!("the hand is back within {:.2} mm", moved.norm() * 1e3);
+    Ok(())
+}
+
+/// Springs and dampers between the hand and a place in the room.
+struct Springs {
+    model: Model,
+    place: Pose,
+}
+
+/// Of the springs, `[N/m]` and `[N m/rad]`, along and about the axes of the base.
+const STIFFNESS: [f64; 6] = [300.0, 300.0, 300.0, 20.0, 20.0, 20.0];
+/// Of the dampers, `[N s/m]` and `[N m s/rad]`: close to critical for the 3 to 8 kg that the hand feels like.
+const DAMPING: [f64; 6] = [60.0, 60.0, 80.0, 3.0, 3.0, 3.0];
+/// Of the joints, `[N m s/rad]`, so that the elbow, which no spring holds, comes to rest too.
+const JOINT_DAMPING: f64 = 1.0;
+
+impl Springs {
+    /// What the springs answer a state with: `J' (K e - D J dq)`, a damper at each joint, and the Coriolis torques.
+    fn torques(&self, state: &RobotState) -> Torques {
+        let dynamics = dynamics(&self.model, state);
+        let pose = transform::isometry(&dynamics.pose).unwrap_or(self.place);
+        let dq = JointVector::from(state.dq);
+        let twist = dynamics.jacobian * dq;
+        let mut error = Twist::zeros();
+        let away = self.place.translation.vector - pose.translation.vector;
+        let turned = rotation::error(&self.place.rotation, &pose.rotation);
+        error.fixed_rows_mut::<3>(0).copy_from(&away);
+        error.fixed_rows_mut::<3>(3).copy_from(&turned);
+        let wrench = Wrench::from_fn(|i, _| STIFFNESS[i] * error[i] - DAMPING[i] * twist[i]);
+        let torques = dynamics.jacobian.tr_mul(&wrench) - dq * JOINT_DAMPING + dynamics.coriolis;
+        Torques(torques.into())
+    }
+}
+
+/// The law as a control function: it moves to the real-time thread, and its end is a future.
+async fn callback(
+    robot: &Robot,
+    springs: Springs,
+    seconds: f64,
+) -> Result<MotionReport, MotionError> {
+    let mut time = 0.0;
+    let holding = robot.control_torques(move |state, step| {
+        time += step.as_secs_f64();
+        springs.torques(state).finish_if(time >= seconds)
+    });
+    // After lost commands the torques may be further away than the robot takes in one millisecond: the limiter goes there
+    // in steps.
+    holding.limit_rate(true).await
+}
+
+/// The law on a thread of this program: it asks for the states, answers each, and is the control cycle meanwhile. How it
+/// is scheduled is up to this program as well; commands pass no filter and no limiter.
+async fn active(
+    robot: &Robot,
+    springs: Springs,
+    seconds: f64,
+    scheduling: Scheduling,
+) -> anyhow::Result<MotionReport> {
+    let (robot, runtime) = (robot.clone(), Handle::current());
+    let (done, ended) = oneshot::channel();
+    std::thread::spawn(move || {
+        // Fails only if nobody waits any more.
+        let _ = done.send(hold(&robot, &springs, seconds, &scheduling, &runtime));
+    });
+    ended.await?
+}
+
+fn hold(
+    robot: &Robot,
+    springs: &Springs,
+    seconds: f64,
+    scheduling: &Scheduling,
+    runtime: &Handle,
+) -> anyhow::Result<MotionReport> {
+    scheduling.enter()?;
+    // The robot waits for the first command once the motion runs, so it begins on the thread that is ready to write it.
+    let mut control = runtime.block_on(robot.active_torques())?;
+    let mut time = 0.0;
+    loop {
+        let (state, step) = control.read_once()?;
+        time += step.as_secs_f64();
+        let torques = springs.torques(&state);
+        if let Some(report) = control.write_once(torques.finish_if(time >= seconds))? {
+            return Ok(report);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! The hand is free to be led about, above a floor that is not there: a spring and a damper that only push upwards. The
+//! elbow is drawn back to its posture by springs that the hand does not feel.
+//!
+//! `cargo run --release --example virtual_floor [ADDRESS] [--below 0.05] [--seconds 20]`
+
+use clap::Parser;
+use franka_async::{Finish, Model, RobotState, Torques};
+use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
+use franka_model::{Dynamics, JointVector, READY, Twist, Wrench};
+
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    connection: Connection,
+    /// How far below the ready pose the floor is, `[m]`.
+    #[arg(long, default_value_t = 0.05)]
+    below: f64,
+    /// How long the hand is free, `[s]`.
+    #[arg(long, default_value_t = 20.0)]
+    seconds: f64,
+}
+
+#[tokio::main]
+async fn main() -> anyhow::Result<()> {
+    let arguments = Arguments::parse();
+    let what = "lets itself be led by the hand";
+    let (robot, sim) = arguments.connection.open_ready(what).await?;
+    let law = Law {
+        model: robot.model().await?,
+        floor: robot.pose().translation.z - arguments.below,
+    };
+    println!("floor at {:.4} m", law.floor);
+    if let Some(sim) = &sim {
+        push_simulated(sim, [0.0, 0.0, -12.0]).await?;
+    }
+    let reporter = report_hand(&robot);
+    let mut time = 0.0;
+    let free = robot.control_torques(move |state, step| {
+        time += step.as_secs_f64();
+        law.torques(state).finish_if(time >= arguments.seconds)
+    });
+    let report = free.limit_rate(true).await?;
+    reporter.abort();
+    robot.shutdown().await;
+    println!("{}", Summary(&report));
+    Ok(())
+}
+
+struct Law {
+    model: Model,
+    /// Height of the floor in the base frame, `[m]`.
+    floor: f64,
+}
+
+/// Of the floor's spring, `[N/m]`.
+const STIFFNESS: f64 = 2000.0;
+/// Of the floor's damper, `[s/m]`: the share of its spring by which the floor gets stiffer per velocity of the hand into it.
+/// A damper that grows with depth takes hold without a step (Hunt and Crossley, 1975).
+const DAMPING: f64 = 5.0;
+/// What slows the hand wherever it is, `[N s/m]` and `[N m s/rad]`: like oil, so that it stops when it is let go.
+const OIL: [f64; 6] = [20.0, 20.0, 20.0, 1.5, 1.5, 1.5];
+/// Springs and dampers of the posture, `[N m/rad]` and `[N m s/rad]`.
+const POSTURE: (f64, f64) = (20.0, 4.0);
+
+impl Law {
+    fn torques(&self, state: &RobotState) -> Torques {
+        let dynamics = dynamics(&self.model, state);
+        let dq = JointVector::from(state.dq);
+        let twist = dynamics.jacobian * dq;
+
+        let mut wrench = Wrench::from_fn(|i, _| -OIL[i] * twist[i]);
+        wrench[2] += push_of_the_floor(self.floor - dynamics.pose[(2, 3)], twist[2]);
+        let posture = (READY - JointVector::from(state.q)) * POSTURE.0 - dq * POSTURE.1;
+
+        let felt = dynamics.jacobian.tr_mul(&wrench);
+        Torques((felt + unfelt(&dynamics, &posture) + dynamics.coriolis).into())
+    }
+}
+
+/// Force of the floor on a hand `depth` below it that moves upwards at `velocity`, `[N]`: never downwards, so that the
+/// floor does not hold what leaves it.
+fn push_of_the_floor(depth: f64, velocity: f64) -> f64 {
+    STIFFNESS * depth.max(0.0) * (1.0 - DAMPING * velocity).max(0.0)
+}
+
+/// The part of `torques` that does not accelerate the hand: `(1 - J' L J M^-1) torques` with `L = (J M^-1 J')^-1`, the
+/// inertia that the hand feels like (Khatib, A unified approach for motion and force control of robot manipulators, 1987).
+/// Nothing where the hand cannot move in every direction, and no such part can be told.
+fn unfelt(dynamics: &Dynamics, torques: &JointVector) -> JointVector {
+    let Some(hand) = dynamics.operational_space() else {
+        return JointVector::zeros();
+    };
+    let Some(mass) = dynamics.mass.cholesky() else {
+        return JointVector::zeros();
+    };
+    let acceleration: Twist = dynamics.jacobian * mass.solve(torques);
+    match hand.inertia() {
+        Some(inertia) => torques - dynamics.jacobian.tr_mul(&(inertia * acceleration)),
+        None => JointVector::zeros(),
+    }
+}

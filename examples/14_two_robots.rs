@@ -1,0 +1,52 @@
+//! Two arms at once from one program: both go to their ready pose, then swing like in a mirror. Whatever ends the motion of
+//! one has the other stop.
+//!
+//! `cargo run --release --example two_robots [ADDRESS OTHER]`
+
+use clap::Parser;
+use franka_async::{Control, Finish, JointPositions, Robot};
+use franka_examples::{Connection, Ease, Summary, make_ready};
+
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    connection: Connection,
+    /// Address of the other robot, which is connected to with the same options; without it, it is simulated too.
+    #[arg(requires = "address")]
+    other: Option<String>,
+}
+
+/// Of the way there and back, `[s]`.
+const DURATION: f64 = 4.0;
+
+#[tokio::main]
+async fn main() -> anyhow::Result<()> {
+    let Arguments { connection, other } = Arguments::parse();
+    let opposite = Connection {
+        address: other,
+        ..connection.clone()
+    };
+    let ((left, _sim), (right, _other)) = tokio::try_join!(connection.open(), opposite.open())?;
+    connection.ask("and the other one go to their ready poses, and swing aside by 0.3 rad")?;
+    tokio::try_join!(make_ready(&left), make_ready(&right))?;
+
+    // Dropped unfinished, a motion has its robot stop: which is what `try_join` does to one when the other has failed.
+    let both = tokio::try_join!(swing(&left, 0.3), swing(&right, -0.3));
+    tokio::join!(left.shutdown(), right.shutdown());
+    let (first, second) = both?;
+    println!("one:   {}", Summary(&first));
+    println!("other: {}", Summary(&second));
+    Ok(())
+}
+
+/// Turns the first joint by `angle` `[rad]` and back.
+fn swing(robot: &Robot, angle: f64) -> Control {
+    let (mut time, mut start) = (0.0, None);
+    let control = robot.control_joint_positions(move |state, step| {
+        time += step.as_secs_f64();
+        let mut q = *start.get_or_insert(state.q_d);
+        q[0] += angle * Ease::there_and_back(DURATION, time).value;
+        JointPositions(q).finish_if(time >= DURATION)
+    });
+    control.cutoff_frequency(1000.0)
+}

@@ -1,0 +1,19 @@
+//! What a torque law needs of the model.
+
+use franka_async::{Model, RobotState};
+use franka_model::{Dynamics, EndEffector, Load};
+
+/// The model at a state: pose, Jacobian, mass, Coriolis and gravity torques, with the end effector and the load that the
+/// robot has been told of.
+///
+/// One pass over the arm, and no allocation: made to be called in a control function.
+pub fn dynamics(model: &Model, state: &RobotState) -> Dynamics {
+    let load = state.total_load();
+    model.dynamics(
+        &state.q.into(),
+        &state.dq.into(),
+        &EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K),
+        &Load::from_arrays(load.m_total, &load.F_x_Ctotal, &load.I_total),
+        &state.O_ddP_O.into(),
+    )
+}
