@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`fuzz`] | the fuzz targets, for a moment as a step or for as long as one likes |
+//! | [`live`] | clients against the simulator over real sockets, measured |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | the virtual environment of that step |
 //! | [`step`] | steps with headers, times and a summary |
@@ -12,6 +13,7 @@
 
 mod checks;
 mod fuzz;
+mod live;
 mod peers;
 mod python;
 mod step;
@@ -53,13 +55,21 @@ enum Task {
         runs: u64,
     },
     /// Measure the work of one control cycle and write `target/bench.json`.
+    ///
+    /// With --live: measure clients against the simulator over real sockets, and write `target/bench_live.json`.
     Bench {
         /// Rounds; each runs every benchmark once.
         #[arg(long, default_value_t = 15)]
         rounds: usize,
         /// Count the instructions of the model's calls instead; needs valgrind.
-        #[arg(long)]
+        #[arg(long, conflicts_with = "live")]
         instructions: bool,
+        /// Measure over real sockets instead: nothing else should run meanwhile.
+        #[arg(long)]
+        live: bool,
+        /// How long to measure each client.
+        #[arg(long, default_value_t = 30, requires = "live")]
+        seconds: u32,
     },
 }
 
@@ -87,6 +97,11 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::Bench {
             instructions: true, ..
         } => workspace.run(&mut workspace.cargo_release_binary("instructions")),
+        Task::Bench {
+            live: true,
+            seconds,
+            ..
+        } => live::run(&workspace, seconds),
         Task::Bench { rounds, .. } => {
             let output = workspace.target().join("bench.json");
             let mut command = workspace.cargo_release_binary("bench");

@@ -2,7 +2,7 @@
 
 use std::env;
 use std::io::{BufRead as _, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc;
 use std::thread;
@@ -14,14 +14,13 @@ use crate::python::Python;
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
-/// Runs every script of `tests/peers` against a simulator of its own.
+/// Runs the scripts of `tests/peers` that check something against a simulator of its own.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    let python = match supported().and_then(|()| Python::find()) {
-        Ok(python) => python,
+    let interpreter = match interpreter(workspace)? {
+        Ok(interpreter) => interpreter,
         Err(why) => return Outcome::without(why),
     };
-    let peers = workspace.root().join("tests").join("peers");
-    let interpreter = python.environment(workspace, &peers.join("requirements.txt"))?;
+    let peers = directory(workspace);
     let mut build = workspace.cargo();
     build.args(["build", "--workspace", "--bin", "franka-sim"]);
     workspace.run(&mut build)?;
@@ -39,6 +38,20 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
         finish(script, SCRIPT_TIME_MAX)?;
     }
     Ok(Outcome::Passed)
+}
+
+/// A Python interpreter that has the vendor's client, or why there is none.
+pub(crate) fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+    let requirements = directory(workspace).join("requirements.txt");
+    match supported().and_then(|()| Python::find()) {
+        Ok(python) => Ok(Ok(python.environment(workspace, &requirements)?)),
+        Err(why) => Ok(Err(why)),
+    }
+}
+
+/// Where the scripts are.
+pub(crate) fn directory(workspace: &Workspace) -> PathBuf {
+    workspace.root().join("tests").join("peers")
 }
 
 /// Whether the vendor's wheels exist for this machine at all.

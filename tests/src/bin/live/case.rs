@@ -1,0 +1,185 @@
+//! One client measured.
+
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use anyhow::bail;
+use serde::Serialize;
+
+use crate::process::{Process, simulator};
+use crate::relay::Relay;
+use crate::stamp;
+use crate::trace::Summary;
+
+/// What controls.
+#[derive(Clone, Debug)]
+pub(crate) enum Client {
+    /// One receive and one send per state.
+    Echo,
+    /// Our control function.
+    Torques,
+    /// Our target control.
+    Targets,
+    /// The vendor's control loop, from Python. It asks for `SCHED_FIFO` by itself, always.
+    Vendor {
+        /// Has pylibfranka.
+        interpreter: PathBuf,
+        /// Takes address and seconds.
+        script: PathBuf,
+    },
+}
+
+/// What its control thread is to ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scheduler {
+    /// `SCHED_FIFO`, at the highest priority.
+    Fifo,
+    /// Nothing.
+    Normal,
+}
+
+/// A client under a scheduler.
+#[derive(Clone, Debug)]
+pub(crate) struct Case {
+    /// What controls.
+    pub(crate) client: Client,
+    /// How.
+    pub(crate) scheduler: Scheduler,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Measured {
+    /// Of what passed the relay.
+    pub(crate) summary: Summary,
+    /// Processor time of the client's process, all threads, in percent of one core.
+    pub(crate) cpu_percent: f64,
+    /// `SCHED_FIFO` priority that its control thread did have; none under the normal scheduler.
+    pub(crate) fifo_priority: Option<u32>,
+}
+
+impl Case {
+    /// The client in words.
+    pub(crate) fn name(&self) -> &'static str {
+        match (&self.client, self.scheduler) {
+            (Client::Echo, Scheduler::Fifo) => "echo",
+            (Client::Torques, Scheduler::Fifo) => "control function",
+            (Client::Targets, Scheduler::Fifo) => "target control",
+            (Client::Vendor { .. }, _) => "pylibfranka",
+            (Client::Echo, Scheduler::Normal) => "echo, normal",
+            (Client::Torques, Scheduler::Normal) => "control function, normal",
+            (Client::Targets, Scheduler::Normal) => "target control, normal",
+        }
+    }
+
+    /// Measures the client for `time`, against a simulator of its own; the project's programs are in `programs`.
+    pub(crate) fn measure(&self, programs: &Path, time: Duration) -> anyhow::Result<Measured> {
+        let (_simulator, robot) = simulator(&programs.join("franka-sim"))?;
+        let listen = SocketAddr::new(loopback_address(std::process::id()), PORT);
+        let relay = Relay::start(listen, robot)?;
+        let seconds = (LEAD + time + LEAD).as_secs();
+        let mut client = Process::start(&mut self.command(programs, listen, seconds))?;
+
+        let deadline = Instant::now() + START_TIME_MAX;
+        while relay.commands() < SETTLED {
+            client.expect_running()?;
+            if Instant::now() > deadline {
+                bail!("no control within {START_TIME_MAX:?}");
+            }
+            std::thread::sleep(POLL);
+        }
+        let (begin, used) = (stamp::now(), client.cpu_time()?);
+        let fifo_priority = client.fifo_priority()?;
+        std::thread::sleep(time);
+        client.expect_running()?;
+        let (end, used) = (stamp::now(), client.cpu_time()?.saturating_sub(used));
+        client.finish(END_TIME_MAX)?;
+        let elapsed = end.saturating_sub(begin);
+        Ok(Measured {
+            summary: relay.finish()?.summary(begin, end)?,
+            cpu_percent: 100.0 * used.as_secs_f64() / elapsed.as_secs_f64(),
+            fifo_priority,
+        })
+    }
+
+    fn command(&self, programs: &Path, robot: SocketAddr, seconds: u64) -> Command {
+        let ours = |name: &str| {
+            let mut command = Command::new(programs.join("live_client"));
+            command.args([name, &robot.to_string()]);
+            if self.scheduler == Scheduler::Fifo {
+                command.arg("--fifo");
+            }
+            command
+        };
+        let mut command = match &self.client {
+            Client::Echo => ours("echo"),
+            Client::Torques => ours("torques"),
+            Client::Targets => ours("targets"),
+            Client::Vendor {
+                interpreter,
+                script,
+            } => {
+                let mut command = Command::new(interpreter);
+                command.arg(script).arg(robot.ip().to_string());
+                command
+            }
+        };
+        command.arg(seconds.to_string());
+        command
+    }
+}
+
+/// The vendor's client knows one port only, so that relays side by side need addresses of their own.
+fn loopback_address(process: u32) -> IpAddr {
+    // 127.2.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or 255.
+    let (high, low) = ((process / 254) % 256, process % 254 + 1);
+    Ipv4Addr::new(127, 2, high as u8, low as u8).into()
+}
+
+/// The port of every FCI server.
+const PORT: u16 = 1337;
+
+/// Time that a client controls before and after what is measured.
+const LEAD: Duration = Duration::from_secs(2);
+
+/// Commands after which a motion has settled: half a second.
+const SETTLED: u64 = 500;
+
+/// An interpreter takes a while to load its modules.
+const START_TIME_MAX: Duration = Duration::from_secs(20);
+
+/// Target control has the arm come to rest first.
+const END_TIME_MAX: Duration = Duration::from_secs(20);
+
+const POLL: Duration = Duration::from_millis(10);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(client: Client, scheduler: Scheduler) -> String {
+        let case = Case { client, scheduler };
+        let address = SocketAddr::new(loopback_address(254), PORT);
+        let command = case.command(Path::new("/bin"), address, 5);
+        let words = [command.get_program()].into_iter();
+        let words = words.chain(command.get_args()).map(|w| w.to_str().unwrap());
+        words.collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn every_client_hears_where_and_how_long() {
+        let fifo = line(Client::Torques, Scheduler::Fifo);
+        assert_eq!(fifo, "/bin/live_client torques 127.2.1.1:1337 --fifo 5");
+        let normal = line(Client::Targets, Scheduler::Normal);
+        assert_eq!(normal, "/bin/live_client targets 127.2.1.1:1337 5");
+        // Which knows the port by itself.
+        let vendor = Client::Vendor {
+            interpreter: "python".into(),
+            script: "script.py".into(),
+        };
+        let vendor = line(vendor, Scheduler::Fifo);
+        assert_eq!(vendor, "python script.py 127.2.1.1 5");
+    }
+}

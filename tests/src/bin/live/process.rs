@@ -1,0 +1,159 @@
+//! Simulator and clients: started, watched, ended.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader};
+use std::net::SocketAddr;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, bail};
+use nix::time::{clock_getcpuclockid, clock_gettime};
+use nix::unistd::Pid;
+
+/// A process of this program, which ends with this value at the latest.
+#[derive(Debug)]
+pub(crate) struct Process {
+    child: Child,
+    name: String,
+}
+
+impl Process {
+    /// Starts it.
+    pub(crate) fn start(command: &mut Command) -> anyhow::Result<Self> {
+        let name = command.get_program().display().to_string();
+        let child = command
+            .spawn()
+            .with_context(|| format!("starting {name}"))?;
+        Ok(Self { child, name })
+    }
+
+    /// Processor time that it has used, by all of its threads, ended ones included.
+    pub(crate) fn cpu_time(&self) -> anyhow::Result<Duration> {
+        let clock = clock_getcpuclockid(self.pid()?)?;
+        Ok(clock_gettime(clock)?.into())
+    }
+
+    /// The highest `SCHED_FIFO` priority of its threads; `None` if all run under the normal scheduler.
+    pub(crate) fn fifo_priority(&self) -> anyhow::Result<Option<u32>> {
+        let mut highest = None;
+        for thread in fs::read_dir(format!("/proc/{}/task", self.child.id()))? {
+            // A thread may end meanwhile.
+            if let Ok(stat) = fs::read_to_string(thread?.path().join("stat")) {
+                highest = highest.max(fifo_priority(&stat));
+            }
+        }
+        Ok(highest)
+    }
+
+    /// Fails if it has ended.
+    pub(crate) fn expect_running(&mut self) -> anyhow::Result<()> {
+        match self.child.try_wait()? {
+            None => Ok(()),
+            Some(status) => bail!("{} has ended: {status}", self.name),
+        }
+    }
+
+    /// Waits for its end, which has to be a success and come in time.
+    pub(crate) fn finish(mut self, time_max: Duration) -> anyhow::Result<()> {
+        let deadline = Instant::now() + time_max;
+        while Instant::now() < deadline {
+            match self.child.try_wait()? {
+                Some(status) if status.success() => return Ok(()),
+                Some(status) => bail!("{} failed: {status}", self.name),
+                None => std::thread::sleep(POLL),
+            }
+        }
+        bail!("{} did not end within {time_max:?}", self.name)
+    }
+
+    fn pid(&self) -> anyhow::Result<Pid> {
+        Ok(Pid::from_raw(self.child.id().try_into()?))
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        if matches!(self.child.try_wait(), Ok(None)) {
+            // It may end by itself meanwhile, which is as good.
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+}
+
+/// The simulator, ready to serve; a robot sends its states whatever else the machine does, so it is preferred too.
+pub(crate) fn simulator(program: &Path) -> anyhow::Result<(Process, SocketAddr)> {
+    let mut command = under_fifo(SIMULATOR_PRIORITY, program);
+    command.args(["--port", "0", "--no-gripper"]);
+    let mut process = Process::start(command.stdout(Stdio::piped()))?;
+    let output = process.child.stdout.take().context("it is piped")?;
+    let mut line = String::new();
+    BufReader::new(output).read_line(&mut line)?;
+    let address = line.trim().rsplit(' ').next().unwrap_or_default();
+    let address = address
+        .parse()
+        .with_context(|| format!("the simulator says {line:?}"))?;
+    Ok((process, address))
+}
+
+/// The command that runs a program under `SCHED_FIFO`.
+pub(crate) fn under_fifo(priority: u32, program: &Path) -> Command {
+    let mut command = Command::new("chrt");
+    command.args(["--fifo", &priority.to_string()]).arg(program);
+    command
+}
+
+/// Real-time priority under policy 1: fields 40 and 41 of proc_pid_stat(5), counted behind the name in parentheses.
+fn fifo_priority(stat: &str) -> Option<u32> {
+    let (_, rest) = stat.rsplit_once(')')?;
+    let mut fields = rest.split_whitespace().skip(40 - 3);
+    let (priority, policy) = (fields.next()?, fields.next()?);
+    (policy == "1").then(|| priority.parse().ok())?
+}
+
+const POLL: Duration = Duration::from_millis(20);
+
+/// Below that of the relay and of the client.
+const SIMULATOR_PRIORITY: u32 = 10;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sleep(seconds: &str) -> Process {
+        Process::start(Command::new("sleep").arg(seconds)).unwrap()
+    }
+
+    #[test]
+    fn priorities_are_read_behind_the_name() {
+        let stat = |priority, policy| {
+            format!(
+                "7 (a) b c) S {} {priority} {policy} 0 0",
+                "0 ".repeat(36).trim()
+            )
+        };
+        assert_eq!(fifo_priority(&stat(99, 1)), Some(99));
+        assert_eq!(fifo_priority(&stat(0, 0)), None);
+        assert_eq!(sleep("1").fifo_priority().unwrap(), None);
+    }
+
+    #[test]
+    fn a_process_that_sleeps_uses_no_processor() {
+        let process = sleep("1");
+        let before = process.cpu_time().unwrap();
+        std::thread::sleep(POLL);
+        let used = process.cpu_time().unwrap() - before;
+        assert!(used < POLL, "{used:?}");
+    }
+
+    #[test]
+    fn how_a_process_ends_is_told() {
+        sleep("0").finish(Duration::from_secs(20)).unwrap();
+        let failed = Process::start(&mut Command::new("false")).unwrap();
+        let error = failed.finish(Duration::from_secs(20)).unwrap_err();
+        assert!(error.to_string().contains("failed"), "{error}");
+        let error = sleep("60").finish(POLL).unwrap_err();
+        assert!(error.to_string().contains("did not end"), "{error}");
+    }
+}

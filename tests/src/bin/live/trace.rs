@@ -1,0 +1,202 @@
+//! What passed the relay, and the numbers that come of it.
+
+use std::collections::HashMap;
+use std::time::Duration;
+
+use anyhow::ensure;
+use hdrhistogram::Histogram;
+use serde::Serialize;
+
+/// A state that left for the client.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Departure {
+    /// Its `message_id`.
+    pub(crate) id: u64,
+    /// When it left, since the epoch.
+    pub(crate) left: Duration,
+    /// The share of commands that the robot says it received lately.
+    pub(crate) success_rate: f64,
+}
+
+/// A command that arrived from the client.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Answer {
+    /// `message_id` of the state that it answers.
+    pub(crate) id: u64,
+    /// When it arrived, since the epoch.
+    pub(crate) arrived: Duration,
+}
+
+/// Everything that passed, in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Trace {
+    /// States.
+    pub(crate) departures: Vec<Departure>,
+    /// Commands.
+    pub(crate) answers: Vec<Answer>,
+}
+
+/// What a client did within some time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Summary {
+    /// States that left for it.
+    pub(crate) states: u64,
+    /// Those of them that it did not answer.
+    pub(crate) lost: u64,
+    /// Mean of the success rate in those states.
+    pub(crate) success_average: f64,
+    /// The smallest one.
+    pub(crate) success_minimum: f64,
+    /// Between states that left: how regular robot and relay were.
+    pub(crate) state_interval: Quantiles,
+    /// Between commands that arrived.
+    pub(crate) interval: Quantiles,
+    /// From the departure of a state to the arrival of its command.
+    pub(crate) turnaround: Quantiles,
+}
+
+/// Durations that a share of all did not exceed, in nanoseconds, to three digits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct Quantiles {
+    /// Half of them.
+    pub(crate) p50: u64,
+    /// 99 of 100.
+    pub(crate) p99: u64,
+    /// 999 of 1000.
+    pub(crate) p99_9: u64,
+    /// All.
+    pub(crate) max: u64,
+}
+
+impl Trace {
+    /// What the client did with the states that left from `begin` on and before `end`, both since the epoch.
+    ///
+    /// # Errors
+    /// If there is not one state with an answer.
+    pub(crate) fn summary(&self, begin: Duration, end: Duration) -> anyhow::Result<Summary> {
+        let within = |time: Duration| begin <= time && time < end;
+        // The first answer counts: a robot ignores a second one.
+        let mut answered = HashMap::new();
+        for answer in &self.answers {
+            answered.entry(answer.id).or_insert(answer.arrived);
+        }
+        let states: Vec<_> = self.departures.iter().filter(|d| within(d.left)).collect();
+        let turnarounds: Vec<Duration> = states
+            .iter()
+            .filter_map(|state| answered.get(&state.id)?.checked_sub(state.left))
+            .collect();
+        ensure!(!turnarounds.is_empty(), "no state was answered");
+        let rates = || states.iter().map(|state| state.success_rate);
+        let arrivals = self.answers.iter().map(|answer| answer.arrived);
+        Ok(Summary {
+            states: states.len() as u64,
+            lost: (states.len() - turnarounds.len()) as u64,
+            success_average: rates().sum::<f64>() / states.len() as f64,
+            success_minimum: rates().fold(f64::INFINITY, f64::min),
+            state_interval: Quantiles::between(states.iter().map(|state| state.left)),
+            interval: Quantiles::between(arrivals.filter(|&time| within(time))),
+            turnaround: Quantiles::of(turnarounds),
+        })
+    }
+}
+
+impl Quantiles {
+    /// Of the times between one moment and the next.
+    fn between(moments: impl Iterator<Item = Duration>) -> Self {
+        let moments: Vec<Duration> = moments.collect();
+        let gap = |pair: &[Duration]| pair[1].saturating_sub(pair[0]);
+        Self::of(moments.windows(2).map(gap))
+    }
+
+    fn of(durations: impl IntoIterator<Item = Duration>) -> Self {
+        let mut histogram = Histogram::<u64>::new_with_bounds(1, LONGEST, DIGITS)
+            .expect("these bounds and digits are representable");
+        for duration in durations {
+            let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
+            // What is longer counts as the longest.
+            histogram.saturating_record(nanos);
+        }
+        Self {
+            p50: histogram.value_at_quantile(0.5),
+            p99: histogram.value_at_quantile(0.99),
+            p99_9: histogram.value_at_quantile(0.999),
+            max: histogram.max(),
+        }
+    }
+}
+
+/// Of the values.
+const DIGITS: u8 = 3;
+
+/// Ten seconds, in nanoseconds: a motion has ended long before.
+const LONGEST: u64 = 10_000_000_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn micros(number: u64) -> Duration {
+        Duration::from_micros(number)
+    }
+
+    /// A hundred states, a millisecond apart; each answered after as many microseconds as it has in its number.
+    fn hundred() -> Trace {
+        let numbers = 1..=100;
+        Trace {
+            departures: numbers
+                .clone()
+                .map(|n| Departure {
+                    id: n,
+                    left: micros(1000 * n),
+                    success_rate: if n == 40 { 0.5 } else { 1.0 },
+                })
+                .collect(),
+            answers: numbers
+                .map(|n| Answer {
+                    id: n,
+                    arrived: micros(1000 * n + n),
+                })
+                .collect(),
+        }
+    }
+
+    /// To the digits of the histogram.
+    fn near(got: u64, micros: u64) -> bool {
+        got.abs_diff(1000 * micros) * 1000 <= 1000 * micros
+    }
+
+    #[test]
+    fn a_turnaround_runs_from_a_state_to_the_first_command_that_names_it() {
+        let mut trace = hundred();
+        trace.answers.push(Answer {
+            id: 7,
+            arrived: micros(200_000),
+        });
+        let summary = trace.summary(Duration::ZERO, Duration::MAX).unwrap();
+        assert_eq!((summary.states, summary.lost), (100, 0));
+        let Quantiles { p50, p99, max, .. } = summary.turnaround;
+        assert!(near(p50, 50) && near(p99, 99) && near(max, 100), "{p50}");
+        assert!(near(summary.state_interval.p99, 1000));
+        assert!(near(summary.interval.p50, 1001));
+    }
+
+    #[test]
+    fn only_states_of_the_window_count() {
+        let mut trace = hundred();
+        trace.answers.retain(|answer| answer.id != 20);
+        let summary = trace.summary(micros(11_000), micros(51_000)).unwrap();
+        assert_eq!((summary.states, summary.lost), (40, 1));
+        assert_eq!(summary.success_minimum, 0.5);
+        assert!((summary.success_average - (1.0 - 0.5 / 40.0)).abs() < 1e-12);
+        assert!(near(summary.turnaround.max, 50));
+    }
+
+    #[test]
+    fn a_client_that_never_answered_has_no_numbers() {
+        let trace = Trace {
+            answers: Vec::new(),
+            ..hundred()
+        };
+        assert!(trace.summary(Duration::ZERO, Duration::MAX).is_err());
+    }
+}

@@ -1,0 +1,67 @@
+//! The project's own driver, as programs use it.
+
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+
+use franka_async::{Finish as _, Pose, Realtime, Robot, Torques};
+use tokio::sync::watch;
+
+/// Controls by a function that returns no torques: all of a cycle but the user's own work.
+#[tokio::main]
+pub(crate) async fn torques(address: &str, time: Duration, fifo: bool) -> anyhow::Result<()> {
+    let robot = connect(address, fifo).await?;
+    let mut passed = Duration::ZERO;
+    let motion = robot.control_torques(move |_, step| {
+        passed += step;
+        let none = Torques([0.0; 7]);
+        if passed < time {
+            none.into()
+        } else {
+            none.finish()
+        }
+    });
+    motion.await?;
+    robot.shutdown().await;
+    Ok(())
+}
+
+/// Has the arm follow targets that step along a circle.
+#[tokio::main]
+pub(crate) async fn targets(address: &str, time: Duration, fifo: bool) -> anyhow::Result<()> {
+    let robot = connect(address, fifo).await?;
+    let start = robot.pose();
+    let (sender, targets) = watch::channel(start);
+    let following = tokio::spawn(robot.follow(targets).into_future());
+    let begun = Instant::now();
+    while begun.elapsed() < time && !following.is_finished() {
+        tokio::time::sleep(STEP).await;
+        let angle = TAU * begun.elapsed().as_secs_f64() / ROUND.as_secs_f64();
+        let (y, z) = (RADIUS * angle.sin(), RADIUS * (1.0 - angle.cos()));
+        // Without a listener the motion has ended, and says itself why.
+        let _ = sender.send(Pose::translation(0.0, y, z) * start);
+    }
+    drop(sender);
+    following.await??;
+    robot.shutdown().await;
+    Ok(())
+}
+
+async fn connect(address: &str, fifo: bool) -> anyhow::Result<Robot> {
+    let builder = Robot::builder(address).realtime(Realtime::Ignore);
+    let builder = if fifo {
+        builder
+    } else {
+        builder.priority(NO_PRIORITY)
+    };
+    Ok(builder.connect().await?)
+}
+
+/// `SCHED_FIFO` has no priority 0: asking for it is refused, even to root, and the thread stays under the normal scheduler.
+const NO_PRIORITY: i32 = 0;
+
+/// Time between targets.
+const STEP: Duration = Duration::from_millis(100);
+
+/// Time for one round, well within the arm's limits at this radius, `[m]`.
+const ROUND: Duration = Duration::from_secs(4);
+const RADIUS: f64 = 0.05;

@@ -1,0 +1,61 @@
+//! A client of a robot for as long as it is told to: `live_client CLIENT ADDRESS SECONDS [--fifo]`.
+//!
+//! A process of its own, so that its processor time is its own too. What it does is measured from outside.
+
+mod driver;
+mod echo;
+
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::{Parser, ValueEnum};
+
+/// Controls a simulated robot and then ends the motion.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// What to control with.
+    client: Client,
+    /// Where the robot listens, `host:port`.
+    address: String,
+    /// How long to control.
+    seconds: u32,
+    /// Have the control thread run under SCHED_FIFO; an error if that is refused.
+    #[arg(long)]
+    fifo: bool,
+}
+
+/// The clients.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Client {
+    /// Answers every datagram with one, and does nothing else.
+    Echo,
+    /// A control function that returns no torques.
+    Torques,
+    /// Targets for the end effector, ten times a second.
+    Targets,
+}
+
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> anyhow::Result<()> {
+    let Arguments {
+        client,
+        address,
+        seconds,
+        fifo,
+    } = arguments;
+    let time = Duration::from_secs(seconds.into());
+    match client {
+        Client::Echo => echo::run(&address, time, fifo),
+        Client::Torques => driver::torques(&address, time, fifo),
+        Client::Targets => driver::targets(&address, time, fifo),
+    }
+}
