@@ -1,0 +1,89 @@
+//! System calls by name, and those that a control cycle may make.
+
+use std::collections::BTreeMap;
+
+use crate::tracer::{Call, Calls};
+
+/// The calls that a cycle may make, whatever they are made with.
+const ALLOWED: &[i64] = &[
+    libc::SYS_recvfrom,
+    libc::SYS_recvmsg,
+    libc::SYS_sendto,
+    libc::SYS_sendmsg,
+    libc::SYS_ppoll,
+    #[cfg(target_arch = "x86_64")]
+    libc::SYS_poll,
+    // Where the kernel gives the time without a call, this one does not show.
+    libc::SYS_clock_gettime,
+];
+
+/// What the bell is, in the words of `/proc`.
+const EVENTFD: &str = "anon_inode:[eventfd]";
+
+/// Whether a cycle may make this call. Of all that can be written to, only the bell is allowed.
+pub(crate) fn is_allowed(call: &Call) -> bool {
+    ALLOWED.contains(&call.number) || call.target.as_deref() == Some(EVENTFD)
+}
+
+/// Whether this call waits for the robot.
+fn receives(call: &Call) -> bool {
+    [libc::SYS_recvfrom, libc::SYS_recvmsg].contains(&call.number)
+}
+
+impl Calls {
+    /// The calls from the first that waits for the robot to the last: without those that set the thread up and take it
+    /// down, which are anything.
+    pub(crate) fn of_the_cycle(&self) -> &[Call] {
+        let first = self.calls.iter().position(receives);
+        let last = self.calls.iter().rposition(receives);
+        match (first, last) {
+            (Some(first), Some(last)) => &self.calls[first..=last],
+            _ => &[],
+        }
+    }
+}
+
+/// How often each call was made.
+pub(crate) fn counted<'a>(calls: impl IntoIterator<Item = &'a Call>) -> BTreeMap<String, u64> {
+    let mut counts = BTreeMap::new();
+    for call in calls {
+        *counts.entry(name_of(call)).or_default() += 1;
+    }
+    counts
+}
+
+fn name_of(call: &Call) -> String {
+    let known = NAMES.iter().find(|(number, _)| *number == call.number);
+    let name = known.map_or_else(
+        || format!("call {}", call.number),
+        |(_, name)| (*name).to_owned(),
+    );
+    match &call.target {
+        Some(target) => format!("{name} to {target}"),
+        None => name,
+    }
+}
+
+/// Names of calls that may turn up; others appear by their number.
+const NAMES: &[(i64, &str)] = &[
+    (libc::SYS_recvfrom, "recvfrom"),
+    (libc::SYS_recvmsg, "recvmsg"),
+    (libc::SYS_sendto, "sendto"),
+    (libc::SYS_sendmsg, "sendmsg"),
+    (libc::SYS_ppoll, "ppoll"),
+    #[cfg(target_arch = "x86_64")]
+    (libc::SYS_poll, "poll"),
+    (libc::SYS_clock_gettime, "clock_gettime"),
+    (libc::SYS_clock_nanosleep, "clock_nanosleep"),
+    (libc::SYS_read, "read"),
+    (libc::SYS_write, "write"),
+    (libc::SYS_futex, "futex"),
+    (libc::SYS_mmap, "mmap"),
+    (libc::SYS_munmap, "munmap"),
+    (libc::SYS_mprotect, "mprotect"),
+    (libc::SYS_madvise, "madvise"),
+    (libc::SYS_brk, "brk"),
+    (libc::SYS_getppid, "getppid"),
+    (libc::SYS_sched_yield, "sched_yield"),
+    (libc::SYS_exit, "exit"),
+];

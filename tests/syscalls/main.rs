@@ -1,0 +1,161 @@
+//! What the control thread asks of the system, call by call.
+//!
+//! Each test runs a scenario in a child of its own, which is this same program, traced by the kernel (`ptrace`), and looks
+//! at every system call that the thread of the cycle makes between its first wait for the robot and its last. They have
+//! to be receives, sends, polls, the clock and the bell; a lock that has to wait, an allocation that reaches the system, a
+//! log or a file would be something else.
+//!
+//! A lock that is free and an allocation from memory at hand make no call: `no_alloc` counts allocations.
+
+mod calls;
+mod scenarios;
+mod tracer;
+
+use std::any::type_name_of_val;
+use std::collections::BTreeMap;
+use std::future::Future;
+use std::sync::{Mutex, PoisonError};
+
+use tokio::runtime::Builder;
+
+use crate::calls::{counted, is_allowed};
+use crate::tracer::Calls;
+
+/// The driver's own thread.
+const CONTROL: &str = "franka-rt";
+
+/// Held while a child runs: each has a robot, which keeps a processor busy.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// Runs `scenario` in a child, in which only `test` runs, and gives the calls of the threads with these `names` to `judge`.
+fn trace(
+    test: impl Fn(),
+    names: &[&str],
+    scenario: impl Future<Output = ()>,
+    judge: impl FnOnce(&[Calls]),
+) {
+    if tracer::in_the_child() {
+        let runtime = Builder::new_multi_thread().enable_all().build();
+        return runtime.expect("a runtime").block_on(scenario);
+    }
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let path = type_name_of_val(&test);
+    let test = path.rsplit("::").next().expect("it has a name");
+    match tracer::run(test, names) {
+        Ok(threads) => judge(&threads),
+        Err(refusal) => {
+            let ci = std::env::var("CI").is_ok_and(|value| value == "true" || value == "1");
+            assert!(!ci, "a child cannot be traced here: {refusal}");
+            println!("NOTHING WAS CHECKED: a child cannot be traced here: {refusal}");
+        }
+    }
+}
+
+/// Prints the calls of a thread's cycles, and returns those that are not allowed.
+fn forbidden(thread: &Calls) -> BTreeMap<String, u64> {
+    let calls = thread.of_the_cycle();
+    println!(
+        "{}: {} calls, {:?}",
+        thread.name,
+        calls.len(),
+        counted(calls)
+    );
+    counted(calls.iter().filter(|call| !is_allowed(call)))
+}
+
+/// Asserts that the control thread has made many calls and no others than a cycle may.
+fn assert_clean(threads: &[Calls]) {
+    let [thread] = threads else {
+        panic!("one control thread: {threads:?}")
+    };
+    assert_eq!(forbidden(thread), BTreeMap::new());
+    // A second or more, of which each millisecond takes three calls or more.
+    assert!(thread.of_the_cycle().len() > 2000, "the trace is too short");
+}
+
+#[test]
+fn a_thread_that_watches_and_one_that_hears_nothing_only_receive_and_ring() {
+    trace(
+        a_thread_that_watches_and_one_that_hears_nothing_only_receive_and_ring,
+        &[CONTROL],
+        scenarios::watching(),
+        assert_clean,
+    );
+}
+
+#[test]
+fn targets_are_followed_with_the_calls_of_a_cycle_alone() {
+    trace(
+        targets_are_followed_with_the_calls_of_a_cycle_alone,
+        &[CONTROL],
+        scenarios::targets(),
+        assert_clean,
+    );
+}
+
+#[test]
+fn control_functions_and_reflexes_take_the_calls_of_a_cycle_alone() {
+    trace(
+        control_functions_and_reflexes_take_the_calls_of_a_cycle_alone,
+        &[CONTROL],
+        scenarios::functions(),
+        assert_clean,
+    );
+}
+
+#[test]
+fn asynchronous_targets_take_the_calls_of_a_cycle_alone() {
+    trace(
+        asynchronous_targets_take_the_calls_of_a_cycle_alone,
+        &[CONTROL],
+        scenarios::asynchronous(),
+        assert_clean,
+    );
+}
+
+#[test]
+fn a_thread_of_the_users_makes_the_same_calls_while_it_is_the_cycle() {
+    let names = [CONTROL, scenarios::ACTIVE];
+    trace(
+        a_thread_of_the_users_makes_the_same_calls_while_it_is_the_cycle,
+        &names,
+        scenarios::active(),
+        |threads| {
+            let called = |name| threads.iter().find(|thread| thread.name == name);
+            let user = called(scenarios::ACTIVE).expect("it ran");
+            assert_eq!(forbidden(user), BTreeMap::new());
+            assert!(user.of_the_cycle().len() > 2000, "the trace is too short");
+            // The driver's own thread waits meanwhile, in the one way there is.
+            let driver = forbidden(called(CONTROL).expect("it ran"));
+            assert_eq!(driver.keys().collect::<Vec<_>>(), ["futex"]);
+        },
+    );
+}
+
+#[test]
+fn any_other_call_is_seen() {
+    trace(
+        any_other_call_is_seen,
+        &[CONTROL],
+        scenarios::asking(),
+        |threads| {
+            let seen = threads.iter().map(forbidden).collect::<Vec<_>>();
+            let expected = BTreeMap::from([("getppid".to_owned(), 200)]);
+            assert_eq!(seen, [expected]);
+        },
+    );
+}
+
+#[test]
+fn a_write_to_anything_but_the_bell_is_seen() {
+    trace(
+        a_write_to_anything_but_the_bell_is_seen,
+        &[CONTROL],
+        scenarios::writing(),
+        |threads| {
+            let seen = threads.iter().map(forbidden).collect::<Vec<_>>();
+            let expected = BTreeMap::from([("write to /dev/null".to_owned(), 200)]);
+            assert_eq!(seen, [expected]);
+        },
+    );
+}
