@@ -24,10 +24,12 @@
 //! rings, and [`Thread::join`] tells. Printing the panic is the business of the process's panic hook.
 
 mod cycle;
+mod desk;
 mod driven;
 mod fault;
 mod handle;
 mod lease;
+mod lifetime;
 
 use std::io;
 use std::net::{IpAddr, UdpSocket};
@@ -38,16 +40,18 @@ use std::time::Instant;
 
 use franka_proto::{RobotState, Version};
 
+pub use self::desk::BorrowError;
 pub use self::driven::Core;
 pub use self::fault::LinkFault;
 pub use self::handle::{Handle, Lost, Notice, StateReader, Thread};
-pub use self::lease::{BorrowError, Lease, Lender, WriteFault};
+pub use self::lease::{Lease, Lender, WriteFault};
 
 use self::cycle::Cycle;
+use self::desk::Desk;
 use self::fault::Latch;
-use self::handle::{Datagram, Lifetime};
-use self::lease::Desk;
-use crate::exchange::Exchange;
+use self::handle::Datagram;
+use self::lifetime::Lifetime;
+use crate::exchange::{Exchange, TICK};
 use crate::sched::{self, SchedError, Scheduling};
 use crate::slot;
 use crate::stats::Stats;
@@ -123,7 +127,7 @@ pub fn spawn<C: Core>(
     let (notice_queue, notices) = rtrb::RingBuffer::new(capacity.notices.max(1));
     let (record_ring, records) = touched_ring(capacity.records.max(1), core.record());
     let (state_slot, state_reader) = slot::slot();
-    let desk = Arc::new(Desk::default());
+    let desk = Arc::new(Desk::new(TICK));
     let now = Instant::now();
     let mut cycle = Box::new(Cycle {
         core,
@@ -158,7 +162,7 @@ pub fn spawn<C: Core>(
         let ended = catch_unwind(AssertUnwindSafe(|| {
             while !refused && !lifetime.stop_wanted() {
                 if desk.is_wanted() {
-                    cycle = desk.lend(cycle, &lifetime)?;
+                    cycle = desk.lend(cycle, || lifetime.stop_wanted())?;
                 }
                 cycle.turn();
             }

@@ -7,7 +7,8 @@ use franka_proto::{DecodeError, RobotCommand, RobotState, Version};
 
 use super::Core;
 use super::fault::{Latch, LinkFault};
-use super::handle::{Datagram, Lifetime, Notice};
+use super::handle::{Datagram, Notice};
+use super::lifetime::Lifetime;
 use crate::exchange::{Exchange, Reception, SendError};
 use crate::slot::SlotWriter;
 use crate::stats::Stats;

@@ -2,11 +2,11 @@
 
 use std::any::Any;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
 use franka_proto::{RobotState, Version};
 
+use super::lifetime::Lifetime;
 use crate::driver::Driver;
 use crate::panic;
 use crate::sched::Granted;
@@ -56,36 +56,17 @@ pub struct Thread<C> {
     pub(super) joiner: Option<JoinHandle<Result<C, Lost>>>,
 }
 
-/// The two flags between the thread and its owner.
-#[derive(Debug, Default)]
-pub(super) struct Lifetime {
-    stop: AtomicBool,
-    ended: AtomicBool,
-}
-
-impl Lifetime {
-    /// Relaxed here and below: nothing else is read on the strength of this flag.
-    pub(super) fn stop_wanted(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
-
-    /// Release, pairs with the Acquire in [`Thread::has_ended`]: who sees the end sees what the thread left.
-    pub(super) fn note_end(&self) {
-        self.ended.store(true, Ordering::Release);
-    }
-}
-
 impl<C> Thread<C> {
     /// Asks the thread to stop. It does so before its next cycle, within [`crate::exchange::TICK`] if the robot is
     /// silent. A motion that runs is not finished first: the robot will miss its commands.
     pub fn stop(&self) {
-        self.shared.stop.store(true, Ordering::Relaxed);
+        self.shared.ask_to_stop();
     }
 
     /// Whether the loop has ended, because it was stopped or because the core panicked. The bell rings after this has
     /// become true.
     pub fn has_ended(&self) -> bool {
-        self.shared.ended.load(Ordering::Acquire)
+        self.shared.has_ended()
     }
 
     /// Stops the thread, waits for it and returns the core. Blocks for a cycle or a tick; from async code, call it

@@ -1,7 +1,4 @@
-//! Every interleaving of a slot's writer and reader, and every value that the memory model lets a load return.
-//!
-//! Run with `RUSTFLAGS="--cfg loom" cargo test -p franka-rt --test loom`.
-#![cfg(loom)]
+//! The slot.
 
 use franka_rt::slot::{Read, SlotReader, slot};
 use loom::thread;

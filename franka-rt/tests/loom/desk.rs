@@ -1,0 +1,137 @@
+//! The desk where the cycle changes hands. What is lent here is a count of the turns that it has run.
+
+// Private to the crate, and free of everything else in it.
+#[path = "../../src/thread/desk.rs"]
+#[allow(unreachable_pub, reason = "what the crate exports is exported there")]
+mod desk;
+
+use std::time::Duration;
+
+use loom::sync::Arc;
+use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use loom::thread;
+
+use self::desk::{BorrowError, Desk};
+
+/// Ticks that never end: whoever waits for a change has to be told of it.
+const FOREVER: Duration = Duration::MAX;
+
+/// Ticks that are over at once.
+const AT_ONCE: Duration = Duration::ZERO;
+
+/// The owner's loop, for as long as somebody wants the value or `goes_on` says so; then it closes the desk. Returns the
+/// turns that were run in all, if the value is back.
+fn own(desk: &Desk<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
+    let mut turns = Some(0);
+    while let Some(value) = turns.filter(|_| goes_on()) {
+        if desk.is_wanted() {
+            turns = desk.lend(value, || !goes_on());
+        } else {
+            thread::yield_now();
+        }
+    }
+    desk.close();
+    turns
+}
+
+/// Borrows, runs a turn and gives back.
+fn take_a_turn(desk: &Desk<u64>) -> Result<(), BorrowError> {
+    let turns = desk.borrow()?;
+    desk.give_back(Some(turns + 1));
+    Ok(())
+}
+
+/// With ticks that never end, a notification that gets lost would leave somebody waiting for good, which loom reports.
+#[test]
+fn whoever_wants_it_gets_it() {
+    loom::model(|| {
+        let desk = Arc::new(Desk::new(FOREVER));
+        let served = Arc::new(AtomicBool::new(false));
+        let borrower = {
+            let (desk, served) = (desk.clone(), served.clone());
+            thread::spawn(move || {
+                let got = take_a_turn(&desk);
+                served.store(true, Ordering::Relaxed);
+                got
+            })
+        };
+        let turns = own(&desk, || !served.load(Ordering::Relaxed));
+        assert_eq!(borrower.join().expect("no panic"), Ok(()));
+        assert_eq!(turns, Some(1), "no turn is lost or doubled");
+    });
+}
+
+/// Three threads have too many interleavings: those with up to two preemptions are explored.
+#[test]
+fn two_borrowers_get_it_or_hear_that_the_other_has_it() {
+    let mut model = loom::model::Builder::new();
+    model.preemption_bound = Some(2);
+    model.check(|| {
+        let desk = Arc::new(Desk::new(FOREVER));
+        let left = Arc::new(AtomicU64::new(2));
+        let borrowers = [(); 2].map(|()| {
+            let (desk, left) = (desk.clone(), left.clone());
+            thread::spawn(move || {
+                let got = take_a_turn(&desk);
+                left.fetch_sub(1, Ordering::Relaxed);
+                got
+            })
+        });
+        let turns = own(&desk, || left.load(Ordering::Relaxed) > 0);
+        let got = borrowers.map(|borrower| borrower.join().expect("no panic"));
+        let served = got.iter().filter(|got| got.is_ok()).count();
+        assert!(served >= 1, "somebody gets it: {got:?}");
+        assert!(
+            got.iter()
+                .all(|got| matches!(got, Ok(()) | Err(BorrowError::Lent))),
+            "{got:?}"
+        );
+        assert_eq!(turns, Some(served as u64), "no turn is lost or doubled");
+    });
+}
+
+/// The owner is told to stop at any moment: nobody waits for good, and the value ends in one place.
+#[test]
+fn a_stop_at_any_moment_leaves_nobody_waiting() {
+    loom::model(|| {
+        let desk = Arc::new(Desk::new(AT_ONCE));
+        let stop = Arc::new(AtomicBool::new(false));
+        let borrower = {
+            let desk = desk.clone();
+            thread::spawn(move || take_a_turn(&desk))
+        };
+        let stopper = {
+            let stop = stop.clone();
+            thread::spawn(move || stop.store(true, Ordering::Relaxed))
+        };
+        let turns = own(&desk, || !stop.load(Ordering::Relaxed));
+        let got = borrower.join().expect("no panic");
+        stopper.join().expect("no panic");
+        match (got, turns) {
+            // Given back in time, or freed by the borrower, after the owner gave it up.
+            (Ok(()), Some(1) | None) => {}
+            (Err(BorrowError::Ended), Some(0)) => {}
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(desk.borrow(), Err(BorrowError::Ended), "nobody later");
+    });
+}
+
+/// A borrower that panics gives nothing back.
+#[test]
+fn a_value_that_is_spoilt_ends_the_owner() {
+    loom::model(|| {
+        let desk = Arc::new(Desk::new(FOREVER));
+        let borrower = {
+            let desk = desk.clone();
+            thread::spawn(move || {
+                let spoilt = desk.borrow();
+                desk.give_back(None);
+                spoilt
+            })
+        };
+        assert_eq!(own(&desk, || true), None);
+        assert_eq!(borrower.join().expect("no panic"), Ok(0));
+        assert_eq!(desk.borrow(), Err(BorrowError::Ended));
+    });
+}
