@@ -174,10 +174,7 @@ impl<C> Active<C> {
             return Err(ActiveError::Finished);
         }
         loop {
-            let lease = match &mut self.lease {
-                Some(lease) => lease,
-                none => none.insert(self.robot.lender().borrow()?),
-            };
+            let lease = self.lease()?;
             let turned = lease.turn();
             // The motion is over for the cycle, or the thread is: the bridge knows why.
             if turned.is_err() || lease.core().is_watching() {
@@ -203,15 +200,19 @@ impl<C> Active<C> {
         if self.outcome.is_none() {
             return Err(ActiveError::Finished);
         }
-        let lease = match &mut self.lease {
-            Some(lease) => lease,
-            none => none.insert(self.robot.lender().borrow()?),
-        };
-        lease.write(command, finished)?;
+        self.lease()?.write(command, finished)?;
         if finished {
             return Ok(Some(self.end()?));
         }
         Ok(None)
+    }
+
+    /// The cycle, which the first call takes over.
+    fn lease(&mut self) -> Result<&mut Lease, BorrowError> {
+        match &mut self.lease {
+            Some(lease) => Ok(lease),
+            none => Ok(none.insert(self.robot.lender().borrow()?)),
+        }
     }
 
     /// Gives the cycle back and waits for the end of the motion.
