@@ -41,7 +41,7 @@ async fn main() -> anyhow::Result<()> {
         command.finish_if(time >= DURATION)
     });
 
-    let model = robot.model().await?;
+    let model = robot.model().clone();
     let circle = circle.with_torques(move |state, _| {
         let coriolis = dynamics(&model, state).coriolis;
         // Gravity and friction are the robot's business; what is commanded comes on top.

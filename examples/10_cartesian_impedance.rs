@@ -37,7 +37,7 @@ async fn main() -> anyhow::Result<()> {
     let (robot, sim) = connection.open_ready(what).await?;
     let start = robot.pose();
     let springs = Springs {
-        model: robot.model().await?,
+        model: robot.model().clone(),
         place: start,
     };
     if let Some(sim) = &sim {

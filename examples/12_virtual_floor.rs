@@ -26,7 +26,7 @@ async fn main() -> anyhow::Result<()> {
     let what = "lets itself be led by the hand";
     let (robot, sim) = arguments.connection.open_ready(what).await?;
     let law = Law {
-        model: robot.model().await?,
+        model: robot.model().clone(),
         floor: robot.pose().translation.z - arguments.below,
     };
     println!("floor at {:.4} m", law.floor);

@@ -88,6 +88,7 @@ pub struct Builder {
     pub(crate) scheduling: Scheduling,
     pub(crate) connect_timeout: Duration,
     pub(crate) link_timeout: Duration,
+    pub(crate) nominal_model: bool,
     pub(crate) log_size: usize,
     pub(crate) cancellation: CancellationToken,
 }
@@ -100,6 +101,7 @@ impl Builder {
             scheduling: Scheduling::default(),
             connect_timeout: connect::TCP_TIMEOUT,
             link_timeout: franka_rt::driver::LINK_TIMEOUT,
+            nominal_model: false,
             log_size: ControlLog::DEFAULT_CAPACITY,
             cancellation: CancellationToken::new(),
         }
@@ -142,8 +144,8 @@ impl Builder {
         self
     }
 
-    /// Time that each step of connecting may take: finding the host, the TCP connection, the handshake, the first state. 1 s
-    /// by default.
+    /// Time that each step of connecting may take: finding the host, the TCP connection, the handshake, the first state,
+    /// the description. 1 s by default.
     pub fn connect_timeout(mut self, timeout: Duration) -> Self {
         self.connect_timeout = timeout;
         self
@@ -152,6 +154,14 @@ impl Builder {
     /// Silence of the robot after which a running motion fails with `LinkLost`. 1 s by default.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
+        self
+    }
+
+    /// Whether to compute with the vendor's published constants whatever the robot says of itself; off by default, so that
+    /// a Franka Research 3 is asked for its description, and keeps the limits in there. For a robot whose description this
+    /// driver refuses, once it is known that its arm is that of the constants. A Franka Emika Robot has no description.
+    pub fn nominal_model(mut self, nominal: bool) -> Self {
+        self.nominal_model = nominal;
         self
     }
 
@@ -171,7 +181,7 @@ impl Builder {
         self
     }
 
-    /// Connects: real-time check, TCP, handshake, first state. Must be called on a Tokio runtime with I/O and time
+    /// Connects: real-time check, TCP, handshake, first state, description. Must be called on a Tokio runtime with I/O and time
     /// enabled, which then runs the two tasks of the connection.
     ///
     /// # Errors

@@ -1,12 +1,13 @@
 //! From an address to a running connection.
 
 use std::net::SocketAddr;
+use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
 use franka_model::{Model, RobotKind};
 use franka_proto::client::{Event, Session};
-use franka_proto::{Protocol, RobotState, Version};
+use franka_proto::{Command, Protocol, RobotState, Version};
 use franka_rt::driver::Driver;
 use franka_rt::exchange;
 use franka_rt::lifecycle::Lifecycle;
@@ -50,7 +51,8 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         Channel::start(opened.stream, opened.session, published.clone());
     let stats = opened.handle.stats.clone();
     let lender = opened.handle.lender.clone();
-    let lifecycle = Lifecycle::new(opened.model, opened.version).with_log_size(builder.log_size);
+    let model = Arc::new(model_of(opened.version, &channel, &builder).await?);
+    let lifecycle = Lifecycle::new(model.clone(), opened.version).with_log_size(builder.log_size);
     let bridge = Bridge::new(
         lifecycle,
         opened.handle,
@@ -60,7 +62,7 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     );
     let inputs = bridge.start(reports, builder.cancellation);
     Ok(Robot::new(Shared {
-        model: opened.model,
+        model,
         version: opened.version,
         address,
         inputs,
@@ -74,7 +76,6 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
 
 struct Opened {
     version: Version,
-    model: &'static Model,
     stream: Framed<TcpStream, MessageCodec>,
     session: Session,
     handle: Handle,
@@ -106,7 +107,6 @@ async fn open_with(
     address: SocketAddr,
     builder: &Builder,
 ) -> Result<Opened, ConnectError> {
-    let model = Model::of(kind_of(version));
     let tcp = dial::<Version>(address, builder.connect_timeout).await?;
     let udp = exchange::bind()?;
     let port = udp.local_addr()?.port();
@@ -131,13 +131,25 @@ async fn open_with(
         .map_err(|_| ConnectError::NoState)??;
     Ok(Opened {
         version,
-        model,
         stream,
         session,
         handle,
         bell,
         first,
     })
+}
+
+/// The model of the arm: from its description if it has one and that is wanted, the constants of its kind otherwise.
+async fn model_of(
+    version: Version,
+    channel: &Channel,
+    builder: &Builder,
+) -> Result<Model, ConnectError> {
+    #[cfg(feature = "urdf")]
+    if version.supports(Command::GetRobotModel) && !builder.nominal_model {
+        return Ok(crate::model::ask(channel, builder.connect_timeout).await?);
+    }
+    Ok(Model::of(kind_of(version)).clone())
 }
 
 /// The robot that speaks `version`: a version belongs to one kind.

@@ -140,7 +140,8 @@ impl Control {
 
     fn work(self) -> Work {
         let version = self.robot.version();
-        let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency);
+        let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency)
+            .with_limits_of(self.robot.model().joint_limits());
         let request = self.callback.request(version, self.controller);
         Work::Program {
             id: self.id,

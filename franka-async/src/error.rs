@@ -49,10 +49,6 @@ pub enum Error {
     /// The vacuum gripper did not do it.
     #[error(transparent)]
     VacuumGripper(#[from] ActionError<vacuum::Command>),
-    /// There is no model of the connected arm.
-    #[cfg(feature = "urdf")]
-    #[error(transparent)]
-    Model(#[from] crate::ModelError),
     /// The robot's model library cannot be used.
     #[cfg(all(feature = "model-library", target_os = "linux"))]
     #[error(transparent)]
@@ -90,8 +86,6 @@ impl Error {
             Self::Gripper(error) => error.party(),
             Self::ConnectVacuumGripper(error) => error.party(),
             Self::VacuumGripper(error) => error.party(),
-            #[cfg(feature = "urdf")]
-            Self::Model(error) => error.party(),
             #[cfg(all(feature = "model-library", target_os = "linux"))]
             Self::ModelLibrary(error) => error.party(),
         }
@@ -144,6 +138,10 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Link: the handshake succeeded and no state came. A firewall in the way of UDP is the usual cause.
     #[error("libfranka: UDP receive: Timeout")]
     NoState,
+    /// Robot, link or peer: there is no model of the arm. See [`Builder::nominal_model`](crate::Builder::nominal_model).
+    #[cfg(feature = "urdf")]
+    #[error(transparent)]
+    Model(#[from] crate::ModelError),
 }
 
 impl<P: Protocol> ConnectError<P> {
@@ -158,6 +156,8 @@ impl<P: Protocol> ConnectError<P> {
             | Self::HandshakeTimeout
             | Self::NoState => Party::Link,
             Self::IncompatibleVersion(_) | Self::Violation(_) | Self::Frame(_) => Party::Peer,
+            #[cfg(feature = "urdf")]
+            Self::Model(error) => error.party(),
         }
     }
 }

@@ -25,7 +25,7 @@ pub struct Follow {
 
 impl Follow {
     pub(crate) fn new(robot: Robot, targets: watch::Receiver<Pose>) -> Self {
-        let budget = Budget::of(robot.nominal_model().joint_limits());
+        let budget = Budget::of(robot.model().joint_limits());
         Self {
             robot,
             targets,

@@ -13,7 +13,7 @@
 //!   the user's, which reads states and writes commands. [`AsynchronousControl`]: sparse joint
 //!   targets between which the robot plans.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
-//! * `Robot::model` (feature `urdf`, on by default): the model of the connected arm, from its own description.
+//! * [`Robot::model`]: the model of the connected arm, from its own description (feature `urdf`, on by default).
 //!   `Robot::model_library` (feature `model-library`, off by default): the code that a Franka Emika Robot hands out.
 //! * [`error`]: what can go wrong, grouped by who can act on it.
 //!
@@ -134,8 +134,6 @@ mod tests {
             sent(robot.set_joint_impedance([0.0; 7]));
             sent(robot.urdf());
             sent(robot.load_model_library(Architecture::X64, System::Linux));
-            #[cfg(feature = "urdf")]
-            sent(robot.model());
             sent(robot.shutdown());
         };
     }

@@ -12,6 +12,8 @@ const DOWNLOAD: Duration = Duration::from_secs(30);
 
 #[cfg(feature = "urdf")]
 pub use described::ModelError;
+#[cfg(feature = "urdf")]
+pub(crate) use described::ask;
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 pub use library::ModelLibraryError;
 
@@ -42,34 +44,24 @@ impl Robot {
 
 #[cfg(feature = "urdf")]
 mod described {
+    use std::time::Duration;
+
+    use franka_model::Model;
     use franka_model::urdf::UrdfError;
-    use franka_model::{Model, RobotKind};
 
+    use crate::CommandError;
+    use crate::channel::Channel;
     use crate::error::Party;
-    use crate::{CommandError, Robot};
+    use crate::parameters;
 
-    impl Robot {
-        /// The model of the connected arm. A Franka Research 3 describes itself: its masses and limits are those of the
-        /// description ([`Robot::urdf`]). A Franka Emika Robot does not: it has the constants that its own library
-        /// is known to compute with, [`Model::fer`].
-        ///
-        /// Control does not wait for it: it computes with [`Robot::nominal_model`]. Needs the feature `urdf`, which is
-        /// on by default.
-        ///
-        /// # Errors
-        /// [`ModelError`].
-        ///
-        /// # Cancel safety
-        /// Nothing is lost but the answer.
-        pub async fn model(&self) -> Result<Model, ModelError> {
-            match self.nominal_model().kind() {
-                RobotKind::Fer => Ok(Model::fer().clone()),
-                _ => Ok(Model::from_urdf(&self.urdf().await?)?),
-            }
-        }
+    /// Asks the robot for its description, for as long as `deadline`, and reads it.
+    pub(crate) async fn ask(channel: &Channel, deadline: Duration) -> Result<Model, ModelError> {
+        let text = parameters::urdf(channel, deadline).await?;
+        Ok(Model::from_urdf(&text)?)
     }
 
-    /// Why there is no model of the connected arm.
+    /// Why there is no model of the connected arm. [`Builder::nominal_model`](crate::Builder::nominal_model) does without
+    /// its description.
     #[derive(Clone, Debug, PartialEq, thiserror::Error)]
     #[non_exhaustive]
     pub enum ModelError {
@@ -94,13 +86,14 @@ mod described {
     #[cfg(test)]
     mod tests {
         use super::*;
-        use crate::error::Error;
+        use crate::error::{ConnectError, Error};
 
         #[test]
         fn a_description_that_cannot_be_read_is_nobodys_fault_here() {
             let error = Model::from_urdf("<sdf/>").expect_err("no description");
             let text = error.to_string();
-            let error = Error::from(ModelError::from(error));
+            let error: ConnectError = ModelError::from(error).into();
+            let error = Error::from(error);
             assert_eq!((error.to_string(), error.party()), (text, Party::Peer));
         }
     }

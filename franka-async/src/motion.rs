@@ -73,7 +73,7 @@ impl Motion {
             id: robot.next_goal(),
             target,
             then: Then::Finish,
-            budget: Budget::of(robot.nominal_model().joint_limits()),
+            budget: Budget::of(robot.model().joint_limits()),
             gains,
             tolerance: Tolerance::default(),
         };

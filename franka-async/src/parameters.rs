@@ -7,7 +7,7 @@ use std::time::Duration;
 use franka_model::transform;
 use franka_proto::{CollisionBehavior, Filters, Load, Request, VirtualWall};
 
-use crate::channel::Answer;
+use crate::channel::{Answer, Channel};
 use crate::{CommandError, Pose, Robot};
 
 /// Time for an answer that the robot gives at once.
@@ -127,10 +127,7 @@ impl Robot {
     /// # Cancel safety
     /// Nothing is lost but the answer.
     pub async fn urdf(&self) -> Result<String, CommandError> {
-        match self.channel().call(Request::GetRobotModel, ANSWER).await? {
-            Answer::Model(text) => Ok(String::from_utf8_lossy(&text).into_owned()),
-            _ => unreachable!("the session matches replies to the commands they answer"),
-        }
+        urdf(self.channel(), ANSWER).await
     }
 
     /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz; 1000 switches a filter off.
@@ -163,5 +160,13 @@ impl Robot {
 
     async fn set(&self, request: Request) -> Result<(), CommandError> {
         self.channel().call(request, ANSWER).await.map(|_| ())
+    }
+}
+
+/// The robot's description of itself, waited for as long as `deadline`.
+pub(crate) async fn urdf(channel: &Channel, deadline: Duration) -> Result<String, CommandError> {
+    match channel.call(Request::GetRobotModel, deadline).await? {
+        Answer::Model(text) => Ok(String::from_utf8_lossy(&text).into_owned()),
+        _ => unreachable!("the session matches replies to the commands they answer"),
     }
 }

@@ -37,7 +37,7 @@ pub struct Robot {
 
 /// What all handles of a connection share.
 pub(crate) struct Shared {
-    pub(crate) model: &'static Model,
+    pub(crate) model: Arc<Model>,
     pub(crate) version: Version,
     pub(crate) address: SocketAddr,
     pub(crate) inputs: Inputs,
@@ -109,16 +109,16 @@ impl Robot {
             f_t_ee: transform::matrix(&ee),
             ..EndEffector::default()
         };
-        let model = self.nominal_model();
-        let pose = model.pose(Frame::EndEffector, &q.into(), &ee);
+        let pose = self.model().pose(Frame::EndEffector, &q.into(), &ee);
         transform::isometry(&pose).unwrap_or_default()
     }
 
-    /// The model of the connected robot's kind, as the vendor's constants have it: what control computes with.
-    ///
-    /// See `Robot::model` for the model of this very arm.
-    pub fn nominal_model(&self) -> &'static Model {
-        self.shared.model
+    /// The model of the connected arm, which control computes with. A Franka Research 3 describes itself: its masses and
+    /// limits are those of the description ([`Robot::urdf`]), unless the feature `urdf` is off or
+    /// [`Builder::nominal_model`] is chosen. A Franka Emika Robot does not: it has the constants that its own library is
+    /// known to compute with, [`Model::fer`].
+    pub fn model(&self) -> &Model {
+        &self.shared.model
     }
 
     /// The protocol version that the robot speaks.

@@ -32,7 +32,7 @@ async fn the_version_is_negotiated_and_a_pose_and_joints_are_reached() {
     let _alone = alone();
     let (robot, _sim) = fer().await;
     assert_eq!(robot.version(), Version::V5);
-    assert_eq!(robot.nominal_model().kind(), RobotKind::Fer);
+    assert_eq!(robot.model().kind(), RobotKind::Fer);
     let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
     robot.move_to(up).await.unwrap();
     assert_near(&robot, &up);

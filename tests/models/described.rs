@@ -1,7 +1,12 @@
 //! From the URDF that the simulator serves to a model.
 
-use franka_async::{ModelError, UrdfError};
-use franka_model::{Model, RobotKind};
+use std::time::Duration;
+
+use franka_async::{
+    ConnectError, Finish, GoalError, JointVelocities, ModelError, MotionError, Realtime, Robot,
+    UrdfError,
+};
+use franka_model::{Model, READY, RobotKind};
 use franka_sim::{Config, Sim};
 
 use crate::connected;
@@ -18,41 +23,108 @@ fn the_description_that_the_simulator_serves_gives_the_constant_model_to_the_las
     assert_eq!(&model, Model::fr3());
 }
 
+/// The same with another number in place of one that occurs once.
+fn served_with(number: &str, other: &str) -> String {
+    let text = served();
+    assert_eq!(text.matches(number).count(), 1, "{number}");
+    text.replace(number, other)
+}
+
 #[tokio::test]
 async fn an_fr3_is_asked_for_its_model_over_the_network() {
     let (robot, _sim) = connected(Sim::fr3()).await;
-    assert_eq!(robot.model().await.as_ref(), Ok(Model::fr3()));
+    assert_eq!(robot.model(), Model::fr3());
     robot.shutdown().await;
 }
 
 #[tokio::test]
 async fn an_arm_with_other_numbers_has_a_model_with_those_numbers() {
-    let text = served();
     let mass = format!("mass value=\"{}\"", Model::fr3().links()[6].mass);
-    assert_eq!(text.matches(&mass).count(), 1);
-    let text = text.replace(&mass, "mass value=\"0.75\"");
-    let (robot, _sim) = connected(Sim::fr3().urdf(text)).await;
-    let model = robot.model().await.expect("a model");
-    assert_eq!(model.links()[6].mass, 0.75);
-    assert_eq!(model.joint_limits(), Model::fr3().joint_limits());
-    // Control goes on with the constants.
-    assert_eq!(robot.nominal_model(), Model::fr3());
+    let (robot, _sim) = connected(Sim::fr3().urdf(served_with(&mass, "mass value=\"0.75\""))).await;
+    assert_eq!(robot.model().links()[6].mass, 0.75);
+    assert_eq!(robot.model().joint_limits(), Model::fr3().joint_limits());
+    robot.shutdown().await;
+}
+
+/// The description of an arm whose first joint is slow at its end, and stops short of the documented one: the range of newer
+/// systems.
+fn narrower() -> String {
+    served_with("upper=\"2.7501\"", "upper=\"2.7437\"")
+}
+
+#[tokio::test]
+async fn goals_keep_the_range_that_the_description_gives() {
+    let beyond = {
+        let mut q: [f64; 7] = READY.into();
+        q[0] = Model::fr3().joint_limits().upper[0] - 1e-4;
+        q
+    };
+    let (robot, _sim) = connected(Sim::fr3().urdf(narrower())).await;
+    let refused = robot.move_joints(beyond).await;
+    assert!(
+        matches!(
+            refused,
+            Err(MotionError::Goal(GoalError::OutOfRange { joint: 1, .. }))
+        ),
+        "{refused:?}"
+    );
     robot.shutdown().await;
 }
 
 #[tokio::test]
-async fn a_description_of_something_else_is_refused_and_the_connection_stays() {
-    let text = served().replace("<robot name=\"fr3\"", "<robot name=\"tmr_platform\"");
-    let (robot, _sim) = connected(Sim::fr3().urdf(text)).await;
-    let error = robot.model().await.expect_err("no arm");
+async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
+    // The range ends 1.25 rad short of the vendor's: where the constants would still allow full speed, the arm has to brake.
+    let mut start = READY;
+    start[0] = 1.2;
+    let text = served_with("upper=\"2.7501\"", "upper=\"1.5\"");
+    let (robot, _sim) = connected(Sim::fr3().q(start).urdf(text)).await;
+    let limits = *robot.model().joint_limits();
+    let (mut worst, mut time) = (f64::NEG_INFINITY, Duration::ZERO);
+    let (told, hear) = std::sync::mpsc::channel();
+    let ended = robot
+        .control_joint_velocities(move |state, period| {
+            time += period;
+            let (_, upper) = limits.velocity_envelope(&state.q_d.into(), 0.0);
+            worst = worst.max(state.dq_d[0] - upper[0]);
+            let asked = time.as_secs_f64().min(0.6);
+            let slow = state.dq_d[0].abs() < 0.01;
+            if time > Duration::from_millis(700) && slow {
+                let _ = told.send((worst, state.q_d[0]));
+                return JointVelocities([0.0; 7]).finish();
+            }
+            JointVelocities([asked, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).into()
+        })
+        .limit_rate(true)
+        .await;
+    ended.expect("nothing that the robot refuses");
+    let (worst, end) = hear.recv().expect("an end");
+    // The bound is that of the position a cycle before, from where it falls by 6 mrad/s.
+    assert!(worst.abs() < 0.01, "it binds and holds: {worst}");
+    assert!(1.48 < end && end < 1.5, "{end}");
+    robot.shutdown().await;
+}
+
+#[tokio::test]
+async fn a_description_of_something_else_is_refused_unless_the_constants_are_chosen() {
+    let text = served_with("<robot name=\"fr3\"", "<robot name=\"tmr_platform\"");
+    let sim = Sim::fr3().urdf(text).start().await.expect("it starts");
+    let builder = || Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let error = builder().connect().await.expect_err("no arm");
     assert!(
-        matches!(error, ModelError::Urdf(UrdfError::MobileRobot { .. })),
+        matches!(
+            error,
+            ConnectError::Model(ModelError::Urdf(UrdfError::MobileRobot { .. }))
+        ),
         "{error}"
     );
     // libfranka's text for this case.
     let text = "libfranka: loadModel() is not available for mobile robots. \
                 Use franka::MobileModel with the URDF from getRobotModel() instead.";
     assert!(error.to_string().contains(text), "{error}");
+
+    let chosen = builder().nominal_model(true).connect().await;
+    let robot = chosen.expect("the seat is free again");
+    assert_eq!(robot.model(), Model::fr3());
     assert!(robot.urdf().await.is_ok());
     robot.shutdown().await;
 }
@@ -60,8 +132,7 @@ async fn a_description_of_something_else_is_refused_and_the_connection_stays() {
 #[tokio::test]
 async fn an_fer_has_the_constants_of_its_library() {
     let (robot, _sim) = connected(Sim::fer()).await;
-    let model = robot.model().await.expect("constants");
-    assert_eq!(model.kind(), RobotKind::Fer);
-    assert_eq!(&model, Model::fer());
+    assert_eq!(robot.model().kind(), RobotKind::Fer);
+    assert_eq!(robot.model(), Model::fer());
     robot.shutdown().await;
 }

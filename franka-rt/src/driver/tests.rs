@@ -40,7 +40,10 @@ fn armed(target: Target) -> Driver {
     driver.on_order(Order::Arm {
         motion: MotionId(1),
         modes: MODES,
-        program: Program::Target(Box::new(TargetSession::new(Model::fr3(), reader))),
+        program: Program::Target(Box::new(TargetSession::new(
+            Model::fr3().clone().into(),
+            reader,
+        ))),
         log: ControlLog::with_capacity(5),
     });
     driver

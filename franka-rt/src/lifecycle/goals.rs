@@ -28,7 +28,7 @@ impl Lifecycle {
         if self.runs_program() {
             return Err(MotionError::Busy);
         }
-        goal.check(self.model, state)?;
+        goal.check(&self.model, state)?;
         self.replace(
             Waiting {
                 goal,
@@ -223,7 +223,7 @@ impl Lifecycle {
         change: impl FnOnce(&Goal) -> Goal,
         state: Option<&RobotState>,
     ) -> Result<bool, GoalError> {
-        let model = self.model;
+        let model = self.model.clone();
         let (waiting, slot) = match &mut self.next {
             Some(next) if next.goal.id == id => (next, None),
             _ => match self.goals() {
@@ -238,7 +238,7 @@ impl Lifecycle {
         }
         let goal = change(&waiting.goal);
         if let Some(state) = state {
-            goal.check(model, state)?;
+            goal.check(&model, state)?;
         }
         waiting.goal = goal;
         if let Some(slot) = slot {
@@ -250,7 +250,7 @@ impl Lifecycle {
     fn start_goal(&mut self, waiting: Waiting, now: Duration) {
         let (mut slot, reader) = slot::slot();
         slot.write(&waiting.goal);
-        let program = Program::Target(Box::new(TargetSession::new(self.model, reader)));
+        let program = Program::Target(Box::new(TargetSession::new(self.model.clone(), reader)));
         let request = MoveRequest::new(
             MoveControllerMode::ExternalController,
             self.version.torque_generator(),

@@ -23,6 +23,7 @@ mod programs;
 
 use core::time::Duration;
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use franka_model::Model;
 use franka_proto::{MoveRequest, MoveStatus, Request, Version, Violation};
@@ -73,7 +74,7 @@ pub enum Output {
 /// The state machine. See the module's documentation.
 #[derive(Debug)]
 pub struct Lifecycle {
-    model: &'static Model,
+    model: Arc<Model>,
     version: Version,
     phase: Phase,
     /// A goal that waits for the running motion to end.
@@ -93,8 +94,8 @@ enum Phase {
 }
 
 impl Lifecycle {
-    /// For a robot of this model that speaks `version`.
-    pub fn new(model: &'static Model, version: Version) -> Self {
+    /// For a robot of this model, whose limits goals have to keep, that speaks `version`.
+    pub fn new(model: Arc<Model>, version: Version) -> Self {
         Self {
             model,
             version,

@@ -23,6 +23,7 @@ mod leash;
 mod pose;
 
 use core::time::Duration;
+use std::sync::Arc;
 
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model, transform};
 use franka_proto::RobotState;
@@ -91,7 +92,7 @@ pub(crate) struct Step {
 /// One torque session. Created outside the thread, moved into it, handed back when it has ended.
 #[derive(Debug)]
 pub struct TargetSession {
-    model: &'static Model,
+    model: Arc<Model>,
     goals: SlotReader<Goal>,
     active: Option<Active>,
 }
@@ -157,7 +158,7 @@ impl Fade {
 
 impl TargetSession {
     /// A session that follows the goals written to `goals`. The first goal has to be there before the session runs.
-    pub fn new(model: &'static Model, goals: SlotReader<Goal>) -> Self {
+    pub fn new(model: Arc<Model>, goals: SlotReader<Goal>) -> Self {
         Self {
             model,
             goals,
@@ -180,11 +181,11 @@ impl TargetSession {
         let active = match (&mut self.active, newer) {
             (Some(active), newer) => {
                 if let Some(goal) = newer {
-                    active.take_up(self.model, goal, state.message_id);
+                    active.take_up(&self.model, goal, state.message_id);
                 }
                 active
             }
-            (none, Some(goal)) => match Active::begin(self.model, goal, state) {
+            (none, Some(goal)) => match Active::begin(&self.model, goal, state) {
                 Some(active) => none.insert(active),
                 None => {
                     let event = Some(SessionEvent::BadTool);
@@ -204,12 +205,12 @@ impl TargetSession {
                 };
             }
         };
-        active.step(self.model, state, record)
+        active.step(&self.model, state, record)
     }
 }
 
 impl Active {
-    fn begin(model: &'static Model, goal: Goal, state: &RobotState) -> Option<Self> {
+    fn begin(model: &Model, goal: Goal, state: &RobotState) -> Option<Self> {
         let q = JointVector::from(state.q);
         let reference = Reference::at_rest(q);
         let ee = end_effector_of(state)?;

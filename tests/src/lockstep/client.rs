@@ -35,10 +35,10 @@ pub struct Client {
 
 impl Client {
     /// A client that has not connected, for a robot of this model that speaks `version`.
-    pub fn new(model: &'static Model, version: Version) -> Self {
+    pub fn new(model: &Model, version: Version) -> Self {
         Self {
             driver: Driver::new(version),
-            lifecycle: Lifecycle::new(model, version),
+            lifecycle: Lifecycle::new(model.clone().into(), version),
             record: Record::default(),
             state: RobotState::default(),
             now: Duration::ZERO,

@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod tests;
 
+use franka_model::limits::JointLimits;
 use franka_proto::{RobotState, Version};
 
 use crate::control::{
@@ -10,8 +11,8 @@ use crate::control::{
 };
 use crate::shaping::rotation::Rigid;
 use crate::shaping::{
-    Bounds, CYCLE, DEFAULT_CUTOFF_FREQUENCY, InvalidCommand, MAX_CUTOFF_FREQUENCY, check, filter,
-    limiter,
+    Bounds, CYCLE, DEFAULT_CUTOFF_FREQUENCY, InvalidCommand, MAX_CUTOFF_FREQUENCY, VelocityBounds,
+    check, filter, limiter,
 };
 
 /// Shapes the commands of a control loop: low-pass filter, limiter and check, in this order.
@@ -118,6 +119,16 @@ impl Shaper {
     #[must_use]
     pub fn with_bounds(mut self, bounds: Bounds) -> Self {
         self.bounds = bounds;
+        self
+    }
+
+    /// Replaces the velocities of the joints where the robot's depend on position and it says itself how: those of
+    /// `joints`, from its description. Without effect on a robot whose velocities are the same everywhere.
+    #[must_use]
+    pub fn with_limits_of(mut self, joints: &JointLimits) -> Self {
+        if matches!(self.bounds.joint_velocity, VelocityBounds::Envelope { .. }) {
+            self.bounds = self.bounds.with_envelope_of(joints);
+        }
         self
     }
 
