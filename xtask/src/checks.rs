@@ -7,7 +7,7 @@ use clap::ValueEnum;
 
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
-use crate::{fuzz, peers};
+use crate::{fuzz, mujoco, peers};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -20,6 +20,8 @@ pub(crate) enum Check {
     Doc,
     /// All tests and documentation examples.
     Test,
+    /// The simulator with its MuJoCo plant.
+    Mujoco,
     /// Interleavings of what crosses threads.
     Loom,
     /// Protocol and model without the standard library.
@@ -50,6 +52,10 @@ impl Check {
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
             Self::Test => ("test", "all tests and documentation examples"),
+            Self::Mujoco => (
+                "mujoco",
+                "lints, documentation and tests of the MuJoCo plant",
+            ),
             Self::Loom => ("loom", "interleavings of what crosses threads"),
             Self::NoStd => ("no-std", "protocol and model without the standard library"),
             Self::Fuzz => ("fuzz", "any bytes for the protocol"),
@@ -77,6 +83,7 @@ impl Check {
                 workspace.run(command.env("RUSTDOCFLAGS", "-Dwarnings"))?;
             }
             Self::Test => workspace.run(workspace.cargo().args(["test", "--workspace"]))?,
+            Self::Mujoco => return mujoco::check(workspace),
             Self::Loom => loom(workspace)?,
             Self::NoStd => return no_std(workspace),
             Self::Fuzz => return fuzz::check(workspace),

@@ -1,19 +1,21 @@
 //! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`, `cargo xtask fuzz`,
-//! `cargo xtask bench`.
+//! `cargo xtask bench`, `cargo xtask mujoco`.
 //!
 //! | module | task |
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`fuzz`] | the fuzz targets, for a moment as a step or for as long as one likes |
 //! | [`live`] | clients against the simulator over real sockets, measured |
+//! | [`mujoco`] | the native library of the simulator's MuJoCo plant, and the step that tests that plant |
 //! | [`peers`] | the step that drives the simulator with other clients |
-//! | [`python`] | the virtual environment of that step |
+//! | [`python`] | virtual environments, for these two |
 //! | [`step`] | steps with headers, times and a summary |
 //! | [`workspace`] | where things are, and running a program |
 
 mod checks;
 mod fuzz;
 mod live;
+mod mujoco;
 mod peers;
 mod python;
 mod step;
@@ -71,6 +73,8 @@ enum Task {
         #[arg(long, default_value_t = 30, requires = "live")]
         seconds: u32,
     },
+    /// Fetch the native library that the simulator's feature `mujoco` links to.
+    Mujoco,
 }
 
 fn main() -> ExitCode {
@@ -108,5 +112,6 @@ fn run(task: Task) -> anyhow::Result<()> {
             command.arg(&output).arg(rounds.to_string());
             workspace.run(&mut command)
         }
+        Task::Mujoco => mujoco::provide(&workspace),
     }
 }

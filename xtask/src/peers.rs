@@ -2,6 +2,7 @@
 
 use std::env;
 use std::io::{BufRead as _, BufReader};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc;
@@ -10,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 
-use crate::python::Python;
+use crate::python::{Python, Version};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
@@ -43,7 +44,7 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
 /// A Python interpreter that has the vendor's client, or why there is none.
 pub(crate) fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
     let requirements = directory(workspace).join("requirements.txt");
-    match supported().and_then(|()| Python::find()) {
+    match supported().and_then(|()| Python::find(PYTHON)) {
         Ok(python) => Ok(Ok(python.environment(workspace, &requirements)?)),
         Err(why) => Ok(Err(why)),
     }
@@ -163,6 +164,9 @@ const SCRIPTS: [(&str, &[&str]); 2] = [
         &["--gripper-object-width", "0.05"],
     ),
 ];
+
+/// Versions of Python that the vendor builds wheels for.
+const PYTHON: RangeInclusive<Version> = (3, 9)..=(3, 12);
 
 /// The port of every FCI server; the vendor's client takes no other.
 const PORT: &str = "1337";

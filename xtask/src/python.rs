@@ -1,12 +1,13 @@
-//! The virtual environment of the Python scripts, kept inside the build directory.
+//! Virtual environments of Python, kept inside the tree.
 
 use std::fs;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::workspace::Workspace;
 
-/// A Python that can run the scripts: its interpreter knows the modules that make virtual environments.
+/// An interpreter that knows the modules that make virtual environments.
 #[derive(Debug)]
 pub(crate) struct Python {
     program: &'static str,
@@ -14,16 +15,16 @@ pub(crate) struct Python {
 }
 
 /// Major and minor number.
-type Version = (u32, u32);
+pub(crate) type Version = (u32, u32);
 
 impl Python {
-    /// The first interpreter of this machine that will do, or why there is none.
-    pub(crate) fn find() -> Result<Self, String> {
+    /// The first interpreter of this machine that will do and has one of these versions, or why there is none.
+    pub(crate) fn find(versions: RangeInclusive<Version>) -> Result<Self, String> {
         let mut unfit = Vec::new();
         for program in PROGRAMS {
             match probe(program) {
                 None => {}
-                Some(version) if SUPPORTED.contains(&version) => {
+                Some(version) if versions.contains(&version) => {
                     return Ok(Self { program, version });
                 }
                 Some((major, minor)) => unfit.push(format!("{program} is {major}.{minor}")),
@@ -33,12 +34,13 @@ impl Python {
             [] => "none was found".to_owned(),
             _ => unfit.join(", "),
         };
+        let (oldest, newest) = (text(*versions.start()), text(*versions.end()));
         Err(format!(
-            "Python 3.9 to 3.12 with the modules venv and ensurepip is needed: {found}"
+            "Python {oldest} to {newest} with the modules venv and ensurepip is needed: {found}"
         ))
     }
 
-    /// Makes the virtual environment, installs `requirements` in it and returns its interpreter. Does nothing but
+    /// Makes the virtual environment of the scripts, in the build directory, installs `requirements` in it and returns its interpreter. Does nothing but
     /// the last if both are as before.
     pub(crate) fn environment(
         &self,
@@ -46,7 +48,6 @@ impl Python {
         requirements: &Path,
     ) -> anyhow::Result<PathBuf> {
         let directory = workspace.target().join("python");
-        let interpreter = directory.join("bin").join("python");
         let installed = directory.join("installed.txt");
         let wanted = format!(
             "{} {:?}\n{}",
@@ -56,11 +57,9 @@ impl Python {
         );
         if fs::read_to_string(&installed).is_ok_and(|text| text == wanted) {
             println!("{} is up to date", directory.display());
-            return Ok(interpreter);
+            return Ok(interpreter_of(&directory));
         }
-        let mut create = workspace.program(self.program);
-        create.args(["-m", "venv", "--clear"]).arg(&directory);
-        workspace.run(&mut create)?;
+        let interpreter = self.make_environment(workspace, &directory)?;
         let mut install = workspace.program(&interpreter);
         install
             .args(["-m", "pip", "install", "--quiet", "--require-hashes"])
@@ -72,6 +71,27 @@ impl Python {
         fs::write(&installed, wanted)?;
         Ok(interpreter)
     }
+
+    /// Makes an empty virtual environment in `directory`, in place of what is there, and returns its interpreter.
+    pub(crate) fn make_environment(
+        &self,
+        workspace: &Workspace,
+        directory: &Path,
+    ) -> anyhow::Result<PathBuf> {
+        let mut create = workspace.program(self.program);
+        create.args(["-m", "venv", "--clear"]).arg(directory);
+        workspace.run(&mut create)?;
+        Ok(interpreter_of(directory))
+    }
+}
+
+/// The interpreter of a virtual environment.
+fn interpreter_of(directory: &Path) -> PathBuf {
+    directory.join("bin").join("python")
+}
+
+fn text((major, minor): Version) -> String {
+    format!("{major}.{minor}")
 }
 
 /// Version of an interpreter that is there and can make virtual environments.
@@ -105,9 +125,6 @@ const PROGRAMS: &[&str] = &[
     "python3.9",
     "python",
 ];
-
-/// Versions that the vendor builds wheels for.
-const SUPPORTED: &[Version] = &[(3, 9), (3, 10), (3, 11), (3, 12)];
 
 #[cfg(test)]
 mod tests {
