@@ -4,7 +4,7 @@
 use franka_model::RobotKind;
 use franka_proto::{RobotError, Version};
 
-use crate::plant::RigidParameters;
+use crate::plant::ArmParameters;
 
 /// One kind of robot.
 pub(crate) struct Description {
@@ -14,7 +14,7 @@ pub(crate) struct Description {
     /// How its description names it; `None` if it serves none.
     pub(crate) urdf_name: Option<&'static str>,
     /// Rotors, friction and stops of its arm.
-    pub(crate) arm: fn() -> RigidParameters,
+    pub(crate) arm: fn() -> ArmParameters,
     /// Precision in which its states carry numbers.
     pub(crate) precision: Precision,
     /// Errors of desired joint positions outside their range.
@@ -59,7 +59,7 @@ static FR3: Description = Description {
     kind: RobotKind::Fr3,
     version: Version::V10,
     urdf_name: Some("fr3"),
-    arm: RigidParameters::fr3,
+    arm: ArmParameters::fr3,
     precision: Precision::Single,
     // One name whatever was commanded (FCI documentation, since system 5.7.2).
     range: RangeErrors {
@@ -73,7 +73,7 @@ static FER: Description = Description {
     kind: RobotKind::Fer,
     version: Version::V5,
     urdf_name: None,
-    arm: RigidParameters::fer,
+    arm: ArmParameters::fer,
     precision: Precision::Double,
     range: RangeErrors {
         joint_position: RobotError::JointMotionGeneratorPositionLimitsViolation,

@@ -1,57 +1,8 @@
 //! The rigid-body arm.
 
-use franka_model::{JointVector, Load, Model, joint_vector};
-use nalgebra::Vector3;
+use franka_model::{JointVector, Load, Model};
 
-use super::{EndStops, Friction, Plant};
-
-/// Rotor inertia of the joints of a Franka Research 3, felt at the joint, `[kg·m²]`.
-///
-/// Source: `mujoco_menagerie`, `franka_fr3`. Joint 7 needs it: its link alone has 1.2e-4 kg·m²,
-/// with which a torque client's damping above 0.24 N·m·s/rad is unstable at 1 kHz.
-const ARMATURE_FR3: JointVector = joint_vector([0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074]);
-
-/// Rotor inertia of the joints of a Franka Emika Robot, felt at the joint, `[kg·m²]`.
-///
-/// Source: `mujoco_menagerie`, `franka_emika_panda`.
-const ARMATURE_FER: JointVector = joint_vector([0.1; 7]);
-
-/// What a [`RigidArm`] is made of besides the links of its [`Model`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct RigidParameters {
-    /// Rotor inertia felt at each joint, `[kg·m²]`.
-    pub armature: JointVector,
-    /// Joint friction.
-    pub friction: Friction,
-    /// Mechanical end stops.
-    pub stops: EndStops,
-    /// Gravitational acceleration in the base frame, `[m/s²]`.
-    pub gravity_earth: Vector3<f64>,
-}
-
-impl RigidParameters {
-    /// A Franka Research 3 standing upright.
-    pub fn fr3() -> Self {
-        let limits = Model::fr3().joint_limits();
-        Self {
-            armature: ARMATURE_FR3,
-            friction: Friction::FR3,
-            stops: EndStops::around(&limits.hard_lower, &limits.hard_upper),
-            gravity_earth: franka_model::GRAVITY_EARTH,
-        }
-    }
-
-    /// A Franka Emika Robot standing upright.
-    pub fn fer() -> Self {
-        let limits = Model::fer().joint_limits();
-        Self {
-            armature: ARMATURE_FER,
-            friction: Friction::FER,
-            stops: EndStops::around(&limits.hard_lower, &limits.hard_upper),
-            gravity_earth: franka_model::GRAVITY_EARTH,
-        }
-    }
-}
+use super::{ArmParameters, Plant};
 
 /// Rigid links of a [`Model`], with rotor inertia, friction and end stops.
 ///
@@ -65,9 +16,10 @@ impl RigidParameters {
 /// velocity before position. That is the implicit Euler rule for what is stiff (friction at rest,
 /// end stops) and the symplectic one for the rest, so the step stays stable however stiff those
 /// are, and a free arm keeps its energy (see the test).
+#[derive(Debug)]
 pub struct RigidArm {
     model: &'static Model,
-    parameters: RigidParameters,
+    parameters: ArmParameters,
     load: Load,
     q: JointVector,
     dq: JointVector,
@@ -78,7 +30,7 @@ impl RigidArm {
     /// An arm at rest at `q`, `[rad]`, carrying `load`.
     pub fn new(
         model: &'static Model,
-        parameters: RigidParameters,
+        parameters: ArmParameters,
         q: JointVector,
         load: Load,
     ) -> Self {
@@ -112,22 +64,14 @@ impl Plant for RigidArm {
     }
 
     fn step(&mut self, motor: &JointVector, external: &JointVector, dt: f64) {
-        let RigidParameters {
+        let ArmParameters {
             armature,
-            friction,
-            stops,
             gravity_earth,
+            ..
         } = &self.parameters;
-        let (drag, slope) = friction.at(&self.dq);
-        let mut torque = motor + external - drag;
-        let mut inertia = armature + slope * dt;
-        for i in 0..7 {
-            let depth = stops.depth(i, self.q[i] + dt * self.dq[i]);
-            if depth != 0.0 {
-                torque[i] -= stops.stiffness * depth + stops.damping * self.dq[i];
-                inertia[i] += dt * stops.damping + dt * dt * stops.stiffness;
-            }
-        }
+        let resistance = self.parameters.resistance(&self.q, &self.dq, dt);
+        let torque = motor + external - resistance.friction - resistance.stop;
+        let slope = resistance.friction_slope + resistance.stop_slope;
         let ddq = self
             .model
             .forward_dynamics(
@@ -136,11 +80,10 @@ impl Plant for RigidArm {
                 &torque,
                 &self.load,
                 gravity_earth,
-                &inertia,
+                &(armature + slope * dt),
             )
             .unwrap_or_else(JointVector::zeros);
-        // The sensors sit between gear and link: rotor and friction are on the motor's side.
-        self.sensed = motor - drag - (armature + slope * dt).component_mul(&ddq);
+        self.sensed = resistance.sensed(motor, armature, &ddq, dt);
         self.dq += ddq * dt;
         self.q += self.dq * dt;
     }
@@ -161,15 +104,16 @@ impl Plant for RigidArm {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plant::{EndStops, Friction};
     use franka_model::{GRAVITY_EARTH, READY};
 
     const STEP: f64 = 0.000_25;
 
     fn ideal(q: JointVector) -> RigidArm {
-        let parameters = RigidParameters {
+        let parameters = ArmParameters {
             friction: Friction::NONE,
             stops: EndStops::NONE,
-            ..RigidParameters::fr3()
+            ..ArmParameters::fr3()
         };
         RigidArm::new(Model::fr3(), parameters, q, Load::NONE)
     }
@@ -203,7 +147,7 @@ mod tests {
 
     #[test]
     fn gravity_torque_holds_the_arm_still() {
-        let mut arm = RigidArm::new(Model::fr3(), RigidParameters::fr3(), READY, Load::NONE);
+        let mut arm = RigidArm::new(Model::fr3(), ArmParameters::fr3(), READY, Load::NONE);
         let none = JointVector::zeros();
         for _ in 0..4000 {
             let hold = arm.model.gravity(&arm.q, &Load::NONE, &GRAVITY_EARTH);
@@ -229,7 +173,7 @@ mod tests {
     #[test]
     fn an_end_stop_holds_the_strongest_joint_without_ringing() {
         let limits = Model::fr3().joint_limits();
-        let mut arm = RigidArm::new(Model::fr3(), RigidParameters::fr3(), READY, Load::NONE);
+        let mut arm = RigidArm::new(Model::fr3(), ArmParameters::fr3(), READY, Load::NONE);
         let mut push = JointVector::zeros();
         push[0] = 87.0;
         for _ in 0..20_000 {
@@ -242,7 +186,7 @@ mod tests {
 
     #[test]
     fn the_light_last_joint_is_stable_under_a_strong_damper_held_for_a_millisecond() {
-        let mut arm = RigidArm::new(Model::fr3(), RigidParameters::fr3(), READY, Load::NONE);
+        let mut arm = RigidArm::new(Model::fr3(), ArmParameters::fr3(), READY, Load::NONE);
         let kick = JointVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0]);
         arm.step(&kick, &JointVector::zeros(), 0.01);
         for _ in 0..200 {

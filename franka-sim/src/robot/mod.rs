@@ -34,7 +34,7 @@ use crate::estimate::Estimate;
 use crate::generator::{Arm, Desired};
 use crate::kind::Description;
 use crate::noise::Random;
-use crate::plant::{Plant, RigidArm};
+use crate::plant::{ArmParameters, Plant, RigidArm};
 use crate::settings::Settings;
 use crate::signal::JointSignal;
 use condition::Recovery;
@@ -108,7 +108,7 @@ impl Robot {
     pub fn new(config: Config) -> Self {
         let plant = RigidArm::new(
             Model::realisable(config.kind),
-            (Description::of(config.kind).arm)(),
+            ArmParameters::of(config.kind),
             config.q,
             config.tool.load.combine(&config.payload),
         );

@@ -1,0 +1,187 @@
+//! The arm in MuJoCo: among objects that it touches, with fingers that grasp by friction.
+
+mod fingers;
+mod mjcf;
+mod scene;
+#[cfg(test)]
+mod tests;
+
+pub use scene::{Scene, SceneError};
+
+use franka_model::{JointVector, Load, RobotKind};
+use mujoco_rs::prelude::{MjData, MjModel, MjtState};
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
+
+use super::{ArmParameters, FingerDrive, Plant};
+use fingers::FingerJoints;
+use scene::{JOINT, Places};
+
+/// The links of [`Model::realisable`](franka_model::Model::realisable) in MuJoCo, with the rotors, friction and end stops of a
+/// [`RigidArm`](super::RigidArm) and the surroundings of a [`Scene`].
+///
+/// Away from contact it is the same arm: each step solves the same equation in the same way, with inertia and bias forces that
+/// are MuJoCo's own. Friction and end stops of the joints enter as forces, and their slopes as dampers that the
+/// integrator takes implicitly.
+///
+/// The links touch what is around them, and the outer ones the inner ones, with the capsules of
+/// [`Shape::covering`](franka_model::collision::Shape::covering), which are up to 3.4 cm thicker than the links. The Hand
+/// and its fingers have shapes of their own (see [`Scene::with_hand`]).
+#[derive(Debug)]
+pub struct MujocoArm {
+    kind: RobotKind,
+    parameters: ArmParameters,
+    scene: Scene,
+    load: Load,
+    data: MjData<Box<MjModel>>,
+    places: Places,
+    fingers: Option<FingerJoints>,
+    q: JointVector,
+    dq: JointVector,
+    sensed: JointVector,
+}
+
+impl MujocoArm {
+    /// An arm of this kind at rest in the ready pose, with a bare flange.
+    ///
+    /// # Errors
+    /// [`SceneError`] if MuJoCo cannot make the scene.
+    pub fn new(kind: RobotKind, scene: Scene) -> Result<Self, SceneError> {
+        Self::with_parameters(kind, ArmParameters::of(kind), scene)
+    }
+
+    /// [`new`](Self::new) with other rotors, friction, end stops or gravity.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_parameters(
+        kind: RobotKind,
+        parameters: ArmParameters,
+        scene: Scene,
+    ) -> Result<Self, SceneError> {
+        let load = Load::NONE;
+        let (model, places) = scene.compile(kind, &parameters, &load)?;
+        let fingers = scene.fingers(&model)?;
+        let mut arm = Self {
+            kind,
+            parameters,
+            scene,
+            load,
+            data: MjData::new(Box::new(model)),
+            places,
+            fingers,
+            q: franka_model::READY,
+            dq: JointVector::zeros(),
+            sensed: JointVector::zeros(),
+        };
+        if let Some(fingers) = &arm.fingers {
+            fingers.open(&mut arm.data);
+        }
+        arm.place(&franka_model::READY);
+        Ok(arm)
+    }
+
+    /// Pose of a body of the scene, in the base frame, as it was when the last step began; `None` if there is no body of this
+    /// name. The robot's own have names that begin with `franka_`.
+    pub fn body_pose(&self, name: &str) -> Option<Isometry3<f64>> {
+        let id = scene::body(self.data.model(), name)?;
+        let position = Vector3::from(self.data.xpos()[id]);
+        let [w, x, y, z] = self.data.xquat()[id];
+        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+        Some(Isometry3::from_parts(position.into(), rotation))
+    }
+
+    /// Torques on the joints by contact, on this step's side of the sensors, `[N·m]`.
+    pub fn contact_torque(&self) -> JointVector {
+        let force = self.data.qfrc_constraint();
+        self.places.dof.map(|dof| force[dof]).into()
+    }
+
+    /// Reads positions and velocities of the joints from MuJoCo.
+    fn read(&mut self) {
+        let (q, dq) = (self.data.qpos(), self.data.qvel());
+        self.q = self.places.qpos.map(|place| q[place]).into();
+        self.dq = self.places.dof.map(|place| dq[place]).into();
+    }
+}
+
+impl Plant for MujocoArm {
+    fn q(&self) -> &JointVector {
+        &self.q
+    }
+
+    fn dq(&self) -> &JointVector {
+        &self.dq
+    }
+
+    fn sensed_torque(&self) -> &JointVector {
+        &self.sensed
+    }
+
+    fn armature(&self) -> &JointVector {
+        &self.parameters.armature
+    }
+
+    fn step(&mut self, motor: &JointVector, external: &JointVector, dt: f64) {
+        let resistance = self.parameters.resistance(&self.q, &self.dq, dt);
+        // The dampers subtract slope · dq at the start of the step: what is beyond that is a force.
+        let slope = resistance.friction_slope + resistance.stop_slope;
+        let force = motor + external - resistance.friction - resistance.stop
+            + slope.component_mul(&self.dq);
+        for i in 0..7 {
+            self.data.ctrl_mut()[self.places.damper[i]] = slope[i];
+            self.data.qfrc_applied_mut()[self.places.dof[i]] = force[i];
+        }
+        if let Some(fingers) = &mut self.fingers {
+            fingers.drive(&mut self.data, dt);
+        }
+        self.data.model_opt_mut().timestep = dt;
+        self.data.step();
+        let before = self.dq;
+        self.read();
+        let ddq = (self.dq - before) / dt;
+        self.sensed = resistance.sensed(motor, &self.parameters.armature, &ddq, dt);
+    }
+
+    fn place(&mut self, q: &JointVector) {
+        for i in 0..7 {
+            self.data.qpos_mut()[self.places.qpos[i]] = q[i];
+            self.data.qvel_mut()[self.places.dof[i]] = 0.0;
+        }
+        self.data.forward();
+        self.read();
+        let bias = self.data.qfrc_bias();
+        self.sensed = self.places.dof.map(|dof| bias[dof]).into();
+    }
+
+    /// # Panics
+    /// If no body has this load (a number that is not finite, a negative mass), or if the file of the scene is no longer what
+    /// it was: the scene is made anew.
+    fn attach(&mut self, load: Load) {
+        if load == self.load {
+            return;
+        }
+        let (model, _) = self
+            .scene
+            .compile(self.kind, &self.parameters, &load)
+            .unwrap_or_else(|error| panic!("the scene with the load {load:?}: {error}"));
+        let everything = MjtState::mjSTATE_INTEGRATION as u32;
+        let state = self.data.state(everything);
+        self.data = MjData::new(Box::new(model));
+        self.data
+            .set_state(&state, everything)
+            .unwrap_or_else(|error| panic!("the file of the scene has changed: {error}"));
+        self.data.forward();
+        self.load = load;
+    }
+
+    fn drive_fingers(&mut self, drive: &FingerDrive) -> Option<f64> {
+        let fingers = self.fingers.as_mut()?;
+        fingers.set(*drive);
+        Some(fingers.width(&self.data))
+    }
+}
+
+/// The name of joint `i`, 0 to 6.
+fn joint_name(i: usize) -> String {
+    format!("{JOINT}{}", i + 1)
+}

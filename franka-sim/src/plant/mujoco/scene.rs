@@ -1,0 +1,194 @@
+//! What is around the arm, and the model that MuJoCo makes of both.
+
+use std::path::{Path, PathBuf};
+
+use franka_model::{Load, RobotKind};
+use mujoco_rs::mujoco_c::{mjtCone, mjtIntegrator};
+use mujoco_rs::prelude::{Attach as _, MjModel, MjSpec, MjtObjBase};
+
+use super::fingers::FingerJoints;
+use super::{joint_name, mjcf};
+use crate::plant::ArmParameters;
+
+/// What stands around the arm, and whether a Franka Hand is on its flange.
+///
+/// Surroundings are MJCF, the format of MuJoCo's models. Its world is the robot's base frame: x forwards, z up, in metres.
+/// Bodies with a free joint are objects that the arm can push and grasp. Everything in MJCF can be used;
+/// of `<option>`, the simulator sets `timestep`, `integrator`, `gravity`, `cone` and `impratio` itself. Names that begin with
+/// `franka_` are the robot's.
+///
+/// ```xml
+/// <mujoco>
+///   <worldbody>
+///     <geom type="box" size="0.5 0.5 0.02" pos="0.5 0 -0.02"/>
+///     <body name="block" pos="0.5 0 0.02">
+///       <freejoint/>
+///       <geom type="box" size="0.02 0.02 0.02" mass="0.2"/>
+///     </body>
+///   </worldbody>
+/// </mujoco>
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Scene {
+    surroundings: Surroundings,
+    has_hand: bool,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+enum Surroundings {
+    #[default]
+    Table,
+    Text(String),
+    File(PathBuf),
+}
+
+/// Why there is no such scene. The text is MuJoCo's, with the line it is about.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// The surroundings are no MJCF.
+    #[error("cannot read the scene: {0}")]
+    Unreadable(String),
+    /// The arm cannot be put into them.
+    #[error("cannot put the robot into the scene: {0}")]
+    Conflict(String),
+    /// MuJoCo cannot simulate them.
+    #[error("cannot make the scene: {0}")]
+    Impossible(String),
+    /// A part of the robot is missing. Surroundings have no means to bring this about.
+    #[error("the scene lacks {0}")]
+    Lacks(String),
+}
+
+impl Scene {
+    /// A table of two by two metres, in the middle of which the robot stands: its top is the plane z = 0. This is the default.
+    pub fn table() -> Self {
+        Self::default()
+    }
+
+    /// Nothing: the arm alone.
+    pub fn empty() -> Self {
+        Self::mjcf("<mujoco/>")
+    }
+
+    /// What the MJCF text says.
+    pub fn mjcf(text: impl Into<String>) -> Self {
+        Self {
+            surroundings: Surroundings::Text(text.into()),
+            has_hand: false,
+        }
+    }
+
+    /// What this MJCF file says. Files that it names are looked for beside it.
+    pub fn file(path: impl AsRef<Path>) -> Self {
+        Self {
+            surroundings: Surroundings::File(path.as_ref().to_owned()),
+            has_hand: false,
+        }
+    }
+
+    /// With the body and the two fingers of a Franka Hand on the flange, which a [`Hand`](crate::Hand) then moves. The mass of
+    /// the Hand is not among it: that is the load of [`Tool::hand`](crate::Tool::hand).
+    ///
+    /// The fingers have no friction of their own: in MuJoCo the larger friction of two surfaces counts, so how well an object is
+    /// held is what the object's `friction` says.
+    #[must_use]
+    pub fn with_hand(mut self) -> Self {
+        self.has_hand = true;
+        self
+    }
+
+    /// Surroundings and arm as one model, and where the arm is in it.
+    pub(super) fn compile(
+        &self,
+        kind: RobotKind,
+        parameters: &ArmParameters,
+        load: &Load,
+    ) -> Result<(MjModel, Places), SceneError> {
+        let mut spec = match &self.surroundings {
+            Surroundings::Table => MjSpec::from_xml_string(TABLE),
+            Surroundings::Text(text) => MjSpec::from_xml_string(text),
+            Surroundings::File(path) => MjSpec::from_xml(path),
+        }
+        .map_err(|error| SceneError::Unreadable(error.to_string()))?;
+        let text = mjcf::arm(kind, parameters, load, self.has_hand);
+        let conflict =
+            |error: mujoco_rs::error::MjEditError| SceneError::Conflict(error.to_string());
+        let mut arm = MjSpec::from_xml_string(&text).map_err(conflict)?;
+        spec.world_body_mut()
+            .attach_by_deep_copy(&mut arm, PREFIX, "")
+            .map_err(conflict)?;
+        let mut model = spec
+            .compile()
+            .map_err(|error| SceneError::Impossible(error.to_string()))?;
+        let options = model.opt_mut();
+        options.gravity = parameters.gravity_earth.into();
+        // Takes the dampers of the joints implicitly.
+        options.integrator = mjtIntegrator::mjINT_IMPLICITFAST as i32;
+        // Without these two a grasp creeps: friction is as soft as contact, and weaker along diagonals.
+        options.cone = mjtCone::mjCONE_ELLIPTIC as i32;
+        options.impratio = 10.0;
+        let places = Places::of(&model)?;
+        Ok((model, places))
+    }
+
+    /// The fingers, if the scene has some.
+    pub(super) fn fingers(&self, model: &MjModel) -> Result<Option<FingerJoints>, SceneError> {
+        self.has_hand.then(|| FingerJoints::of(model)).transpose()
+    }
+}
+
+/// Where the numbers of the joints are in MuJoCo's arrays.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Places {
+    pub(super) qpos: [usize; 7],
+    pub(super) dof: [usize; 7],
+    pub(super) damper: [usize; 7],
+}
+
+impl Places {
+    fn of(model: &MjModel) -> Result<Self, SceneError> {
+        let mut places = Self {
+            qpos: [0; 7],
+            dof: [0; 7],
+            damper: [0; 7],
+        };
+        for i in 0..7 {
+            let name = joint_name(i);
+            (places.qpos[i], places.dof[i]) = joint(model, &name)?;
+            places.damper[i] = find(model, MjtObjBase::mjOBJ_ACTUATOR, &name)?;
+        }
+        Ok(places)
+    }
+}
+
+/// The places of a joint of one coordinate in `qpos` and `qvel`.
+pub(super) fn joint(model: &MjModel, name: &str) -> Result<(usize, usize), SceneError> {
+    let id = find(model, MjtObjBase::mjOBJ_JOINT, name)?;
+    let place = |addresses: &[i32]| addresses[id] as usize;
+    Ok((place(model.jnt_qposadr()), place(model.jnt_dofadr())))
+}
+
+/// The number of a body.
+pub(super) fn body(model: &MjModel, name: &str) -> Option<usize> {
+    model.name_to_id(MjtObjBase::mjOBJ_BODY, name)
+}
+
+fn find(model: &MjModel, kind: MjtObjBase, name: &str) -> Result<usize, SceneError> {
+    let name = format!("{PREFIX}{name}");
+    model.name_to_id(kind, &name).ok_or(SceneError::Lacks(name))
+}
+
+/// Names of the robot's parts begin with this, and those of joints and their dampers go on with that.
+const PREFIX: &str = "franka_";
+pub(super) const JOINT: &str = "joint";
+
+const TABLE: &str = r#"
+<mujoco>
+  <worldbody>
+    <body name="table">
+      <geom type="box" size="1 1 0.05" pos="0 0 -0.05"/>
+    </body>
+  </worldbody>
+</mujoco>
+"#;

@@ -1,0 +1,151 @@
+use franka_model::{JointVector, Load, Model, READY, RobotKind};
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+use super::*;
+use crate::Tool;
+use crate::noise::Random;
+use crate::plant::RigidArm;
+
+const STEP: f64 = 0.000_25;
+
+fn loads() -> [Load; 3] {
+    let odd = Load {
+        mass: 1.3,
+        com: Vector3::new(0.02, -0.05, 0.11),
+        inertia: Matrix3::new(
+            0.004, 0.001, -0.0005, //
+            0.001, 0.005, 0.0007, //
+            -0.0005, 0.0007, 0.003,
+        ),
+    };
+    [Load::NONE, Tool::hand().load, odd]
+}
+
+fn arm(kind: RobotKind, load: Load) -> MujocoArm {
+    let mut arm = MujocoArm::new(kind, Scene::empty()).expect("an empty scene");
+    arm.attach(load);
+    arm
+}
+
+/// Mass matrix, rotors included, and bias torques.
+fn dynamics(arm: &MujocoArm) -> (SMatrix<f64, 7, 7>, JointVector) {
+    let count = arm.data.qvel().len();
+    let mut whole = vec![0.0; count * count];
+    arm.data.full_m(&mut whole).expect("room for all");
+    let dof = arm.places.dof;
+    let bias = arm.data.qfrc_bias();
+    (
+        SMatrix::from_fn(|i, j| whole[dof[i] * count + dof[j]]),
+        dof.map(|dof| bias[dof]).into(),
+    )
+}
+
+/// Within the limits, at up to full speed.
+fn random_motion(random: &mut Random, model: &Model) -> (JointVector, JointVector) {
+    let limits = model.joint_limits();
+    let part = |random: &mut Random| random.joints(1.0).map(|x| 0.5 + 0.5 * x.sin());
+    let range = limits.hard_upper - limits.hard_lower;
+    let q = limits.hard_lower + part(random).component_mul(&range);
+    let dq = (part(random).map(|x| 2.0 * x - 1.0)).component_mul(&limits.velocity);
+    (q, dq)
+}
+
+#[test]
+fn inertia_and_bias_are_those_of_the_rigid_arm() {
+    let mut random = Random::new(7);
+    for kind in RobotKind::ALL {
+        let model = Model::realisable(kind);
+        let parameters = ArmParameters::of(kind);
+        for load in loads() {
+            let mut arm = arm(kind, load);
+            for _ in 0..100 {
+                let (q, dq) = random_motion(&mut random, model);
+                arm.place(&q);
+                for i in 0..7 {
+                    arm.data.qvel_mut()[arm.places.dof[i]] = dq[i];
+                }
+                arm.data.forward();
+                let (mass, bias) = dynamics(&arm);
+                let rotors = SMatrix::from_diagonal(&parameters.armature);
+                let expected = model.mass(&q, &load) + rotors;
+                let rest = JointVector::zeros();
+                let gravity = &parameters.gravity_earth;
+                let torque = model.inverse_dynamics(&q, &dq, &rest, &load, gravity);
+                // The largest entries are 3 kg·m² and 100 N·m.
+                let (mass, bias) = ((mass - expected).amax(), (bias - torque).amax());
+                assert!(mass < 1e-9, "{kind:?} {load:?}: {mass} kg·m²");
+                assert!(bias < 1e-9, "{kind:?} {load:?}: {bias} N·m");
+            }
+        }
+    }
+}
+
+#[test]
+fn five_seconds_of_torques_move_both_arms_alike() {
+    for kind in RobotKind::ALL {
+        let model = Model::realisable(kind);
+        let load = Tool::hand().load;
+        let mut mujoco = arm(kind, load);
+        let mut rigid = RigidArm::new(model, ArmParameters::of(kind), READY, load);
+        let (mut apart, mut travel) = (0.0_f64, 0.0_f64);
+        let none = JointVector::zeros();
+        for step in 0..20_000 {
+            // What the motors are told does not depend on what becomes of it.
+            let time = f64::from(step) * STEP;
+            let swing = JointVector::from_fn(|i, _| (time * (2.0 + i as f64)).sin());
+            let strength = JointVector::from([3.0, 3.0, 3.0, 3.0, 0.8, 0.8, 0.4]);
+            let hold = model.gravity(&READY, &load, &franka_model::GRAVITY_EARTH);
+            let motor = hold + strength.component_mul(&swing);
+            mujoco.step(&motor, &none, STEP);
+            rigid.step(&motor, &none, STEP);
+            apart = apart.max((mujoco.q() - rigid.q()).amax());
+            travel = travel.max((rigid.q() - READY).amax());
+        }
+        println!("{kind:?}: {apart:e} rad apart, {travel} rad from the start");
+        assert!(travel > 0.1, "hardly a motion: {travel} rad");
+        assert!(apart < 1e-4, "{apart} rad apart");
+        assert!((mujoco.sensed_torque() - rigid.sensed_torque()).amax() < 1e-2);
+    }
+}
+
+#[test]
+fn the_ready_pose_touches_nothing() {
+    for kind in RobotKind::ALL {
+        for scene in [Scene::table(), Scene::table().with_hand()] {
+            let arm = MujocoArm::new(kind, scene).expect("a scene");
+            assert_eq!(arm.data.ncon(), 0, "{kind:?}");
+        }
+    }
+}
+
+#[test]
+fn a_load_can_change_while_the_arm_moves() {
+    let mut arm = arm(RobotKind::Fr3, Load::NONE);
+    arm.step(&JointVector::repeat(1.0), &JointVector::zeros(), 0.01);
+    let (q, dq) = (*arm.q(), *arm.dq());
+    arm.attach(Tool::hand().load);
+    assert_eq!((*arm.q(), *arm.dq()), (q, dq));
+    let gravity = franka_model::GRAVITY_EARTH;
+    let model = Model::realisable(RobotKind::Fr3);
+    let load = Tool::hand().load;
+    arm.place(&q);
+    let expected = model.gravity(&q, &load, &gravity);
+    assert!((arm.sensed_torque() - expected).amax() < 1e-9);
+}
+
+#[test]
+fn a_scene_that_is_none_says_why() {
+    let error = |scene| MujocoArm::new(RobotKind::Fr3, scene).expect_err("no scene");
+    let text = error(Scene::mjcf(
+        "<mujoco><worldbody><box/></worldbody></mujoco>",
+    ))
+    .to_string();
+    assert!(text.contains("box"), "{text}");
+    let text = error(Scene::file("/no/such/scene.xml")).to_string();
+    assert!(text.contains("/no/such/scene.xml"), "{text}");
+    let theirs = "<mujoco><worldbody><body name='franka_link3'/></worldbody></mujoco>";
+    assert!(matches!(
+        error(Scene::mjcf(theirs)),
+        SceneError::Conflict(_) | SceneError::Impossible(_)
+    ));
+}
