@@ -2,10 +2,13 @@
 
 use std::io::IsTerminal;
 use std::net::{IpAddr, SocketAddr};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use franka_model::{JointVector, Load, RobotKind};
+#[cfg(feature = "mujoco")]
+use franka_sim::plant::{MujocoArm, Scene};
 use franka_sim::{Config, Fingers, Noise, Sim, Suction, Tool};
 use nalgebra::{Matrix3, Vector3};
 use tokio::signal::unix::{SignalKind, signal};
@@ -63,6 +66,16 @@ struct Arguments {
     #[arg(long)]
     noise: bool,
 
+    /// What moves: the arm alone, or the arm in MuJoCo, with a table in front of it or what --scene names,
+    /// and fingers that grasp if there is a --hand.
+    #[arg(long, value_enum, default_value_t = PlantKind::Rigid)]
+    plant: PlantKind,
+
+    /// An MJCF file with what is around the robot, in its base frame, instead of the table. Bodies with a
+    /// free joint are objects to push and to grasp.
+    #[arg(long, value_name = "FILE.xml")]
+    scene: Option<PathBuf>,
+
     /// Seed of all randomness.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -84,6 +97,15 @@ enum Kind {
     Fr3,
     /// Franka Emika Robot, known as Panda
     Fer,
+}
+
+/// The plants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PlantKind {
+    /// Rigid links that nothing is around
+    Rigid,
+    /// MuJoCo: contact, objects, fingers
+    Mujoco,
 }
 
 impl From<Kind> for RobotKind {
@@ -123,10 +145,12 @@ impl Arguments {
         config
     }
 
-    fn sim(&self) -> Sim {
+    /// The robot, or why there is none.
+    fn sim(&self) -> Result<Sim, String> {
         let sim = Sim::new(self.config()).bind(SocketAddr::new(self.bind, self.port));
+        let sim = self.with_plant(sim)?;
         if self.no_gripper {
-            return sim;
+            return Ok(sim);
         }
         let (fingers, suction) = match self.gripper_object_width {
             Some(width) => (
@@ -140,8 +164,40 @@ impl Arguments {
             0 => 0,
             port => port.checked_add(n).unwrap_or(0),
         };
-        sim.hand(fingers, beside(1))
-            .vacuum_gripper(suction, beside(2))
+        Ok(sim
+            .hand(fingers, beside(1))
+            .vacuum_gripper(suction, beside(2)))
+    }
+
+    fn with_plant(&self, sim: Sim) -> Result<Sim, String> {
+        match self.plant {
+            PlantKind::Rigid if self.scene.is_some() => {
+                Err("a scene needs --plant mujoco: nothing is around a rigid arm".into())
+            }
+            PlantKind::Rigid => Ok(sim),
+            PlantKind::Mujoco if self.hand && self.gripper_object_width.is_some() => Err(
+                "fingers in MuJoCo grasp what is in the scene: leave out --gripper-object-width"
+                    .into(),
+            ),
+            PlantKind::Mujoco => self.with_mujoco(sim),
+        }
+    }
+
+    #[cfg(feature = "mujoco")]
+    fn with_mujoco(&self, sim: Sim) -> Result<Sim, String> {
+        let mut scene = self.scene.as_ref().map_or_else(Scene::table, Scene::file);
+        if self.hand {
+            scene = scene.with_hand();
+        }
+        let arm = MujocoArm::new(self.robot.into(), scene).map_err(|error| error.to_string())?;
+        Ok(sim.plant(arm))
+    }
+
+    #[cfg(not(feature = "mujoco"))]
+    fn with_mujoco(&self, _: Sim) -> Result<Sim, String> {
+        Err("this program was built without MuJoCo: run `cargo xtask mujoco` once, then build it with \
+             `--features mujoco`"
+            .into())
     }
 }
 
@@ -199,7 +255,8 @@ async fn main() -> ExitCode {
 async fn run(arguments: &Arguments) -> std::io::Result<()> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
-    let sim = arguments.sim().start().await.map_err(|error| {
+    let sim = arguments.sim().map_err(std::io::Error::other)?;
+    let sim = sim.start().await.map_err(|error| {
         let kind = error.kind();
         std::io::Error::new(kind, format!("cannot listen on {error}"))
     })?;
@@ -247,6 +304,29 @@ mod tests {
         assert_eq!(config.kind, RobotKind::Fr3);
         let config = parse(&["--robot", "fer"]).expect("valid").config();
         assert_eq!(config.kind, RobotKind::Fer);
+    }
+
+    #[test]
+    fn a_plant_that_cannot_be_says_why() {
+        let why = |arguments: &[&str]| parse(arguments).expect("valid").sim().map(drop);
+        let error = why(&["--scene", "table.xml"]).expect_err("nothing is around a rigid arm");
+        assert!(error.contains("--plant mujoco"), "{error}");
+        let error = why(&["--plant", "mujoco", "--scene", "/no/such/file.xml"]);
+        let error = error.expect_err("no such file");
+        let expected = if cfg!(feature = "mujoco") {
+            "/no/such/file.xml"
+        } else {
+            "--features mujoco"
+        };
+        assert!(error.contains(expected), "{error}");
+        let object = [
+            "--plant",
+            "mujoco",
+            "--hand",
+            "--gripper-object-width",
+            "0.04",
+        ];
+        assert!(why(&object).is_err());
     }
 
     #[test]

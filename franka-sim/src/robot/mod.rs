@@ -25,7 +25,7 @@ pub use session::SessionError;
 use std::collections::VecDeque;
 
 use bytes::Bytes;
-use franka_model::{Dynamics, JointVector, Model};
+use franka_model::{Dynamics, JointVector, Load, Model};
 use franka_proto::{CommandId, Errors, MoveRequest, RobotCommand, RobotState, Version};
 
 use crate::brake::Brake;
@@ -110,13 +110,16 @@ impl Robot {
             Model::realisable(config.kind),
             ArmParameters::of(config.kind),
             config.q,
-            config.tool.load.combine(&config.payload),
+            Load::NONE,
         );
         Self::with_plant(config, Box::new(plant))
     }
 
-    /// A robot at rest where `plant` is, whose controllers believe in the arm of `config.kind`.
-    pub fn with_plant(config: Config, plant: Box<dyn Plant>) -> Self {
+    /// A robot whose controllers believe in the arm of `config.kind`, and move `plant`: it is placed at rest in the
+    /// configured position, with the configured tool and payload.
+    pub fn with_plant(config: Config, mut plant: Box<dyn Plant>) -> Self {
+        plant.attach(config.tool.load.combine(&config.payload));
+        plant.place(&config.q);
         let kind = Description::of(config.kind);
         let model = Model::realisable(config.kind);
         let settings = Settings::new(config.tool);
@@ -210,6 +213,19 @@ impl Robot {
     /// How the robot was made.
     pub fn config(&self) -> &Config {
         &self.config
+    }
+
+    /// What its controllers move. Who knows what it is takes it as that:
+    ///
+    /// ```
+    /// # use std::any::Any;
+    /// # use franka_sim::{Config, Robot, plant::RigidArm};
+    /// # let robot = Robot::new(Config::default());
+    /// let plant: &dyn Any = robot.plant();
+    /// assert!(plant.is::<RigidArm>());
+    /// ```
+    pub fn plant(&self) -> &dyn Plant {
+        self.plant.as_ref()
     }
 
     /// The protocol version that the robot speaks.

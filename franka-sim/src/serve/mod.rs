@@ -30,6 +30,7 @@ use tokio::sync::watch;
 
 use crate::config::{Config, Noise, Tool};
 use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
+use crate::plant::Plant;
 use crate::robot::Robot;
 use cycle::Cycle;
 
@@ -44,9 +45,11 @@ use cycle::Cycle;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Sim {
     config: Config,
+    /// The rigid-body plant if there is none.
+    plant: Option<Box<dyn Plant>>,
     bind: SocketAddr,
     hand: Option<(Fingers, u16)>,
     vacuum_gripper: Option<(Suction, u16)>,
@@ -70,6 +73,7 @@ impl Sim {
     pub fn new(config: Config) -> Self {
         Self {
             config,
+            plant: None,
             bind: SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0),
             hand: None,
             vacuum_gripper: None,
@@ -79,6 +83,12 @@ impl Sim {
     /// Listens on `address`; port 0 takes a free one. Robots listen on 1337.
     pub fn bind(mut self, address: SocketAddr) -> Self {
         self.bind = address;
+        self
+    }
+
+    /// Moves this plant instead of the rigid-body one: see [`Robot::with_plant`].
+    pub fn plant(mut self, plant: impl Plant) -> Self {
+        self.plant = Some(Box::new(plant));
         self
     }
 
@@ -159,7 +169,11 @@ impl Sim {
     /// # Cancel safety
     /// Dropping the future before it completes leaves nothing behind.
     pub async fn start(self) -> io::Result<Running> {
-        let (robot, seat) = service::open(self.bind, Robot::new(self.config)).await?;
+        let robot = match self.plant {
+            Some(plant) => Robot::with_plant(self.config, plant),
+            None => Robot::new(self.config),
+        };
+        let (robot, seat) = service::open(self.bind, robot).await?;
         let beside = |port| SocketAddr::new(self.bind.ip(), port);
         let (hand, hand_seat) = match self.hand {
             Some((fingers, port)) => {

@@ -59,9 +59,7 @@ pub(super) fn arm(
         let name = joint_name(i);
         add(
             &mut text,
-            format_args!(
-                "<damper name='{name}' joint='{name}' kv='1' ctrlrange='0 1e9'/>"
-            ),
+            format_args!("<damper name='{name}' joint='{name}' kv='1' ctrlrange='0 1e9'/>"),
         );
     }
     text.push_str("</actuator><contact>");
