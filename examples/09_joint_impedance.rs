@@ -51,7 +51,7 @@ async fn main() -> anyhow::Result<()> {
         Torques((torques + coriolis).into())
     });
 
-    let report = circle.cutoff_frequency(1000.0).await?;
+    let report = circle.limit_rate(true).await?;
     let moved = robot.pose().translation.vector - start.translation.vector;
     robot.shutdown().await;
     println!("{}", Summary(&report));

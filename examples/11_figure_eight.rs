@@ -49,7 +49,7 @@ async fn main() -> anyhow::Result<()> {
         };
         command.finish_if(time >= duration)
     });
-    let report = drawing.cutoff_frequency(1000.0).await?;
+    let report = drawing.limit_rate(true).await?;
 
     let moved = robot.pose().translation.vector - start.translation.vector;
     robot.shutdown().await;

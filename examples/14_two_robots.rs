@@ -48,5 +48,5 @@ fn swing(robot: &Robot, angle: f64) -> Control {
         q[0] += angle * Ease::there_and_back(DURATION, time).value;
         JointPositions(q).finish_if(time >= DURATION)
     });
-    control.cutoff_frequency(1000.0)
+    control.limit_rate(true)
 }

@@ -72,7 +72,7 @@ async fn main() -> anyhow::Result<()> {
         let speed = 0.3 * Ease::over(2.0, time).rate;
         JointVelocities([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, speed]).finish_if(time >= 2.0)
     });
-    println!("and on: {}", Summary(&turn.cutoff_frequency(1000.0).await?));
+    println!("and on: {}", Summary(&turn.limit_rate(true).await?));
     robot.shutdown().await;
     Ok(())
 }

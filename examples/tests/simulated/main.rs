@@ -1,41 +1,21 @@
-//! The examples as programs, against a simulator of each kind in their own process.
+//! The examples as programs: against a simulator of each kind in their own process, and, where it matters what the arm does,
+//! against one in the process of the test.
+
+mod arm;
+mod control;
+mod program;
 
 use std::io::{BufRead, BufReader};
-use std::path::PathBuf;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Stdio};
 
-/// Both robots, as the option of the examples names them.
-const ROBOTS: [&str; 2] = ["fr3", "fer"];
+use program::{ROBOTS, alone, example};
 
-/// The program of an example. Cargo builds examples with the tests, beside them.
-fn example(name: &str) -> Command {
-    let mut path: PathBuf = std::env::current_exe().expect("a test has a path");
-    path.pop();
-    path.pop();
-    path.push("examples");
-    path.push(name);
-    assert!(path.exists(), "{} is built with the tests", path.display());
-    Command::new(path)
-}
-
+/// Runs an example against its own simulator, and returns what it said.
 fn run(name: &str, robot: &str) -> String {
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = example(name)
-        .args(["--sim", robot])
-        .output()
-        .expect("it starts");
-    let (stdout, stderr) = (
-        String::from_utf8_lossy(&stdout),
-        String::from_utf8_lossy(&stderr),
-    );
-    assert!(
-        status.success(),
-        "{name} on {robot}: {status}\n{stdout}\n{stderr}"
-    );
-    stdout.into_owned()
+    let _alone = alone();
+    let said = program::run(name, &["--sim", robot], "");
+    assert_eq!(said.code, Some(0), "{name} on {robot}: {said:?}");
+    said.stdout
 }
 
 #[test]
@@ -78,6 +58,7 @@ impl Drop for Service {
 
 #[test]
 fn the_web_service_moves_the_arm() {
+    let _alone = alone();
     for robot in ROBOTS {
         let child = example("axum_service")
             .args(["--sim", robot, "--listen", "127.0.0.1:0"])

@@ -1,0 +1,192 @@
+//! A simulated robot in the process of the test, which watches it and lays hands on it while a program drives it.
+
+use std::sync::mpsc;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use franka_async::{Realtime, RobotError, RobotMode, RobotState};
+use franka_model::{JointVector, READY, Wrench};
+use franka_rt::sched::Scheduling;
+use franka_sim::{Sim, Tool};
+use tokio::sync::oneshot;
+
+/// What a robot is like when the program begins, and what happens to it while the program moves it.
+#[derive(Clone)]
+pub(crate) struct Scene {
+    /// Where it starts, `[rad]`.
+    pub(crate) q: JointVector,
+    /// What happens, each after so many milliseconds of one motion; in order.
+    pub(crate) events: &'static [(u64, Event)],
+    /// Whether lost commands end a motion.
+    pub(crate) strict: bool,
+}
+
+#[derive(Clone, Copy)]
+pub(crate) enum Event {
+    /// Somebody pushes the hand with this force, `[N]`, for so many milliseconds.
+    PushHand([f64; 3], u64),
+    /// Somebody turns a joint, `[N m]`, for so many milliseconds.
+    TurnJoint(usize, f64, u64),
+    /// The robot stops itself.
+    Trip(RobotError),
+}
+
+impl Default for Scene {
+    /// In the ready pose, undisturbed, as strict as a robot.
+    fn default() -> Self {
+        Self {
+            q: READY,
+            events: &[],
+            strict: true,
+        }
+    }
+}
+
+/// A simulated robot that runs.
+pub(crate) struct Arm {
+    pub(crate) address: String,
+    end: oneshot::Sender<()>,
+    watching: JoinHandle<Course>,
+}
+
+/// What the simulator said every few milliseconds.
+pub(crate) struct Course(Vec<Moment>);
+
+struct Moment {
+    at: Instant,
+    state: RobotState,
+}
+
+impl Arm {
+    /// Starts the robot of this name.
+    pub(crate) fn start(robot: &str, scene: Scene) -> Self {
+        let sim = match robot {
+            "fr3" => Sim::fr3(),
+            "fer" => Sim::fer(),
+            other => panic!("no robot is called {other}"),
+        };
+        let sim = sim.tool(Tool::hand()).q(scene.q);
+        let sim = sim.enforce_communication(scene.strict);
+        let (started, address) = mpsc::channel();
+        let (end, ended) = oneshot::channel();
+        let watching = std::thread::spawn(move || {
+            // The simulator's thread inherits what this one is granted. Where that is real-time scheduling, other work on
+            // this machine costs no cycles; a robot's clock does not wait for it either.
+            let scheduling = Scheduling {
+                realtime: Realtime::Ignore,
+                priority: Some(10),
+                ..Scheduling::default()
+            };
+            scheduling.enter().expect("refusals are accepted");
+            let runtime = tokio::runtime::Builder::new_current_thread()
+                .enable_all()
+                .build()
+                .expect("a runtime starts");
+            runtime.block_on(async {
+                let sim = sim.start().await.expect("a simulator starts");
+                started
+                    .send(sim.addr().to_string())
+                    .expect("the test waits");
+                let watched = watch(&sim, scene.events, ended).await;
+                sim.stop().await;
+                watched
+            })
+        });
+        Self {
+            address: address.recv().expect("the simulator has an address"),
+            end,
+            watching,
+        }
+    }
+
+    /// Ends the simulation and returns what the arm has done.
+    pub(crate) fn stop(self) -> Course {
+        self.end.send(()).expect("the simulator runs");
+        self.watching.join().expect("no panic")
+    }
+}
+
+async fn watch(
+    sim: &franka_sim::Running,
+    events: &[(u64, Event)],
+    mut ended: oneshot::Receiver<()>,
+) -> Course {
+    let mut moments = Vec::new();
+    let mut events = events.iter();
+    let mut next = events.next();
+    // Since when it has been in the motion that it is in, in its own time.
+    let mut moving = None;
+    loop {
+        let state = sim.state().await.expect("the simulator runs");
+        let at = Instant::now();
+        moments.push(Moment { at, state });
+        if state.robot_mode == RobotMode::Move {
+            let since = *moving.get_or_insert(state.message_id);
+            if let Some((_, event)) = next.filter(|(after, _)| state.message_id - since >= *after) {
+                let event = *event;
+                sim.with(move |robot| match event {
+                    Event::PushHand([x, y, z], duration) => {
+                        let wrench = Wrench::new(x, y, z, 0.0, 0.0, 0.0);
+                        robot.push_end_effector(wrench, duration);
+                    }
+                    Event::TurnJoint(joint, torque, duration) => {
+                        let mut torques = JointVector::zeros();
+                        torques[joint] = torque;
+                        robot.push_joints(torques, duration);
+                    }
+                    Event::Trip(error) => robot.trip(error),
+                })
+                .await
+                .expect("the simulator runs");
+                next = events.next();
+            }
+        } else {
+            moving = None;
+        }
+        tokio::select! {
+            _ = &mut ended => break,
+            () = tokio::time::sleep(Duration::from_millis(5)) => {}
+        }
+    }
+    assert!(
+        next.is_none(),
+        "the motion was too short for what was to happen in it"
+    );
+    Course(moments)
+}
+
+impl Course {
+    /// The state at the end.
+    pub(crate) fn last(&self) -> &RobotState {
+        &self.0.last().expect("there is one at least").state
+    }
+
+    /// Least and greatest of a number.
+    pub(crate) fn extent(&self, of: impl Fn(&RobotState) -> f64) -> (f64, f64) {
+        let values = self.0.iter().map(|moment| of(&moment.state));
+        values.fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(least, most), value| (least.min(value), most.max(value)),
+        )
+    }
+
+    /// How far the hand was from where it began, along an axis of the base `[m]`: least, greatest, and in the end.
+    pub(crate) fn hand(&self, axis: usize) -> (f64, f64, f64) {
+        let of = |state: &RobotState| state.O_T_EE[12 + axis] - self.0[0].state.O_T_EE[12 + axis];
+        let (least, most) = self.extent(of);
+        (least, most, of(self.last()))
+    }
+
+    /// How far a joint was from where it began, `[rad]`: least, greatest, and in the end.
+    pub(crate) fn joint(&self, joint: usize) -> (f64, f64, f64) {
+        let of = |state: &RobotState| state.q[joint] - self.0[0].state.q[joint];
+        let (least, most) = self.extent(of);
+        (least, most, of(self.last()))
+    }
+
+    /// When something was first so.
+    pub(crate) fn first(&self, so: impl Fn(&RobotState) -> bool) -> Option<Instant> {
+        let moment = self.0.iter().find(|moment| so(&moment.state));
+        moment.map(|moment| moment.at)
+    }
+}

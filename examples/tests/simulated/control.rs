@@ -1,0 +1,282 @@
+//! What the arm does under each example of control at 1 kHz, as the simulator in the test sees it.
+
+use franka_async::{RobotError, RobotMode};
+use franka_model::READY;
+
+use crate::arm::{Arm, Course, Event, Scene};
+use crate::program::{Said, alone, on_both, run};
+
+/// Asserts that a program has succeeded, and that nothing made the robot stop itself meanwhile.
+fn succeeded(robot: &str, said: &Said, course: &Course) {
+    assert_eq!(said.code, Some(0), "{robot}: {said:?}");
+    let erred = course.first(|state| !state.errors.is_empty());
+    assert!(erred.is_none(), "{robot}: {said:?}");
+    assert_eq!(course.last().robot_mode, RobotMode::Idle, "{robot}");
+}
+
+/// Asserts that least, greatest and last value are as expected.
+fn is_about(what: &str, got: (f64, f64, f64), expected: (f64, f64, f64), tolerance: f64) {
+    let off = [got.0 - expected.0, got.1 - expected.1, got.2 - expected.2];
+    assert!(
+        off.iter().all(|off| off.abs() <= tolerance),
+        "{what}: {got:?}, expected {expected:?}"
+    );
+}
+
+#[test]
+fn move_to_ready_arrives_from_elsewhere() {
+    let mut scene = Scene::default();
+    for (joint, q) in scene.q.iter_mut().enumerate() {
+        *q += if joint % 2 == 0 { 0.25 } else { -0.15 };
+    }
+    on_both("move_to_ready", &[], &scene, |robot, said, course| {
+        succeeded(robot, said, course);
+        for (joint, ready) in READY.iter().enumerate() {
+            let error = course.last().q[joint] - ready;
+            assert!(error.abs() < 2e-3, "{robot}: joint {joint} is {error} off");
+        }
+    });
+}
+
+#[test]
+fn joint_generators_swing_three_joints_and_bring_them_back() {
+    for generator in ["joint-positions", "joint-velocities"] {
+        let scene = Scene::default();
+        on_both("generators", &[generator], &scene, |robot, said, course| {
+            succeeded(robot, said, course);
+            for joint in 0..7 {
+                let far = if [3, 4, 6].contains(&joint) { 0.2 } else { 0.0 };
+                let what = format!("{robot}, {generator}: joint {joint}");
+                is_about(&what, course.joint(joint), (0.0, far, 0.0), 5e-3);
+            }
+        });
+    }
+}
+
+#[test]
+fn cartesian_generators_move_the_hand_along_an_axis_and_back() {
+    for (generator, axis, way) in [
+        ("cartesian-pose", 2, -0.06),
+        ("cartesian-velocities", 1, 0.06),
+    ] {
+        let scene = Scene::default();
+        on_both("generators", &[generator], &scene, |robot, said, course| {
+            succeeded(robot, said, course);
+            for other in 0..3 {
+                let way: f64 = if other == axis { way } else { 0.0 };
+                let what = format!("{robot}, {generator}: axis {other}");
+                is_about(
+                    &what,
+                    course.hand(other),
+                    (way.min(0.0), way.max(0.0), 0.0),
+                    2e-3,
+                );
+            }
+        });
+    }
+}
+
+#[test]
+fn joint_impedance_follows_the_circle() {
+    on_both(
+        "joint_impedance",
+        &[],
+        &Scene::default(),
+        |robot, said, course| {
+            succeeded(robot, said, course);
+            // The springs are soft: what friction is left takes some millimetres.
+            is_about(robot, course.hand(0), (0.0, 0.0, 0.0), 5e-3);
+            is_about(robot, course.hand(1), (-0.05, 0.05, 0.0), 5e-3);
+            is_about(robot, course.hand(2), (0.0, 0.1, 0.0), 5e-3);
+        },
+    );
+}
+
+#[test]
+fn cartesian_impedance_gives_way_as_its_spring_says_both_ways() {
+    let scene = Scene {
+        events: &[(500, Event::PushHand([0.0, 9.0, 0.0], 1500))],
+        ..Scene::default()
+    };
+    for way in ["callback", "active"] {
+        let arguments = [way, "--seconds", "4"];
+        on_both(
+            "cartesian_impedance",
+            &arguments,
+            &scene,
+            |robot, said, course| {
+                succeeded(robot, said, course);
+                // 9 N against 300 N/m.
+                let what = format!("{robot}, {way}");
+                is_about(&what, course.hand(1), (0.0, 0.03, 0.0), 4e-3);
+                is_about(&what, course.hand(2), (0.0, 0.0, 0.0), 4e-3);
+            },
+        );
+    }
+}
+
+#[test]
+fn figure_eight_is_as_large_as_it_says_and_begins_and_ends_at_rest() {
+    let scene = Scene::default();
+    on_both(
+        "figure_eight",
+        &["--laps", "3"],
+        &scene,
+        |robot, said, course| {
+            succeeded(robot, said, course);
+            is_about(robot, course.hand(0), (0.0, 0.0, 0.0), 2e-3);
+            is_about(robot, course.hand(1), (-0.08, 0.08, 0.0), 2e-3);
+            is_about(robot, course.hand(2), (-0.04, 0.04, 0.0), 2e-3);
+        },
+    );
+}
+
+#[test]
+fn virtual_floor_holds_the_hand_up_lets_it_go_and_keeps_the_elbow() {
+    let scene = Scene {
+        events: &[
+            (500, Event::PushHand([0.0, 0.0, -10.0], 1500)),
+            (2500, Event::PushHand([0.0, 0.0, 4.0], 1000)),
+            (4000, Event::TurnJoint(2, 4.0, 500)),
+        ],
+        ..Scene::default()
+    };
+    let arguments = ["--below", "0.05", "--seconds", "8"];
+    on_both(
+        "virtual_floor",
+        &arguments,
+        &scene,
+        |robot, said, course| {
+            succeeded(robot, said, course);
+            let (lowest, highest, _) = course.hand(2);
+            // 10 N press the spring of 2000 N/m in by 5 mm, and at first the hand comes with some speed.
+            assert!((-0.07..-0.054).contains(&lowest), "{robot}: {lowest}");
+            assert!(
+                highest > 0.0,
+                "{robot}: the floor held the hand at {highest}"
+            );
+            let (_, turned, left) = course.joint(2);
+            println!(
+                "{robot}: hand {:?} joint 3 {:?}",
+                course.hand(2),
+                course.joint(2)
+            );
+            assert!(turned > 0.05, "{robot}: the elbow went {turned} rad");
+            assert!(
+                left.abs() < 0.5 * turned,
+                "{robot}: the elbow stayed at {left} of {turned} rad"
+            );
+        },
+    );
+}
+
+#[test]
+fn communication_test_tells_by_its_exit_code() {
+    for (good, usable, code) in [("0", "0", 0), ("1.01", "0", 3), ("1.01", "1.01", 4)] {
+        let arguments = ["--seconds", "1.5", "--good", good, "--usable", usable];
+        let scene = Scene::default();
+        on_both(
+            "communication_test",
+            &arguments,
+            &scene,
+            |robot, said, course| {
+                assert_eq!(said.code, Some(code), "{robot}: {said:?}");
+                assert!(
+                    said.stdout.contains("success rate: min "),
+                    "{robot}: {said:?}"
+                );
+                for axis in 0..3 {
+                    is_about(robot, course.hand(axis), (0.0, 0.0, 0.0), 5e-3);
+                }
+            },
+        );
+    }
+}
+
+#[test]
+fn recovery_goes_on_after_a_reflex() {
+    on_both("recovery", &[], &Scene::default(), |robot, said, course| {
+        assert_eq!(said.code, Some(0), "{robot}: {said:?}");
+        assert!(
+            said.stdout.contains(
+                "motion aborted by reflex! [\"joint_motion_generator_acceleration_discontinuity\"]"
+            ),
+            "{robot}: {said:?}"
+        );
+        let reflex = course.first(|state| state.robot_mode == RobotMode::Reflex);
+        assert!(reflex.is_some(), "{robot}: it was no reflex");
+        assert_eq!(course.last().robot_mode, RobotMode::Idle, "{robot}");
+        is_about(robot, course.joint(6), (0.0, 0.3, 0.3), 5e-3);
+    });
+}
+
+/// Runs the example on a robot of each kind together, the first of which has this scene.
+fn two_robots(first: Scene) -> (Said, [Course; 2]) {
+    let arms = [
+        Arm::start("fr3", first),
+        Arm::start("fer", Scene::default()),
+    ];
+    let [one, other] = arms.each_ref().map(|arm| arm.address.as_str());
+    let said = run(
+        "two_robots",
+        &[one, other, "--realtime", "ignore", "--yes"],
+        "",
+    );
+    (said, arms.map(Arm::stop))
+}
+
+#[test]
+fn two_robots_swing_at_the_same_time() {
+    let _alone = alone();
+    let (said, [one, other]) = two_robots(Scene::default());
+    succeeded("one", &said, &one);
+    succeeded("other", &said, &other);
+    is_about("one", one.joint(0), (0.0, 0.3, 0.0), 5e-3);
+    is_about("other", other.joint(0), (-0.3, 0.0, 0.0), 5e-3);
+    let passed = [&one, &other].map(|arm| arm.first(|state| state.q[0].abs() > 0.15));
+    let [Some(one), Some(other)] = passed else {
+        panic!("they have swung");
+    };
+    let apart = one.max(other) - one.min(other);
+    assert!(apart.as_millis() < 200, "{apart:?} apart");
+}
+
+#[test]
+fn neither_of_two_robots_goes_on_without_the_other() {
+    let _alone = alone();
+    let (said, [one, other]) = two_robots(Scene {
+        events: &[(1000, Event::Trip(RobotError::CartesianReflex))],
+        ..Scene::default()
+    });
+    assert_eq!(said.code, Some(1), "{said:?}");
+    assert!(said.stderr.contains("cartesian_reflex"), "{said:?}");
+    assert_eq!(one.last().robot_mode, RobotMode::Reflex);
+    // Half a way there when the other one tripped, all of it half a second later.
+    assert_eq!(other.last().robot_mode, RobotMode::Idle);
+    let (farthest, _, left) = other.joint(0);
+    assert!((-0.28..-0.1).contains(&left), "stopped at {left}");
+    assert!(
+        left - farthest < 0.02,
+        "went on to {farthest}, and then to {left}"
+    );
+}
+
+#[test]
+fn with_an_address_nothing_moves_before_somebody_says_so() {
+    let _alone = alone();
+    let elsewhere = || {
+        let mut scene = Scene::default();
+        scene.q[0] += 0.1;
+        scene
+    };
+    for (input, code) in [("", 1), ("\n", 0)] {
+        let arm = Arm::start("fr3", elsewhere());
+        let arguments = [arm.address.as_str(), "--realtime", "ignore"];
+        let said = run("move_to_ready", &arguments, input);
+        let course = arm.stop();
+        assert_eq!(said.code, Some(code), "{said:?}");
+        assert!(said.stdout.contains("user stop"), "{said:?}");
+        let moved = course.first(|state| state.robot_mode == RobotMode::Move);
+        assert_eq!(moved.is_some(), code == 0, "{said:?}");
+    }
+}

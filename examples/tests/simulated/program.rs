@@ -1,0 +1,116 @@
+//! The examples as programs, with an end whatever they do.
+
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::arm::{Arm, Course, Scene};
+
+/// Both robots, as the option of the examples names them.
+pub(crate) const ROBOTS: [&str; 2] = ["fr3", "fer"];
+
+/// Held by each test, so that no more than two robots share this machine.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+pub(crate) fn alone() -> MutexGuard<'static, ()> {
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The program of an example. Cargo builds examples with the tests, beside them.
+pub(crate) fn example(name: &str) -> Command {
+    let mut path: PathBuf = std::env::current_exe().expect("a test has a path");
+    path.pop();
+    path.pop();
+    path.push("examples");
+    path.push(name);
+    assert!(path.exists(), "{} is built with the tests", path.display());
+    let mut command = Command::new(path);
+    command.env("RUST_BACKTRACE", "0"); // errors are read here
+    command
+}
+
+/// What a program has said, and how it ended.
+#[derive(Debug)]
+pub(crate) struct Said {
+    /// `None` if it was killed.
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+/// Runs an example on `input` until it ends, or is ended after a minute.
+pub(crate) fn run(name: &str, arguments: &[&str], input: &str) -> Said {
+    let mut child = example(name)
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    let mut stdin = child.stdin.take().expect("it is piped");
+    // A program that does not read its input may be gone already.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    let stdout = collect(child.stdout.take().expect("it is piped"));
+    let stderr = collect(child.stderr.take().expect("it is piped"));
+    let start = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("it is ours") {
+            break status;
+        }
+        if start.elapsed() > Duration::from_secs(60) {
+            child.kill().expect("it is ours");
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    };
+    Said {
+        code: status.code(),
+        stdout: stdout.join().expect("no panic"),
+        stderr: stderr.join().expect("no panic"),
+    }
+}
+
+fn collect(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut text = String::new();
+        pipe.read_to_string(&mut text).expect("it prints text");
+        text
+    })
+}
+
+/// Runs an example on each robot, both at once, and has `check` judge what it said and what its arm did.
+///
+/// A program that ends because twenty commands in a row came late is run again: it says nothing but that this machine
+/// was busy.
+pub(crate) fn on_both(
+    name: &str,
+    arguments: &[&str],
+    scene: &Scene,
+    check: impl Fn(&str, &Said, &Course) + Sync,
+) {
+    let _alone = alone();
+    let attempt = |robot| {
+        let arm = Arm::start(robot, scene.clone());
+        let mut all = arguments.to_vec();
+        all.extend([arm.address.as_str(), "--realtime", "ignore", "--yes"]);
+        (run(name, &all, ""), arm.stop())
+    };
+    let judge = |robot| {
+        let mut attempts = std::iter::repeat_with(|| attempt(robot));
+        let starved = |said: &Said| said.stderr.contains("communication_constraints_violation");
+        let (said, course) = attempts
+            .by_ref()
+            .take(3)
+            .find(|(said, _)| !starved(said))
+            .unwrap_or_else(|| panic!("{name} on {robot}: this machine was busy three times"));
+        check(robot, &said, &course);
+    };
+    std::thread::scope(|scope| {
+        for robot in ROBOTS {
+            let judge = &judge;
+            scope.spawn(move || judge(robot));
+        }
+    });
+}
