@@ -5,9 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-use franka_model::{Model, RobotKind};
 use franka_proto::client::{Event, Session};
-use franka_proto::{Command, Protocol, RobotState, Version};
+use franka_proto::{Protocol, RobotState, Version};
 use franka_rt::driver::Driver;
 use franka_rt::exchange;
 use franka_rt::lifecycle::Lifecycle;
@@ -25,6 +24,7 @@ use crate::bridge::{self, Bridge};
 use crate::builder::{Builder, Endpoint, VersionPolicy};
 use crate::channel::{CLOSED_BY_PEER, Channel};
 use crate::codec::{MessageCodec, StreamError, reason};
+use crate::model;
 use crate::robot::Shared;
 use crate::{ConnectError, Robot};
 
@@ -51,7 +51,7 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         Channel::start(opened.stream, opened.session, published.clone());
     let stats = opened.handle.stats.clone();
     let lender = opened.handle.lender.clone();
-    let model = Arc::new(model_of(opened.version, &channel, &builder).await?);
+    let model = Arc::new(model::of(opened.version, &channel, &builder).await?);
     let lifecycle = Lifecycle::new(model.clone(), opened.version).with_log_size(builder.log_size);
     let bridge = Bridge::new(
         lifecycle,
@@ -137,27 +137,6 @@ async fn open_with(
         bell,
         first,
     })
-}
-
-/// The model of the arm: from its description if it has one and that is wanted, the constants of its kind otherwise.
-async fn model_of(
-    version: Version,
-    channel: &Channel,
-    builder: &Builder,
-) -> Result<Model, ConnectError> {
-    #[cfg(feature = "urdf")]
-    if version.supports(Command::GetRobotModel) && !builder.nominal_model {
-        return Ok(crate::model::ask(channel, builder.connect_timeout).await?);
-    }
-    Ok(Model::of(kind_of(version)).clone())
-}
-
-/// The robot that speaks `version`: a version belongs to one kind.
-fn kind_of(version: Version) -> RobotKind {
-    match version {
-        Version::V5 => RobotKind::Fer,
-        Version::V10 => RobotKind::Fr3,
-    }
 }
 
 /// Finds the host; `port` is that of the device, for an endpoint without one.

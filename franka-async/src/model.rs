@@ -2,20 +2,54 @@
 
 use std::time::Duration;
 
-use franka_proto::{Architecture, Request, System};
+use franka_model::{Model, RobotKind};
+#[cfg(feature = "urdf")]
+use franka_proto::Command;
+use franka_proto::{Architecture, Request, System, Version};
 
-use crate::channel::Answer;
-use crate::{CommandError, Robot};
+#[cfg(not(feature = "urdf"))]
+use crate::ConnectError;
+use crate::channel::{Answer, Channel};
+#[cfg(feature = "urdf")]
+use crate::parameters;
+use crate::{Builder, CommandError, Robot};
 
 /// Time for a library to come over the network.
 const DOWNLOAD: Duration = Duration::from_secs(30);
 
 #[cfg(feature = "urdf")]
 pub use described::ModelError;
-#[cfg(feature = "urdf")]
-pub(crate) use described::ask;
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 pub use library::ModelLibraryError;
+
+/// The model of the arm: from its description if it has one and that is wanted, the constants of its kind otherwise.
+#[cfg(feature = "urdf")]
+pub(crate) async fn of(
+    version: Version,
+    channel: &Channel,
+    builder: &Builder,
+) -> Result<Model, ModelError> {
+    if version.supports(Command::GetRobotModel) && !builder.nominal_model {
+        let text = parameters::urdf(channel, builder.connect_timeout).await?;
+        return Ok(Model::from_urdf(&text)?);
+    }
+    Ok(nominal(version))
+}
+
+/// The model of the arm: the constants of its kind.
+#[cfg(not(feature = "urdf"))]
+pub(crate) async fn of(version: Version, _: &Channel, _: &Builder) -> Result<Model, ConnectError> {
+    Ok(nominal(version))
+}
+
+/// The constants of the robot that speaks `version`: a version belongs to one kind.
+fn nominal(version: Version) -> Model {
+    let kind = match version {
+        Version::V5 => RobotKind::Fer,
+        Version::V10 => RobotKind::Fr3,
+    };
+    Model::of(kind).clone()
+}
 
 impl Robot {
     /// Asks for the model library of a Franka Emika Robot, and gives its bytes: a shared library in the format of the
@@ -44,21 +78,10 @@ impl Robot {
 
 #[cfg(feature = "urdf")]
 mod described {
-    use std::time::Duration;
-
-    use franka_model::Model;
     use franka_model::urdf::UrdfError;
 
     use crate::CommandError;
-    use crate::channel::Channel;
     use crate::error::Party;
-    use crate::parameters;
-
-    /// Asks the robot for its description, for as long as `deadline`, and reads it.
-    pub(crate) async fn ask(channel: &Channel, deadline: Duration) -> Result<Model, ModelError> {
-        let text = parameters::urdf(channel, deadline).await?;
-        Ok(Model::from_urdf(&text)?)
-    }
 
     /// Why there is no model of the connected arm. [`Builder::nominal_model`](crate::Builder::nominal_model) does without
     /// its description.
@@ -85,6 +108,8 @@ mod described {
 
     #[cfg(test)]
     mod tests {
+        use franka_model::Model;
+
         use super::*;
         use crate::error::{ConnectError, Error};
 

@@ -76,6 +76,9 @@ impl Check {
                 let mut command = workspace.cargo();
                 command.args(["clippy", "--workspace", "--all-targets", "--", "-Dwarnings"]);
                 workspace.run(&mut command)?;
+                let mut command = workspace.cargo();
+                command.args(["clippy", "--package", "franka-async"]);
+                workspace.run(command.args(["--no-default-features", "--", "-Dwarnings"]))?;
             }
             Self::Doc => {
                 let mut command = workspace.cargo();
