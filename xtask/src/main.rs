@@ -69,6 +69,9 @@ enum Task {
         /// Measure over real sockets instead: nothing else should run meanwhile.
         #[arg(long)]
         live: bool,
+        /// Measure what a busy program costs the control thread, and a task in the thread's place.
+        #[arg(long, conflicts_with_all = ["live", "instructions"])]
+        starvation: bool,
         /// How long to measure each client.
         #[arg(long, default_value_t = 30, requires = "live")]
         seconds: u32,
@@ -106,6 +109,9 @@ fn run(task: Task) -> anyhow::Result<()> {
             seconds,
             ..
         } => live::run(&workspace, seconds),
+        Task::Bench {
+            starvation: true, ..
+        } => workspace.run(&mut workspace.cargo_release_binary("starvation")),
         Task::Bench { rounds, .. } => {
             let output = workspace.target().join("bench.json");
             let mut command = workspace.cargo_release_binary("bench");

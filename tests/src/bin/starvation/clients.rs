@@ -1,0 +1,110 @@
+//! The same exchange, in the two places where it could be: newest state in, one command out, nothing computed.
+
+use std::io;
+use std::net::{SocketAddr, UdpSocket};
+use std::time::Duration;
+
+use franka_proto::{RobotCommand, RobotState};
+use franka_rt::exchange;
+use franka_rt::thread::{self, Core, ThreadConfig};
+use tokio::runtime::Runtime;
+
+use crate::preferred;
+use crate::robot::{self, ADDRESS, Outcome, VERSION};
+
+/// Who answers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Client {
+    /// The driver's control thread.
+    Thread,
+    /// A task of the program's runtime.
+    Task,
+}
+
+impl Client {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Thread => "control thread",
+            Self::Task => "task",
+        }
+    }
+
+    /// Answers a robot for `time`.
+    pub(crate) fn run(self, runtime: &Runtime, time: Duration) -> Outcome {
+        let socket = exchange::bind().expect("a free port");
+        let port = socket.local_addr().expect("bound").port();
+        match self {
+            Self::Thread => {
+                let config = ThreadConfig {
+                    scheduling: preferred(None),
+                    ..ThreadConfig::default()
+                };
+                let handle = thread::spawn(config, Echo, socket, ADDRESS, VERSION);
+                let handle = handle.expect("nothing is enforced");
+                let outcome = robot::run(port, time).expect("loopback");
+                handle.thread.join().expect("nothing panics");
+                outcome
+            }
+            Self::Task => {
+                let task = runtime.spawn(answer(socket));
+                let outcome = robot::run(port, time).expect("loopback");
+                task.abort();
+                outcome
+            }
+        }
+    }
+}
+
+/// Answers every state.
+struct Echo;
+
+fn reply_to(state: &RobotState) -> RobotCommand {
+    RobotCommand {
+        message_id: state.message_id,
+        ..RobotCommand::default()
+    }
+}
+
+impl Core for Echo {
+    type Order = ();
+    type Event = ();
+    type Record = ();
+
+    fn on_order(&mut self, (): ()) {}
+
+    fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
+        Some(reply_to(state))
+    }
+
+    fn on_silence(&mut self, _silence: Duration) {}
+
+    fn note_turnaround(&mut self, _turnaround: Duration) {}
+
+    fn record(&self) {}
+
+    fn take_event(&mut self) -> Option<()> {
+        None
+    }
+}
+
+/// What a driver does that lives in the runtime: the newest of the states that wait is answered.
+async fn answer(socket: UdpSocket) -> io::Result<()> {
+    socket.set_nonblocking(true)?;
+    let socket = tokio::net::UdpSocket::from_std(socket)?;
+    let mut bytes = [0; RobotState::MAX_SIZE];
+    let mut command = [0; RobotCommand::MAX_SIZE];
+    loop {
+        let mut newest = socket.recv_from(&mut bytes).await?;
+        while let Ok(newer) = socket.try_recv_from(&mut bytes) {
+            newest = newer;
+        }
+        let (length, robot): (usize, SocketAddr) = newest;
+        if let Ok(state) = RobotState::decode(VERSION, &bytes[..length]) {
+            let reply = reply_to(&state);
+            let size = reply
+                .encode(VERSION, &mut command)
+                .expect("a command has at most `MAX_SIZE` bytes");
+            socket.try_send_to(&command[..size], robot)?;
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The other end: states out at 1 kHz, and when the kernel took the commands in.
+
+use std::fmt;
+use std::io;
+use std::net::{IpAddr, Ipv4Addr, UdpSocket};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use franka_proto::{RobotCommand, RobotState, Version};
+
+use crate::preferred;
+use crate::stamp::{self, Stamped};
+
+/// The FR3's.
+pub(crate) const VERSION: Version = Version::V10;
+
+/// Where it sends from.
+pub(crate) const ADDRESS: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
+
+/// How the exchange went.
+pub(crate) struct Outcome {
+    states: usize,
+    /// States whose command had not come when the next one left.
+    lost: usize,
+    /// From the departure of a state to the arrival of its command, ascending.
+    turnarounds: Vec<Duration>,
+}
+
+/// Sends states to `port` of this machine for `time`.
+pub(crate) fn run(port: u16, time: Duration) -> io::Result<Outcome> {
+    let socket = UdpSocket::bind((ADDRESS, 0))?;
+    socket.connect((ADDRESS, port))?;
+    socket.set_read_timeout(Some(SILENCE))?;
+    let mut listening = Stamped::new(socket.try_clone()?)?;
+    // The kernel switches stamping on in the background.
+    thread::sleep(20 * PERIOD);
+    let states = usize::try_from(time.as_millis()).expect("a time of some seconds");
+    let listener = thread::spawn(move || {
+        prefer();
+        listen(&mut listening, states)
+    });
+    let speaker = thread::spawn(move || {
+        prefer();
+        speak(&socket, states)
+    });
+    let sent = speaker.join().expect("no panic")?;
+    let arrived = listener.join().expect("no panic");
+    Ok(Outcome::of(&sent, &arrived))
+}
+
+/// The robot is another computer: what this one is busy with does not reach it, where the system grants that.
+fn prefer() {
+    let granted = preferred(Some(PRIORITY)).enter();
+    granted.expect("nothing is enforced");
+}
+
+/// Sends a state per millisecond, and tells when each left.
+fn speak(socket: &UdpSocket, states: usize) -> io::Result<Vec<Duration>> {
+    let mut bytes = [0; RobotState::MAX_SIZE];
+    let mut sent = Vec::with_capacity(states);
+    let mut due = Instant::now();
+    for message_id in 1..=states as u64 {
+        due += PERIOD;
+        thread::sleep(due.saturating_duration_since(Instant::now()));
+        let state = RobotState {
+            message_id,
+            ..RobotState::default()
+        };
+        let size = state.encode(VERSION, &mut bytes).expect("there is room");
+        sent.push(stamp::now());
+        socket.send(&bytes[..size])?;
+    }
+    Ok(sent)
+}
+
+/// Tells when the command for each state came, until nothing has come for a while.
+fn listen(socket: &mut Stamped, states: usize) -> Vec<Option<Duration>> {
+    let mut arrived = vec![None; states];
+    let mut bytes = [0; RobotCommand::MAX_SIZE];
+    while let Ok((size, now)) = socket.receive(&mut bytes) {
+        let command = RobotCommand::decode(VERSION, &bytes[..size]).expect("a command");
+        let answered = command.message_id as usize - 1;
+        arrived[answered].get_or_insert(now);
+    }
+    arrived
+}
+
+impl Outcome {
+    fn of(sent: &[Duration], arrived: &[Option<Duration>]) -> Self {
+        let next = sent.iter().skip(1);
+        // Nothing follows the last.
+        let in_time = arrived
+            .iter()
+            .zip(next)
+            .filter(|(arrived, next)| arrived.is_some_and(|arrived| arrived < **next));
+        let states = sent.len() - 1;
+        let lost = states - in_time.count();
+        let mut turnarounds: Vec<Duration> = sent
+            .iter()
+            .zip(arrived)
+            .filter_map(|(sent, arrived)| Some((*arrived)?.saturating_sub(*sent)))
+            .collect();
+        turnarounds.sort_unstable();
+        Self {
+            states,
+            lost,
+            turnarounds,
+        }
+    }
+
+    /// What that share of all turnarounds does not exceed, `[us]`.
+    fn quantile(&self, share: f64) -> u128 {
+        let last = self.turnarounds.len().saturating_sub(1);
+        let index = (last as f64 * share).round() as usize;
+        self.turnarounds.get(index).map_or(0, Duration::as_micros)
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [p50, p90, p99, max] = [0.5, 0.9, 0.99, 1.0].map(|share| self.quantile(share));
+        let Self { states, lost, .. } = self;
+        write!(
+            f,
+            "{states:>8} {lost:>6} {p50:>6} {p90:>7} {p99:>7} {max:>7}"
+        )
+    }
+}
+
+const PERIOD: Duration = Duration::from_millis(1);
+
+/// Longer than anything that is in the way of a command.
+const SILENCE: Duration = Duration::from_millis(500);
+
+/// Below the control thread, which asks for the highest.
+const PRIORITY: i32 = 10;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn late_and_missing_commands_are_lost_and_only_the_late_have_a_time() {
+        let at = Duration::from_micros;
+        let sent = [at(0), at(1000), at(2000), at(3000)];
+        let arrived = [Some(at(40)), Some(at(2500)), None, Some(at(3060))];
+        let outcome = Outcome::of(&sent, &arrived);
+        assert_eq!((outcome.states, outcome.lost), (3, 2));
+        assert_eq!(outcome.quantile(0.5), 60);
+        assert_eq!(outcome.quantile(1.0), 1500);
+    }
+}
