@@ -2,11 +2,14 @@
 
 use franka_proto::{MoveControllerMode, MoveRequest, RobotMode, RobotState, Version};
 use franka_rt::control::{
-    AsynchronousPositions, AsynchronousTarget, Callback, CartesianPose, JointVelocities, Torques,
+    AsynchronousPositions, AsynchronousTarget, Callback, CartesianPose, CartesianVelocities,
+    JointPositions, JointVelocities, Torques,
 };
 use franka_rt::driver::{ControlLog, Driver, Modes, MotionId, Order, Program};
+use franka_rt::session::{Target, Then};
 use franka_rt::shaping::Shaper;
-use franka_tests::lockstep::Wander;
+use franka_tests::lockstep::{Lockstep, Wander};
+use nalgebra::Translation3;
 
 use crate::calls_during;
 
@@ -29,6 +32,45 @@ fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
         calls, 0,
         "seed {seed}: calls of the allocator in {cycles} cycles"
     );
+}
+
+/// Arrivals, landings and the ends of motions, with a goal of the other kind in the middle of every third.
+#[test]
+fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothing() {
+    let mut lockstep = Lockstep::ready();
+    let home = lockstep.true_pose();
+    let q = lockstep.robot.state().q;
+    let (mut cycles, mut calls, mut arrived) = (0, 0, 0);
+    for round in 0.. {
+        let way = if round % 2 == 0 { 0.03 } else { 0.0 };
+        let pose = Target::Pose(Translation3::new(0.0, way, way) * home);
+        let joints = Target::Joints(core::array::from_fn(|joint| q[joint] + way));
+        let targets = if round % 3 == 0 {
+            [Some(pose), Some(joints)]
+        } else {
+            [None, Some(pose)]
+        };
+        for target in targets.into_iter().flatten() {
+            let goal = lockstep.goal(target, Then::Finish);
+            let id = lockstep.submit(goal).expect("it is near the ready pose");
+            let superseded = targets[0] == Some(target);
+            for _ in 0..if superseded { 100 } else { u32::MAX } {
+                lockstep.tick_around(|cycle| {
+                    calls += calls_during(cycle);
+                    cycles += 1;
+                });
+                if let Some(outcome) = lockstep.client.outcome(id) {
+                    arrived += u32::from(outcome.is_ok());
+                    break;
+                }
+            }
+        }
+        if cycles >= 100_000 {
+            break;
+        }
+    }
+    assert!(arrived >= 20, "{arrived} arrivals");
+    assert_eq!(calls, 0, "calls of the allocator in {cycles} cycles");
 }
 
 /// Has `program` answer states of the motion that `request` asks for; counts the calls of the allocator meanwhile.
@@ -64,27 +106,41 @@ fn calls_of(
     calls
 }
 
+/// Control functions of the four generators.
+fn generators(version: Version) -> [Callback; 4] {
+    [
+        Callback::motion(version, |_, step| JointPositions([step.as_secs_f64(); 7])),
+        Callback::motion(version, |_, _| JointVelocities([1e-3; 7])),
+        Callback::motion(version, |state, _| CartesianPose {
+            O_T_EE: state.O_T_EE_c,
+            elbow: Some([0.1, 1.0]),
+        }),
+        Callback::motion(version, |_, _| CartesianVelocities {
+            O_dP_EE: [1e-3; 6],
+            elbow: None,
+        }),
+    ]
+}
+
 #[test]
-fn control_functions_and_sparse_targets_allocate_and_free_nothing() {
+fn control_functions_of_all_nine_kinds_allocate_and_free_nothing() {
     for version in Version::ALL {
-        let shaper = Shaper::new(version, true, 100.0);
-        let callbacks = [
-            Callback::torques(version, |state, _| Torques(state.tau_J_d)),
-            Callback::motion(version, |_, _| JointVelocities([1e-3; 7])),
-            Callback::motion(version, |state, _| CartesianPose {
-                O_T_EE: state.O_T_EE_c,
-                elbow: Some([0.1, 1.0]),
-            })
-            .with_torques(|_, step| Torques([step.as_secs_f64(); 7])),
-        ];
-        for callback in callbacks {
-            let callback = callback.with_shaper(shaper);
+        let torques = Callback::torques(version, |state, _| Torques(state.tau_J_d));
+        let both = generators(version)
+            .map(|motion| motion.with_torques(|_, step| Torques([step.as_secs_f64(); 7])));
+        let alone = generators(version);
+        for callback in [torques].into_iter().chain(alone).chain(both) {
+            let callback = callback.with_shaper(Shaper::new(version, true, 100.0));
             let request = callback.request(version, MoveControllerMode::JointImpedance);
             let program = Program::Callback(Box::new(callback));
             let calls = calls_of(version, program, &request, |_| {});
             assert_eq!(calls, 0, "{request:?}");
         }
     }
+}
+
+#[test]
+fn sparse_targets_allocate_and_free_nothing() {
     let (program, mut targets) = AsynchronousPositions::new();
     let request = AsynchronousPositions::request([0.5; 7]);
     let program = Program::Asynchronous(program);
@@ -96,5 +152,5 @@ fn control_functions_and_sparse_targets_allocate_and_free_nothing() {
             });
         }
     });
-    assert_eq!(calls, 0, "sparse targets");
+    assert_eq!(calls, 0);
 }

@@ -1,6 +1,7 @@
 //! What runs on the real-time thread neither allocates nor frees: an allocator counts, thread by thread.
 
 mod control;
+mod endings;
 mod generator;
 mod thread;
 

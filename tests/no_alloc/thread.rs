@@ -1,6 +1,7 @@
 //! The running thread, whatever comes over its socket and queues.
 //!
-//! The core, which runs on the real-time thread, reads the count of that thread.
+//! The core, which runs on the real-time thread, reads the count of that thread. A thread that has borrowed the cycle
+//! counts for itself.
 
 use std::hint::black_box;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
@@ -8,8 +9,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use franka_proto::{RobotCommand, RobotState, Version};
-use franka_rt::driver::{Driver, Event, Record};
+use franka_proto::{
+    ControllerMode, MotionGeneratorMode, RobotCommand, RobotMode, RobotState, Version,
+};
+use franka_rt::control::{ActiveControl, Command, Torques};
+use franka_rt::driver::{ControlLog, Driver, Event, Modes, MotionId, Order, Program, Record};
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, Scheduling};
 use franka_rt::thread::{self, Core, Handle, Notice, ThreadConfig};
@@ -71,17 +75,8 @@ impl Core for Watched {
     }
 }
 
-/// Runs a thread for about two seconds of everything that can come, with one order `order` among it, and returns the
-/// thread's calls of the allocator and the number of its cycles.
-fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
-    let calls = Arc::new(AtomicU64::new(0));
-    let driver = Driver::new(VERSION).with_link_timeout(Duration::from_millis(50));
-    let core = Watched {
-        driver,
-        first: None,
-        calls: calls.clone(),
-        allocates_on: 7,
-    };
+/// A thread, and the port where it expects states.
+fn start<C: Core>(core: C) -> (Handle<C>, u16) {
     let scheduling = Scheduling {
         realtime: Realtime::Ignore,
         ..Scheduling::default()
@@ -93,6 +88,30 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
     let socket = exchange::bind().expect("a free port");
     let port = socket.local_addr().expect("bound").port();
     let robot = IpAddr::V4(Ipv4Addr::LOCALHOST);
+    let handle = thread::spawn(config, core, socket, robot, VERSION);
+    (handle.expect("nothing is enforced"), port)
+}
+
+/// Somebody at 127.0.0.`last` who sends to `port`.
+fn peer(last: u8, port: u16) -> UdpSocket {
+    let socket = UdpSocket::bind((Ipv4Addr::new(127, 0, 0, last), 0)).expect("a free port");
+    let connected = socket.connect((Ipv4Addr::LOCALHOST, port));
+    connected.expect("an address");
+    socket
+}
+
+/// Runs a thread for about two seconds of everything that can come, with one order `order` among it, and returns the
+/// thread's calls of the allocator and the number of its cycles.
+fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
+    let calls = Arc::new(AtomicU64::new(0));
+    let driver = Driver::new(VERSION).with_link_timeout(Duration::from_millis(50));
+    let core = Watched {
+        driver,
+        first: None,
+        calls: calls.clone(),
+        allocates_on: 7,
+    };
+    let (handle, port) = start(core);
     let Handle {
         mut orders,
         mut notices,
@@ -100,16 +119,8 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
         stats,
         thread,
         ..
-    } = thread::spawn(config, core, socket, robot, VERSION).expect("nothing is enforced");
-
-    let peer = |last| {
-        let socket = UdpSocket::bind((Ipv4Addr::new(127, 0, 0, last), 0)).expect("a free port");
-        socket
-            .connect((Ipv4Addr::LOCALHOST, port))
-            .expect("an address");
-        socket
-    };
-    let (robot, stranger) = (peer(1), peer(2));
+    } = handle;
+    let (robot, stranger) = (peer(1, port), peer(2, port));
     let mut bytes = vec![0; RobotState::MAX_SIZE];
     let mut losses = 0;
     for message_id in 1..=2_000u64 {
@@ -148,4 +159,51 @@ fn the_running_thread_neither_allocates_nor_frees() {
     assert_eq!(calls, 0, "calls of the allocator in {states} cycles");
     let (calls, _) = calls_of_a_busy_thread(7);
     assert_eq!(calls, 8, "four boxes made and freed on purpose are seen");
+}
+
+/// Nobody reads what the turns leave behind: the queues are full for most of the time.
+#[test]
+fn turns_and_writes_in_the_hands_of_another_thread_neither_allocate_nor_free() {
+    const TURNS: u64 = 100_000;
+    let modes = Modes {
+        generator: MotionGeneratorMode::None,
+        controller: ControllerMode::ExternalController,
+    };
+    let (mut handle, port) = start(Driver::new(VERSION));
+    let order = Order::Arm {
+        motion: MotionId(1),
+        modes,
+        program: Program::Active(ActiveControl),
+        log: ControlLog::with_capacity(50),
+    };
+    handle.orders.push(order).expect("the queue is empty");
+    let robot = peer(1, port);
+    let mut state = RobotState {
+        robot_mode: RobotMode::Move,
+        motion_generator_mode: modes.generator,
+        controller_mode: modes.controller,
+        ..RobotState::default()
+    };
+    let command = Command {
+        motion: None,
+        torques: Some(Torques([0.1; 7])),
+    };
+    let mut bytes = vec![0; RobotState::MAX_SIZE];
+    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let (mut calls, mut read, mut written) = (0, 0, 0);
+    for message_id in 1..=TURNS {
+        state.message_id = message_id;
+        let size = state.encode(VERSION, &mut bytes).expect("there is room");
+        robot.send(&bytes[..size]).expect("loopback");
+        calls += crate::calls_during(|| {
+            read += u64::from(matches!(lease.turn(), Ok(Some(_))));
+            written += u64::from(lease.write(&command, false).is_ok());
+        });
+    }
+    // It holds no more than it is long, and each state leaves a record.
+    assert!(handle.stats.records_lost.get() > TURNS / 2);
+    drop(lease);
+    handle.thread.join().map(drop).expect("nothing panics");
+    assert_eq!((read, written), (TURNS, TURNS));
+    assert_eq!(calls, 0, "calls of the allocator");
 }

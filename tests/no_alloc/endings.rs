@@ -1,0 +1,232 @@
+//! Motions that begin and end in every way, with somebody who listens and without.
+
+use std::collections::BTreeSet;
+
+use franka_model::{Model, READY};
+use franka_proto::{
+    ControllerMode, MotionGeneratorMode, RobotError, RobotMode, RobotState, Version,
+};
+use franka_rt::control::{ActiveControl, Callback, Command, Finish, Next, Torques};
+use franka_rt::driver::{ControlLog, Driver, Event, LINK_TIMEOUT, Modes, MotionId, Order, Program};
+use franka_rt::law::Gains;
+use franka_rt::session::{Budget, Goal, GoalId, Target, TargetSession, Then, Tolerance};
+use franka_rt::slot;
+
+use crate::calls_during;
+
+const VERSION: Version = Version::V10;
+
+const MODES: Modes = Modes {
+    generator: MotionGeneratorMode::None,
+    controller: ControllerMode::ExternalController,
+};
+
+/// How a motion ends.
+#[derive(Clone, Copy, Debug)]
+enum End {
+    /// Its `Move` is refused.
+    Disarmed,
+    /// The program finishes, and the robot goes to rest.
+    Finished,
+    Reflex,
+    /// Its program returns what is no number.
+    Failed,
+    /// Nobody is in charge of it any more.
+    LeftAlone,
+    LinkLost,
+}
+
+const ENDS: [End; 6] = [
+    End::Disarmed,
+    End::Finished,
+    End::Reflex,
+    End::Failed,
+    End::LeftAlone,
+    End::LinkLost,
+];
+
+/// Events and endings that they come to, in alphabetical order.
+const TOLD: [&str; 8] = [
+    "Aborted",
+    "Disarmed",
+    "Failed",
+    "Finished",
+    "Finishing",
+    "LinkLost",
+    "Refused",
+    "Started",
+];
+
+/// Cycles of a motion before its end: more than the log holds.
+const RUNNING: u64 = 60;
+
+/// A program of each kind that ends by itself if it can.
+fn programs(end: End) -> [Program; 3] {
+    let mut calls = 0;
+    let callback = Callback::torques(VERSION, move |_: &RobotState, _| -> Next<Torques> {
+        calls += 1;
+        match end {
+            End::Failed if calls > RUNNING => Torques([f64::NAN; 7]).into(),
+            End::Finished if calls > RUNNING => Torques([0.0; 7]).finish(),
+            _ => Torques([0.0; 7]).into(),
+        }
+    });
+    let (mut goals, reader) = slot::slot();
+    goals.write(&Goal {
+        id: GoalId(1),
+        target: Target::Joints(READY.into()),
+        then: Then::Finish,
+        budget: Budget::of(Model::fr3().joint_limits()),
+        gains: Gains::joint(),
+        tolerance: Tolerance::default(),
+    });
+    [
+        Program::Callback(Box::new(callback)),
+        Program::Target(Box::new(TargetSession::new(
+            Model::fr3().clone().into(),
+            reader,
+        ))),
+        Program::Active(ActiveControl),
+    ]
+}
+
+/// A driver, and the calls of the allocator in all that the thread does with it.
+struct Counted {
+    driver: Driver,
+    motion: u64,
+    time: u64,
+    calls: u64,
+    /// What has been told, by name.
+    told: BTreeSet<String>,
+    listens: bool,
+}
+
+impl Counted {
+    fn order(&mut self, order: Order) {
+        self.calls += calls_during(|| self.driver.on_order(order));
+    }
+
+    fn arm(&mut self, program: Program) {
+        let order = Order::Arm {
+            motion: MotionId(self.motion),
+            modes: MODES,
+            program,
+            log: ControlLog::with_capacity(50),
+        };
+        self.order(order);
+    }
+
+    /// One cycle of this mode.
+    fn state(&mut self, robot_mode: RobotMode) {
+        let moves = robot_mode == RobotMode::Move;
+        self.time += 1;
+        let mut state = RobotState {
+            message_id: self.time,
+            q: READY.into(),
+            robot_mode,
+            ..RobotState::default()
+        };
+        if moves {
+            state.motion_generator_mode = MODES.generator;
+            state.controller_mode = MODES.controller;
+        } else if robot_mode == RobotMode::Reflex {
+            state.reflex_reason = RobotError::CartesianReflex.into();
+        } else {
+            state.controller_mode = ControllerMode::JointImpedance;
+        }
+        let command = Command {
+            motion: None,
+            torques: Some(Torques([0.0; 7])),
+        };
+        self.calls += calls_during(|| {
+            self.driver.on_state(&state);
+            // Refused by all programs but one.
+            let _ = self.driver.write(&command, false);
+        });
+        self.hear();
+    }
+
+    fn hear(&mut self) {
+        while self.listens {
+            let mut event = None;
+            self.calls += calls_during(|| event = self.driver.take_event());
+            // What it carries is freed here, outside.
+            let Some(event) = event else { return };
+            let name = match event {
+                Event::Ended(ended) => format!("{:?}", ended.ending),
+                other => format!("{other:?}"),
+            };
+            let name = name.split(' ').next().expect("the first word");
+            self.told.insert(name.to_owned());
+        }
+    }
+
+    /// One motion from arming to its end.
+    fn motion(&mut self, program: Program, end: End) {
+        self.motion += 1;
+        let motion = MotionId(self.motion);
+        self.state(RobotMode::Idle);
+        self.arm(program);
+        self.state(RobotMode::Idle);
+        if matches!(end, End::Disarmed) {
+            self.order(Order::Disarm { motion });
+            return self.hear();
+        }
+        for _ in 0..=RUNNING {
+            self.state(RobotMode::Move);
+        }
+        // One that comes while another runs is given back.
+        self.arm(Program::Active(ActiveControl));
+        if let End::LeftAlone = end {
+            self.order(Order::Silence { motion });
+        }
+        for _ in 0..10 {
+            self.state(RobotMode::Move);
+        }
+        match end {
+            End::LinkLost => {
+                for tick in 1..10 {
+                    let silence = LINK_TIMEOUT / 5 * tick;
+                    self.calls += calls_during(|| self.driver.on_silence(silence));
+                    self.hear();
+                }
+            }
+            End::Reflex => self.state(RobotMode::Reflex),
+            _ => self.state(RobotMode::Idle),
+        }
+        self.state(RobotMode::Idle);
+        assert!(self.driver.is_watching(), "{end:?} ends it");
+    }
+}
+
+fn calls_of_motions(listens: bool, cycles: u64) -> u64 {
+    let mut counted = Counted {
+        driver: Driver::new(VERSION),
+        motion: 0,
+        time: 0,
+        calls: 0,
+        told: BTreeSet::new(),
+        listens,
+    };
+    while counted.time < cycles {
+        for end in ENDS {
+            for program in programs(end) {
+                counted.motion(program, end);
+            }
+        }
+    }
+    let told = counted.told.iter().map(String::as_str);
+    let expected: &[_] = if listens { &TOLD } else { &[] };
+    assert_eq!(told.collect::<Vec<_>>(), expected);
+    counted.calls
+}
+
+#[test]
+fn motions_that_end_in_every_way_allocate_and_free_nothing() {
+    assert_eq!(calls_of_motions(true, 100_000), 0);
+}
+
+#[test]
+fn motions_whose_events_nobody_takes_allocate_and_free_nothing() {
+    assert_eq!(calls_of_motions(false, 20_000), 0);
+}
