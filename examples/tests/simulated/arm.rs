@@ -5,7 +5,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use franka_async::{Realtime, RobotError, RobotMode, RobotState};
-use franka_model::{JointVector, READY, Wrench};
+use franka_model::{EndEffector, Frame, JointVector, Load, Model, READY, Wrench};
 use franka_rt::sched::Scheduling;
 use franka_sim::{Sim, Tool};
 use tokio::sync::oneshot;
@@ -15,18 +15,21 @@ use tokio::sync::oneshot;
 pub(crate) struct Scene {
     /// Where it starts, `[rad]`.
     pub(crate) q: JointVector,
-    /// What happens, each after so many milliseconds of one motion; in order.
-    pub(crate) events: &'static [(u64, Event)],
+    /// What happens while it moves, one after the other.
+    pub(crate) events: Vec<(When, Event)>,
     /// Whether lost commands end a motion.
     pub(crate) strict: bool,
 }
+
+/// Whether it is time for what comes next: from the state, and the milliseconds that a motion has gone on for.
+pub(crate) type When = fn(&RobotState, u64) -> bool;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Event {
     /// Somebody pushes the hand with this force, `[N]`, for so many milliseconds.
     PushHand([f64; 3], u64),
-    /// Somebody turns a joint, `[N m]`, for so many milliseconds.
-    TurnJoint(usize, f64, u64),
+    /// Somebody swings the elbow and hardly moves the hand: joint 3 feels this torque, `[N m]`, for so many milliseconds.
+    SwingElbow(f64, u64),
     /// The robot stops itself.
     Trip(RobotError),
 }
@@ -36,7 +39,7 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             q: READY,
-            events: &[],
+            events: Vec::new(),
             strict: true,
         }
     }
@@ -87,7 +90,7 @@ impl Arm {
                 started
                     .send(sim.addr().to_string())
                     .expect("the test waits");
-                let watched = watch(&sim, scene.events, ended).await;
+                let watched = watch(&sim, &scene.events, ended).await;
                 sim.stop().await;
                 watched
             })
@@ -108,7 +111,7 @@ impl Arm {
 
 async fn watch(
     sim: &franka_sim::Running,
-    events: &[(u64, Event)],
+    events: &[(When, Event)],
     mut ended: oneshot::Receiver<()>,
 ) -> Course {
     let mut moments = Vec::new();
@@ -122,17 +125,18 @@ async fn watch(
         moments.push(Moment { at, state });
         if state.robot_mode == RobotMode::Move {
             let since = *moving.get_or_insert(state.message_id);
-            if let Some((_, event)) = next.filter(|(after, _)| state.message_id - since >= *after) {
+            let moving_for = state.message_id - since;
+            if let Some((_, event)) = next.filter(|(when, _)| when(&state, moving_for)) {
                 let event = *event;
                 sim.with(move |robot| match event {
                     Event::PushHand([x, y, z], duration) => {
                         let wrench = Wrench::new(x, y, z, 0.0, 0.0, 0.0);
                         robot.push_end_effector(wrench, duration);
                     }
-                    Event::TurnJoint(joint, torque, duration) => {
-                        let mut torques = JointVector::zeros();
-                        torques[joint] = torque;
-                        robot.push_joints(torques, duration);
+                    Event::SwingElbow(torque, duration) => {
+                        let (q, load) = (*robot.q(), Load::NONE);
+                        let torques = Model::fr3().mass(&q, &load) * self_motion(&q);
+                        robot.push_joints(torques * (torque / torques[2]), duration);
                     }
                     Event::Trip(error) => robot.trip(error),
                 })
@@ -153,6 +157,17 @@ async fn watch(
         "the motion was too short for what was to happen in it"
     );
     Course(moments)
+}
+
+/// The direction in which the joints at `q` can move without the hand, joint 3 forwards; of length 1. Both robots have the
+/// same kinematics.
+fn self_motion(q: &JointVector) -> JointVector {
+    let jacobian = Model::fr3().zero_jacobian(Frame::EndEffector, q, &EndEffector::default());
+    let gram = jacobian * jacobian.transpose();
+    let inverse = gram.try_inverse().expect("far from singularities");
+    let elbow = JointVector::from_fn(|joint, _| if joint == 2 { 1.0 } else { 0.0 });
+    let still = elbow - jacobian.tr_mul(&(inverse * (jacobian * elbow)));
+    still.normalize()
 }
 
 impl Course {
@@ -180,6 +195,16 @@ impl Course {
     /// How far a joint was from where it began, `[rad]`: least, greatest, and in the end.
     pub(crate) fn joint(&self, joint: usize) -> (f64, f64, f64) {
         let of = |state: &RobotState| state.q[joint] - self.0[0].state.q[joint];
+        let (least, most) = self.extent(of);
+        (least, most, of(self.last()))
+    }
+
+    /// How far the joints were from the ready pose along their [`self_motion`], `[rad]`: least, greatest, and in the end.
+    pub(crate) fn elbow(&self) -> (f64, f64, f64) {
+        let of = |state: &RobotState| {
+            let q = JointVector::from(state.q);
+            self_motion(&q).dot(&(q - READY))
+        };
         let (least, most) = self.extent(of);
         (least, most, of(self.last()))
     }
