@@ -1,6 +1,5 @@
 //! How to connect to a robot.
 
-use std::net::{IpAddr, SocketAddr};
 use std::time::Duration;
 
 use franka_proto::Version;
@@ -9,65 +8,8 @@ use franka_rt::sched::{Realtime, Scheduling};
 use tokio_util::sync::CancellationToken;
 
 use crate::connect;
+use crate::endpoint::Endpoint;
 use crate::{ConnectError, Robot};
-
-/// Where a device listens: a host, and a port that is the usual one of the device unless given: 1337 of a robot, 1338 of a
-/// Franka Hand, 1339 of a vacuum gripper.
-///
-/// Made from `"172.16.0.2"`, `"robot.lan"`, `"127.0.0.1:40123"`, an [`IpAddr`] or a [`SocketAddr`].
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Endpoint {
-    pub(crate) host: String,
-    pub(crate) port: Option<u16>,
-}
-
-impl From<&str> for Endpoint {
-    fn from(text: &str) -> Self {
-        let parts = text
-            .rsplit_once(':')
-            .and_then(|(host, port)| Some((host, port.parse().ok()?)));
-        match parts {
-            Some((host, port)) if !host.contains(':') => Self {
-                host: host.to_owned(),
-                port: Some(port),
-            },
-            _ => Self {
-                host: text.to_owned(),
-                port: None,
-            },
-        }
-    }
-}
-
-impl From<String> for Endpoint {
-    fn from(text: String) -> Self {
-        text.as_str().into()
-    }
-}
-
-impl From<&String> for Endpoint {
-    fn from(text: &String) -> Self {
-        text.as_str().into()
-    }
-}
-
-impl From<IpAddr> for Endpoint {
-    fn from(ip: IpAddr) -> Self {
-        Self {
-            host: ip.to_string(),
-            port: None,
-        }
-    }
-}
-
-impl From<SocketAddr> for Endpoint {
-    fn from(address: SocketAddr) -> Self {
-        Self {
-            host: address.ip().to_string(),
-            port: Some(address.port()),
-        }
-    }
-}
 
 /// Which protocol versions to accept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -109,7 +51,7 @@ impl Builder {
 
     /// The TCP port; 1337 by default, as on a robot.
     pub fn port(mut self, port: u16) -> Self {
-        self.endpoint.port = Some(port);
+        self.endpoint.set_port(port);
         self
     }
 
@@ -144,14 +86,31 @@ impl Builder {
         self
     }
 
-    /// Time that each step of connecting may take: finding the host, the TCP connection, the handshake, the first state,
-    /// the description. 1 s by default.
+    /// Time that each step of connecting may take: finding the host, the TCP connection to each of its addresses, the
+    /// handshake, the first state, the description. 1 s by default.
     pub fn connect_timeout(mut self, timeout: Duration) -> Self {
         self.connect_timeout = timeout;
         self
     }
 
-    /// Silence of the robot after which a running motion fails with `LinkLost`. 1 s by default.
+    /// Stack of the control thread that gets its pages before the first cycle, in bytes: 512 KiB by default, 64 MiB at
+    /// most. The thread's stack is larger by a reserve. For control functions that use more; see
+    /// [`ConnectError::Realtime`] for what is out of range.
+    pub fn prefault_stack(mut self, bytes: usize) -> Self {
+        self.scheduling.prefault_stack = bytes;
+        self
+    }
+
+    /// Polls the network card for so long before each wait for a state, in whole microseconds: `SO_BUSY_POLL`, 1 to 900 us;
+    /// not at all by default. What the kernel refuses (it takes `CAP_NET_ADMIN`) is an error under
+    /// [`Realtime::Enforce`] and done without under [`Realtime::Ignore`]; [`Robot::granted`] tells.
+    pub fn busy_poll(mut self, duration: Duration) -> Self {
+        self.scheduling.busy_poll = Some(duration);
+        self
+    }
+
+    /// Silence of the robot after which a running motion fails with `LinkLost`: 20 ms to 1 s, 1 s by default. Anything else
+    /// is refused as [`ConnectError::LinkTimeout`]. It is noticed late by a quarter of it at most.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self
@@ -191,30 +150,5 @@ impl Builder {
     /// Dropping the future closes whatever was opened.
     pub async fn connect(self) -> Result<Robot, ConnectError> {
         connect::connect(self).await
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_endpoint_leaves_the_port_to_the_device_unless_one_is_given() {
-        let of = |text: &str| {
-            let Endpoint { host, port } = text.into();
-            (host, port)
-        };
-        assert_eq!(of("172.16.0.2"), ("172.16.0.2".into(), None));
-        assert_eq!(of("robot.lan"), ("robot.lan".into(), None));
-        assert_eq!(of("127.0.0.1:40123"), ("127.0.0.1".into(), Some(40123)));
-        assert_eq!(of("robot.lan:http"), ("robot.lan:http".into(), None));
-        let address: SocketAddr = "10.0.0.7:99".parse().unwrap();
-        assert_eq!(
-            Endpoint::from(address),
-            Endpoint {
-                host: "10.0.0.7".into(),
-                port: Some(99)
-            }
-        );
     }
 }

@@ -6,12 +6,13 @@
 
 use std::collections::HashMap;
 use std::fmt;
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::net::{IpAddr, SocketAddr};
 use std::sync::{Arc, OnceLock};
 
 use franka_proto::client::{Event, Session};
 use franka_proto::gripper::Reply;
 use franka_proto::{CommandId, DecodeError, Protocol, Violation, gripper, vacuum};
+use franka_rt::exchange;
 use futures::StreamExt;
 use tokio::net::{TcpStream, UdpSocket};
 use tokio::sync::{mpsc, oneshot, watch};
@@ -19,10 +20,10 @@ use tokio::time::timeout;
 use tokio_util::codec::Framed;
 
 use crate::ConnectError;
-use crate::builder::Endpoint;
 use crate::channel::{CLOSED_BY_PEER, RUNTIME_ENDED};
 use crate::codec::{self, Frame, MessageCodec, reason};
 use crate::connect::{TCP_TIMEOUT, dial, resolve, shake_hands};
+use crate::endpoint::Endpoint;
 use crate::error::ActionError;
 
 /// What callers hear after the connection was closed from this side.
@@ -122,11 +123,13 @@ where
     D::State: Send + Sync,
 {
     pub(crate) async fn connect(endpoint: Endpoint) -> Result<Self, ConnectError<D>> {
-        let address = timeout(TCP_TIMEOUT, resolve::<D>(&endpoint, D::TCP_PORT))
+        let addresses = timeout(TCP_TIMEOUT, resolve::<D>(&endpoint, D::TCP_PORT))
             .await
             .unwrap_or(Err(ConnectError::Timeout))?;
-        let tcp = dial::<D>(address, TCP_TIMEOUT).await?;
-        let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).await?;
+        let (tcp, address) = dial::<D>(&addresses, TCP_TIMEOUT).await?;
+        let socket = exchange::bind(address.ip())?;
+        socket.set_nonblocking(true)?;
+        let socket = UdpSocket::from_std(socket)?;
         let port = socket.local_addr()?.port();
         let mut stream = Framed::new(tcp, MessageCodec::END_EFFECTOR);
         let mut session = Session::new(D::default());

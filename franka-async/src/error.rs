@@ -1,6 +1,7 @@
 //! What can go wrong, grouped by who can act on it. Texts are those of the reference client where it has one.
 
 use std::io;
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use franka_proto::framing::FrameError;
@@ -9,10 +10,12 @@ use franka_proto::{
     Command, IncompatibleVersion, Protocol, Refusal, RequestError, ServiceCommand, Version,
     Violation, vacuum,
 };
+use franka_rt::driver::LinkTimeoutError;
 use franka_rt::sched::SchedError;
 use franka_rt::thread::{LinkFault, StartError};
 
 pub use crate::active::ActiveError;
+pub use crate::endpoint::EndpointError;
 
 pub use franka_rt::lifecycle::{ControlError, MotionError, Party};
 pub use franka_rt::session::GoalError;
@@ -100,6 +103,13 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Host: it does not grant what real-time control needs, see [`Builder::realtime`](crate::Builder::realtime).
     #[error(transparent)]
     Realtime(#[from] SchedError),
+    /// Caller: the text that was given as the place of the device names none. Nothing was sent.
+    #[error(transparent)]
+    Endpoint(#[from] EndpointError),
+    /// Caller: the silence after which the link counts as lost is out of range, see
+    /// [`Builder::link_timeout`](crate::Builder::link_timeout).
+    #[error(transparent)]
+    LinkTimeout(#[from] LinkTimeoutError),
     /// Host: no thread, socket or descriptor.
     #[error("the connection cannot be set up: {0}")]
     System(#[from] io::Error),
@@ -116,6 +126,12 @@ pub enum ConnectError<P: Protocol = Version> {
     Network {
         /// The class of the failure.
         reason: String,
+    },
+    /// Robot or link: the host name has several addresses, and there is no connection to any of them.
+    #[error("{}", list(.attempts))]
+    NoAddress {
+        /// What came of each, in the order tried.
+        attempts: Vec<Attempt<P>>,
     },
     /// Peer: it speaks another protocol version.
     #[error(transparent)]
@@ -148,6 +164,14 @@ impl<P: Protocol> ConnectError<P> {
     /// Who can act on it.
     pub fn party(&self) -> Party {
         match self {
+            Self::Endpoint(_) | Self::LinkTimeout(_) => Party::Caller,
+            // One that refuses is there, the others need not be.
+            Self::NoAddress { attempts } => attempts
+                .iter()
+                .map(|attempt| attempt.error.party())
+                .find(|party| *party == Party::Robot)
+                .unwrap_or(Party::Link),
+            Self::Realtime(error) if error.is_misuse() => Party::Caller,
             Self::Realtime(_) | Self::System(_) => Party::Host,
             Self::Refused => Party::Robot,
             Self::Timeout
@@ -160,6 +184,22 @@ impl<P: Protocol> ConnectError<P> {
             Self::Model(error) => error.party(),
         }
     }
+}
+
+/// One of a host's addresses, and why there is no connection to it.
+#[derive(Debug)]
+pub struct Attempt<P: Protocol = Version> {
+    /// The address.
+    pub address: SocketAddr,
+    /// What went wrong.
+    pub error: ConnectError<P>,
+}
+
+fn list<P: Protocol>(attempts: &[Attempt<P>]) -> String {
+    let lines = attempts
+        .iter()
+        .map(|Attempt { address, error }| format!("{address}: {error}"));
+    lines.collect::<Vec<_>>().join("; ")
 }
 
 impl From<StartError> for ConnectError {

@@ -6,8 +6,8 @@ use franka_proto::gripper::{Command, Grasp, Move, Request, State, Version};
 use tokio::sync::watch;
 
 use crate::ConnectError;
-use crate::builder::Endpoint;
 use crate::end_effector::Link;
+use crate::endpoint::Endpoint;
 use crate::error::ActionError;
 
 /// Why an action of the Hand has no result.

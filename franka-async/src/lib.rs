@@ -50,6 +50,7 @@ mod codec;
 mod connect;
 mod control;
 mod end_effector;
+mod endpoint;
 pub mod error;
 mod follow;
 mod gripper;
@@ -61,9 +62,12 @@ mod vacuum;
 
 pub use active::{Active, ActiveError};
 pub use asynchronous::{AsynchronousControl, AsynchronousOptions};
-pub use builder::{Builder, Endpoint, VersionPolicy};
+pub use builder::{Builder, VersionPolicy};
 pub use control::Control;
-pub use error::{ActionError, CommandError, ConnectError, ControlError, Error, MotionError, Party};
+pub use endpoint::{Endpoint, EndpointError};
+pub use error::{
+    ActionError, Attempt, CommandError, ConnectError, ControlError, Error, MotionError, Party,
+};
 pub use follow::Follow;
 pub use gripper::{Gripper, GripperError};
 #[cfg(feature = "urdf")]
@@ -93,7 +97,7 @@ pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::law::Gains;
 pub use franka_rt::lifecycle::MotionReport;
 pub use franka_rt::otg::AxisLimits;
-pub use franka_rt::sched::Realtime;
+pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};
 pub use franka_rt::stats::Stats;
 

@@ -8,14 +8,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{MoveRequest, RobotState, Version};
 use franka_rt::driver::{Program, Record};
+use franka_rt::sched::Granted;
 use franka_rt::session::{GoalId, Target};
 use franka_rt::stats::Stats;
 use franka_rt::thread::Lender;
 use tokio::sync::{broadcast, oneshot, watch};
 
 use crate::bridge::{Input, Inputs, Outcome, Waiting};
-use crate::builder::{Builder, Endpoint};
+use crate::builder::Builder;
 use crate::channel::Channel;
+use crate::endpoint::Endpoint;
 use crate::motion::Work;
 use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 
@@ -44,6 +46,7 @@ pub(crate) struct Shared {
     pub(crate) channel: Channel,
     pub(crate) states: watch::Receiver<RobotState>,
     pub(crate) stats: Arc<Stats>,
+    pub(crate) granted: Granted,
     pub(crate) lender: Lender,
     /// How many goals were named so far.
     pub(crate) goals: AtomicU64,
@@ -134,6 +137,11 @@ impl Robot {
     /// Counters and histograms of the control thread, live.
     pub fn stats(&self) -> &Stats {
         &self.shared.stats
+    }
+
+    /// What the operating system granted the control thread, and what it refused under [`Realtime::Ignore`](crate::Realtime).
+    pub fn granted(&self) -> &Granted {
+        &self.shared.granted
     }
 
     /// A motion of the end effector to `pose` in the base frame: a straight line and a rotation about one axis if it

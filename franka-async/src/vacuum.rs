@@ -7,8 +7,8 @@ use franka_proto::vacuum::{Command, Request, State, Vacuum, Version};
 use tokio::sync::watch;
 
 use crate::ConnectError;
-use crate::builder::Endpoint;
 use crate::end_effector::Link;
+use crate::endpoint::Endpoint;
 use crate::error::ActionError;
 
 /// Why an action of the vacuum gripper has no result.

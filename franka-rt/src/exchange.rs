@@ -6,25 +6,39 @@
 //! counted. Nothing here allocates after [`Exchange::new`].
 
 use std::io;
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::Duration;
 
 use socket2::{SockAddr, Socket};
 
 use crate::sys;
 
-/// Opens the socket that the robot sends its states to: any IPv4 address, a free port (the one to announce in
-/// `Connect`). States that arrive before the thread starts wait in the kernel.
+/// Opens the socket that `robot` sends its states to: any address of the robot's family, IPv4 or IPv6, and a free port
+/// (the one to announce in `Connect`). States that arrive before the thread starts wait in the kernel.
 ///
 /// # Errors
 /// If the system refuses a socket or a port.
-pub fn bind() -> io::Result<UdpSocket> {
-    UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))
+pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
+    // An IPv4 address in the dress of IPv6 is one to the network.
+    match robot.to_canonical() {
+        IpAddr::V4(_) => UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)),
+        IpAddr::V6(_) => UdpSocket::bind((Ipv6Addr::UNSPECIFIED, 0)),
+    }
 }
 
 /// Time that [`Exchange::receive`] waits at most, and therefore the longest time until the thread sees an order, or
 /// the wish that it stop, while the robot is silent.
 pub const TICK: Duration = Duration::from_millis(20);
+
+/// How long to wait for a state where silences of `link_timeout` have to be noticed: a quarter of it, a [`TICK`] at most.
+///
+/// So a loss shows late by a quarter, and by the kernel's clock tick (4 ms at 250 Hz), in which it counts such waits.
+pub fn wait_for(link_timeout: Duration) -> Duration {
+    (link_timeout / 4).clamp(MIN_WAIT, TICK)
+}
+
+/// The shortest wait: a shorter one would be none at all, or one without end.
+const MIN_WAIT: Duration = Duration::from_millis(1);
 
 /// Receives states and sends commands.
 #[derive(Debug)]
@@ -87,6 +101,20 @@ impl Exchange {
         })
     }
 
+    /// Waits for `wait` in each [`receive`](Self::receive), a millisecond at least, in place of a [`TICK`].
+    ///
+    /// # Errors
+    /// If the system refuses the option.
+    pub fn with_wait(self, wait: Duration) -> io::Result<Self> {
+        self.socket.set_read_timeout(Some(wait.max(MIN_WAIT)))?;
+        Ok(self)
+    }
+
+    /// Where states come from, for its options.
+    pub(crate) fn socket(&self) -> &Socket {
+        &self.socket
+    }
+
     /// The newest state's bytes; zeros before the first one.
     pub fn state(&self) -> &[u8] {
         &self.newest
@@ -97,7 +125,7 @@ impl Exchange {
         self.message_id
     }
 
-    /// Waits up to [`TICK`] for a datagram, then takes those that are there, up to [`DRAIN_MAX`] in all.
+    /// Waits for a datagram, up to [`TICK`] or what [`with_wait`](Self::with_wait) was given, then takes those that are there, up to [`DRAIN_MAX`] in all.
     pub fn receive(&mut self) -> Reception {
         let mut reception = Reception::default();
         let mut flags = 0;
@@ -220,7 +248,8 @@ mod tests {
 
     impl Bench {
         fn new() -> Self {
-            let socket = bind().expect("a free port");
+            let robot = IpAddr::from([127, 0, 0, 1]);
+            let socket = bind(robot).expect("a free port");
             let port = socket.local_addr().expect("bound").port();
             let connected = |from: [u8; 4]| {
                 let socket = UdpSocket::bind((Ipv4Addr::from(from), 0)).expect("a free port");
@@ -229,11 +258,9 @@ mod tests {
                     .expect("an address");
                 socket
             };
-            let robot = connected([127, 0, 0, 1]);
-            let exchange = Exchange::new(socket, IpAddr::from([127, 0, 0, 1]), SIZE)
-                .expect("options are accepted");
+            let exchange = Exchange::new(socket, robot, SIZE).expect("options are accepted");
             Self {
-                robot,
+                robot: connected([127, 0, 0, 1]),
                 stranger: connected([127, 0, 0, 2]),
                 exchange,
             }
@@ -345,6 +372,71 @@ mod tests {
             "it waited: {:?}",
             start.elapsed()
         );
+    }
+
+    #[test]
+    fn the_wait_follows_the_link_timeout() {
+        for (link_timeout, wait) in [(20, 5), (40, 10), (100, 20), (1000, 20)] {
+            let wait = Duration::from_millis(wait);
+            assert_eq!(wait_for(Duration::from_millis(link_timeout)), wait);
+        }
+        let Bench { exchange, .. } = Bench::new();
+        let mut exchange = exchange
+            .with_wait(Duration::from_millis(5))
+            .expect("an option");
+        // The best of ten, as any one may meet a busy machine; a tick would be 20 ms.
+        let waited = |_| {
+            let start = Instant::now();
+            assert_eq!(exchange.receive(), Reception::default());
+            start.elapsed()
+        };
+        let least = (0..10).map(waited).min().expect("ten");
+        assert!(least >= Duration::from_millis(4), "it waited: {least:?}");
+        assert!(least < Duration::from_millis(18), "no tick: {least:?}");
+    }
+
+    #[test]
+    fn the_socket_is_of_the_family_of_the_robot() {
+        let family = |robot: &str| {
+            let socket = bind(robot.parse().expect("an address")).expect("a free port");
+            socket.local_addr().expect("bound").is_ipv6()
+        };
+        assert!(!family("192.0.2.1"));
+        assert!(!family("::ffff:192.0.2.1"), "an IPv4 address, mapped");
+        assert!(family("::1"));
+    }
+
+    #[test]
+    fn a_robot_on_ipv6_and_one_whose_address_is_mapped_are_known_and_answered() {
+        let v6 = IpAddr::from(Ipv6Addr::LOCALHOST);
+        let v4 = IpAddr::from(Ipv4Addr::LOCALHOST);
+        let mapped = IpAddr::from(Ipv4Addr::LOCALHOST.to_ipv6_mapped());
+        // Where the robot sends from, what it is known as, and the family of the socket that receives.
+        for (from, known, socket) in [
+            (v6, v6, v6),
+            (v4, mapped, v4),
+            // A socket of both families sees IPv4 senders as mapped ones.
+            (v4, v4, v6),
+            (v4, mapped, v6),
+        ] {
+            let socket = bind(socket).expect("a free port");
+            let port = socket.local_addr().expect("bound").port();
+            let robot = UdpSocket::bind((from, 0)).expect("a free port");
+            robot.connect((from, port)).expect("an address");
+            let mut exchange = Exchange::new(socket, known, SIZE).expect("options");
+            robot.send(&state(1)).expect("loopback");
+            assert!(exchange.receive().fresh, "{from} known as {known}");
+            exchange.send(&[7]).expect("loopback");
+            let mut answer = [0; 2];
+            assert_eq!(robot.recv(&mut answer).expect("an answer"), 1);
+        }
+        // Another family is another host.
+        let socket = bind(v6).expect("a free port");
+        let port = socket.local_addr().expect("bound").port();
+        let stranger = UdpSocket::bind((v4, 0)).expect("a free port");
+        stranger.send_to(&state(1), (v4, port)).expect("loopback");
+        let mut exchange = Exchange::new(socket, v6, SIZE).expect("options");
+        assert_eq!(exchange.receive().foreign, 1);
     }
 
     #[test]

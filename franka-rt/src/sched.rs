@@ -1,11 +1,18 @@
-//! What the operating system grants the thread: scheduling class, processor, memory.
+//! What the operating system grants the thread: scheduling class, processor, memory, a socket that is polled.
 //!
-//! [`Scheduling::enter`] asks for all of it, for the calling thread. Under [`Realtime::Enforce`] the first refusal is an
-//! error; under [`Realtime::Ignore`] the same requests are made and the refusals are listed in [`Granted`].
+//! [`Scheduling::enter`] asks for what concerns the calling thread, [`Scheduling::tune`] for what concerns its socket.
+//! Under [`Realtime::Enforce`] the first refusal is an error; under [`Realtime::Ignore`] the same requests are made and the
+//! refusals are listed in [`Granted`]. What no host can grant is an error under both.
 
-use core::hint::black_box;
+mod stack;
+
+use core::time::Duration;
+use std::net::{Ipv4Addr, UdpSocket};
+use std::os::fd::AsFd;
 
 use crate::sys;
+
+pub use stack::{DEFAULT as PREFAULT_DEFAULT, MAX as PREFAULT_MAX};
 
 /// Whether the thread may run without what it asked the operating system for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,16 +37,33 @@ pub struct Scheduling {
     ///
     /// Off by default: under a small `RLIMIT_MEMLOCK` later allocations anywhere in the process would fail.
     pub lock_memory: bool,
+    /// Stack to touch before the loop starts, in bytes, so that no cycle meets a page of it for the first time: at most
+    /// [`PREFAULT_MAX`], [`PREFAULT_DEFAULT`] by default. The thread gets a larger one by a reserve. Control functions
+    /// of the user's run on this stack.
+    pub prefault_stack: usize,
+    /// How long a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`), in whole microseconds and at
+    /// most [`BUSY_POLL_MAX`]; not at all if `None`.
+    ///
+    /// Spares the interrupt's and the wake-up's way to the thread, and costs the processor that it polls on. Only cards
+    /// whose driver takes part are polled: the loopback device is not. Raising it above the system's default
+    /// (`net.core.busy_read`, 0) takes `CAP_NET_ADMIN`.
+    pub busy_poll: Option<Duration>,
 }
 
+/// The longest busy poll, in each millisecond between two states. Polling counts as running time, and a `SCHED_FIFO`
+/// thread that runs for more than 950 ms of a second is held up for the rest of it (`sched_rt_runtime_us`).
+pub const BUSY_POLL_MAX: Duration = Duration::from_micros(900);
+
 impl Default for Scheduling {
-    /// [`Realtime::Enforce`] at the highest priority, on any processor, without locked memory.
+    /// [`Realtime::Enforce`] at the highest priority, on any processor, without locked memory and without polling.
     fn default() -> Self {
         Self {
             realtime: Realtime::Enforce,
             priority: None,
             cpu: None,
             lock_memory: false,
+            prefault_stack: PREFAULT_DEFAULT,
+            busy_poll: None,
         }
     }
 }
@@ -49,6 +73,8 @@ impl Default for Scheduling {
 pub struct Granted {
     /// `SCHED_FIFO` priority of the thread; `None` if it runs under the normal scheduler.
     pub priority: Option<i32>,
+    /// How long receives poll; `None` if they do not.
+    pub busy_poll: Option<Duration>,
     /// What was refused and accepted, under [`Realtime::Ignore`].
     pub refusals: Vec<SchedError>,
 }
@@ -77,6 +103,36 @@ pub enum SchedError {
     /// Memory cannot be locked; usually `RLIMIT_MEMLOCK` is too low.
     #[error("unable to lock memory: {}", sys::error_text(*.0))]
     LockMemory(i32),
+    /// The socket is not polled; without `CAP_NET_ADMIN`, or with a kernel that cannot (`ENOPROTOOPT`).
+    #[error("unable to poll the socket for {} us: {}", .duration.as_micros(), sys::error_text(*.errno))]
+    BusyPoll {
+        /// What was asked for.
+        duration: Duration,
+        /// Why not.
+        errno: i32,
+    },
+    /// Caller: such a busy poll leaves the thread no time. Under either [`Realtime`].
+    #[error("a busy poll of {} us is out of range: expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
+    BusyPollRange {
+        /// What was asked for.
+        got: Duration,
+    },
+    /// Caller: such a stack is not touched. Under either [`Realtime`].
+    #[error("a stack of {got} bytes is out of range: expected at most {PREFAULT_MAX} bytes")]
+    PrefaultRange {
+        /// What was asked for, in bytes.
+        got: usize,
+    },
+}
+
+impl SchedError {
+    /// Whether the caller asked for what no host grants.
+    pub fn is_misuse(&self) -> bool {
+        matches!(
+            self,
+            Self::BusyPollRange { .. } | Self::PrefaultRange { .. }
+        )
+    }
 }
 
 impl Scheduling {
@@ -84,8 +140,10 @@ impl Scheduling {
     /// scheduling first, then the question after the kernel.
     ///
     /// # Errors
-    /// Under [`Realtime::Enforce`], the first request that was refused. Requests granted before it stay granted.
+    /// Under [`Realtime::Enforce`], the first request that was refused. Requests granted before it stay granted. Under
+    /// either, an option that is out of range: nothing is asked for then.
     pub fn enter(&self) -> Result<Granted, SchedError> {
+        self.check()?;
         let mut granted = Granted::default();
         match self.set_fifo() {
             Ok(priority) => granted.priority = Some(priority),
@@ -104,24 +162,64 @@ impl Scheduling {
         {
             self.refused(SchedError::LockMemory(errno), &mut granted)?;
         }
-        touch_stack();
+        stack::touch(self.prefault_stack);
         Ok(granted)
+    }
+
+    /// Applies the options to the socket that the thread receives from, and notes in `granted` what came of it.
+    ///
+    /// # Errors
+    /// Under [`Realtime::Enforce`], [`SchedError::BusyPoll`] if that is refused.
+    pub fn tune(&self, socket: &impl AsFd, granted: &mut Granted) -> Result<(), SchedError> {
+        self.check()?;
+        let Some(duration) = self.busy_poll else {
+            return Ok(());
+        };
+        match sys::busy_poll(socket, duration) {
+            Ok(()) => granted.busy_poll = Some(duration),
+            Err(errno) => self.refused(SchedError::BusyPoll { duration, errno }, granted)?,
+        }
+        Ok(())
+    }
+
+    /// Size of the stack that the thread needs, in bytes.
+    pub(crate) fn stack_size(&self) -> usize {
+        stack::size(self.prefault_stack.min(PREFAULT_MAX))
+    }
+
+    /// Whether every option is in its range.
+    fn check(&self) -> Result<(), SchedError> {
+        let polled = Duration::from_micros(1)..=BUSY_POLL_MAX;
+        match self.busy_poll {
+            Some(got) if !polled.contains(&got) => Err(SchedError::BusyPollRange { got }),
+            _ if self.prefault_stack > PREFAULT_MAX => Err(SchedError::PrefaultRange {
+                got: self.prefault_stack,
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Whether a thread of this process would be granted what is asked for, memory aside. Starts a short-lived thread,
     /// so that the caller keeps its own scheduling; for asking before a robot is contacted.
     ///
     /// # Errors
-    /// As [`Self::enter`]. A thread that cannot be started at all counts as refused scheduling.
+    /// As [`Self::enter`] and [`Self::tune`]. A thread that cannot be started at all counts as refused scheduling.
     pub fn probe(&self) -> Result<Granted, SchedError> {
+        self.check()?;
         let asked = Self {
             lock_memory: false,
             ..self.clone()
         };
         let probe = std::thread::Builder::new()
             .name("franka-probe".into())
-            .stack_size(STACK)
-            .spawn(move || asked.enter())
+            .stack_size(self.stack_size())
+            .spawn(move || {
+                let mut granted = asked.enter()?;
+                if let Ok(socket) = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)) {
+                    asked.tune(&socket, &mut granted)?;
+                }
+                Ok(granted)
+            })
             .map_err(|error| {
                 SchedError::SetScheduling(error.raw_os_error().unwrap_or(libc::EAGAIN))
             })?;
@@ -153,19 +251,6 @@ impl Scheduling {
 /// Whether the running kernel says that it is a real-time one: `/sys/kernel/realtime` holds 1.
 pub fn kernel_is_realtime() -> bool {
     std::fs::read_to_string("/sys/kernel/realtime").is_ok_and(|flag| flag.trim() == "1")
-}
-
-/// Stack of the thread: four times what is touched, for frames that only unoptimised builds need.
-pub(crate) const STACK: usize = 4 * TOUCHED;
-
-/// Stack touched before the loop starts, so that no cycle meets a page for the first time. A cycle uses some tens of
-/// kilobytes.
-const TOUCHED: usize = 512 * 1024;
-
-#[inline(never)]
-fn touch_stack() {
-    let mut stack = [0u8; TOUCHED];
-    black_box(&mut stack);
 }
 
 #[cfg(test)]
@@ -296,6 +381,91 @@ mod tests {
         .0
         .expect("nothing is enforced");
         assert!(granted.refusals.contains(&absent), "{granted:?}");
+    }
+
+    #[test]
+    fn a_socket_is_polled_as_asked_or_the_refusal_is_told() {
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
+        let duration = Duration::from_micros(50);
+        let mut asked = Scheduling {
+            realtime: Realtime::Ignore,
+            busy_poll: Some(duration),
+            ..Scheduling::default()
+        };
+        let mut granted = Granted::default();
+        let outcome = asked.tune(&socket, &mut granted);
+        assert_eq!(outcome, Ok(()), "nothing is enforced");
+        match granted.busy_poll {
+            Some(polled) => {
+                assert_eq!(polled, duration);
+                assert_eq!(sys::busy_poll_of(&socket), Ok(50), "what the kernel says");
+                assert_eq!(granted.refusals, []);
+            }
+            None => {
+                let [refusal] = granted.refusals[..] else {
+                    panic!("{granted:?}")
+                };
+                println!("not polled: {refusal}");
+                asked.realtime = Realtime::Enforce;
+                assert_eq!(asked.tune(&socket, &mut granted), Err(refusal));
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_polled_is_refused_under_enforce_and_noted_under_ignore() {
+        // A descriptor that is no socket.
+        let file = std::fs::File::open("/dev/null").expect("Linux has it");
+        let duration = Duration::from_micros(50);
+        let errno = libc::ENOTSOCK;
+        let refusal = SchedError::BusyPoll { duration, errno };
+        for realtime in [Realtime::Enforce, Realtime::Ignore] {
+            let asked = Scheduling {
+                realtime,
+                busy_poll: Some(duration),
+                ..Scheduling::default()
+            };
+            let mut granted = Granted::default();
+            let outcome = asked.tune(&file, &mut granted);
+            match realtime {
+                Realtime::Enforce => assert_eq!(outcome, Err(refusal)),
+                Realtime::Ignore => {
+                    assert_eq!((outcome, &granted.refusals[..]), (Ok(()), &[refusal][..]));
+                }
+            }
+            assert_eq!(granted.busy_poll, None);
+        }
+    }
+
+    #[test]
+    fn options_out_of_range_are_refused_whether_enforced_or_not() {
+        let good = Scheduling {
+            realtime: Realtime::Ignore,
+            ..Scheduling::default()
+        };
+        for got in [Duration::ZERO, Duration::from_millis(1)] {
+            let asked = Scheduling {
+                busy_poll: Some(got),
+                ..good.clone()
+            };
+            let refusal = SchedError::BusyPollRange { got };
+            assert_eq!(asked.probe(), Err(refusal));
+            assert_eq!(asked.enter(), Err(refusal));
+        }
+        let asked = Scheduling {
+            prefault_stack: PREFAULT_MAX + 1,
+            ..good.clone()
+        };
+        let text = asked.probe().expect_err("too much").to_string();
+        assert_eq!(
+            text,
+            "a stack of 67108865 bytes is out of range: expected at most 67108864 bytes"
+        );
+        let most = Scheduling {
+            prefault_stack: PREFAULT_MAX,
+            ..good
+        };
+        most.probe().expect("the most that can be asked for");
     }
 
     #[test]

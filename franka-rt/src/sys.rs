@@ -1,10 +1,11 @@
 //! The system calls that neither std nor socket2 offers safely: the only file of this crate with `unsafe`.
 
 use core::mem::MaybeUninit;
+use core::time::Duration;
 use std::ffi::CStr;
 use std::io;
 use std::net::SocketAddr;
-use std::os::fd::{FromRawFd, OwnedFd};
+use std::os::fd::{AsFd, AsRawFd, FromRawFd, OwnedFd};
 
 use socket2::Socket;
 
@@ -60,6 +61,51 @@ pub(crate) fn lock_memory() -> Result<(), i32> {
     // SAFETY: the function takes flags only. It changes which pages may be evicted, not what they hold.
     match unsafe { libc::mlockall(libc::MCL_CURRENT | libc::MCL_FUTURE) } {
         0 => Ok(()),
+        _ => Err(last_errno()),
+    }
+}
+
+/// Has receives from `socket` poll the network card's queue for that long, in whole microseconds, before they sleep. The
+/// error is an errno value.
+pub(crate) fn busy_poll(socket: &impl AsFd, duration: Duration) -> Result<(), i32> {
+    let Ok(us) = libc::c_int::try_from(duration.as_micros()) else {
+        return Err(libc::EINVAL);
+    };
+    // SAFETY: the descriptor is borrowed from its owner, hence open during the call; `us` is initialised and valid for
+    // reads of the size passed with it, and only read.
+    let set = unsafe {
+        libc::setsockopt(
+            socket.as_fd().as_raw_fd(),
+            libc::SOL_SOCKET,
+            libc::SO_BUSY_POLL,
+            (&raw const us).cast(),
+            size_of::<libc::c_int>() as libc::socklen_t,
+        )
+    };
+    match set {
+        0 => Ok(()),
+        _ => Err(last_errno()),
+    }
+}
+
+/// How long receives from `socket` poll, `[us]`. The error is an errno value.
+#[cfg(test)]
+pub(crate) fn busy_poll_of(socket: &impl AsFd) -> Result<libc::c_int, i32> {
+    let mut us: libc::c_int = 0;
+    let mut length = size_of::<libc::c_int>() as libc::socklen_t;
+    // SAFETY: the descriptor is borrowed from its owner, hence open during the call; `us` is valid for writes of
+    // `length` bytes, and `length` for reads and writes.
+    let got = unsafe {
+        libc::getsockopt(
+            socket.as_fd().as_raw_fd(),
+            libc::SOL_SOCKET,
+            libc::SO_BUSY_POLL,
+            (&raw mut us).cast(),
+            &raw mut length,
+        )
+    };
+    match got {
+        0 => Ok(us),
         _ => Err(last_errno()),
     }
 }

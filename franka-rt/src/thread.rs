@@ -51,8 +51,8 @@ use self::desk::Desk;
 use self::fault::Latch;
 use self::handle::Datagram;
 use self::lifetime::Lifetime;
-use crate::exchange::{Exchange, TICK};
-use crate::sched::{self, SchedError, Scheduling};
+use crate::exchange::{self, Exchange};
+use crate::sched::{SchedError, Scheduling};
 use crate::slot;
 use crate::stats::Stats;
 use crate::wake::Wake;
@@ -127,11 +127,13 @@ pub fn spawn<C: Core>(
     let (notice_queue, notices) = rtrb::RingBuffer::new(capacity.notices.max(1));
     let (record_ring, records) = touched_ring(capacity.records.max(1), core.record());
     let (state_slot, state_reader) = slot::slot();
-    let desk = Arc::new(Desk::new(TICK));
+    let desk = Arc::new(Desk::new(exchange::TICK));
+    let wait = exchange::wait_for(core.link_timeout());
+    let exchange = Exchange::new(socket, robot, size)?.with_wait(wait)?;
     let now = Instant::now();
     let mut cycle = Box::new(Cycle {
         core,
-        exchange: Exchange::new(socket, robot, size)?,
+        exchange,
         version,
         size,
         orders: order_queue,
@@ -150,8 +152,12 @@ pub fn spawn<C: Core>(
     });
     let lender = Lender::new(desk.clone());
     let (granted, grant) = mpsc::sync_channel(1);
+    let stack_size = scheduling.stack_size();
     let run = move || {
-        let answer = scheduling.enter();
+        let answer = scheduling.enter().and_then(|mut granted| {
+            scheduling.tune(cycle.exchange.socket(), &mut granted)?;
+            Ok(granted)
+        });
         let refused = answer.is_err();
         // The one who waits for the answer cannot have gone: it does nothing else.
         let _ = granted.send(answer);
@@ -178,7 +184,7 @@ pub fn spawn<C: Core>(
     };
     let joiner = std::thread::Builder::new()
         .name("franka-rt".into())
-        .stack_size(sched::STACK)
+        .stack_size(stack_size)
         .spawn(run)?;
     let granted = grant
         .recv()

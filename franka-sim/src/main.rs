@@ -27,7 +27,7 @@ struct Arguments {
     #[arg(long, value_enum, default_value_t = Kind::Fr3)]
     robot: Kind,
 
-    /// Address to listen on; 0.0.0.0 for all interfaces.
+    /// Address to listen on, IPv4 or IPv6; 0.0.0.0 for all interfaces, :: for both families on all of them.
     #[arg(long, default_value = "127.0.0.1")]
     bind: IpAddr,
 

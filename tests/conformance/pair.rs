@@ -45,9 +45,9 @@ impl Pair {
 
     /// The same, with so many cycles in the log of a motion.
     pub(crate) fn with_log_size(version: Version, cycles: usize) -> Self {
-        let socket = exchange::bind().expect("a free port");
-        let port = socket.local_addr().expect("bound").port();
         let robot = IpAddr::from(Ipv4Addr::LOCALHOST);
+        let socket = exchange::bind(robot).expect("a free port");
+        let port = socket.local_addr().expect("bound").port();
         let mut pair = Self {
             client: Client::new(model(version), version).with_log_size(cycles),
             robot: ScriptedRobot::new(version),

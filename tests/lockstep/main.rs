@@ -6,4 +6,5 @@ mod goals;
 mod random_targets;
 mod reflex_log;
 mod schedules;
+mod silence;
 mod taking_over;

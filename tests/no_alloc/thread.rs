@@ -13,7 +13,9 @@ use franka_proto::{
     ControllerMode, MotionGeneratorMode, RobotCommand, RobotMode, RobotState, Version,
 };
 use franka_rt::control::{ActiveControl, Command, Torques};
-use franka_rt::driver::{ControlLog, Driver, Event, Modes, MotionId, Order, Program, Record};
+use franka_rt::driver::{
+    ControlLog, Driver, Event, LinkTimeout, Modes, MotionId, Order, Program, Record,
+};
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, Scheduling};
 use franka_rt::thread::{self, Core, Handle, Notice, ThreadConfig};
@@ -85,9 +87,9 @@ fn start<C: Core>(core: C) -> (Handle<C>, u16) {
         scheduling,
         ..ThreadConfig::default()
     };
-    let socket = exchange::bind().expect("a free port");
-    let port = socket.local_addr().expect("bound").port();
     let robot = IpAddr::V4(Ipv4Addr::LOCALHOST);
+    let socket = exchange::bind(robot).expect("a free port");
+    let port = socket.local_addr().expect("bound").port();
     let handle = thread::spawn(config, core, socket, robot, VERSION);
     (handle.expect("nothing is enforced"), port)
 }
@@ -104,7 +106,8 @@ fn peer(last: u8, port: u16) -> UdpSocket {
 /// thread's calls of the allocator and the number of its cycles.
 fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
     let calls = Arc::new(AtomicU64::new(0));
-    let driver = Driver::new(VERSION).with_link_timeout(Duration::from_millis(50));
+    let timeout = LinkTimeout::new(Duration::from_millis(50)).expect("in range");
+    let driver = Driver::new(VERSION).with_link_timeout(timeout);
     let core = Watched {
         driver,
         first: None,

@@ -19,6 +19,7 @@
 //! so that its memory is freed elsewhere.
 
 mod event;
+mod link_timeout;
 mod log;
 mod order;
 mod program;
@@ -33,6 +34,7 @@ use franka_proto::{RobotCommand, RobotMode, RobotState, Version};
 use crate::control::{Command, WriteError};
 
 pub use event::{Ended, Ending, Event, MotionStatistics};
+pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
 pub use log::{ControlLog, LogEntry};
 pub use order::{Modes, MotionId, Order};
 pub use program::{Failure, Program};
@@ -40,11 +42,6 @@ pub use record::{Activity, Record};
 
 use event::EventQueue;
 use program::Answer;
-
-/// Silence of the robot after which the link counts as lost.
-///
-/// Source: the UDP receive timeout of libfranka, `network.h`.
-pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The pure core of one robot's control thread.
 #[derive(Debug)]
@@ -55,7 +52,7 @@ pub struct Driver {
     newest: Option<u64>,
     /// The silence at which the link was given up, until a state revives it.
     lost: Option<Duration>,
-    link_timeout: Duration,
+    link_timeout: LinkTimeout,
     record: Record,
     events: EventQueue,
 }
@@ -99,7 +96,7 @@ impl Driver {
             phase: Phase::Watching,
             newest: None,
             lost: None,
-            link_timeout: LINK_TIMEOUT,
+            link_timeout: LinkTimeout::default(),
             record: Record::default(),
             events: EventQueue::default(),
         }
@@ -107,9 +104,14 @@ impl Driver {
 
     /// Replaces the silence after which the link counts as lost, [`LINK_TIMEOUT`] by default.
     #[must_use]
-    pub fn with_link_timeout(mut self, timeout: Duration) -> Self {
+    pub fn with_link_timeout(mut self, timeout: LinkTimeout) -> Self {
         self.link_timeout = timeout;
         self
+    }
+
+    /// The silence after which the link counts as lost.
+    pub fn link_timeout(&self) -> LinkTimeout {
+        self.link_timeout
     }
 
     /// Whether no motion is armed, running or finishing.
@@ -274,7 +276,7 @@ impl Driver {
 
     /// Tells that no state has come for `silence`. At the link timeout a motion ends with [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
-        if silence < self.link_timeout || self.lost.is_some() {
+        if silence < self.link_timeout.get() || self.lost.is_some() {
             return;
         }
         self.lost = Some(silence);

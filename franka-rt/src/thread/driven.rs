@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use franka_proto::{RobotCommand, RobotState};
 
-use crate::driver::{Driver, Event, Order, Record};
+use crate::driver::{Driver, Event, LINK_TIMEOUT, Order, Record};
 
 /// A pure core: states, orders and silences in; commands, records and events out.
 ///
@@ -27,6 +27,11 @@ pub trait Core: Send + 'static {
 
     /// Tells that no state has come for `silence`, of this host's clock. Comes again and again while it lasts.
     fn on_silence(&mut self, silence: Duration);
+
+    /// The silence that the core wants to hear of in time; the thread waits for states no longer than a fraction of it.
+    fn link_timeout(&self) -> Duration {
+        LINK_TIMEOUT
+    }
 
     /// Tells how long the command took to leave, from the receipt of the state that it answers.
     fn note_turnaround(&mut self, turnaround: Duration);
@@ -53,6 +58,10 @@ impl Core for Driver {
 
     fn on_silence(&mut self, silence: Duration) {
         Self::on_silence(self, silence);
+    }
+
+    fn link_timeout(&self) -> Duration {
+        Self::link_timeout(self).get()
     }
 
     fn note_turnaround(&mut self, turnaround: Duration) {

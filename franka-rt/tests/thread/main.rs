@@ -9,7 +9,7 @@ use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
 use franka_proto::{DecodeError, RobotCommand, RobotState, Version};
-use franka_rt::driver::{Driver, Event};
+use franka_rt::driver::{Driver, Event, LinkTimeout};
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, SchedError, Scheduling, kernel_is_realtime};
 use franka_rt::thread::{
@@ -72,7 +72,7 @@ fn config() -> ThreadConfig {
 }
 
 fn socket() -> (UdpSocket, u16) {
-    let socket = exchange::bind().expect("a free port");
+    let socket = exchange::bind(ROBOT).expect("a free port");
     let port = socket.local_addr().expect("bound").port();
     (socket, port)
 }
@@ -217,7 +217,8 @@ fn short_datagrams_are_reported_once_and_the_next_state_is_taken() {
 
 #[test]
 fn silence_is_reported_and_a_later_state_taken() {
-    let driver = Driver::new(VERSION).with_link_timeout(Duration::from_millis(100));
+    let timeout = LinkTimeout::new(Duration::from_millis(100)).expect("in range");
+    let driver = Driver::new(VERSION).with_link_timeout(timeout);
     let (mut handle, robot) = start(config(), driver);
     robot.send(1);
     wait_for("state", || handle.states.newest());
@@ -238,6 +239,52 @@ fn silence_is_reported_and_a_later_state_taken() {
     assert_eq!(
         wait_for("state", || handle.states.newest()).message_id,
         2_000
+    );
+}
+
+/// The median of five, as any one of them may meet a machine that is busy with something else.
+#[test]
+fn the_shortest_link_timeout_is_noticed_before_another_has_passed() {
+    let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");
+    let mut noticed: Vec<Duration> = (0..5)
+        .map(|_| {
+            let driver = Driver::new(VERSION).with_link_timeout(timeout);
+            let (mut handle, robot) = start(config(), driver);
+            robot.send(1);
+            wait_for("loss", || match handle.notices.pop() {
+                Ok(Notice::Core(Event::LinkLost { silence })) if handle.stats.states.get() > 0 => {
+                    Some(silence)
+                }
+                _ => None,
+            })
+        })
+        .collect();
+    noticed.sort_unstable();
+    assert!(noticed[0] >= LinkTimeout::MIN, "{noticed:?}");
+    assert!(noticed[2] < 2 * LinkTimeout::MIN, "{noticed:?}");
+}
+
+/// Two states in each timeout, whatever a busy machine makes of the pauses: without a busy one in between, none is lost.
+#[test]
+fn a_link_within_the_shortest_timeout_is_not_lost() {
+    let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");
+    let driver = Driver::new(VERSION).with_link_timeout(timeout);
+    let (mut handle, robot) = start(config(), driver);
+    robot.send(1);
+    wait_for("state", || handle.states.newest());
+    let mut longest = Duration::ZERO;
+    let mut sent = Instant::now();
+    for message_id in 2..=100 {
+        std::thread::sleep(LinkTimeout::MIN / 2);
+        longest = longest.max(sent.elapsed());
+        sent = Instant::now();
+        robot.send(message_id);
+    }
+    let worst = handle.stats.interval.max().unwrap_or_default();
+    let losses = std::iter::from_fn(|| handle.notices.pop().ok()).count();
+    assert!(
+        losses == 0 || longest.max(worst) >= LinkTimeout::MIN,
+        "{losses} losses with pauses of {longest:?} at most"
     );
 }
 

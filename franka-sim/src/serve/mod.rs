@@ -80,7 +80,7 @@ impl Sim {
         }
     }
 
-    /// Listens on `address`; port 0 takes a free one. Robots listen on 1337.
+    /// Listens on `address`, IPv4 or IPv6; port 0 takes a free one. Robots listen on 1337.
     pub fn bind(mut self, address: SocketAddr) -> Self {
         self.bind = address;
         self
@@ -174,7 +174,11 @@ impl Sim {
             None => Robot::new(self.config),
         };
         let (robot, seat) = service::open(self.bind, robot).await?;
-        let beside = |port| SocketAddr::new(self.bind.ip(), port);
+        let beside = |port| {
+            let mut address = self.bind;
+            address.set_port(port);
+            address
+        };
         let (hand, hand_seat) = match self.hand {
             Some((fingers, port)) => {
                 let (hand, seat) = service::open(beside(port), Hand::new(fingers)).await?;

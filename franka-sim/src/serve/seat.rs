@@ -1,6 +1,6 @@
 //! A device on its sockets, one client at a time.
 
-use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 
 use bytes::Bytes;
 use franka_proto::{RobotCommand, server};
@@ -16,7 +16,7 @@ pub(super) type Hands<D> = Box<dyn FnOnce(&mut D, Pace) + Send>;
 pub(super) enum Order {
     /// A client is there: where it is, and where its replies go.
     Connect {
-        peer: IpAddr,
+        peer: SocketAddr,
         replies: mpsc::Sender<Bytes>,
     },
     /// Bytes of the client's stream.
@@ -42,7 +42,7 @@ pub(super) struct Seat<D> {
     socket: UdpSocket,
     orders: mpsc::Receiver<Order>,
     hands: mpsc::Receiver<Hands<D>>,
-    client: Option<(IpAddr, mpsc::Sender<Bytes>)>,
+    client: Option<(SocketAddr, mpsc::Sender<Bytes>)>,
 }
 
 impl<D: Device> Seat<D> {
@@ -70,10 +70,11 @@ impl<D: Device> Seat<D> {
         }
         self.send_replies();
         if let (Some(datagram), Some((peer, _))) = (self.device.tick(), &self.client) {
+            // With the interface of a link-local peer.
+            let mut listener = *peer;
+            listener.set_port(datagram.port);
             // A client that does not listen loses states; TCP tells when it has gone.
-            let _ = self
-                .socket
-                .send_to(datagram.bytes, SocketAddr::new(*peer, datagram.port));
+            let _ = self.socket.send_to(datagram.bytes, listener);
         }
         self.send_replies();
         true
@@ -84,7 +85,7 @@ impl<D: Device> Seat<D> {
         for _ in 0..DATAGRAMS {
             match self.socket.recv_from(&mut buffer) {
                 Ok((length, source)) => {
-                    let known = self.client.as_ref().map(|(peer, _)| *peer);
+                    let known = self.client.as_ref().map(|(peer, _)| peer.ip());
                     if known == Some(source.ip()) {
                         self.device.command(&buffer[..length]);
                     }

@@ -35,7 +35,9 @@ pub(super) async fn open<D: Device>(
         .await
         .map_err(|error| io::Error::new(error.kind(), format!("{bind}: {error}")))?;
     let address = listener.local_addr()?;
-    let socket = UdpSocket::bind(SocketAddr::new(address.ip(), 0))?;
+    let mut beside = address;
+    beside.set_port(0);
+    let socket = UdpSocket::bind(beside)?;
     socket.set_nonblocking(true)?;
     let (orders, stream) = mpsc::channel(QUEUE);
     let (hands, lent) = mpsc::channel(QUEUE);

@@ -84,7 +84,7 @@ async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order>, name:
     tracing::info!(%peer, "client of the {name} connected");
     let (sender, replies) = mpsc::channel(REPLIES);
     let connect = Order::Connect {
-        peer: peer.ip(),
+        peer,
         replies: sender,
     };
     if orders.send(connect).await.is_ok() {

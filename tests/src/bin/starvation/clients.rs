@@ -31,7 +31,7 @@ impl Client {
 
     /// Answers a robot for `time`.
     pub(crate) fn run(self, runtime: &Runtime, time: Duration) -> Outcome {
-        let socket = exchange::bind().expect("a free port");
+        let socket = exchange::bind(ADDRESS).expect("a free port");
         let port = socket.local_addr().expect("bound").port();
         match self {
             Self::Thread => {

@@ -1,0 +1,86 @@
+//! How long a robot may be silent.
+
+use core::time::Duration;
+
+/// Silence of the robot after which the link counts as lost, unless said otherwise.
+///
+/// Source: the UDP receive timeout of libfranka, `network.h`.
+pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);
+
+/// Silence of the robot after which the link counts as lost, between [`Self::MIN`] and [`Self::MAX`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct LinkTimeout(Duration);
+
+impl LinkTimeout {
+    /// 20 ms: a robot that misses as many commands in a row stops by itself, and before that it bridges the gap.
+    pub const MIN: Duration = Duration::from_millis(20);
+
+    /// [`LINK_TIMEOUT`]: the reference client waits no longer either.
+    pub const MAX: Duration = LINK_TIMEOUT;
+
+    /// A timeout.
+    ///
+    /// # Errors
+    /// [`LinkTimeoutError`] for one out of range.
+    pub fn new(timeout: Duration) -> Result<Self, LinkTimeoutError> {
+        if (Self::MIN..=Self::MAX).contains(&timeout) {
+            Ok(Self(timeout))
+        } else {
+            Err(LinkTimeoutError { got: timeout })
+        }
+    }
+
+    /// The silence.
+    pub fn get(self) -> Duration {
+        self.0
+    }
+}
+
+impl Default for LinkTimeout {
+    /// [`LINK_TIMEOUT`].
+    fn default() -> Self {
+        Self(LINK_TIMEOUT)
+    }
+}
+
+/// Caller: no such timeout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "a link timeout of {got:?} is out of range: expected {:?} to {:?}",
+    LinkTimeout::MIN,
+    LinkTimeout::MAX
+)]
+pub struct LinkTimeoutError {
+    /// What was asked for.
+    pub got: Duration,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_out_of_range_is_refused_with_the_range() {
+        for (us, accepted) in [
+            (0, false),
+            (19_999, false),
+            (20_000, true),
+            (150_000, true),
+            (1_000_000, true),
+            (1_000_001, false),
+        ] {
+            let timeout = Duration::from_micros(us);
+            let made = LinkTimeout::new(timeout);
+            assert_eq!(made.is_ok(), accepted, "{timeout:?}");
+            match made {
+                Ok(made) => assert_eq!(made.get(), timeout),
+                Err(error) => assert_eq!(error.got, timeout),
+            }
+        }
+        let error = LinkTimeout::new(Duration::from_millis(5)).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "a link timeout of 5ms is out of range: expected 20ms to 1s"
+        );
+    }
+}

@@ -1,0 +1,45 @@
+//! A robot that falls silent in a motion: up to the link timeout nothing happens, at it the motion is given up.
+
+use std::time::Duration;
+
+use franka_rt::driver::{Driver, LinkTimeout};
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::Target;
+use franka_tests::lockstep::for_each_robot;
+use nalgebra::Translation3;
+
+#[test]
+fn a_motion_outlives_a_silence_below_the_timeout_and_no_longer_one() {
+    for timeout in [
+        LinkTimeout::MIN,
+        Duration::from_millis(150),
+        LinkTimeout::MAX,
+    ] {
+        for_each_robot(|robot| {
+            for (silent, lost) in [(-1, false), (0, true)] {
+                let mut lockstep = robot();
+                let timeout = LinkTimeout::new(timeout).expect("in range");
+                let driver = Driver::new(lockstep.client.version());
+                lockstep.client.driver = driver.with_link_timeout(timeout);
+                let target = Translation3::new(0.0, 0.0, 0.2) * lockstep.true_pose();
+                let goal = lockstep.begin(Target::Pose(target));
+                lockstep.run(400);
+                let silence = timeout.get().as_millis() as u64;
+                lockstep
+                    .link
+                    .drop_states(silence.saturating_add_signed(silent));
+                lockstep.run(silence);
+                let outcome = lockstep.client.outcome(goal);
+                match outcome {
+                    Some(Err(MotionError::LinkLost { silence })) if lost => {
+                        assert_eq!(*silence, timeout.get());
+                    }
+                    // From 20 missing commands on the robot stops by itself.
+                    Some(Err(MotionError::Control(_))) if !lost && silence > 20 => {}
+                    None if !lost => {}
+                    other => panic!("{silence} ms {silent:+}: {other:?}"),
+                }
+            }
+        });
+    }
+}
