@@ -3,6 +3,7 @@
 //! Run one at a time: each test has a robot, and two cores carry only so many.
 
 mod active;
+mod addresses;
 mod connecting;
 mod control;
 mod dropping;
@@ -14,6 +15,7 @@ mod hands;
 mod misbehaving;
 mod moving;
 mod peer;
+mod raising;
 mod starving;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -1,0 +1,143 @@
+//! Robots at addresses of either family, and by name.
+
+use std::net::{Ipv6Addr, SocketAddr, SocketAddrV6};
+use std::time::Duration;
+
+use franka_async::{ConnectError, Endpoint, Gripper, Party, Pose, Realtime, Robot};
+use franka_sim::{Fingers, Sim, Tool};
+
+use crate::alone;
+
+/// Connects to `endpoint`, moves the arm by a centimetre, and ends the connection.
+async fn moves(endpoint: impl Into<Endpoint>) -> SocketAddr {
+    let builder = Robot::builder(endpoint).realtime(Realtime::Ignore);
+    let robot = builder.connect().await.expect("a simulator takes a client");
+    let up = Pose::translation(0.0, 0.0, 0.01) * robot.pose();
+    let report = robot.move_to(up).await.expect("it arrives");
+    let left = report.final_error.expect("a target").translation;
+    assert!(left < 1e-3, "{left} m left");
+    assert!(robot.stats().commands.get() > 100);
+    let address = robot.address();
+    robot.shutdown().await;
+    address
+}
+
+/// Connects, moves and ends on every way to say where a robot is that listens on `bind`.
+async fn moves_on(bind: SocketAddr, texts: impl Fn(u16) -> Vec<String>) {
+    let sim = Sim::fr3()
+        .tool(Tool::hand())
+        .hand(Fingers::new(), 0)
+        .bind(bind)
+        .start()
+        .await
+        .expect("a simulator starts");
+    assert_eq!(moves(sim.addr()).await, sim.addr());
+    for text in texts(sim.addr().port()) {
+        assert_eq!(moves(text.as_str()).await, sim.addr(), "{text}");
+    }
+    let hand = Gripper::connect(sim.hand().expect("one").addr()).await;
+    let hand = hand.expect("a hand takes a client");
+    assert!(hand.homing().await.expect("it homes"));
+    drop(hand);
+    sim.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn an_arm_moves_over_ipv6() {
+    let _alone = alone();
+    let bind = (Ipv6Addr::LOCALHOST, 0).into();
+    moves_on(bind, |port| vec![format!("[::1]:{port}")]).await;
+}
+
+/// The address that a link gives itself, which means nothing without the name or the index of its interface.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn an_arm_moves_over_a_link_local_address() {
+    let _alone = alone();
+    let Some((ip, index, interface)) = link_local() else {
+        println!("not tried: no interface of this host has a link-local address");
+        return;
+    };
+    let bind = SocketAddrV6::new(ip, 0, 0, index).into();
+    moves_on(bind, |port| {
+        vec![
+            format!("[{ip}%{interface}]:{port}"),
+            format!("[{ip}%{index}]:{port}"),
+        ]
+    })
+    .await;
+}
+
+/// A link-local address of this host, the index and the name of its interface. Columns of `/proc/net/if_inet6`: address,
+/// index, prefix length, scope (0x20 for a link), flags, name.
+fn link_local() -> Option<(Ipv6Addr, u32, String)> {
+    let table = std::fs::read_to_string("/proc/net/if_inet6").ok()?;
+    table.lines().find_map(|line| {
+        let columns: Vec<&str> = line.split_whitespace().collect();
+        let [address, index, _, "20", _, name] = columns[..] else {
+            return None;
+        };
+        let address = u128::from_str_radix(address, 16).ok()?;
+        let index = u32::from_str_radix(index, 16).ok()?;
+        Some((Ipv6Addr::from(address), index, name.to_owned()))
+    })
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn an_arm_moves_by_its_host_name() {
+    let _alone = alone();
+    let bind = ([127, 0, 0, 1], 0).into();
+    moves_on(bind, |port| vec![format!("localhost:{port}")]).await;
+}
+
+/// A simulator for both families sees an IPv4 client under a mapped address; the client sees an IPv4 robot.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_simulator_for_both_families_serves_both() {
+    let _alone = alone();
+    let sim = Sim::fr3().bind((Ipv6Addr::UNSPECIFIED, 0).into());
+    let sim = sim.start().await.expect("a simulator starts");
+    let port = sim.addr().port();
+    for text in ["127.0.0.1", "[::1]", "[::ffff:127.0.0.1]"] {
+        let address = moves(format!("{text}:{port}")).await;
+        assert_eq!(address.port(), port);
+    }
+    sim.stop().await;
+}
+
+#[tokio::test]
+async fn what_names_no_robot_is_refused_before_anything_is_sent() {
+    let _alone = alone();
+    let connect = async |endpoint: &str| {
+        let builder = Robot::builder(endpoint).realtime(Realtime::Ignore);
+        builder.connect().await.expect_err("nobody is there")
+    };
+    for endpoint in ["", "robot:fci", "172.16.2", "fd00:::2", "fe80::2%nowhere0"] {
+        let error = connect(endpoint).await;
+        assert!(
+            matches!(error, ConnectError::Endpoint(_)),
+            "{endpoint}: {error}"
+        );
+        assert_eq!(error.party(), Party::Caller, "{error}");
+    }
+    let error = connect("no-such-robot.invalid").await;
+    let timely = matches!(error, ConnectError::Network { .. } | ConnectError::Timeout);
+    assert!(timely, "a name that nobody has: {error}");
+}
+
+#[tokio::test]
+async fn a_link_timeout_out_of_range_is_refused_with_the_range() {
+    let _alone = alone();
+    for timeout in [
+        Duration::ZERO,
+        Duration::from_millis(19),
+        Duration::from_secs(2),
+    ] {
+        // Nobody need be there.
+        let builder = Robot::builder("127.0.0.1:1").link_timeout(timeout);
+        let error = builder.connect().await.expect_err("out of range");
+        assert_eq!(
+            error.to_string(),
+            format!("a link timeout of {timeout:?} is out of range: expected 20ms to 1s")
+        );
+        assert_eq!(error.party(), Party::Caller);
+    }
+}
