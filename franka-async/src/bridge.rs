@@ -8,7 +8,7 @@ use std::io;
 use std::time::Duration;
 
 use franka_proto::RobotState;
-use franka_rt::driver::{Driver, Event, Order, Record};
+use franka_rt::driver::{Driver, Event, Order, Program, Record};
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output};
 use franka_rt::session::{GoalError, GoalId, Target};
 use franka_rt::thread::{Handle, Notice, Thread};
@@ -286,7 +286,31 @@ impl Bridge {
             Input::Begin { work, waiting } => {
                 let id = work.id();
                 let begun = match work {
-                    Work::Goal(goal) => self.lifecycle.submit(*goal, &self.states.borrow(), now),
+                    Work::Goal { goal, ticket } => {
+                        let state = &self.states.borrow();
+                        match ticket {
+                            None => self.lifecycle.submit(*goal, state, now),
+                            Some(ticket) => {
+                                self.lifecycle.submit_together(*goal, ticket, state, now)
+                            }
+                        }
+                    }
+                    Work::Control {
+                        id,
+                        callback,
+                        request,
+                        ticket: Some(ticket),
+                    } => self
+                        .lifecycle
+                        .control_together(id, callback, *request, ticket, now),
+                    Work::Control {
+                        id,
+                        callback,
+                        request,
+                        ticket: None,
+                    } => self
+                        .lifecycle
+                        .control(id, Program::Callback(callback), *request, now),
                     Work::Program {
                         id,
                         program,

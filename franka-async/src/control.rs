@@ -8,9 +8,9 @@ use franka_rt::control::{
     Callback, CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions,
     JointVelocities, Next, Torques,
 };
-use franka_rt::driver::Program;
 use franka_rt::session::GoalId;
 use franka_rt::shaping::{DEFAULT_CUTOFF_FREQUENCY, Shaper};
+use franka_rt::together::StartTicket;
 
 use crate::motion::Work;
 use crate::{Canceller, Moving, Robot};
@@ -85,6 +85,7 @@ pub struct Control {
     controller: MoveControllerMode,
     limit_rate: bool,
     cutoff_frequency: f64,
+    ticket: Option<StartTicket>,
 }
 
 impl Control {
@@ -95,6 +96,7 @@ impl Control {
             controller: MoveControllerMode::JointImpedance,
             limit_rate: Shaper::limits_by_default(robot.version()),
             cutoff_frequency: DEFAULT_CUTOFF_FREQUENCY,
+            ticket: None,
             robot,
         }
     }
@@ -127,6 +129,18 @@ impl Control {
         self
     }
 
+    /// Begins together with the motions of other robots, see [`Motion::start_with`](crate::Motion::start_with). The function
+    /// is not called until all are there. Until then the driver holds the arm: by the desired joint positions or pose of the
+    /// robot, by velocities of zero, by torques of zero, which leave it to the robot's gravity compensation. The function's
+    /// first call is with a time step of zero all the same. The report's duration includes the wait.
+    ///
+    /// # Cancel safety
+    /// See [`Motion::start_with`](crate::Motion::start_with).
+    pub fn start_with(mut self, ticket: StartTicket) -> Self {
+        self.ticket = Some(ticket);
+        self
+    }
+
     /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log.
     pub fn detach(self) {
         let robot = self.robot.clone();
@@ -143,10 +157,11 @@ impl Control {
         let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency)
             .with_limits_of(self.robot.model().joint_limits());
         let request = self.callback.request(version, self.controller);
-        Work::Program {
+        Work::Control {
             id: self.id,
-            program: Program::Callback(Box::new(self.callback.with_shaper(shaper))),
+            callback: Box::new(self.callback.with_shaper(shaper)),
             request: Box::new(request),
+            ticket: self.ticket,
         }
     }
 }

@@ -325,7 +325,7 @@ mod tests {
             ("robot..lan", "`robot..lan` is no host name"),
             ("r\u{f6}bot", "`r\u{f6}bot` is no host name"),
             (&"r".repeat(64), "is no host name"),
-            (&"r.".repeat(127), "is no host name"),
+            (&"r.".repeat(128), "is no host name"),
         ] {
             let error = text.parse::<Endpoint>().expect_err(text);
             assert!(error.to_string().contains(says), "{text}: {error}");

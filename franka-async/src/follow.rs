@@ -6,13 +6,15 @@ use std::pin::Pin;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::{Budget, Goal, Target, Then, Tolerance};
+use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
 
 use crate::bridge::Input;
-use crate::motion::Moving;
+use crate::motion::{Held, Moving, Work};
 use crate::{Pose, Robot};
 
-/// A motion that follows the newest target of a `watch`; see [`Robot::follow`]. Nothing moves before it is awaited.
+/// A motion that follows the newest target of a `watch`; see [`Robot::follow`]. Nothing moves before it is awaited. A clone
+/// is without the [`start_with`](Self::start_with) of the original.
 #[derive(Clone, Debug)]
 #[must_use = "a motion does nothing until it is awaited"]
 pub struct Follow {
@@ -21,6 +23,7 @@ pub struct Follow {
     budget: Budget,
     gains: Gains,
     tolerance: Tolerance,
+    ticket: Held,
 }
 
 impl Follow {
@@ -32,6 +35,7 @@ impl Follow {
             budget,
             gains: Gains::cartesian(),
             tolerance: Tolerance::default(),
+            ticket: Held::default(),
         }
     }
 
@@ -65,6 +69,12 @@ impl Follow {
         self
     }
 
+    /// See [`Motion::start_with`](crate::Motion::start_with). Targets that come before the start replace the first one.
+    pub fn start_with(mut self, ticket: StartTicket) -> Self {
+        self.ticket = Held(Some(ticket));
+        self
+    }
+
     async fn run(self) -> Result<MotionReport, MotionError> {
         let Self {
             robot,
@@ -72,6 +82,7 @@ impl Follow {
             budget,
             gains,
             tolerance,
+            ticket,
         } = self;
         let first = Target::Pose(*targets.borrow_and_update());
         let id = robot.next_goal();
@@ -83,7 +94,7 @@ impl Follow {
             gains,
             tolerance,
         };
-        let mut moving = Moving::new(robot.clone(), goal.into());
+        let mut moving = Moving::new(robot.clone(), Work::goal(goal, ticket.0));
         loop {
             tokio::select! {
                 biased;

@@ -12,6 +12,7 @@
 //! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`Active`]: the same from a thread of
 //!   the user's, which reads states and writes commands. [`AsynchronousControl`]: sparse joint
 //!   targets between which the robot plans.
+//! * [`StartBarrier`]: motions of several robots that begin within the same millisecond.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
 //! * [`Robot::model`]: the model of the connected arm, from its own description (feature `urdf`, on by default).
 //!   `Robot::model_library` (feature `model-library`, off by default): the code that a Franka Emika Robot hands out.
@@ -100,6 +101,7 @@ pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};
 pub use franka_rt::stats::Stats;
+pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};
 
 pub use tokio_util::sync::CancellationToken;
 

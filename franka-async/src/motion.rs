@@ -5,10 +5,12 @@ use std::pin::Pin;
 use std::task::{Context, Poll};
 
 use franka_proto::MoveRequest;
+use franka_rt::control::Callback;
 use franka_rt::driver::Program;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::{Budget, Goal, GoalId, Target, Then, Tolerance};
+use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
 use crate::Robot;
@@ -17,7 +19,16 @@ use crate::bridge::Outcome;
 /// What a motion does, on its way to the bridge.
 #[derive(Debug)]
 pub(crate) enum Work {
-    Goal(Box<Goal>),
+    Goal {
+        goal: Box<Goal>,
+        ticket: Option<StartTicket>,
+    },
+    Control {
+        id: GoalId,
+        callback: Box<Callback>,
+        request: Box<MoveRequest>,
+        ticket: Option<StartTicket>,
+    },
     Program {
         id: GoalId,
         program: Program,
@@ -29,25 +40,35 @@ impl Work {
     /// Names it, and whoever awaits it.
     pub(crate) fn id(&self) -> GoalId {
         match self {
-            Self::Goal(goal) => goal.id,
-            Self::Program { id, .. } => *id,
+            Self::Goal { goal, .. } => goal.id,
+            Self::Control { id, .. } | Self::Program { id, .. } => *id,
         }
+    }
+
+    pub(crate) fn goal(goal: Goal, ticket: Option<StartTicket>) -> Self {
+        let goal = Box::new(goal);
+        Self::Goal { goal, ticket }
     }
 }
 
-impl From<Goal> for Work {
-    fn from(goal: Goal) -> Self {
-        Self::Goal(Box::new(goal))
+/// The ticket of a motion that has not begun. A clone of the motion has none.
+#[derive(Debug, Default)]
+pub(crate) struct Held(pub(crate) Option<StartTicket>);
+
+impl Clone for Held {
+    fn clone(&self) -> Self {
+        Self(None)
     }
 }
 
 /// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a motion of its own, with its
-/// own [`canceller`](Self::canceller).
+/// own [`canceller`](Self::canceller) and without the [`start_with`](Self::start_with) of the original.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Motion {
     robot: Robot,
     goal: Goal,
+    ticket: Held,
 }
 
 impl Clone for Motion {
@@ -59,6 +80,7 @@ impl Clone for Motion {
         Self {
             robot: self.robot.clone(),
             goal,
+            ticket: self.ticket.clone(),
         }
     }
 }
@@ -77,7 +99,12 @@ impl Motion {
             gains,
             tolerance: Tolerance::default(),
         };
-        Self { robot, goal }
+        let ticket = Held::default();
+        Self {
+            robot,
+            goal,
+            ticket,
+        }
     }
 
     /// Walks the same path `factor` times as fast as by default: velocities scale with it, accelerations with its square,
@@ -112,9 +139,21 @@ impl Motion {
         self
     }
 
+    /// Begins together with the motions of other robots: the robot starts the motion, and holds the arm until all that have
+    /// a ticket of the same [`StartBarrier`](crate::StartBarrier) are there; then they begin within a millisecond of each
+    /// other. Such a motion supersedes nothing: it is refused as [`MotionError::Busy`] while anything controls the arm. If
+    /// the others do not all come, it resolves as [`MotionError::Start`], and the arm has not moved.
+    ///
+    /// # Cancel safety
+    /// Dropped, stopped or superseded before the start, it lets the others go, with [`MotionError::Start`].
+    pub fn start_with(mut self, ticket: StartTicket) -> Self {
+        self.ticket = Held(Some(ticket));
+        self
+    }
+
     /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log.
     pub fn detach(self) {
-        self.robot.begin(self.goal.into());
+        self.robot.begin(Work::goal(self.goal, self.ticket.0));
     }
 
     /// A way to brake the motion from elsewhere.
@@ -128,7 +167,7 @@ impl IntoFuture for Motion {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        Moving::new(self.robot, self.goal.into())
+        Moving::new(self.robot, Work::goal(self.goal, self.ticket.0))
     }
 }
 

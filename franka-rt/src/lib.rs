@@ -13,6 +13,7 @@
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`otg`]: jerk-limited trajectories to rest.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP. Pure.
+//! * [`together`]: motions of several robots that begin at the same time.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
 //! * [`slot`], [`wake`], [`exchange`], [`sched`], [`stats`]: what the loop is built of.
 //!
@@ -32,4 +33,5 @@ pub mod slot;
 pub mod stats;
 mod sys;
 pub mod thread;
+pub mod together;
 pub mod wake;

@@ -89,6 +89,7 @@ fn a_log_is_its_cycles_oldest_first() {
         },
         program: Program::Callback(Box::new(callback)),
         log: ControlLog::with_capacity(3),
+        ticket: None,
     });
     let mut state = RobotState {
         robot_mode: RobotMode::Move,

@@ -17,6 +17,7 @@ mod moving;
 mod peer;
 mod raising;
 mod starving;
+mod together;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;

@@ -8,3 +8,4 @@ mod reflex_log;
 mod schedules;
 mod silence;
 mod taking_over;
+mod together;

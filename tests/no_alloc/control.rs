@@ -89,6 +89,7 @@ fn calls_of(
         modes,
         program,
         log: ControlLog::with_capacity(50),
+        ticket: None,
     });
     let mut state = RobotState {
         robot_mode: RobotMode::Move,

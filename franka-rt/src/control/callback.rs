@@ -27,6 +27,8 @@ pub struct Callback {
     torques: Option<Source<Torques>>,
     /// `message_id` of the state before.
     previous: Option<u64>,
+    /// Whether the arm has been held, so that the newest command is the one that holds it.
+    held: bool,
 }
 
 /// A function, and the newest command made of what it returned.
@@ -84,6 +86,7 @@ impl Callback {
             motion,
             torques: None,
             previous: None,
+            held: false,
         }
     }
 
@@ -112,11 +115,26 @@ impl Callback {
             let torques = self.step_torques(state, step)?;
             torques || self.step_motion(state, step, first)?
         };
-        let command = Command {
+        Ok((self.newest(), finished))
+    }
+
+    /// The command that holds the arm at this state, or at the first one that it held it at: what the robot desires there, no
+    /// velocity, no torque. No function is called, and the first call afterwards is still the first.
+    pub(crate) fn hold(&mut self, state: &RobotState) -> Command {
+        if let Some(source) = &mut self.motion
+            && !self.held
+        {
+            source.newest = source.newest.holding(state);
+        }
+        self.held = true;
+        self.newest()
+    }
+
+    fn newest(&self) -> Command {
+        Command {
             motion: self.motion.as_ref().map(|source| source.newest),
             torques: self.torques.as_ref().map(|source| source.newest),
-        };
-        Ok((command, finished))
+        }
     }
 
     /// Returns whether the motion function has finished.

@@ -60,6 +60,21 @@ impl MotionCommand {
         }
     }
 
+    /// The command to the same generator that changes nothing: where the robot desires to be, at no velocity. It is what
+    /// the robot wants to see first.
+    pub(super) fn holding(&self, state: &RobotState) -> Self {
+        match self {
+            Self::JointPositions(_) => JointPositions(state.q_d).into(),
+            Self::JointVelocities(_) => JointVelocities::ZERO.into(),
+            Self::CartesianPose(_) => CartesianPose {
+                O_T_EE: state.O_T_EE_c,
+                elbow: None,
+            }
+            .into(),
+            Self::CartesianVelocities(_) => CartesianVelocities::ZERO.into(),
+        }
+    }
+
     /// Whether the robot can take its numbers.
     ///
     /// # Errors

@@ -6,6 +6,7 @@ use franka_proto::{Errors, RobotMode, RobotState};
 
 use crate::driver::{ControlLog, Failure, MotionId, Program};
 use crate::session::SessionEvent;
+use crate::together::{StartFault, StartTicket};
 
 /// Something that happened in the thread. Events cross in order and none is dropped.
 #[derive(Debug)]
@@ -66,6 +67,15 @@ pub struct Ended {
     pub program: Program,
     /// Its last cycles.
     pub log: ControlLog,
+    /// Its ticket, if it was to begin together with others.
+    pub ticket: Option<StartTicket>,
+}
+
+impl Ended {
+    /// Why the motion did not begin, if that was for want of the others that it was to begin with.
+    pub fn start_fault(&self) -> Option<StartFault> {
+        self.ticket.as_ref().and_then(StartTicket::refusal)
+    }
 }
 
 /// How a motion ended, as the thread saw it. The robot's own word on it is its last reply to the `Move`.

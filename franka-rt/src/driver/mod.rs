@@ -10,6 +10,9 @@
 //!              the state leaves the motion's modes, or the link falls silent
 //! ```
 //!
+//! A motion with a ticket (see [`together`](crate::together)) begins its run by holding the arm, until all that have one of
+//! the same start are there, or one of them is not to come; in that case it finishes.
+//!
 //! A program that fails, in place of finishing, leaves the motion `Silent`: no command, until the robot has left its modes.
 //! So does `Order::Silence`, when nobody is in charge of the program any more.
 //!
@@ -32,6 +35,7 @@ use core::time::Duration;
 use franka_proto::{RobotCommand, RobotMode, RobotState, Version};
 
 use crate::control::{Command, WriteError};
+use crate::together::{Gate, StartTicket};
 
 pub use event::{Ended, Ending, Event, MotionStatistics};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
@@ -76,6 +80,7 @@ struct Motion {
     program: Program,
     statistics: MotionStatistics,
     log: ControlLog,
+    ticket: Option<StartTicket>,
     /// The newest command that was sent; zeros before the first.
     sent: RobotCommand,
 }
@@ -85,6 +90,24 @@ impl Motion {
     fn note(&mut self, state: &RobotState, skipped: u64) {
         self.statistics.note(state, skipped);
         self.log.push(state, &self.sent);
+    }
+
+    /// Whether it may begin, or has begun, at this state.
+    fn gate(&mut self, state: &RobotState) -> Gate {
+        let Some(ticket) = &mut self.ticket else {
+            return Gate::Open;
+        };
+        if ticket.is_undecided() && self.program.is_withdrawn() {
+            ticket.withdraw();
+        }
+        ticket.pass(state.message_id)
+    }
+
+    /// Lets those go that it was to begin with.
+    fn leave(&mut self) {
+        if let Some(ticket) = &mut self.ticket {
+            ticket.end();
+        }
     }
 }
 
@@ -145,6 +168,7 @@ impl Driver {
                 modes,
                 program,
                 log,
+                ticket,
             } => {
                 let armed = Motion {
                     id: motion,
@@ -152,6 +176,7 @@ impl Driver {
                     program,
                     statistics: MotionStatistics::default(),
                     log,
+                    ticket,
                     sent: RobotCommand::default(),
                 };
                 match (self.lost, self.is_watching()) {
@@ -174,7 +199,8 @@ impl Driver {
                     Phase::Armed(armed) if armed.id == motion => {
                         self.end(armed, Ending::Disarmed);
                     }
-                    Phase::Running(left) | Phase::Finishing(left) if left.id == motion => {
+                    Phase::Running(mut left) | Phase::Finishing(mut left) if left.id == motion => {
+                        left.leave();
                         self.phase = Phase::Silent(left);
                     }
                     other => self.phase = other,
@@ -293,7 +319,14 @@ impl Driver {
     }
 
     fn run(&mut self, mut motion: Motion, state: &RobotState) -> Option<RobotCommand> {
-        let step = motion.program.step(self.version, state, &mut self.record);
+        let gate = motion.gate(state);
+        let step = motion
+            .program
+            .step(gate, self.version, state, &mut self.record);
+        let activity = match gate {
+            Gate::Closed => Activity::Waiting,
+            Gate::Open | Gate::Broken(_) => Activity::Running,
+        };
         if let Some(event) = step.event {
             self.events.push(Event::Program {
                 motion: motion.id,
@@ -311,7 +344,7 @@ impl Driver {
                     self.events.push(Event::Finishing { motion: motion.id });
                     Phase::Finishing(motion)
                 } else {
-                    self.record.activity = Activity::Running;
+                    self.record.activity = activity;
                     Phase::Running(motion)
                 };
                 Some(sent)
@@ -340,12 +373,14 @@ impl Driver {
         None
     }
 
-    fn give_back(&mut self, motion: Motion, ending: Ending) {
+    fn give_back(&mut self, mut motion: Motion, ending: Ending) {
+        motion.leave();
         let Motion {
             id,
             program,
             statistics,
             log,
+            ticket,
             ..
         } = motion;
         self.events.push(Event::Ended(Ended {
@@ -357,6 +392,7 @@ impl Driver {
             statistics,
             program,
             log,
+            ticket,
         }));
     }
 }

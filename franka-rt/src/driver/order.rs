@@ -3,6 +3,7 @@
 use franka_proto::{ControllerMode, MotionGeneratorMode, MoveRequest, RobotState};
 
 use crate::driver::{ControlLog, Program};
+use crate::together::StartTicket;
 
 /// Names one motion for the life of a driver, from arming to its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -21,6 +22,9 @@ pub enum Order {
         program: Program,
         /// Where its last cycles are noted; empty.
         log: ControlLog,
+        /// Of a motion that begins together with others. Until they are all there the driver holds the arm, by goals or a
+        /// control function; other programs do not wait.
+        ticket: Option<StartTicket>,
     },
     /// Forget the armed motion: its `Move` was refused. Has no effect once the motion runs.
     Disarm {

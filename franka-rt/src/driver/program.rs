@@ -8,6 +8,7 @@ use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command};
 use crate::driver::Record;
 use crate::session::{SessionEvent, TargetSession};
 use crate::shaping::InvalidCommand;
+use crate::together::Gate;
 
 /// What answers the states of a running motion. Built outside the thread and freed outside it.
 #[derive(Debug)]
@@ -51,15 +52,29 @@ pub(super) enum Answer {
 }
 
 impl Program {
+    /// Whether what the motion was to begin with has been taken back or replaced. Asked only while the motion waits.
+    pub(super) fn is_withdrawn(&mut self) -> bool {
+        match self {
+            Self::Target(session) => session.is_withdrawn(),
+            Self::Callback(_) | Self::Active(_) | Self::Asynchronous(_) => false,
+        }
+    }
+
+    /// Answers a state: holds the arm while the gate is closed, and finishes where it is if that never opens.
     pub(super) fn step(
         &mut self,
+        gate: Gate,
         version: Version,
         state: &RobotState,
         record: &mut Record,
     ) -> Step {
         let answer = match self {
             Self::Target(session) => {
-                let step = session.step(state, record);
+                let step = match gate {
+                    Gate::Open => session.step(state, record),
+                    Gate::Closed => session.hold(state, record),
+                    Gate::Broken(fault) => session.give_up(fault, state, record),
+                };
                 return Step {
                     answer: Answer::Command {
                         command: Command::torques(version, step.torques),
@@ -68,9 +83,15 @@ impl Program {
                     event: step.event,
                 };
             }
-            Self::Callback(callback) => match callback.step(state) {
-                Ok((command, finished)) => Answer::Command { command, finished },
-                Err(failure) => Answer::Failed(failure),
+            Self::Callback(callback) => match gate {
+                Gate::Open => match callback.step(state) {
+                    Ok((command, finished)) => Answer::Command { command, finished },
+                    Err(failure) => Answer::Failed(failure),
+                },
+                Gate::Closed | Gate::Broken(_) => Answer::Command {
+                    command: callback.hold(state),
+                    finished: gate != Gate::Closed,
+                },
             },
             Self::Active(_) => Answer::Open,
             Self::Asynchronous(positions) => match positions.step() {

@@ -53,6 +53,8 @@ pub enum Activity {
     Watching,
     /// A motion is armed; the robot does not show its modes yet.
     Armed,
+    /// The robot is ready for a motion that is to begin together with others; the arm is held until they all are.
+    Waiting,
     /// A motion runs.
     Running,
     /// The finishing command is being repeated.

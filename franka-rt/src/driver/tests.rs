@@ -45,6 +45,7 @@ fn armed(target: Target) -> Driver {
             reader,
         ))),
         log: ControlLog::with_capacity(5),
+        ticket: None,
     });
     driver
 }
@@ -96,6 +97,7 @@ fn armed_with(program: Program) -> Driver {
         modes: MODES,
         program,
         log: ControlLog::with_capacity(5),
+        ticket: None,
     });
     driver
 }

@@ -85,6 +85,10 @@ pub(super) enum CommandSide {
 }
 
 #[derive(Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one per motion, in a box of its own already"
+)]
 pub(super) enum ThreadSide {
     Armed,
     Running,
@@ -232,6 +236,9 @@ impl Programmed {
     fn outcome(&self, ended: &Ended) -> Option<Result<MotionReport, MotionError>> {
         match ended.ending {
             Ending::Finished => {
+                if let Some(fault) = ended.start_fault() {
+                    return Some(Err(fault.into()));
+                }
                 let statistics = &ended.statistics;
                 let report = MotionReport::new(statistics, statistics.duration_ms(), None);
                 Some(Ok(report))
@@ -265,6 +272,7 @@ impl Settled {
             Settlement::AtRest if cancelled => return Err(MotionError::Stopped),
             Settlement::AtRest => None,
             Settlement::Short(error) => return Err(MotionError::Short(error)),
+            Settlement::Unstarted(fault) => return Err(fault.into()),
         };
         Ok(MotionReport::new(
             &self.statistics,

@@ -9,6 +9,7 @@ use super::{Lifecycle, MotionError, MotionReport, Phase};
 use crate::driver::{MotionId, MotionStatistics, Program};
 use crate::session::{Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then};
 use crate::slot;
+use crate::together::StartTicket;
 
 impl Lifecycle {
     /// Takes a goal, for a robot in `state`, and starts towards it or hands it to the running motion. It supersedes every
@@ -37,6 +38,29 @@ impl Lifecycle {
             MotionError::Superseded,
             now,
         );
+        Ok(())
+    }
+
+    /// Takes a goal that begins together with the motions of other robots: once all are there; until then the arm is held.
+    /// It supersedes nothing. One that comes later supersedes it as usual, and takes it out of the common start.
+    ///
+    /// # Errors
+    /// As [`Self::submit`]; [`MotionError::Busy`] while anything controls the arm; [`MotionError::Start`] if the others are
+    /// not to come. The ticket is dropped in any of these cases.
+    pub fn submit_together(
+        &mut self,
+        goal: Goal,
+        ticket: StartTicket,
+        state: &RobotState,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        self.check_free(Some(&ticket))?;
+        goal.check(&self.model, state)?;
+        let waiting = Waiting {
+            goal,
+            cancelled: false,
+        };
+        self.start_goal(waiting, Some(ticket), now);
         Ok(())
     }
 
@@ -159,7 +183,7 @@ impl Lifecycle {
         now: Duration,
     ) {
         if waiting.goal.target != Target::Rest || waiting.goal.then != Then::Finish {
-            return self.start_goal(waiting, now);
+            return self.start_goal(waiting, None, now);
         }
         let result = match before {
             // Nobody knows, or the robot sees to it, whether the arm rests.
@@ -191,7 +215,7 @@ impl Lifecycle {
             self.resolve(next.goal.id, Err(reason.clone()));
         }
         let Phase::Active(active) = &mut self.phase else {
-            return self.start_goal(waiting, now);
+            return self.start_goal(waiting, None, now);
         };
         let ending = matches!(active.thread, ThreadSide::Ended(_))
             || matches!(
@@ -247,7 +271,7 @@ impl Lifecycle {
         Ok(true)
     }
 
-    fn start_goal(&mut self, waiting: Waiting, now: Duration) {
+    fn start_goal(&mut self, waiting: Waiting, ticket: Option<StartTicket>, now: Duration) {
         let (mut slot, reader) = slot::slot();
         slot.write(&waiting.goal);
         let program = Program::Target(Box::new(TargetSession::new(self.model.clone(), reader)));
@@ -261,6 +285,6 @@ impl Lifecycle {
             settled: None,
             bad_tool: false,
         });
-        self.start(work, program, request, now);
+        self.start(work, program, request, ticket, now);
     }
 }

@@ -30,6 +30,7 @@ use franka_proto::{MoveRequest, MoveStatus, Request, Version, Violation};
 
 use crate::driver::{ControlLog, Ending, Event, Modes, MotionId, MotionStatistics, Order, Program};
 use crate::session::GoalId;
+use crate::together::StartTicket;
 
 use active::{Active, CommandSide, ThreadSide, Waiting, Work};
 pub use outcome::{ControlError, MotionError, MotionReport, Party};
@@ -307,7 +308,14 @@ impl Lifecycle {
         self.outputs.push_back(Output::Resolve { goal, result });
     }
 
-    fn start(&mut self, work: Work, program: Program, request: MoveRequest, now: Duration) {
+    fn start(
+        &mut self,
+        work: Work,
+        program: Program,
+        request: MoveRequest,
+        ticket: Option<StartTicket>,
+        now: Duration,
+    ) {
         self.motions += 1;
         let motion = MotionId(self.motions);
         self.outputs.push_back(Output::Order(Order::Arm {
@@ -315,6 +323,7 @@ impl Lifecycle {
             modes: Modes::of(&request),
             program,
             log: ControlLog::with_capacity(self.log_size),
+            ticket,
         }));
         self.send(motion, Request::Move(request));
         self.phase = Phase::Active(Box::new(Active {

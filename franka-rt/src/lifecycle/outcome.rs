@@ -8,6 +8,7 @@ use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, St
 use crate::driver::{ControlLog, MotionStatistics};
 use crate::session::{GoalError, PoseError};
 use crate::shaping::InvalidCommand;
+use crate::together::StartFault;
 
 /// A motion that came to its end as asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +64,9 @@ pub enum MotionError {
         "libfranka robot: Cannot perform this operation while another control or read operation is running."
     )]
     Busy,
+    /// Caller: it was to begin together with others, and they did not all come. The arm was held, or never moved.
+    #[error(transparent)]
+    Start(#[from] StartFault),
     /// Caller: the protocol version has no such motion. Nothing was sent.
     #[error(transparent)]
     Unsupported(#[from] RequestError),
@@ -124,6 +128,7 @@ impl MotionError {
                 | Self::Superseded
                 | Self::Stopped
                 | Self::Busy
+                | Self::Start(_)
                 | Self::Unsupported(_)
                 | Self::Short(_)
         )
@@ -144,6 +149,7 @@ impl MotionError {
             | Self::Superseded
             | Self::Stopped
             | Self::Busy
+            | Self::Start(_)
             | Self::Unsupported(_)
             | Self::Invalid(_)
             | Self::Panicked { .. } => Party::Caller,

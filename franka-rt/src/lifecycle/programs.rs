@@ -6,8 +6,10 @@ use franka_proto::{MoveRequest, Request};
 
 use super::active::{CommandSide, Programmed, Work};
 use super::{Lifecycle, MotionError, Phase};
+use crate::control::Callback;
 use crate::driver::{Failure, MotionId, Program};
 use crate::session::GoalId;
+use crate::together::StartTicket;
 
 impl Lifecycle {
     /// Starts the motion that `request` asks for under a program of the user's, as work named `id`, which resolves once
@@ -23,13 +25,51 @@ impl Lifecycle {
         request: MoveRequest,
         now: Duration,
     ) -> Result<(), MotionError> {
+        self.begin_program(id, program, request, None, now)
+    }
+
+    /// Like [`Self::control`], for a control function that begins together with the motions of other robots. Until they are
+    /// all there it is not called: the driver holds the arm.
+    ///
+    /// # Errors
+    /// As [`Self::control`]; [`MotionError::Start`] if the others are not to come. The ticket is dropped in any of these
+    /// cases.
+    pub fn control_together(
+        &mut self,
+        id: GoalId,
+        callback: Box<Callback>,
+        request: MoveRequest,
+        ticket: StartTicket,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        let program = Program::Callback(callback);
+        self.begin_program(id, program, request, Some(ticket), now)
+    }
+
+    fn begin_program(
+        &mut self,
+        id: GoalId,
+        program: Program,
+        request: MoveRequest,
+        ticket: Option<StartTicket>,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        self.check_free(ticket.as_ref())?;
+        let work = Work::Program(Programmed::new(id));
+        self.start(work, program, request, ticket, now);
+        Ok(())
+    }
+
+    /// Whether a motion can begin that neither supersedes another one nor waits for its end.
+    pub(super) fn check_free(&self, ticket: Option<&StartTicket>) -> Result<(), MotionError> {
         self.check_open()?;
         if !self.is_idle() {
             return Err(MotionError::Busy);
         }
-        let work = Work::Program(Programmed::new(id));
-        self.start(work, program, request, now);
-        Ok(())
+        match ticket.and_then(StartTicket::fault) {
+            Some(fault) => Err(fault.into()),
+            None => Ok(()),
+        }
     }
 
     /// Whether a program of the user's controls the arm.

@@ -34,6 +34,7 @@ use crate::driver::Record;
 use crate::law::hybrid::{self, Reference};
 use crate::law::{Gains, shaping};
 use crate::slot::{Read, SlotReader};
+use crate::together::StartFault;
 
 pub use binding::{Bindings, Guard};
 pub use budget::Budget;
@@ -78,6 +79,8 @@ pub enum Settlement {
     AtRest,
     /// The reference reached the target, the arm did not: something holds it, or its load is not what was declared.
     Short(PoseError),
+    /// At rest where it was held: those were missing that it was to begin with.
+    Unstarted(StartFault),
 }
 
 /// What a session answers a state with.
@@ -95,6 +98,10 @@ pub struct TargetSession {
     model: Arc<Model>,
     goals: SlotReader<Goal>,
     active: Option<Active>,
+    /// A goal that waits for its common start.
+    held: Option<Goal>,
+    /// A goal whose common start has failed, and why.
+    unstarted: Option<(GoalId, StartFault)>,
 }
 
 /// What exists once the first state has been seen.
@@ -163,21 +170,77 @@ impl TargetSession {
             model,
             goals,
             active: None,
+            held: None,
+            unstarted: None,
         }
     }
 
     /// The newest goal that the session has taken up, for telling goals that came too late.
     pub fn last_goal(&self) -> Option<GoalId> {
-        self.active.as_ref().map(|active| active.goal.id)
+        let active = self.active.as_ref().map(|active| active.goal.id);
+        self.held.map(|held| held.id).or(active)
     }
 
     /// Answers one state. Bounded work, no allocation.
     pub(crate) fn step(&mut self, state: &RobotState, record: &mut Record) -> Step {
-        let newer = match self.goals.read_newer() {
+        let held = self.held.take();
+        let newer = self.read().or(held);
+        self.follow(newer, state, record)
+    }
+
+    /// Whether the goal that waits for its common start has been taken back, or another one has come in its place.
+    pub(crate) fn is_withdrawn(&mut self) -> bool {
+        let Some(goal) = self.read() else {
+            return false;
+        };
+        let before = self.held.replace(goal);
+        goal.target == Target::Rest || before.is_some_and(|before| before.id != goal.id)
+    }
+
+    /// Answers one state by holding the arm where it is, with the gains of the goal that waits.
+    pub(crate) fn hold(&mut self, state: &RobotState, record: &mut Record) -> Step {
+        let nothing = self.active.is_none();
+        let rest = self.held.filter(|_| nothing).map(|held| Goal {
+            id: GoalId::default(), // no goal's
+            target: Target::Rest,
+            then: Then::Hold,
+            ..held
+        });
+        self.follow(rest, state, record)
+    }
+
+    /// Answers one state of a goal whose common start has failed: lands where the arm is held, unless another goal comes.
+    pub(crate) fn give_up(
+        &mut self,
+        fault: StartFault,
+        state: &RobotState,
+        record: &mut Record,
+    ) -> Step {
+        let held = self.held.take();
+        let newer = self.read().or(held).map(|goal| {
+            let (unstarted, _) = *self.unstarted.get_or_insert((goal.id, fault));
+            if goal.id != unstarted {
+                return goal;
+            }
+            Goal {
+                target: Target::Rest,
+                then: Then::Finish,
+                ..goal
+            }
+        });
+        self.follow(newer, state, record)
+    }
+
+    fn read(&mut self) -> Option<Goal> {
+        match self.goals.read_newer() {
             Read::Newer(goal) => Some(goal),
             // A torn read keeps the previous goal for this cycle; the next cycle sees the new one whole.
             Read::Same | Read::Torn => None,
-        };
+        }
+    }
+
+    /// Takes up a newer goal, if there is one, and answers one state.
+    fn follow(&mut self, newer: Option<Goal>, state: &RobotState, record: &mut Record) -> Step {
         let active = match (&mut self.active, newer) {
             (Some(active), newer) => {
                 if let Some(goal) = newer {
@@ -205,7 +268,16 @@ impl TargetSession {
                 };
             }
         };
-        active.step(&self.model, state, record)
+        let mut step = active.step(&self.model, state, record);
+        if let Some(SessionEvent::Settled {
+            goal, settlement, ..
+        }) = &mut step.event
+            && let Some((unstarted, fault)) = self.unstarted
+            && *goal == unstarted
+        {
+            *settlement = Settlement::Unstarted(fault);
+        }
+        step
     }
 }
 

@@ -7,6 +7,7 @@
 //! | [`slot`] | newest values: goals in, states out |
 //! | [`desk`] | the cycle, lent to a thread of the user's |
 //! | [`bell`] | "look", and "it has ended" |
+//! | [`together`] | motions of several robots that begin together, or not at all |
 //!
 //! The queues are rtrb's and not explored here: nothing of ours is inside them, and loom cannot see into a crate that is
 //! not built for it. rtrb 0.4 has no loom models; its own tests are written for Miri and the thread sanitizer. Counters and
@@ -16,3 +17,4 @@
 mod bell;
 mod desk;
 mod slot;
+mod together;

@@ -120,6 +120,7 @@ impl Trace {
             modes,
             program: Program::Callback(Box::new(callback)),
             log: ControlLog::default(),
+            ticket: None,
         });
         case.equal("cycles", states.len(), self.cycles.len());
         for (state, cycle) in states.iter().zip(&self.cycles) {

@@ -22,10 +22,12 @@ use std::time::Duration;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
 use franka_proto::{MoveRequest, Request, RobotCommand};
+use franka_rt::control::Callback;
 use franka_rt::driver::Program;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::{Budget, Goal, GoalError, GoalId, Target, Then, Tolerance};
+use franka_rt::together::StartTicket;
 use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
 
@@ -200,6 +202,47 @@ impl Lockstep {
         let submitted = lifecycle.submit(goal, state, *now);
         self.client.carry_out();
         submitted.map(|()| goal.id)
+    }
+
+    /// Submits a goal that begins together with those of other robots.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn submit_together(
+        &mut self,
+        goal: Goal,
+        ticket: StartTicket,
+    ) -> Result<GoalId, MotionError> {
+        if !matches!(goal.target, Target::Pose(_)) {
+            self.joint_goals.insert(goal.id);
+        }
+        let Client {
+            lifecycle,
+            state,
+            now,
+            ..
+        } = &mut self.client;
+        let submitted = lifecycle.submit_together(goal, ticket, state, *now);
+        self.client.carry_out();
+        submitted.map(|()| goal.id)
+    }
+
+    /// Starts a control function that begins together with the motions of other robots; see [`Self::control`].
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn control_together(
+        &mut self,
+        callback: Callback,
+        request: MoveRequest,
+        ticket: StartTicket,
+    ) -> Result<GoalId, MotionError> {
+        self.guard = None;
+        let id = self.client.next_goal();
+        let Client { lifecycle, now, .. } = &mut self.client;
+        let begun = lifecycle.control_together(id, Box::new(callback), request, ticket, *now);
+        self.client.carry_out();
+        begun.map(|()| id)
     }
 
     /// Submits a motion that ends at `target`.

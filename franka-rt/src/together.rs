@@ -1,0 +1,502 @@
+//! Motions of several robots that begin together.
+//!
+//! ```text
+//!  StartBarrier::tickets --> one StartTicket for each motion
+//!
+//!               the last one arrives
+//!   waiting ---------------------------> open     every motion begins with its next state
+//!      |
+//!      +-------------------------------> broken   none begins; each resolves as StartFault
+//!         a member is dropped, ends, is taken back, or has waited too long
+//! ```
+//!
+//! A motion *arrives* when its robot shows the motion's modes. From then on its thread answers every state with a command
+//! that holds the arm, as the robot wants it of a motion's first commands, until the last member has arrived. Each thread
+//! looks once in each of its own cycles, so the motions begin within a millisecond of each other: the robots' clocks are
+//! not synchronised, and nobody can do better than the next state of each.
+//!
+//! All of it is one atomic word, which leaves `waiting` once and for all. No thread ever waits for another one: looking is
+//! a load, arriving and leaving a compare-and-exchange, repeated only if another member changed the word in between. Each
+//! member does that twice at most, which bounds the repetitions.
+
+#[cfg(loom)]
+use loom::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+#[cfg(not(loom))]
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+
+use core::time::Duration;
+
+/// A common start, before its tickets are handed out.
+///
+/// ```
+/// use franka_rt::together::StartBarrier;
+///
+/// let [left, right] = StartBarrier::new().tickets();
+/// assert_eq!((left.member(), right.member()), (0, 1));
+/// drop(right); // its motion will never begin, so the other one will not either
+/// let fault = left.fault().expect("a member is gone");
+/// assert_eq!(fault.to_string(), "member 1 of the common start was dropped or refused before it began");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use = "a common start is nothing without its tickets"]
+pub struct StartBarrier {
+    timeout: Duration,
+}
+
+impl Default for StartBarrier {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl StartBarrier {
+    /// How long a motion waits for the others unless said otherwise: twice as long as a robot may take to show the modes
+    /// of a motion.
+    pub const TIMEOUT: Duration = Duration::from_secs(10);
+
+    /// The most members.
+    pub const MEMBERS_MAX: usize = u16::MAX as usize;
+
+    /// A start that waits for [`Self::TIMEOUT`] at most.
+    pub fn new() -> Self {
+        Self {
+            timeout: Self::TIMEOUT,
+        }
+    }
+
+    /// Replaces the time that a motion waits for the others, counted from its own arrival by its robot's clock.
+    pub fn timeout(mut self, timeout: Duration) -> Self {
+        self.timeout = timeout;
+        self
+    }
+
+    /// One ticket for each of `N` motions.
+    pub fn tickets<const N: usize>(self) -> [StartTicket; N] {
+        const { assert!(N <= Self::MEMBERS_MAX, "so many members fit") };
+        let shared = self.shared(N);
+        core::array::from_fn(|member| StartTicket::new(shared.clone(), member))
+    }
+
+    /// One ticket for each of `members` motions, where their number is not known to the compiler.
+    ///
+    /// # Panics
+    /// Beyond [`Self::MEMBERS_MAX`].
+    pub fn tickets_for(self, members: usize) -> Vec<StartTicket> {
+        assert!(members <= Self::MEMBERS_MAX, "so many members fit");
+        let shared = self.shared(members);
+        let ticket = |member| StartTicket::new(shared.clone(), member);
+        (0..members).map(ticket).collect()
+    }
+
+    fn shared(self, members: usize) -> Arc<Shared> {
+        Arc::new(Shared {
+            word: AtomicU64::new(Word::Waiting { present: 0 }.into()),
+            members: members as u16,
+            timeout: self.timeout,
+        })
+    }
+}
+
+/// The right, and the duty, of one motion to begin together with others. Dropping it before the start lets the others go,
+/// with an error.
+#[derive(Debug)]
+#[must_use = "dropping a ticket ends the common start"]
+pub struct StartTicket {
+    shared: Arc<Shared>,
+    member: u16,
+    step: Step,
+}
+
+/// How far a member has come.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    Outside,
+    /// It waits since this time of its robot, `[ms]`.
+    Arrived(u64),
+    /// It waits no more.
+    Decided(Gate),
+}
+
+/// Whether a motion may begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gate {
+    /// Not yet.
+    Closed,
+    /// Now; it stays so.
+    Open,
+    /// It will not; it stays so.
+    Broken(StartFault),
+}
+
+/// Caller: why motions that were to begin together did not. Members count from 0, in the order of their tickets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StartFault {
+    /// A ticket, or the motion that had it, was dropped before it was awaited; or the motion was refused before its robot was
+    /// asked.
+    #[error("member {member} of the common start was dropped or refused before it began")]
+    Dropped {
+        /// Which.
+        member: usize,
+    },
+    /// A motion was dropped, stopped or superseded while it waited.
+    #[error("member {member} of the common start was taken back while it waited")]
+    Withdrawn {
+        /// Which.
+        member: usize,
+    },
+    /// A motion ended before the start: its robot refused it, stopped, or fell silent. Its own error says what happened.
+    #[error("the motion of member {member} ended before the common start")]
+    Ended {
+        /// Which.
+        member: usize,
+    },
+    /// Not all were there in time.
+    #[error(
+        "{present} of {members} members were there when the common start was given up, after {} ms",
+        .waited.as_millis()
+    )]
+    TimedOut {
+        /// How many had arrived.
+        present: usize,
+        /// How many there are.
+        members: usize,
+        /// How long the first of them to give up had waited.
+        waited: Duration,
+    },
+}
+
+/// Why a member leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cause {
+    Dropped,
+    Withdrawn,
+    Ended,
+    TimedOut,
+}
+
+impl StartTicket {
+    fn new(shared: Arc<Shared>, member: usize) -> Self {
+        Self {
+            shared,
+            member: member as u16,
+            step: Step::Outside,
+        }
+    }
+
+    /// Its number, from 0 in the order of the tickets.
+    pub fn member(&self) -> usize {
+        self.member.into()
+    }
+
+    /// Why there will be no common start, if that is so already.
+    pub fn fault(&self) -> Option<StartFault> {
+        match self.shared.gate() {
+            Gate::Broken(fault) => Some(fault),
+            Gate::Closed | Gate::Open => None,
+        }
+    }
+
+    /// Arrives, the first time, and tells whether the motion may begin at `now`, `[ms]` of its robot's clock. Never waits.
+    pub fn pass(&mut self, now: u64) -> Gate {
+        let since = match self.step {
+            Step::Decided(gate) => return gate,
+            Step::Arrived(since) => since,
+            Step::Outside => {
+                self.shared.arrive();
+                self.step = Step::Arrived(now);
+                now
+            }
+        };
+        let mut gate = self.shared.gate();
+        let waited = u128::from(now.saturating_sub(since));
+        if gate == Gate::Closed && waited >= self.shared.timeout.as_millis() {
+            self.shared.leave(self.member, Cause::TimedOut);
+            gate = self.shared.gate();
+        }
+        if gate != Gate::Closed {
+            self.step = Step::Decided(gate);
+        }
+        gate
+    }
+
+    /// Whether it is still to be decided whether the motion begins.
+    pub fn is_undecided(&self) -> bool {
+        !matches!(self.step, Step::Decided(_))
+    }
+
+    /// Why the motion that has this ticket did not begin, if that is why.
+    pub fn refusal(&self) -> Option<StartFault> {
+        match self.step {
+            Step::Decided(Gate::Broken(fault)) => Some(fault),
+            _ => None,
+        }
+    }
+
+    /// Takes the motion out of the common start: it goes on by itself. The others are let go, if they wait still.
+    pub fn withdraw(&mut self) {
+        if self.is_undecided() {
+            self.shared.leave(self.member, Cause::Withdrawn);
+            self.step = Step::Decided(Gate::Open);
+        }
+    }
+
+    /// Takes note that the motion has ended. The others are let go, if they wait still.
+    pub fn end(&mut self) {
+        self.leave(Cause::Ended);
+    }
+
+    fn leave(&mut self, cause: Cause) {
+        if self.is_undecided() {
+            self.shared.leave(self.member, cause);
+            self.step = Step::Decided(self.shared.gate());
+        }
+    }
+}
+
+impl Drop for StartTicket {
+    fn drop(&mut self) {
+        self.leave(Cause::Dropped);
+    }
+}
+
+#[derive(Debug)]
+struct Shared {
+    word: AtomicU64,
+    members: u16,
+    timeout: Duration,
+}
+
+/// What the word says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Word {
+    /// Or open, once all are present.
+    Waiting { present: u16 },
+    /// `member` has left, with so many present.
+    Broken {
+        present: u16,
+        member: u16,
+        cause: Cause,
+    },
+}
+
+impl Shared {
+    fn gate(&self) -> Gate {
+        // Relaxed, here and below: nothing but the word itself is read on the strength of it, and the changes of one
+        // atomic have one order that every thread sees.
+        match Word::from(self.word.load(Ordering::Relaxed)) {
+            Word::Waiting { present } if present == self.members => Gate::Open,
+            Word::Waiting { .. } => Gate::Closed,
+            Word::Broken {
+                present,
+                member,
+                cause,
+            } => Gate::Broken(self.fault(present, member, cause)),
+        }
+    }
+
+    fn fault(&self, present: u16, member: u16, cause: Cause) -> StartFault {
+        let member = member.into();
+        match cause {
+            Cause::Dropped => StartFault::Dropped { member },
+            Cause::Withdrawn => StartFault::Withdrawn { member },
+            Cause::Ended => StartFault::Ended { member },
+            Cause::TimedOut => StartFault::TimedOut {
+                present: present.into(),
+                members: self.members.into(),
+                waited: self.timeout,
+            },
+        }
+    }
+
+    fn arrive(&self) {
+        self.change(|present| Word::Waiting {
+            present: present + 1,
+        });
+    }
+
+    fn leave(&self, member: u16, cause: Cause) {
+        self.change(|present| Word::Broken {
+            present,
+            member,
+            cause,
+        });
+    }
+
+    /// Replaces the word while it is neither open nor broken; what it says afterwards stays otherwise.
+    fn change(&self, to: impl Fn(u16) -> Word) {
+        let mut word = self.word.load(Ordering::Relaxed);
+        while let Word::Waiting { present } = Word::from(word)
+            && present < self.members
+        {
+            // Strong: it fails only if another member has changed the word, which each does twice at most.
+            match self.word.compare_exchange(
+                word,
+                to(present).into(),
+                Ordering::Relaxed,
+                Ordering::Relaxed,
+            ) {
+                Ok(_) => return,
+                Err(newer) => word = newer,
+            }
+        }
+    }
+}
+
+/// Bits of the word: 0 to 15 who is present, 16 to 31 who has left, 32 to 39 why (0: nobody has).
+impl From<Word> for u64 {
+    fn from(word: Word) -> Self {
+        match word {
+            Word::Waiting { present } => present.into(),
+            Word::Broken {
+                present,
+                member,
+                cause,
+            } => {
+                let cause = match cause {
+                    Cause::Dropped => 1,
+                    Cause::Withdrawn => 2,
+                    Cause::Ended => 3,
+                    Cause::TimedOut => 4,
+                };
+                u64::from(present) | u64::from(member) << 16 | cause << 32
+            }
+        }
+    }
+}
+
+impl From<u64> for Word {
+    fn from(word: u64) -> Self {
+        let present = word as u16;
+        let cause = match word >> 32 {
+            0 => return Self::Waiting { present },
+            1 => Cause::Dropped,
+            2 => Cause::Withdrawn,
+            3 => Cause::Ended,
+            _ => Cause::TimedOut,
+        };
+        Self::Broken {
+            present,
+            member: (word >> 16) as u16,
+            cause,
+        }
+    }
+}
+
+#[cfg(all(test, not(loom)))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gate_opens_for_all_when_the_last_has_arrived() {
+        let mut tickets = StartBarrier::new().tickets_for(5);
+        for now in 0..4 {
+            for ticket in &mut tickets[..4] {
+                assert_eq!(ticket.pass(now), Gate::Closed);
+            }
+        }
+        assert_eq!(tickets[4].pass(17), Gate::Open);
+        for ticket in &mut tickets {
+            assert_eq!(ticket.pass(4), Gate::Open);
+        }
+        // Whatever happens to one of them now concerns nobody else.
+        drop(tickets.remove(0));
+        tickets[0].end();
+        for ticket in &mut tickets {
+            assert_eq!((ticket.pass(5), ticket.fault()), (Gate::Open, None));
+        }
+        let [mut alone] = StartBarrier::new().tickets();
+        assert_eq!(alone.pass(0), Gate::Open);
+    }
+
+    #[test]
+    fn a_member_that_leaves_lets_the_others_go_with_its_number() {
+        type Leaving = fn(StartTicket);
+        let ways: [(Leaving, StartFault); 3] = [
+            (drop, StartFault::Dropped { member: 1 }),
+            (
+                |mut ticket| ticket.withdraw(),
+                StartFault::Withdrawn { member: 1 },
+            ),
+            (|mut ticket| ticket.end(), StartFault::Ended { member: 1 }),
+        ];
+        for (leave, fault) in ways {
+            for arrived in [false, true] {
+                let [mut first, mut second, mut third] = StartBarrier::new().tickets();
+                assert_eq!(first.pass(0), Gate::Closed);
+                if arrived {
+                    assert_eq!(second.pass(0), Gate::Closed);
+                }
+                assert_eq!(first.fault(), None);
+                leave(second);
+                assert_eq!(first.fault(), Some(fault));
+                assert_eq!(first.pass(1), Gate::Broken(fault));
+                assert_eq!(first.refusal(), Some(fault));
+                // One that comes later hears of it, too; what it does then changes nothing.
+                assert_eq!(third.pass(1), Gate::Broken(fault));
+                drop(third);
+                assert_eq!(first.pass(2), Gate::Broken(fault));
+            }
+        }
+    }
+
+    #[test]
+    fn who_is_taken_out_goes_on_by_itself() {
+        let [mut first, mut second] = StartBarrier::new().tickets();
+        assert_eq!(first.pass(0), Gate::Closed);
+        first.withdraw();
+        assert_eq!((first.pass(1), first.refusal()), (Gate::Open, None));
+        assert_eq!(
+            second.pass(0),
+            Gate::Broken(StartFault::Withdrawn { member: 0 })
+        );
+    }
+
+    #[test]
+    fn waiting_ends_at_the_timeout_of_whoever_came_first() {
+        let waited = Duration::from_millis(250);
+        let [mut first, mut second, third] = StartBarrier::new().timeout(waited).tickets();
+        assert_eq!(first.pass(1000), Gate::Closed);
+        assert_eq!(second.pass(70), Gate::Closed);
+        assert_eq!(first.pass(1249), Gate::Closed);
+        assert_eq!(second.pass(319), Gate::Closed);
+        let fault = StartFault::TimedOut {
+            present: 2,
+            members: 3,
+            waited,
+        };
+        assert_eq!(first.pass(1250), Gate::Broken(fault));
+        assert_eq!(second.pass(320), Gate::Broken(fault));
+        assert_eq!(third.fault(), Some(fault));
+        assert_eq!(
+            fault.to_string(),
+            "2 of 3 members were there when the common start was given up, after 250 ms"
+        );
+    }
+
+    #[test]
+    fn a_word_survives_its_number() {
+        let words = [
+            Cause::Dropped,
+            Cause::Withdrawn,
+            Cause::Ended,
+            Cause::TimedOut,
+        ]
+        .map(|cause| Word::Broken {
+            present: 65_534,
+            member: 65_535,
+            cause,
+        })
+        .into_iter()
+        .chain([0, 1, 65_535].map(|present| Word::Waiting { present }));
+        for word in words {
+            assert_eq!(Word::from(u64::from(word)), word);
+        }
+    }
+}
