@@ -7,10 +7,13 @@ use franka_proto::{
     ControllerMode, MotionGeneratorMode, RobotError, RobotMode, RobotState, Version,
 };
 use franka_rt::control::{ActiveControl, Callback, Command, Finish, Next, Torques};
-use franka_rt::driver::{ControlLog, Driver, Event, LINK_TIMEOUT, Modes, MotionId, Order, Program};
+use franka_rt::driver::{
+    Activity, ControlLog, Driver, Event, LINK_TIMEOUT, Modes, MotionId, Order, Program,
+};
 use franka_rt::law::Gains;
 use franka_rt::session::{Budget, Goal, GoalId, Target, TargetSession, Then, Tolerance};
 use franka_rt::slot;
+use franka_rt::together::{StartBarrier, StartTicket};
 
 use crate::calls_during;
 
@@ -94,6 +97,8 @@ fn programs(end: End) -> [Program; 3] {
 struct Counted {
     driver: Driver,
     motion: u64,
+    /// Of the next motion that is armed.
+    ticket: Option<StartTicket>,
     time: u64,
     calls: u64,
     /// What has been told, by name.
@@ -102,6 +107,18 @@ struct Counted {
 }
 
 impl Counted {
+    fn new(listens: bool) -> Self {
+        Self {
+            driver: Driver::new(VERSION),
+            motion: 0,
+            ticket: None,
+            time: 0,
+            calls: 0,
+            told: BTreeSet::new(),
+            listens,
+        }
+    }
+
     fn order(&mut self, order: Order) {
         self.calls += calls_during(|| self.driver.on_order(order));
     }
@@ -112,6 +129,7 @@ impl Counted {
             modes: MODES,
             program,
             log: ControlLog::with_capacity(50),
+            ticket: self.ticket.take(),
         };
         self.order(order);
     }
@@ -200,14 +218,7 @@ impl Counted {
 }
 
 fn calls_of_motions(listens: bool, cycles: u64) -> u64 {
-    let mut counted = Counted {
-        driver: Driver::new(VERSION),
-        motion: 0,
-        time: 0,
-        calls: 0,
-        told: BTreeSet::new(),
-        listens,
-    };
+    let mut counted = Counted::new(listens);
     while counted.time < cycles {
         for end in ENDS {
             for program in programs(end) {
@@ -224,6 +235,35 @@ fn calls_of_motions(listens: bool, cycles: u64) -> u64 {
 #[test]
 fn motions_that_end_in_every_way_allocate_and_free_nothing() {
     assert_eq!(calls_of_motions(true, 100_000), 0);
+}
+
+#[test]
+fn motions_that_wait_for_others_allocate_and_free_nothing() {
+    let mut counted = Counted::new(true);
+    for comes in [true, false] {
+        let [callback, target, _] = programs(End::Reflex);
+        for program in [callback, target] {
+            let [own, mut other] = StartBarrier::new().tickets();
+            counted.motion += 1;
+            counted.ticket = Some(own);
+            counted.arm(program);
+            for _ in 0..RUNNING {
+                counted.state(RobotMode::Move);
+                assert_eq!(counted.driver.record().activity, Activity::Waiting);
+            }
+            if comes {
+                other.pass(0);
+            }
+            drop(other);
+            for _ in 0..10 * RUNNING {
+                counted.state(RobotMode::Move);
+                assert_ne!(counted.driver.record().activity, Activity::Waiting);
+            }
+            counted.state(RobotMode::Idle);
+            assert!(counted.driver.is_watching());
+        }
+    }
+    assert_eq!(counted.calls, 0);
 }
 
 #[test]
