@@ -1,6 +1,6 @@
 //! A web service that holds a robot: POST /move_to, POST /stop, GET /state, GET /events (server-sent events).
 //!
-//! `cargo run --release --example axum_service [ADDRESS] [--listen 127.0.0.1:8080]`, then
+//! `cargo run --release --example axum_service -- [ADDRESS] [--listen 127.0.0.1:8080]`, then
 //! `curl -X POST -H 'content-type: application/json' -d '[0, 0, 0.05]' localhost:8080/move_to`
 
 use std::convert::Infallible;

@@ -1,6 +1,6 @@
 //! Moves the joints to the ready pose: hand in front of the arm and pointing down, far from limits and singularities.
 //!
-//! `cargo run --release --example move_to_ready [ADDRESS] [--speed FACTOR]`
+//! `cargo run --release --example move_to_ready -- [ADDRESS] [--speed FACTOR]`
 
 use clap::Parser;
 use franka_examples::{Connection, Summary};

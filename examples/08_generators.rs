@@ -1,6 +1,6 @@
 //! The robot's four motion generators, each under a control function: a small motion there and back, at rest at both ends.
 //!
-//! `cargo run --release --example generators joint-positions [ADDRESS]`, likewise `joint-velocities`, `cartesian-pose` and
+//! `cargo run --release --example generators -- joint-positions [ADDRESS]`, likewise `joint-velocities`, `cartesian-pose` and
 //! `cartesian-velocities`
 
 use clap::{Parser, ValueEnum};

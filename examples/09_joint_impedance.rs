@@ -1,7 +1,7 @@
 //! A joint impedance law of one's own: the robot's generator turns a circle of the hand into joint references, and a
 //! second control function turns these into torques, in the place of the robot's own controller.
 //!
-//! `cargo run --release --example joint_impedance [ADDRESS]`
+//! `cargo run --release --example joint_impedance -- [ADDRESS]`
 
 use std::f64::consts::TAU;
 

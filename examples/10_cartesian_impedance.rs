@@ -1,7 +1,7 @@
 //! A Cartesian impedance law of one's own: the hand hangs on springs at the place where it is, and can be pushed aside.
 //! The same law as a control function, and on a thread of this program that reads states and writes commands itself.
 //!
-//! `cargo run --release --example cartesian_impedance callback [ADDRESS] [--seconds 10]`, likewise `active`
+//! `cargo run --release --example cartesian_impedance -- callback [ADDRESS] [--seconds 10]`, likewise `active`
 
 use clap::{Parser, ValueEnum};
 use franka_async::{Finish, Model, MotionError, MotionReport, Pose, Robot, RobotState, Torques};

@@ -1,7 +1,7 @@
 //! Draws figures of eight with the hand, upright and across the arm. The size grows from nothing and shrinks to nothing,
 //! so that the motion begins and ends at rest although the figure itself never stands still.
 //!
-//! `cargo run --release --example figure_eight [ADDRESS] [--laps 3]`
+//! `cargo run --release --example figure_eight -- [ADDRESS] [--laps 3]`
 
 use std::f64::consts::TAU;
 

@@ -1,7 +1,7 @@
 //! The hand is free to be led about, above a floor that is not there: a spring and a damper that only push upwards. The
 //! elbow is drawn back to its posture by springs that the hand does not feel.
 //!
-//! `cargo run --release --example virtual_floor [ADDRESS] [--below 0.05] [--seconds 20]`
+//! `cargo run --release --example virtual_floor -- [ADDRESS] [--below 0.05] [--seconds 20]`
 
 use clap::Parser;
 use franka_async::{Finish, Model, RobotState, Torques};

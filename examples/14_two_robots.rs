@@ -1,7 +1,7 @@
 //! Two arms at once from one program: both go to their ready pose, then swing like in a mirror. Whatever ends the motion of
 //! one has the other stop.
 //!
-//! `cargo run --release --example two_robots [ADDRESS OTHER]`
+//! `cargo run --release --example two_robots -- [ADDRESS OTHER]`
 
 use clap::Parser;
 use franka_async::{Control, Finish, JointPositions, Robot};

@@ -1,7 +1,7 @@
 //! Provokes a reflex, shows what the robot says of it, recovers and goes on: what a program does that is to outlive an
 //! error which nobody has to look at.
 //!
-//! `cargo run --release --example recovery [ADDRESS] [--log FILE.csv]`
+//! `cargo run --release --example recovery -- [ADDRESS] [--log FILE.csv]`
 
 use std::path::PathBuf;
 
