@@ -31,6 +31,8 @@ pub struct Client {
     from_robot: Vec<u8>,
     outcomes: BTreeMap<GoalId, Outcome>,
     goals: u64,
+    /// Whether the command connection has ended.
+    closed: bool,
 }
 
 impl Client {
@@ -48,6 +50,7 @@ impl Client {
             from_robot: Vec::new(),
             outcomes: BTreeMap::new(),
             goals: 0,
+            closed: false,
         }
     }
 
@@ -93,32 +96,48 @@ impl Client {
         self.to_robot.pop_front()
     }
 
-    /// Takes bytes of the robot's stream, cut anywhere.
-    ///
-    /// # Panics
-    /// If the robot leaves the protocol.
+    /// Takes bytes of the robot's stream, cut anywhere. What leaves the protocol ends the motion that it answers, or else the
+    /// connection, after which nothing is taken any more.
     pub fn on_bytes(&mut self, bytes: &[u8]) {
         let mut received = std::mem::take(&mut self.from_robot);
         received.extend_from_slice(bytes);
         let mut rest = &received[..];
-        while let Some(message) = next_message(rest).expect("the robot's messages are well-formed")
-        {
+        while !self.closed {
+            let message = match next_message(rest) {
+                Ok(Some(message)) => message,
+                Ok(None) => break,
+                Err(error) => return self.close(&error.to_string()),
+            };
             rest = &rest[message.header.size as usize..];
-            let event = self
-                .session
-                .on_message(message)
-                .expect("the robot keeps to the protocol");
-            if let Event::Reply {
-                id,
-                reply: Reply::Move(status),
-                ..
-            } = event
-            {
-                let motion = self.motions[&id];
-                self.lifecycle.on_move_reply(motion, status, self.now);
+            match self.session.on_message(message) {
+                Ok(Event::Reply {
+                    id,
+                    reply: Reply::Move(status),
+                    ..
+                }) => {
+                    let motion = self.motions[&id];
+                    self.lifecycle.on_move_reply(motion, status, self.now);
+                }
+                Ok(_) => {}
+                Err(violation) if violation.is_fatal() => {
+                    return self.close(&violation.to_string());
+                }
+                Err(violation) => self.on_violation(violation),
             }
         }
         self.from_robot = rest.to_vec();
+    }
+
+    /// Tells the lifecycle, if it is a motion's reply that cannot be read.
+    fn on_violation(&mut self, violation: Violation) {
+        let (Violation::Reply { id, .. } | Violation::SecondMotionStarted { id }) = &violation
+        else {
+            return;
+        };
+        if let Some(&motion) = self.motions.get(id) {
+            self.lifecycle
+                .on_move_violation(motion, violation, self.now);
+        }
     }
 
     /// What the control thread does between a state and its command: takes the datagram, and returns the size of the
@@ -180,16 +199,22 @@ impl Client {
         self.carry_out();
     }
 
+    /// The newest motion, and the request that began it.
+    ///
+    /// # Panics
+    /// If there was no motion yet.
+    pub fn newest_motion(&self) -> (CommandId, MotionId) {
+        let newest = self.motions.iter().max_by_key(|(_, motion)| **motion);
+        let (&id, &motion) = newest.expect("a motion has begun");
+        (id, motion)
+    }
+
     /// Has the newest motion's command connection bring a reply that cannot be read.
     ///
     /// # Panics
     /// If there was no motion yet.
     pub fn violate(&mut self) {
-        let (&id, &motion) = self
-            .motions
-            .iter()
-            .max_by_key(|(_, motion)| **motion)
-            .expect("a motion has begun");
+        let (id, motion) = self.newest_motion();
         let violation = Violation::SecondMotionStarted { id };
         self.lifecycle
             .on_move_violation(motion, violation, self.now);
@@ -198,6 +223,7 @@ impl Client {
 
     /// The command connection has ended, in the words of its reader.
     pub fn close(&mut self, reason: &str) {
+        self.closed = true;
         self.lifecycle.on_connection_closed(reason);
         self.carry_out();
     }
@@ -212,6 +238,13 @@ impl Client {
         self.outcomes.get(&id)
     }
 
+    /// Gives up waiting for replies to the motions so far: the lifecycle begins one after the other.
+    fn forget_motions(&mut self) {
+        for (id, _) in self.motions.drain() {
+            self.session.abandon(id);
+        }
+    }
+
     /// Carries out what the lifecycle has decided, in its order. Returns whether that was anything.
     pub(super) fn carry_out(&mut self) -> bool {
         let mut any = false;
@@ -220,11 +253,17 @@ impl Client {
             match output {
                 Output::Order(order) => self.driver.on_order(order),
                 Output::Send { motion, request } => {
+                    let begins = matches!(request, Request::Move(_));
+                    if begins {
+                        self.forget_motions();
+                    }
                     let outgoing = self
                         .session
                         .request(&request)
                         .expect("the session takes it");
-                    self.motions.insert(outgoing.id(), motion);
+                    if begins {
+                        self.motions.insert(outgoing.id(), motion);
+                    }
                     self.to_robot.push_back(outgoing.as_bytes().to_vec());
                 }
                 Output::Began { .. } => {}

@@ -1,4 +1,4 @@
-//! What the network loses, from a seed.
+//! What the network loses: from a seed, or what it is told to.
 
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -13,17 +13,18 @@ pub struct Link {
     pub command_loss: f64,
     /// Datagrams that are lost next, whatever the probabilities say: states, commands.
     drop_next: (u64, u64),
+    /// Finishing commands that are lost next.
+    drop_finishing: u64,
+    /// Whether requests reach the robot. While they do not, they are lost.
+    pub requests: bool,
+    /// Whether the robot's replies arrive.
+    pub replies: bool,
 }
 
 impl Link {
     /// Loses nothing.
     pub fn perfect() -> Self {
-        Self {
-            random: SmallRng::seed_from_u64(0),
-            state_loss: 0.0,
-            command_loss: 0.0,
-            drop_next: (0, 0),
-        }
+        Self::lossy(0, 0.0, 0.0)
     }
 
     /// Loses states and commands with these probabilities.
@@ -33,6 +34,9 @@ impl Link {
             state_loss,
             command_loss,
             drop_next: (0, 0),
+            drop_finishing: 0,
+            requests: true,
+            replies: true,
         }
     }
 
@@ -46,16 +50,22 @@ impl Link {
         self.drop_next.1 = count;
     }
 
+    /// Loses the next `count` commands that end a motion.
+    pub fn drop_finishing(&mut self, count: u64) {
+        self.drop_finishing = count;
+    }
+
     pub(super) fn passes_state(&mut self) -> bool {
         let lost = self.random.random_bool(self.state_loss);
         let dropped = take_one(&mut self.drop_next.0);
         !(lost || dropped)
     }
 
-    pub(super) fn passes_command(&mut self) -> bool {
+    pub(super) fn passes_command(&mut self, finishing: bool) -> bool {
         let lost = self.random.random_bool(self.command_loss);
         let dropped = take_one(&mut self.drop_next.1);
-        !(lost || dropped)
+        let last = finishing && take_one(&mut self.drop_finishing);
+        !(lost || dropped || last)
     }
 }
 

@@ -22,7 +22,7 @@ use std::time::Duration;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
 use franka_proto::{MoveRequest, Request, RobotCommand};
-use franka_rt::control::Callback;
+use franka_rt::control::{Callback, Command, WriteError};
 use franka_rt::driver::Program;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
@@ -76,11 +76,7 @@ impl Lockstep {
             milliseconds: 0,
             heard: 0,
         };
-        assert!(this.robot.connect(), "a fresh robot takes a client");
-        this.client.connect(40_000);
-        this.run(5);
-        assert!(this.client.is_connected(), "the handshake is done");
-        assert!(this.client.state.message_id > 0, "states come");
+        this.connect();
         this
     }
 
@@ -120,9 +116,11 @@ impl Lockstep {
         self.milliseconds += 1;
         self.client.now = Duration::from_millis(self.milliseconds);
         while let Some(bytes) = self.client.take_message() {
-            self.robot
-                .receive(&bytes)
-                .expect("the client's messages are well-formed");
+            if self.link.requests {
+                self.robot
+                    .receive(&bytes)
+                    .expect("the client's messages are well-formed");
+            }
         }
         let state = self.robot.tick().map(|datagram| datagram.bytes.to_vec());
         let mut replies = Vec::new();
@@ -144,21 +142,75 @@ impl Lockstep {
                 self.client.driver.on_silence(silence);
             }
         }
-        self.client.on_bytes(&replies);
+        if self.link.replies {
+            self.client.on_bytes(&replies);
+        }
         self.client.settle();
+    }
+
+    /// So many milliseconds in which nothing arrives from a robot whose own time stands still.
+    pub fn silence(&mut self, milliseconds: u64) {
+        for _ in 0..milliseconds {
+            self.milliseconds += 1;
+            self.client.now = Duration::from_millis(self.milliseconds);
+            let silence = Duration::from_millis(self.milliseconds - self.heard);
+            self.client.driver.on_silence(silence);
+            self.client.settle();
+        }
+    }
+
+    /// Lets the client's clock jump, as that of a host that slept. It misses no state meanwhile.
+    pub fn jump(&mut self, milliseconds: u64) {
+        self.milliseconds += milliseconds;
+        self.heard += milliseconds;
+        self.client.now = Duration::from_millis(self.milliseconds);
+        self.client.settle();
+    }
+
+    /// Writes a command for the newest state of a motion under active control.
+    ///
+    /// # Errors
+    /// As the driver.
+    pub fn write(&mut self, command: &Command, finished: bool) -> Result<(), WriteError> {
+        let sent = self.client.driver.write(command, finished)?;
+        let mut bytes = [0; RobotCommand::MAX_SIZE];
+        let size = sent.encode(self.client.version(), &mut bytes);
+        self.pass_command(&bytes[..size.expect("it fits")]);
+        self.client.settle();
+        Ok(())
+    }
+
+    /// Gives the connection up, if it lives, and opens another one to the same robot over a perfect link.
+    ///
+    /// # Panics
+    /// If the handshake fails.
+    pub fn reconnect(&mut self) {
+        self.robot.disconnect();
+        self.link = Link::perfect();
+        self.heard = self.milliseconds;
+        self.client = Client::new(self.model, self.robot.version());
+        self.connect();
+    }
+
+    fn connect(&mut self) {
+        assert!(self.robot.connect(), "the robot takes a client");
+        self.client.connect(40_000);
+        self.run(5);
+        assert!(self.client.is_connected(), "the handshake is done");
+        assert!(self.client.state.message_id > 0, "states come");
     }
 
     /// Holds a command against the limits, and sends it.
     fn pass_command(&mut self, command: &[u8]) {
         let Client { state, record, .. } = &self.client;
+        let version = self.client.version();
+        let decoded = RobotCommand::decode(version, command).expect("a command of this version");
         if let Some(guard) = &mut self.guard {
-            let version = self.client.version();
-            let decoded =
-                RobotCommand::decode(version, command).expect("a command of this version");
             let over_joints = self.joint_goals.contains(&GoalId(record.goal));
             guard.check(&decoded, state, record, over_joints);
         }
-        if self.link.passes_command() {
+        let finishing = decoded.motion_generation_finished || decoded.torque_command_finished;
+        if self.link.passes_command(finishing) {
             self.robot.command(command);
         }
     }
