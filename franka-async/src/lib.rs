@@ -96,7 +96,7 @@ pub use franka_rt::control::{
 };
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::law::Gains;
-pub use franka_rt::lifecycle::MotionReport;
+pub use franka_rt::lifecycle::{MotionReport, Stage};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};

@@ -6,7 +6,7 @@ use franka_proto::{
 };
 use franka_rt::control::{Callback, Finish, JointVelocities, Torques};
 use franka_rt::driver::Program;
-use franka_rt::lifecycle::{END_TIMEOUT, MotionError};
+use franka_rt::lifecycle::{END_TIMEOUT, MotionError, Stage};
 use franka_rt::shaping::Shaper;
 
 use crate::for_each_version;
@@ -107,7 +107,7 @@ fn scenario_9_a_motion_that_is_finished_at_speed() {
         pair.robot.reply_move(motion.id, MoveStatus::ReflexAborted);
         pair.step();
         let error = pair.control_error(motion.work);
-        assert!(error.while_finishing);
+        assert_eq!(error.stage, Stage::Finishing);
         assert_eq!(
             error.to_string(),
             "Motion finished commanded, but the robot is still moving! \

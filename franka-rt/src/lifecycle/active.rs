@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 
-use super::{ControlError, END_TIMEOUT, MotionError, MotionReport};
+use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
 use crate::driver::{Ended, Ending, Failure, MotionId, MotionStatistics, Order, Program};
 use crate::panic;
 use crate::session::{Goal, GoalError, GoalId, Settlement, Target, Then};
@@ -18,6 +18,9 @@ pub(super) struct Waiting {
     pub(super) cancelled: bool,
 }
 
+/// What a robot does that starts a motion and shows no state of it.
+pub(super) const NEVER_SHOWN: &str = "the robot never showed the modes of the motion";
+
 /// One motion: what the two sides have said so far.
 #[derive(Debug)]
 pub(super) struct Active {
@@ -26,6 +29,8 @@ pub(super) struct Active {
     pub(super) command: CommandSide,
     pub(super) thread: ThreadSide,
     pub(super) deadline: Option<Duration>,
+    /// What the robot had not done by a deadline, so that it was told to stop.
+    pub(super) given_up: Option<&'static str>,
 }
 
 /// What the motion is for.
@@ -112,7 +117,7 @@ impl Active {
             (_, CommandSide::Ended(status)) => status,
             (_, CommandSide::Requested | CommandSide::Started | CommandSide::Cancelled) => {
                 return Err(MotionError::Protocol {
-                    what: "the robot never showed the modes of the motion",
+                    what: self.given_up.unwrap_or(NEVER_SHOWN),
                 });
             }
         };
@@ -121,11 +126,18 @@ impl Active {
             Some(refusal) if ended.ending == Ending::Disarmed && is_rejection(status) => {
                 return Err(MotionError::Rejected(refusal));
             }
-            // A stop that was asked for ends a program's motion in this way.
-            Some(refusal) if status != MoveStatus::Preempted || !self.work.stopped() => {
-                return Err(ControlError::new(refusal, ended).into());
+            // So ends a program's motion on a stop that was asked for, even with its finishing command on its way,
+            Some(_) if status == MoveStatus::Preempted && self.work.stopped() => {
+                return Err(MotionError::Stopped);
             }
-            _ => {}
+            Some(refusal) => {
+                return Err(match (status, self.given_up) {
+                    // and any motion that was given up.
+                    (MoveStatus::Preempted, Some(what)) => MotionError::Protocol { what },
+                    _ => ControlError::new(refusal, ended).into(),
+                });
+            }
+            None => {}
         }
         let outcome = match &self.work {
             Work::Goals(goals) if ended.ending == Ending::Finished => goals.outcome(),
@@ -259,7 +271,11 @@ impl ControlError {
                 success_rate: ended.log.success_rate(),
             },
             errors: ended.errors,
-            while_finishing: ended.ending == Ending::Finished,
+            stage: match ended.ending {
+                Ending::Finished => Stage::Finishing,
+                Ending::Aborted => Stage::Running,
+                Ending::Disarmed | Ending::Refused | Ending::LinkLost { .. } => Stage::Starting,
+            },
             log: Arc::new(ended.log.clone()),
         })
     }

@@ -32,8 +32,8 @@ use crate::driver::{ControlLog, Ending, Event, Modes, MotionId, MotionStatistics
 use crate::session::GoalId;
 use crate::together::StartTicket;
 
-use active::{Active, CommandSide, ThreadSide, Waiting, Work};
-pub use outcome::{ControlError, MotionError, MotionReport, Party};
+use active::{Active, CommandSide, NEVER_SHOWN, ThreadSide, Waiting, Work};
+pub use outcome::{ControlError, MotionError, MotionReport, Party, Stage};
 
 /// Time for the robot to answer a `Move`, and to show the motion's modes after that.
 pub const START_TIMEOUT: Duration = Duration::from_secs(5);
@@ -235,6 +235,11 @@ impl Lifecycle {
                 CommandSide::Requested | CommandSide::Started,
                 ThreadSide::Armed | ThreadSide::Running,
             ) => {
+                active.given_up = Some(match (active.command, &active.thread) {
+                    (_, ThreadSide::Armed) => NEVER_SHOWN,
+                    (CommandSide::Requested, _) => "the robot never answered the Move command",
+                    _ => "the robot did not end a motion that was finished",
+                });
                 active.command = CommandSide::Cancelled;
                 active.deadline = Some(now + END_TIMEOUT);
                 let order = active.abandon();
@@ -332,6 +337,7 @@ impl Lifecycle {
             command: CommandSide::Requested,
             thread: ThreadSide::Armed,
             deadline: Some(now + START_TIMEOUT),
+            given_up: None,
         }));
     }
 

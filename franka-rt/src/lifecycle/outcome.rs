@@ -177,6 +177,18 @@ pub enum Party {
     Peer,
 }
 
+/// How far a motion had come when the robot ended it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Stage {
+    /// None of its states had been answered.
+    Starting,
+    /// It was under way.
+    Running,
+    /// The finishing command was out: the robot may have refused to finish a moving command.
+    Finishing,
+}
+
 /// The robot ended a motion.
 ///
 /// `Display` is the message of libfranka's `ControlException` for the same event.
@@ -189,8 +201,8 @@ pub struct ControlError {
     pub failure: ControlFailure,
     /// Errors that hold, as far as the last state told.
     pub errors: Errors,
-    /// Whether the finishing command was already out: the robot refused to finish a moving command.
-    pub while_finishing: bool,
+    /// How far the motion had come.
+    pub stage: Stage,
     /// The last cycles of the motion, the newest of which shows its end. How many is an option of the connection.
     pub log: Arc<ControlLog>,
 }
@@ -210,17 +222,21 @@ impl ControlError {
 
 impl core::fmt::Display for ControlError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        if !(self.while_finishing && self.is_reflex()) {
-            return write!(f, "{}", self.failure);
+        match self.stage {
+            // libfranka 0.21, `robot_impl.cpp`: a motion that has not begun ends in the refusal's text, and nothing more;
+            Stage::Starting => write!(f, "{}", self.failure.refusal),
+            // and this text takes its place at the end.
+            Stage::Finishing if self.is_reflex() => {
+                write!(
+                    f,
+                    "Motion finished commanded, but the robot is still moving! {}",
+                    self.failure.reflex_reason
+                )?;
+                let rate = self.failure.success_rate;
+                rate.map_or(Ok(()), |rate| write!(f, "{rate}"))
+            }
+            Stage::Running | Stage::Finishing => write!(f, "{}", self.failure),
         }
-        // libfranka 0.21, `robot_impl.cpp`: this text takes the place of the refusal's.
-        write!(
-            f,
-            "Motion finished commanded, but the robot is still moving! {}",
-            self.failure.reflex_reason
-        )?;
-        let rate = self.failure.success_rate;
-        rate.map_or(Ok(()), |rate| write!(f, "{rate}"))
     }
 }
 
