@@ -2,6 +2,7 @@
 
 mod awkward_poses;
 mod endings;
+mod faults;
 mod goals;
 mod random_targets;
 mod reflex_log;

@@ -1,0 +1,253 @@
+//! Connections that end, and robots that say nothing or nonsense.
+
+use franka_proto::framing::Header;
+use franka_proto::{MoveStatus, RobotError};
+use franka_rt::driver::{Activity, LINK_TIMEOUT};
+use franka_rt::lifecycle::{END_TIMEOUT, MotionError, START_TIMEOUT};
+use franka_tests::lockstep::Outcome;
+
+use crate::faults::expect::Expect;
+use crate::faults::program::Deed;
+use crate::faults::trial::{Moment, Trial};
+use crate::faults::variant::Variant;
+use crate::faults::{Matrix, course};
+
+/// One moment of each phase.
+const MOMENTS: [Moment; 4] = [
+    Moment::Armed(2),
+    Moment::Cycle(1),
+    Moment::Cycle(course::REST + course::RAMP),
+    Moment::Finishing(2),
+];
+
+fn closed(reason: &str) -> Expect {
+    let closed = |error: &MotionError| matches!(error, MotionError::ConnectionClosed { .. });
+    Expect::Other(closed, reason.to_owned())
+}
+
+fn protocol(what: &str) -> Expect {
+    let protocol = |error: &MotionError| matches!(error, MotionError::Protocol { .. });
+    Expect::Other(protocol, what.to_owned())
+}
+
+/// How it turned out, if it has.
+fn so_far(trial: &Trial) -> Option<Outcome> {
+    trial.lockstep.client.outcome(trial.work).cloned()
+}
+
+/// It has turned out as expected, nothing more starts, and everything works on a new connection.
+fn starts_over(mut trial: Trial, expected: &Expect) {
+    let outcome = so_far(&trial).expect("resolved at once");
+    expected.check(&trial, &outcome);
+    trial.lockstep.silence(LINK_TIMEOUT.as_millis() as u64);
+    assert!(trial.lockstep.client.driver.is_watching());
+    assert!(trial.lockstep.stop().is_none());
+    trial.lockstep.reconnect();
+    trial.works_again();
+}
+
+#[test]
+fn a_robot_that_closes_the_connection_ends_everything() {
+    const REASON: &str = "libfranka: server closed connection";
+    let mut matrix = Matrix::new("closed");
+    for variant in Variant::all() {
+        for moment in MOMENTS {
+            matrix.case(format_args!("{variant}/{moment:?}"), || {
+                let mut trial = Trial::begin(variant, Deed::Faultless);
+                trial.until(moment);
+                trial.lockstep.robot.disconnect();
+                trial.lockstep.client.close(REASON);
+                starts_over(trial, &closed(REASON));
+            });
+            // The robot takes requests and commands, and sends states, until the client has closed its own side.
+            matrix.case(format_args!("{variant}/{moment:?}/half"), || {
+                let mut trial = Trial::begin(variant, Deed::Faultless);
+                trial.until(moment);
+                trial.lockstep.client.close(REASON);
+                for _ in 0..5 {
+                    trial.lockstep.tick();
+                    let activity = trial.lockstep.client.record.activity;
+                    let commanded = matches!(activity, Activity::Running | Activity::Finishing);
+                    // Nobody is in charge of a program any more; an arm that follows goals is braked.
+                    assert!(!commanded || variant.is_target(), "{activity:?}");
+                }
+                trial.lockstep.robot.disconnect();
+                starts_over(trial, &closed(REASON));
+            });
+        }
+    }
+    matrix.finish();
+}
+
+/// A message that cannot be cut out of the stream leaves nothing to be read after it.
+#[test]
+fn bytes_that_are_no_message_end_the_connection() {
+    let mut matrix = Matrix::new("garbage");
+    for variant in Variant::all() {
+        for moment in MOMENTS {
+            matrix.case(format_args!("{variant}/{moment:?}"), || {
+                let mut trial = Trial::begin(variant, Deed::Faultless);
+                trial.until(moment);
+                trial.lockstep.client.on_bytes(&[0; Header::SIZE]);
+                trial.lockstep.robot.disconnect();
+                starts_over(trial, &closed("libfranka: Incorrect TCP message size."));
+            });
+        }
+    }
+    matrix.finish();
+}
+
+/// The reply is lost on its way: the robot is told to stop, and the connection serves on.
+#[test]
+fn a_reply_that_means_nothing_ends_the_motion() {
+    let mut matrix = Matrix::new("nonsense");
+    let texts = [
+        (
+            0xee,
+            "libfranka: Unexpected response while handling Move command!",
+        ),
+        (
+            MoveStatus::MotionStarted as u8,
+            "libfranka: Move received unexpected motion started message.",
+        ),
+    ];
+    for variant in Variant::all() {
+        for moment in MOMENTS {
+            for (status, text) in texts {
+                matrix.case(format_args!("{variant}/{moment:?}/{status}"), || {
+                    let mut trial = Trial::begin(variant, Deed::Faultless);
+                    trial.until(moment);
+                    let (id, _) = trial.lockstep.client.newest_motion();
+                    let header = Header {
+                        command: 1,
+                        command_id: id.0,
+                        size: Header::SIZE as u32 + 1,
+                    };
+                    let reply = [&header.to_bytes()[..], &[status]].concat();
+                    trial.lockstep.client.on_bytes(&reply);
+                    trial.lockstep.client.settle();
+                    let outcome = so_far(&trial).expect("resolved at once");
+                    let violation =
+                        |error: &MotionError| matches!(error, MotionError::Violation(_));
+                    Expect::Other(violation, text.to_owned()).check(&trial, &outcome);
+                    // Nobody awaits it any more, but it is stopped.
+                    let unchanged = trial.outcome();
+                    assert_eq!(unchanged, outcome);
+                    trial.works_again();
+                });
+            }
+        }
+    }
+    matrix.finish();
+}
+
+/// libfranka waits for ever.
+#[test]
+fn a_move_that_never_arrives_is_given_up() {
+    let mut matrix = Matrix::new("no-move");
+    for variant in Variant::all() {
+        matrix.case(variant, || {
+            let mut trial = Trial::begin(variant, Deed::Faultless);
+            trial.lockstep.link.requests = false;
+            trial.tick();
+            trial.lockstep.link.requests = true;
+            let patience = START_TIMEOUT.as_millis() as u64;
+            trial.lockstep.jump(patience - 2);
+            assert_eq!(so_far(&trial), None);
+            trial.lockstep.jump(1);
+            let outcome = trial.outcome();
+            protocol("the robot never showed the modes of the motion").check(&trial, &outcome);
+            trial.works_again();
+        });
+    }
+    matrix.finish();
+}
+
+/// libfranka waits for ever.
+#[test]
+fn a_motion_whose_replies_are_lost_is_given_up_once_it_has_ended() {
+    let mut matrix = Matrix::new("no-reply");
+    for variant in Variant::all() {
+        matrix.case(variant, || {
+            let mut trial = Trial::begin(variant, Deed::Faultless);
+            trial.lockstep.link.replies = false;
+            while !trial.has_ended() {
+                trial.tick();
+            }
+            let patience = END_TIMEOUT.as_millis() as u64;
+            trial.lockstep.jump(patience - 1);
+            assert_eq!(so_far(&trial), None);
+            trial.lockstep.jump(1);
+            trial.lockstep.link.replies = true;
+            let outcome = trial.outcome();
+            protocol("the robot never said how the motion ended").check(&trial, &outcome);
+            trial.works_again();
+        });
+    }
+    matrix.finish();
+}
+
+/// The robot, which gets no commands either, stops itself meanwhile.
+#[test]
+fn a_robot_that_falls_silent_is_lost_after_the_timeout_and_not_before() {
+    let mut matrix = Matrix::new("silent");
+    for variant in Variant::all() {
+        for moment in MOMENTS {
+            matrix.case(format_args!("{variant}/{moment:?}"), || {
+                let mut trial = Trial::begin(variant, Deed::Faultless);
+                trial.until(moment);
+                trial.lockstep.link.drop_states(u64::MAX);
+                trial.lockstep.link.drop_commands(u64::MAX);
+                // While it is armed, it has heard nothing before either.
+                let heard = match moment {
+                    Moment::Armed(milliseconds) => milliseconds,
+                    _ => 0,
+                };
+                trial.lockstep.run(60);
+                let patience = LINK_TIMEOUT.as_millis() as u64;
+                trial.lockstep.silence(patience - 61 - heard);
+                assert_eq!(so_far(&trial), None);
+                trial.lockstep.silence(1);
+                let lost = |error: &MotionError| matches!(error, MotionError::LinkLost { .. });
+                let text = "libfranka: UDP receive: Timeout (no robot state for 1000 ms)";
+                let outcome = so_far(&trial).expect("resolved at the timeout");
+                Expect::Other(lost, text.to_owned()).check(&trial, &outcome);
+                assert!(trial.lockstep.client.driver.is_watching());
+                trial.works_again();
+            });
+        }
+    }
+    matrix.finish();
+}
+
+/// States go on to come, and the robot goes on to wait for what answers them.
+#[test]
+fn commands_that_never_arrive_end_the_motion_where_it_has_begun() {
+    let mut matrix = Matrix::new("no-command");
+    for (variant, _) in Variant::cyclic() {
+        for cycle in [1, course::REST + course::RAMP, course::END - 1] {
+            matrix.case(format_args!("{variant}/{cycle}"), || {
+                let mut trial = Trial::begin(variant, Deed::Faultless);
+                trial.until(Moment::Cycle(cycle));
+                trial.lockstep.link.drop_commands(u64::MAX);
+                let outcome = trial.outcome();
+                let error = RobotError::CommunicationConstraintsViolation;
+                Expect::reflex([error]).check(&trial, &outcome);
+                trial.works_again();
+            });
+        }
+        // Before the first command the robot waits, and libfranka repeats the last one for ever.
+        matrix.case(format_args!("{variant}/first"), || {
+            let mut trial = Trial::begin(variant, Deed::Faultless);
+            trial.lockstep.link.drop_commands(u64::MAX);
+            trial.until(Moment::Finishing(30));
+            trial.lockstep.jump(END_TIMEOUT.as_millis() as u64 - 32);
+            assert_eq!(so_far(&trial), None);
+            trial.lockstep.jump(32);
+            let outcome = trial.outcome();
+            protocol("the robot did not end a motion that was finished").check(&trial, &outcome);
+            trial.works_again();
+        });
+    }
+    matrix.finish();
+}

@@ -1,0 +1,98 @@
+//! How a motion has to turn out, in the words of the reference client where it has any.
+
+use franka_proto::{Errors, MoveStatus, RobotError, Status};
+use franka_rt::lifecycle::MotionError;
+use franka_tests::lockstep::Outcome;
+
+use crate::faults::trial::Trial;
+
+/// How a motion turns out.
+#[derive(Clone, Debug)]
+pub(crate) enum Expect {
+    /// Well.
+    Done,
+    /// Stopped as asked.
+    Stopped,
+    /// The robot did not begin, being in the mode of this name.
+    Refused(&'static str),
+    /// The robot stopped itself, for all of the `certain` reasons and perhaps some of the `possible` ones.
+    Reflex { certain: Errors, possible: Errors },
+    /// The robot was stopped by hand.
+    UserStop,
+    /// Something else, in these words, that the function recognises.
+    Other(fn(&MotionError) -> bool, String),
+}
+
+impl Expect {
+    /// A reflex for exactly these reasons.
+    pub(crate) fn reflex(errors: impl IntoIterator<Item = RobotError>) -> Self {
+        let errors: Errors = errors.into_iter().collect();
+        Self::Reflex {
+            certain: errors,
+            possible: errors,
+        }
+    }
+
+    /// Holds an outcome of the trial against this.
+    pub(crate) fn check(&self, trial: &Trial, outcome: &Outcome) {
+        let error = match (self, outcome) {
+            (Self::Done, Ok(_)) => return,
+            (Self::Done, Err(error)) => panic!("expected to be done, got {error:?}: {error}"),
+            (_, Ok(report)) => panic!("expected {self:?}, got {report:?}"),
+            (_, Err(error)) => error,
+        };
+        let text = match self {
+            Self::Done | Self::Stopped => {
+                assert_eq!(error, &MotionError::Stopped);
+                return;
+            }
+            Self::Refused(mode) => {
+                let MotionError::Rejected(refusal) = error else {
+                    panic!("expected {self:?}, got {error:?}");
+                };
+                let status = Status::Move(MoveStatus::CommandNotPossibleRejected);
+                assert_eq!(refusal.status(), status);
+                format!(
+                    "libfranka: Move command rejected: command not possible in the current mode (\"{mode}\")!"
+                )
+            }
+            Self::Reflex { certain, possible } => {
+                let errors = reflex_reasons(error);
+                let missing = certain.iter().find(|&certain| !errors.contains(certain));
+                let surplus = errors.iter().find(|&got| !possible.contains(got));
+                assert_eq!((missing, surplus), (None, None), "{self:?}: {error}");
+                reflex_text(trial, errors)
+            }
+            Self::UserStop => {
+                let control = error.control().expect("the robot's doing");
+                assert!(!control.is_reflex(), "{error:?}");
+                "libfranka: Move command aborted: User Stop pressed!".to_owned()
+            }
+            Self::Other(is, text) => {
+                assert!(is(error), "expected {text}, got {error:?}");
+                text.clone()
+            }
+        };
+        assert_eq!(error.to_string(), text);
+    }
+}
+
+/// Why the robot stopped itself.
+fn reflex_reasons(error: &MotionError) -> Errors {
+    let control = error.control().unwrap_or_else(|| panic!("{error:?}"));
+    assert!(control.is_reflex(), "{error:?}");
+    control.failure.reflex_reason
+}
+
+/// The text of a reflex: libfranka 0.21, `robot_impl.cpp`. Before the first cycle it names no reasons,
+/// and has no log to take a rate from.
+fn reflex_text(trial: &Trial, errors: Errors) -> String {
+    let rate = trial.success_rate();
+    match (trial.cycles, trial.finishing) {
+        (0, 0) => "libfranka: Move command aborted: motion aborted by reflex!".to_owned(),
+        (_, 0) => {
+            format!("libfranka: Move command aborted: motion aborted by reflex! {errors}{rate}")
+        }
+        _ => format!("Motion finished commanded, but the robot is still moving! {errors}{rate}"),
+    }
+}
