@@ -54,8 +54,9 @@ fn run(beside: Beside, strict: bool) -> Window {
     let elsewhere = self::runtime(1);
     let sim = Sim::fr3().tool(Tool::hand()).enforce_communication(strict);
     let sim = elsewhere.block_on(sim.start()).unwrap();
-    prefer_the_simulator();
     let robot = runtime.block_on(connect(&sim));
+    // Its thread has sent states, and so has named itself.
+    prefer_the_simulator();
 
     let target = Pose::translation(0.0, 0.0, 0.1) * robot.pose();
     let moving = runtime.spawn(robot.move_to(target).speed(0.2).into_future());
