@@ -4,7 +4,7 @@
 //! `cargo run --release --example two_robots -- [ADDRESS OTHER]`
 
 use clap::Parser;
-use franka_async::{Control, Finish, JointPositions, Robot};
+use franka_async::{Control, Finish, JointPositions, Robot, StartBarrier};
 use franka_examples::{Connection, Ease, Summary, make_ready};
 
 #[derive(Parser)]
@@ -30,8 +30,13 @@ async fn main() -> anyhow::Result<()> {
     connection.ask("and the other one go to their ready poses, and swing aside by 0.3 rad")?;
     tokio::try_join!(make_ready(&left), make_ready(&right))?;
 
-    // Dropped unfinished, a motion has its robot stop: which is what `try_join` does to one when the other has failed.
-    let both = tokio::try_join!(swing(&left, 0.3), swing(&right, -0.3));
+    // Neither begins before both can, and then both do, within a millisecond. Dropped unfinished, a motion has its robot
+    // stop: which is what `try_join` does to one when the other has failed.
+    let [first, second] = StartBarrier::new().tickets();
+    let both = tokio::try_join!(
+        swing(&left, 0.3).start_with(first),
+        swing(&right, -0.3).start_with(second)
+    );
     tokio::join!(left.shutdown(), right.shutdown());
     let (first, second) = both?;
     println!("one:   {}", Summary(&first));
