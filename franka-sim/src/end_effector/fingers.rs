@@ -1,11 +1,14 @@
-//! The two fingers of a Franka Hand, as kinematics.
+//! The two fingers of a Franka Hand.
 
 use bytes::Bytes;
 use franka_proto::gripper::{Grasp, Move, Request, State, Status, Version};
 
-use super::{Mechanism, towards};
+use super::Mechanism;
+use super::grip::{Grip, Progress};
+use crate::plant::FingerDrive;
 
-/// Two fingers that move at the speed they are told and stop at what is between them.
+/// Two fingers that move at the speed they are told and stop at what is between them: in kinematics of their own, with an
+/// object of a given width, or in a plant that has fingers ([`Robot::couple`](crate::Robot::couple)), with what is there.
 ///
 /// What is known of real hands stands with the methods of libfranka; the rest are choices made here,
 /// marked as such, and none has been measured.
@@ -17,11 +20,10 @@ use super::{Mechanism, towards};
 /// * An object that is lost lets the fingers close further.
 #[derive(Debug, Clone)]
 pub struct Fingers {
-    width: f64,
+    grip: Grip,
     max_width: f64,
     is_grasped: bool,
     temperature: u16,
-    object: Option<f64>,
     activity: Activity,
 }
 
@@ -37,8 +39,8 @@ enum Activity {
     Moving { motion: Move, blocked: u32 },
     /// Closing until something stops the fingers.
     Grasping(Grasp),
-    /// What follows a grasp: closing with this speed and force.
-    Squeezing { speed: f64, force: f64 },
+    /// What follows a grasp: closing with this speed and force, from this width.
+    Squeezing { speed: f64, force: f64, held: f64 },
 }
 
 impl Fingers {
@@ -62,11 +64,10 @@ impl Fingers {
     /// Open fingers with nothing between them, before their first homing.
     pub fn new() -> Self {
         Self {
-            width: Self::STROKE,
+            grip: Grip::new(Self::STROKE),
             max_width: 0.0,
             is_grasped: false,
             temperature: 25,
-            object: None,
             activity: Activity::Idle,
         }
     }
@@ -92,41 +93,58 @@ impl Fingers {
     }
 
     /// Puts an object between the fingers, in place of what is there. False, and nothing changes, if
-    /// its width `[m]` is not positive or wider than the fingers are open.
+    /// its width `[m]` is not positive or wider than the fingers are open, or if the fingers are a plant's.
     pub fn place_object(&mut self, width: f64) -> bool {
-        let fits = width > 0.0 && width <= self.width;
-        if fits {
-            self.object = Some(width);
+        let fits = width > 0.0 && width <= self.grip.width();
+        match self.grip.object() {
+            Some(object) if fits => {
+                *object = Some(width);
+                true
+            }
+            _ => false,
         }
-        fits
     }
 
-    /// Takes the object away: its width `[m]`, if there was one. A grasp of it is lost.
+    /// Takes the object away: its width `[m]`, if there was one that is not a plant's. A grasp of it is lost.
     pub fn take_object(&mut self) -> Option<f64> {
-        self.object.take()
+        self.grip.object()?.take()
+    }
+
+    /// What the fingers of a plant are to do.
+    pub(crate) fn drive(&self) -> FingerDrive {
+        self.grip.drive()
+    }
+
+    /// Takes in how far the fingers of a plant are apart, `[m]`. From then on these are the fingers.
+    pub(crate) fn feel(&mut self, width: f64) {
+        self.grip.feel(width);
     }
 
     /// The force that the fingers exert on what is between them `[N]`.
     pub fn force(&self) -> f64 {
         match self.activity {
-            Activity::Squeezing { force, .. } if self.width <= self.contact() => {
+            Activity::Squeezing { force, .. } if self.grip.is_held() => {
                 force.clamp(Self::FORCE[0], Self::FORCE[1])
             }
             _ => 0.0,
         }
     }
 
-    /// Where closing fingers are stopped `[m]`.
-    fn contact(&self) -> f64 {
-        self.object.unwrap_or(0.0)
+    /// One millisecond towards `target`, without more force than it takes to move.
+    fn approach(&mut self, target: f64, speed: f64) -> Progress {
+        self.squeeze(target, speed, Self::FORCE[0])
     }
 
-    /// One millisecond towards `target` as far as the object allows. True at the target.
-    fn approach(&mut self, target: f64, speed: f64) -> bool {
-        let step = speed.min(Self::MAX_SPEED) * 1e-3;
-        let reachable = target.max(self.contact());
-        self.width = towards(self.width, reachable, step);
-        self.width == target
+    fn squeeze(&mut self, target: f64, speed: f64, force: f64) -> Progress {
+        let force = force.clamp(Self::FORCE[0], Self::FORCE[1]);
+        self.grip
+            .approach(target, speed.min(Self::MAX_SPEED), force)
+    }
+
+    /// At the end of a motion.
+    fn rest(&mut self) {
+        self.activity = Activity::Idle;
+        self.grip.rest();
     }
 
     fn accepts(&self, width: f64, speed: f64) -> bool {
@@ -136,7 +154,8 @@ impl Fingers {
     fn is_in_tolerance(&self, grasp: &Grasp) -> bool {
         let least = grasp.width - grasp.epsilon_inner;
         let largest = grasp.width + grasp.epsilon_outer;
-        least < self.width && self.width < largest
+        let width = self.grip.width();
+        least < width && width < largest
     }
 
     fn begin_grasp(&mut self, grasp: Grasp) -> Option<Status> {
@@ -195,7 +214,7 @@ impl Mechanism for Fingers {
     }
 
     fn halt(&mut self) {
-        self.activity = Activity::Idle;
+        self.rest();
         self.is_grasped = false;
     }
 
@@ -203,53 +222,53 @@ impl Mechanism for Fingers {
         match self.activity {
             Activity::Idle => None,
             Activity::HomingClosed => {
-                let target = self.contact();
-                if self.approach(target, Self::HOMING_SPEED) {
+                if self.approach(0.0, Self::HOMING_SPEED) != Progress::Moving {
                     self.activity = Activity::HomingOpen;
                 }
                 None
             }
             Activity::HomingOpen => {
-                let done = self.approach(Self::STROKE, Self::HOMING_SPEED);
-                done.then(|| {
+                let progress = self.approach(Self::STROKE, Self::HOMING_SPEED);
+                (progress == Progress::Arrived).then(|| {
                     self.max_width = Self::STROKE;
-                    self.activity = Activity::Idle;
+                    self.rest();
                     Status::Success
                 })
             }
             Activity::Moving { motion, blocked } => {
-                let before = self.width;
-                let status = if self.approach(motion.width, motion.speed) {
-                    Status::Success
-                } else if blocked >= Self::BLOCKED_MS {
-                    Status::Fail
-                } else {
-                    let blocked = if self.width == before { blocked + 1 } else { 0 };
-                    self.activity = Activity::Moving { motion, blocked };
-                    return None;
+                let status = match self.approach(motion.width, motion.speed) {
+                    Progress::Arrived => Status::Success,
+                    Progress::Blocked if blocked >= Self::BLOCKED_MS => Status::Fail,
+                    progress => {
+                        let blocked = match progress {
+                            Progress::Blocked => blocked + 1,
+                            _ => 0,
+                        };
+                        self.activity = Activity::Moving { motion, blocked };
+                        return None;
+                    }
                 };
-                self.activity = Activity::Idle;
+                self.rest();
                 Some(status)
             }
             Activity::Grasping(grasp) => {
                 let Grasp { speed, force, .. } = grasp;
-                let target = self.contact();
-                self.approach(target, speed).then(|| {
+                let progress = self.squeeze(0.0, speed, force);
+                (progress != Progress::Moving).then(|| {
                     self.is_grasped = self.is_in_tolerance(&grasp);
-                    self.activity = Activity::Squeezing { speed, force };
+                    let held = self.grip.width();
+                    self.activity = Activity::Squeezing { speed, force, held };
                     match self.is_grasped {
                         true => Status::Success,
                         false => Status::Unsuccessful,
                     }
                 })
             }
-            Activity::Squeezing { speed, .. } => {
-                let target = self.contact();
-                if self.width > target {
-                    // What it held has gone.
+            Activity::Squeezing { speed, force, held } => {
+                if self.grip.has_lost(held) {
                     self.is_grasped = false;
-                    self.approach(target, speed);
                 }
+                self.squeeze(0.0, speed, force);
                 None
             }
         }
@@ -258,7 +277,7 @@ impl Mechanism for Fingers {
     fn state(&self, message_id: u32) -> State {
         State {
             message_id,
-            width: self.width,
+            width: self.grip.width(),
             max_width: self.max_width,
             is_grasped: self.is_grasped,
             temperature: self.temperature,

@@ -13,6 +13,7 @@
 //! client that goes while its action runs stops it; what is held by then stays held.
 
 mod fingers;
+mod grip;
 mod suction;
 #[cfg(test)]
 mod tests;

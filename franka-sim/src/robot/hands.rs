@@ -4,6 +4,7 @@ use franka_model::{Frame, JointVector, Load, Wrench};
 use franka_proto::{Errors, RobotError};
 
 use super::{Activity, Robot};
+use crate::end_effector::Hand;
 use crate::generator::Desired;
 
 /// A push that lasts for a while.
@@ -70,6 +71,15 @@ impl Robot {
     /// Hangs a load on the flange, beside the tool, without telling the robot.
     pub fn attach(&mut self, load: Load) {
         self.plant.attach(self.config.tool.load.combine(&load));
+    }
+
+    /// Lets the fingers of the plant, if it has some, do what `hand` wants, and lets `hand` feel them. To be called once per
+    /// millisecond, between this robot's [`tick`](Self::tick) and the hand's.
+    pub fn couple(&mut self, hand: &mut Hand) {
+        let fingers = hand.mechanism_mut();
+        if let Some(width) = self.plant.drive_fingers(&fingers.drive()) {
+            fingers.feel(width);
+        }
     }
 
     /// True joint positions, `[rad]`.

@@ -62,6 +62,7 @@ impl Cycle {
         // The robot's ends the thread; the others live and die with it.
         let goes_on = self.robot.cycle(pace);
         if let Some(hand) = &mut self.hand {
+            self.robot.device_mut().couple(hand.device_mut());
             hand.cycle(pace);
         }
         if let Some(vacuum) = &mut self.vacuum {

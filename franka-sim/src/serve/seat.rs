@@ -61,6 +61,11 @@ impl<D: Device> Seat<D> {
         }
     }
 
+    /// The device, between two milliseconds.
+    pub(super) fn device_mut(&mut self) -> &mut D {
+        &mut self.device
+    }
+
     /// One millisecond: commands, orders, hands, state, replies. False at the end.
     pub(super) fn cycle(&mut self, pace: Pace) -> bool {
         self.take_commands();

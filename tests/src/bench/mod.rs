@@ -19,6 +19,7 @@
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
 //! | [`otg`] | a new target for axes in motion |
 //! | [`shape`] | filter, limiter and check of torques and of a pose |
+//! | [`sim`] | the simulator under target control, in virtual time |
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -30,6 +31,7 @@ pub mod inverse;
 pub mod model;
 pub mod otg;
 pub mod shape;
+pub mod sim;
 mod subject;
 
 pub use subject::Subject;
@@ -37,6 +39,7 @@ pub use subject::Subject;
 /// One thing to measure.
 pub struct Benchmark {
     /// First part of its keys, unit included; a statistic follows: `otg.replan_7_ns` gives `otg.replan_7_ns_p50`.
+    /// [`Statistic::RealTime`] adds nothing.
     pub key: &'static str,
     /// What to report of a round.
     pub statistics: &'static [Statistic],
@@ -53,15 +56,18 @@ pub enum Statistic {
     P99,
     /// The largest sample.
     Max,
+    /// How often the median of what simulates a millisecond fits into one.
+    RealTime,
 }
 
 impl Statistic {
     /// Last part of a key.
-    pub fn name(self) -> &'static str {
+    pub fn suffix(self) -> &'static str {
         match self {
-            Self::P50 => "p50",
-            Self::P99 => "p99",
-            Self::Max => "max",
+            Self::P50 => "_p50",
+            Self::P99 => "_p99",
+            Self::Max => "_max",
+            Self::RealTime => "",
         }
     }
 
@@ -72,6 +78,7 @@ impl Statistic {
             Self::P50 => sorted[last / 2],
             Self::P99 => sorted[last * 99 / 100],
             Self::Max => sorted[last],
+            Self::RealTime => 1_000_000 / sorted[last / 2].max(1),
         }
     }
 }
@@ -86,6 +93,7 @@ pub fn all() -> Vec<Benchmark> {
         model::all(),
         otg::all(),
         shape::all(),
+        sim::all(),
     ]
     .into_iter()
     .flatten()
@@ -107,7 +115,7 @@ pub fn measure(benchmarks: &mut [Benchmark], rounds: usize) -> BTreeMap<String, 
             let mut samples = (benchmark.round)();
             samples.sort_unstable();
             for statistic in benchmark.statistics {
-                let key = format!("{}_{}", benchmark.key, statistic.name());
+                let key = format!("{}{}", benchmark.key, statistic.suffix());
                 values.entry(key).or_default().push(statistic.of(&samples));
             }
         }

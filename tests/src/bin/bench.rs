@@ -1,4 +1,5 @@
-//! Runs every benchmark: `bench OUTPUT.json [ROUNDS]`. Prints the values and writes them as one flat JSON object.
+//! Runs the benchmarks, or those whose keys begin with `PREFIX`: `bench OUTPUT.json [ROUNDS [PREFIX]]`. Prints the values and
+//! writes them as one flat JSON object.
 
 use std::env;
 use std::fs;
@@ -10,10 +11,13 @@ fn main() -> ExitCode {
     let mut arguments = env::args().skip(1);
     let rounds = |text: Option<String>| text.map_or(Ok(ROUNDS), |text| text.parse());
     let (Some(output), Ok(rounds)) = (arguments.next(), rounds(arguments.next())) else {
-        eprintln!("usage: bench OUTPUT.json [ROUNDS]");
+        eprintln!("usage: bench OUTPUT.json [ROUNDS [PREFIX]]");
         return ExitCode::from(2);
     };
-    let values = bench::measure(&mut bench::all(), rounds);
+    let prefix = arguments.next().unwrap_or_default();
+    let mut benchmarks = bench::all();
+    benchmarks.retain(|benchmark| benchmark.key.starts_with(&prefix));
+    let values = bench::measure(&mut benchmarks, rounds);
     for (key, value) in &values {
         println!("{key:<28} {value:>9}");
     }

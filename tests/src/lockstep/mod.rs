@@ -63,8 +63,15 @@ impl Lockstep {
     /// # Panics
     /// If the handshake fails or no state comes.
     pub fn new(config: Config) -> Self {
-        let model = Model::of(config.kind);
-        let robot = Robot::new(config);
+        Self::with_robot(Robot::new(config))
+    }
+
+    /// This robot, with whatever plant, connected over a perfect link.
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn with_robot(robot: Robot) -> Self {
+        let model = Model::of(robot.config().kind);
         let version = robot.version();
         let mut this = Self {
             robot,

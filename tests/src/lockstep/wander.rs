@@ -21,7 +21,11 @@ pub struct Wander {
 impl Wander {
     /// An arm in the ready pose, on its way.
     pub fn new(seed: u64) -> Self {
-        let mut lockstep = Lockstep::ready();
+        Self::of(Lockstep::ready(), seed)
+    }
+
+    /// An arm in this system, on its way from where it is.
+    pub fn of(mut lockstep: Lockstep, seed: u64) -> Self {
         let home = lockstep.true_pose();
         let goal = lockstep.goal(Target::Pose(home), Then::Hold);
         let id = lockstep.submit(goal).expect("the arm is there already");

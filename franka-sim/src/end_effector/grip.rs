@@ -1,0 +1,185 @@
+//! What moves the fingers: kinematics of their own, or a plant that has fingers.
+
+use super::towards;
+use crate::plant::FingerDrive;
+
+/// How far the fingers are apart, and what becomes of it.
+#[derive(Debug, Clone)]
+pub(super) struct Grip {
+    width: f64,
+    means: Means,
+}
+
+#[derive(Debug, Clone)]
+enum Means {
+    /// The fingers move as they are told, up to an object of this width.
+    Kinematic { object: Option<f64> },
+    /// A plant moves them, with what is between them.
+    Driven { drive: FingerDrive, stall: Stall },
+}
+
+/// What came of a millisecond on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Progress {
+    /// On the way, or so it seems.
+    Moving,
+    /// Something is in the way.
+    Blocked,
+    /// There.
+    Arrived,
+}
+
+impl Grip {
+    /// Fingers of this width, with nothing between them.
+    pub(super) fn new(width: f64) -> Self {
+        Self {
+            width,
+            means: Means::Kinematic { object: None },
+        }
+    }
+
+    pub(super) fn width(&self) -> f64 {
+        self.width
+    }
+
+    /// The object between the fingers, if there is one that is not a plant's own.
+    pub(super) fn object(&mut self) -> Option<&mut Option<f64>> {
+        match &mut self.means {
+            Means::Kinematic { object } => Some(object),
+            Means::Driven { .. } => None,
+        }
+    }
+
+    /// What to tell the plant's fingers: to stay, as long as they have not been felt.
+    pub(super) fn drive(&self) -> FingerDrive {
+        match &self.means {
+            Means::Driven { drive, .. } => *drive,
+            Means::Kinematic { .. } => resting(self.width),
+        }
+    }
+
+    /// Takes in how far the plant's fingers are apart, and leaves the motion to it from now on.
+    pub(super) fn feel(&mut self, width: f64) {
+        self.width = width;
+        if matches!(self.means, Means::Kinematic { .. }) {
+            self.means = Means::Driven {
+                drive: resting(width),
+                stall: Stall::from(width),
+            };
+        }
+    }
+
+    /// One millisecond towards `target` `[m]`, at `speed` `[m/s]` and with up to `force` `[N]`.
+    pub(super) fn approach(&mut self, target: f64, speed: f64, force: f64) -> Progress {
+        match &mut self.means {
+            Means::Kinematic { object } => {
+                let reachable = target.max(object.unwrap_or(0.0));
+                self.width = towards(self.width, reachable, speed * 1e-3);
+                match self.width {
+                    width if width == target => Progress::Arrived,
+                    width if width == reachable => Progress::Blocked,
+                    _ => Progress::Moving,
+                }
+            }
+            Means::Driven { drive, stall } => {
+                let wanted = FingerDrive {
+                    width: target,
+                    speed,
+                    force,
+                };
+                if *drive != wanted {
+                    *drive = wanted;
+                    *stall = Stall::from(self.width);
+                }
+                if (self.width - target).abs() < NEAR {
+                    return Progress::Arrived;
+                }
+                match stall.watch(self.width, speed) {
+                    true => Progress::Blocked,
+                    false => Progress::Moving,
+                }
+            }
+        }
+    }
+
+    /// Lets go of what is held, and stays.
+    pub(super) fn rest(&mut self) {
+        if let Means::Driven { drive, .. } = &mut self.means {
+            // Who has arrived stays there exactly.
+            let is_there = (self.width - drive.width).abs() < NEAR;
+            *drive = resting(if is_there { drive.width } else { self.width });
+        }
+    }
+
+    /// Whether something holds the fingers apart that are told to close.
+    pub(super) fn is_held(&self) -> bool {
+        match &self.means {
+            Means::Kinematic { object } => self.width <= object.unwrap_or(0.0),
+            Means::Driven { stall, .. } => stall.is_stalled,
+        }
+    }
+
+    /// Whether what held the fingers at `width` has gone.
+    pub(super) fn has_lost(&self, width: f64) -> bool {
+        match &self.means {
+            Means::Kinematic { .. } => !self.is_held(),
+            Means::Driven { .. } => self.width < width - SLIP,
+        }
+    }
+}
+
+fn resting(width: f64) -> FingerDrive {
+    FingerDrive {
+        width,
+        speed: REST_SPEED,
+        force: REST_FORCE,
+    }
+}
+
+/// Finds out that fingers get nowhere.
+#[derive(Debug, Clone, Copy)]
+struct Stall {
+    /// Width at the start of the window, and milliseconds since.
+    mark: f64,
+    age: u32,
+    is_stalled: bool,
+}
+
+impl Stall {
+    fn from(width: f64) -> Self {
+        Self {
+            mark: width,
+            age: 0,
+            is_stalled: false,
+        }
+    }
+
+    /// Takes in a millisecond at `speed`.
+    fn watch(&mut self, width: f64, speed: f64) -> bool {
+        self.age += 1;
+        if self.age == STALL_WINDOW_MS {
+            let way = speed * 1e-3 * f64::from(STALL_WINDOW_MS);
+            let is_stalled = (width - self.mark).abs() < STALLED * way;
+            *self = Self {
+                is_stalled,
+                ..Self::from(width)
+            };
+        }
+        self.is_stalled
+    }
+}
+
+/// Fingers of a plant are at a width if they are this near `[m]`. All below are choices of this simulator.
+const NEAR: f64 = 5e-4;
+
+/// Fingers that hold something have lost it once they have closed by this much `[m]`. More than contact gives way.
+const SLIP: f64 = 2e-3;
+
+/// Fingers are blocked that in this time have come less than this part of the way. It is longer than the motor takes to build up
+/// the force of a grasp.
+const STALL_WINDOW_MS: u32 = 200;
+const STALLED: f64 = 0.05;
+
+/// How fingers stay that have nothing to do: as fast `[m/s]` and strongly `[N]` as it takes to stay in any posture.
+const REST_SPEED: f64 = 0.02;
+const REST_FORCE: f64 = 2.0;
