@@ -149,3 +149,39 @@ fn a_scene_that_is_none_says_why() {
         SceneError::Conflict(_) | SceneError::Impossible(_)
     ));
 }
+
+#[test]
+fn a_fall_is_the_rigid_arms_until_it_ends_on_the_table() {
+    for kind in RobotKind::ALL {
+        let model = Model::realisable(kind);
+        let mut arm = MujocoArm::new(kind, Scene::table()).expect("a scene");
+        let mut free = RigidArm::new(model, ArmParameters::of(kind), READY, Load::NONE);
+        let none = JointVector::zeros();
+        let mut fall = 0;
+        while arm.contact_torque() == none {
+            assert!((arm.q() - free.q()).amax() < 1e-9, "{kind:?}");
+            arm.step(&none, &none, STEP);
+            free.step(&none, &none, STEP);
+            fall += 1;
+            assert!(fall < 8000, "{kind:?}: nothing holds the arm up");
+        }
+        assert!(fall > 500, "{kind:?}: in contact from the start");
+        let (mut contact, mut sensed) = (0.0_f64, 0.0_f64);
+        for _ in 0..12_000 {
+            contact = contact.max(arm.contact_torque().amax());
+            sensed = sensed.max((arm.sensed_torque() - free.sensed_torque()).amax());
+            arm.step(&none, &none, STEP);
+            free.step(&none, &none, STEP);
+            for link in 1..=7 {
+                let name = format!("franka_link{link}");
+                let height = arm.body_pose(&name).expect("a link").translation.z;
+                assert!(height > -0.01, "{kind:?}: {name} at {height} m");
+            }
+        }
+        assert!(contact > 50.0, "{kind:?}: a gentle fall: {contact} N·m");
+        assert!(
+            sensed > 20.0,
+            "{kind:?}: the sensors feel {sensed} N·m of it"
+        );
+    }
+}

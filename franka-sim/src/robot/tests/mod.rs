@@ -4,7 +4,10 @@ mod checks;
 mod contact;
 mod fer;
 mod motions;
+#[cfg(feature = "mujoco")]
+mod scene;
 mod session;
+mod stiffest;
 mod torques;
 
 use franka_model::{JointVector, RobotKind};
@@ -33,7 +36,10 @@ struct Pair {
 
 impl Pair {
     fn connected(config: Config) -> Self {
-        let mut robot = Robot::new(config);
+        Self::with(Robot::new(config))
+    }
+
+    fn with(mut robot: Robot) -> Self {
         assert!(robot.connect());
         let mut pair = Self {
             client: client::Session::new(robot.version()),

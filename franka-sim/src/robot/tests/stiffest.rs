@@ -1,0 +1,100 @@
+//! The stiffest gains that libfranka's users set, on every plant.
+
+use franka_model::{Load, Model, READY};
+
+use super::*;
+use crate::plant::{ArmParameters, Plant, RigidArm};
+
+/// Every plant of this kind of robot by name, with nothing on the flange: where it is least stable.
+fn plants(kind: RobotKind) -> Vec<(&'static str, Box<dyn Plant>)> {
+    let model = Model::realisable(kind);
+    let rigid = RigidArm::new(model, ArmParameters::of(kind), READY, Load::NONE);
+    vec![
+        ("rigid", Box::new(rigid)),
+        #[cfg(feature = "mujoco")]
+        (
+            "MuJoCo",
+            Box::new(
+                crate::plant::MujocoArm::new(kind, crate::plant::Scene::table()).expect("a scene"),
+            ),
+        ),
+    ]
+}
+
+fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
+    for kind in RobotKind::ALL {
+        for (name, plant) in plants(kind) {
+            let config = Config {
+                kind,
+                // The gains are the matter here, not what the robot thinks of a blow.
+                enforce_limits: false,
+                ..Config::default()
+            };
+            let mut pair = Pair::with(Robot::with_plant(config, plant));
+            test(&mut pair, &format!("{kind:?}, {name}"));
+        }
+    }
+}
+
+/// A blow to every joint, then how fast the joints still are half a second later, at most `[rad/s]`.
+fn ringing(pair: &mut Pair, mut command: impl FnMut(&Pair) -> RobotCommand) -> f64 {
+    let blow = JointVector::from([20.0, -20.0, 20.0, 20.0, -5.0, 5.0, 3.0]);
+    pair.robot.push_joints(blow, 20);
+    let mut fastest = 0.0_f64;
+    for cycle in 0..1000 {
+        let command = command(pair);
+        pair.tick(Some(command));
+        if cycle >= 500 {
+            fastest = fastest.max(pair.robot.dq().amax());
+        }
+    }
+    assert_eq!(pair.state.robot_mode, RobotMode::Move);
+    fastest
+}
+
+#[test]
+fn the_stiffest_joint_impedance_does_not_ring() {
+    for_each_plant(|pair, name| {
+        pair.request(&Request::SetJointImpedance([14250.0; 7]));
+        pair.start_joints();
+        let hold = pair.q_d();
+        let fastest = ringing(pair, |_| positions(&hold));
+        assert!(fastest < 1e-3, "{name}: {fastest} rad/s");
+    });
+}
+
+#[test]
+fn the_stiffest_cartesian_impedance_does_not_ring() {
+    for_each_plant(|pair, name| {
+        let stiffness = [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0];
+        pair.request(&Request::SetCartesianImpedance(stiffness));
+        pair.start(
+            MoveControllerMode::CartesianImpedance,
+            MoveGeneratorMode::JointPosition,
+        );
+        let hold = pair.q_d();
+        let fastest = ringing(pair, |_| positions(&hold));
+        // Motion in the null space of the task is only damped.
+        assert!(fastest < 2e-2, "{name}: {fastest} rad/s");
+    });
+}
+
+/// The gains of libfranka 0.21, `joint_impedance_control.cpp`, applied once per millisecond to a state that is a cycle old, and
+/// four times their stiffness with twice their damping.
+#[test]
+fn a_clients_stiff_impedance_does_not_ring() {
+    for factor in [1.0, 2.0] {
+        for_each_plant(|pair, name| {
+            pair.start_torques();
+            let hold = pair.q();
+            let k = JointVector::from([600.0, 600.0, 600.0, 600.0, 250.0, 150.0, 50.0]);
+            let d = JointVector::from([50.0, 50.0, 50.0, 50.0, 30.0, 25.0, 15.0]);
+            let (k, d) = (k * factor * factor, d * factor);
+            let fastest = ringing(pair, |pair| {
+                let dq = JointVector::from(pair.state.dq);
+                torques(&(k.component_mul(&(hold - pair.q())) - d.component_mul(&dq)))
+            });
+            assert!(fastest < 1e-2, "{factor} {name}: {fastest} rad/s");
+        });
+    }
+}
