@@ -3,8 +3,8 @@
 //! ```text
 //!            bytes                  requests            torques
 //!  client <──────────> robot::Robot <────────> motion ───────────> plant::Plant
-//!          datagrams      session              generator, law        rigid body
-//!                                              checks, reflexes
+//!          datagrams      session              generator, law        rigid body,
+//!                                              checks, reflexes      MuJoCo
 //! ```
 //!
 //! | module | content |
@@ -34,15 +34,21 @@
 //! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
 //! ```
 //!
+//! # Features
+//!
+//! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. Needs Rust 1.95, and MuJoCo's library: in this workspace
+//!   `cargo xtask mujoco` fetches it.
+//!
 //! # What it does not do
 //!
 //! - The robot: no hand guiding, no safety functions. Protocol 5 (FER): filters are accepted and have
 //!   no effect, no virtual wall is ever active, and the model library is one that the user has.
 //! - Errors that never come: self-collision, virtual walls, power limit, instability, and those of
 //!   the force controller, of Desk's own motions and of the base's acceleration.
-//! - Physics: rigid links and joints. Nothing stands in the arm's way, itself included.
-//! - The end effectors: kinematics. They and the arm know nothing of each other; what they hold has
-//!   neither mass nor pose.
+//! - Physics: rigid links and joints. Around the rigid-body plant there is nothing, itself included; around that of MuJoCo (feature
+//!   `mujoco`) is a scene.
+//! - The end effectors: kinematics, unless the plant has fingers. Without, they and the arm know nothing of each other, and
+//!   what they hold has neither mass nor pose.
 //! - What a robot keeps to itself (start tolerances, thresholds by default, gains of its own
 //!   controllers, the filter of its force estimate) has values chosen here; each says so where it
 //!   stands. None has been measured on a robot.

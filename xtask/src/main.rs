@@ -114,7 +114,15 @@ fn run(task: Task) -> anyhow::Result<()> {
         } => workspace.run(&mut workspace.cargo_release_binary("starvation")),
         Task::Bench { rounds, .. } => {
             let output = workspace.target().join("bench.json");
-            let mut command = workspace.cargo_release_binary("bench");
+            // Without MuJoCo its row is missing.
+            let features = match mujoco::prepare(&workspace)? {
+                Ok(()) => &["mujoco"][..],
+                Err(why) => {
+                    println!("the MuJoCo plant is not measured: {why}");
+                    &[]
+                }
+            };
+            let mut command = workspace.cargo_release_binary_with(features, "bench");
             command.arg(&output).arg(rounds.to_string());
             workspace.run(&mut command)
         }

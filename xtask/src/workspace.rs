@@ -59,9 +59,14 @@ impl Workspace {
 
     /// Builds and runs a binary of the tests package, optimised; arguments appended are the binary's own.
     pub(crate) fn cargo_release_binary(&self, name: &str) -> Command {
+        self.cargo_release_binary_with(&[], name)
+    }
+
+    /// [`cargo_release_binary`](Self::cargo_release_binary) with features of the tests package.
+    pub(crate) fn cargo_release_binary_with(&self, features: &[&str], name: &str) -> Command {
         let mut command = self.cargo();
         command.args(["run", "--release", "--package", "franka-tests"]);
-        command.args(["--bin", name, "--"]);
+        command.args(["--bin", name, "--features", &features.join(","), "--"]);
         command
     }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use franka_model::{Load, RobotKind};
-use mujoco_rs::mujoco_c::{mjtCone, mjtIntegrator};
+use mujoco_rs::mujoco_c::{mjtCone, mjtDisableBit, mjtIntegrator};
 use mujoco_rs::prelude::{Attach as _, MjModel, MjSpec, MjtObjBase};
 
 use super::fingers::FingerJoints;
@@ -128,6 +128,8 @@ impl Scene {
         // Without these two a grasp creeps: friction is as soft as contact, and weaker along diagonals.
         options.cone = mjtCone::mjCONE_ELLIPTIC as i32;
         options.impratio = 10.0;
+        // A simulation that has become unstable must not look like one that begins anew.
+        options.disableflags |= mjtDisableBit::mjDSBL_AUTORESET as i32;
         let places = Places::of(&model)?;
         Ok((model, places))
     }
