@@ -47,9 +47,9 @@ async fn main() -> anyhow::Result<()> {
     let error = PoseError::between(&robot.pose(), &start);
     robot.shutdown().await;
     println!(
-        "followed for {:.1} s, {} states lost; {:.3} mm, {:.3} mrad from the last target",
+        "followed for {:.1} s, {} states missed; {:.3} mm, {:.3} mrad from the last target",
         report.duration.as_secs_f64(),
-        report.lost_states,
+        report.lost_states + report.skipped_states,
         error.translation * 1e3,
         error.rotation * 1e3
     );

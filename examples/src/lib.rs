@@ -203,9 +203,10 @@ impl fmt::Display for Summary<'_> {
         let report = self.0;
         write!(
             f,
-            "{:.3} s, {} states lost, success rate min {:.2} avg {:.4}, worst turnaround {:?}",
+            "{:.3} s, {} states lost and {} skipped, success rate min {:.2} avg {:.4}, worst turnaround {:?}",
             report.duration.as_secs_f64(),
             report.lost_states,
+            report.skipped_states,
             report.success_rate_min,
             report.success_rate_avg,
             report.worst_turnaround

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! receive (wait <= 20 ms) -> orders -> decode -> Core::on_state -> encode -> send
-//!                                  |                                 then: newest-state slot, record ring,
-//!                                  +-> nothing came: on_silence            notices, statistics, eventfd
+//!                                  |                 then: Core::after_send, newest-state slot, rings of states and
+//!                                  +-> nothing came: on_silence            records, notices, eventfd, statistics
 //! ```
 //!
 //! The command leaves before anything is published. After [`spawn`] has returned, the loop neither allocates, frees,
@@ -43,7 +43,7 @@ use franka_proto::{RobotState, Version};
 pub use self::desk::BorrowError;
 pub use self::driven::Core;
 pub use self::fault::LinkFault;
-pub use self::handle::{Handle, Lost, Notice, StateReader, Thread};
+pub use self::handle::{Handle, Lost, Notice, StateReader, StateSequence, Thread};
 pub use self::lease::{Lease, Lender, WriteFault};
 
 use self::cycle::Cycle;
@@ -54,7 +54,7 @@ use self::lifetime::Lifetime;
 use crate::exchange::{self, Exchange};
 use crate::sched::{SchedError, Scheduling};
 use crate::slot;
-use crate::stats::Stats;
+use crate::stats::{Laps, Meter};
 use crate::wake::Wake;
 
 /// How to run the thread.
@@ -75,16 +75,19 @@ pub struct Capacity {
     pub notices: usize,
     /// Records out of it, one per millisecond.
     pub records: usize,
+    /// States out of it, one per millisecond, of 2.5 kB each.
+    pub states: usize,
 }
 
 impl Default for Capacity {
-    /// 16 orders (a motion takes two), 64 notices (a motion causes a handful), 2048 records: two seconds in which
-    /// nobody need read them.
+    /// 16 orders (a motion takes two), 64 notices (a motion causes a handful), 2048 records and 1024 states: two seconds and
+    /// one in which nobody need read them.
     fn default() -> Self {
         Self {
             orders: 16,
             notices: 64,
             records: 2048,
+            states: 1024,
         }
     }
 }
@@ -121,11 +124,14 @@ pub fn spawn<C: Core>(
     } = config;
     let size = version.state_size();
     let wake = Wake::new()?;
-    let stats = Arc::new(Stats::default());
+    let meter = Meter::new();
+    let stats = meter.stats().clone();
     let lifetime = Arc::new(Lifetime::default());
     let (orders, order_queue) = rtrb::RingBuffer::new(capacity.orders.max(1));
     let (notice_queue, notices) = rtrb::RingBuffer::new(capacity.notices.max(1));
     let (record_ring, records) = touched_ring(capacity.records.max(1), core.record());
+    let datagram = Datagram([0; RobotState::MAX_SIZE]);
+    let (state_ring, states) = touched_ring(capacity.states.max(1), datagram);
     let (state_slot, state_reader) = slot::slot();
     let desk = Arc::new(Desk::new(exchange::TICK));
     let wait = exchange::wait_for(core.link_timeout());
@@ -139,13 +145,13 @@ pub fn spawn<C: Core>(
         orders: order_queue,
         notices: notice_queue,
         records: record_ring,
+        sequence: state_ring,
         states: state_slot,
-        datagram: Box::new(Datagram([0; RobotState::MAX_SIZE])),
-        stats: stats.clone(),
+        datagram: Box::new(datagram),
+        meter,
+        laps: Laps::start(now),
         wake: wake.clone(),
         lifetime: lifetime.clone(),
-        newest: None,
-        received: now,
         started: now,
         receive_faults: Latch::default(),
         send_faults: Latch::default(),
@@ -195,6 +201,11 @@ pub fn spawn<C: Core>(
         records,
         states: StateReader {
             slot: state_reader,
+            version,
+            size,
+        },
+        sequence: StateSequence {
+            ring: states,
             version,
             size,
         },

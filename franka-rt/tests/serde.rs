@@ -1,6 +1,7 @@
 //! What the feature `serde` writes, and that it is read back as it was.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 use std::time::Duration;
 
 use franka_proto::{
@@ -10,6 +11,7 @@ use franka_rt::control::{Callback, Finish, TargetStatus, Torques};
 use franka_rt::driver::{Activity, ControlLog, Driver, Modes, MotionId, Order, Program, Record};
 use franka_rt::lifecycle::{MotionReport, Party};
 use franka_rt::session::{Bindings, PoseError};
+use franka_rt::stats::{Arrival, CycleTimes, Phase, Phases, Quantiles};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -23,6 +25,15 @@ fn round_trip<T: Serialize + DeserializeOwned + PartialEq + Debug>(value: &T) ->
 
 #[test]
 fn a_report_and_the_words_around_it() {
+    let worst: CycleTimes = serde_json::from_value(json!({
+        "time": 7,
+        "late": Duration::from_micros(900),
+        "turnaround": Duration::from_nanos(112_500),
+        "slack": -12_500,
+        "phases": Phases { program: Duration::from_micros(80), ..Phases::default() },
+    }))
+    .unwrap();
+    assert_eq!(worst.longest().0, Phase::Arrival);
     let report = MotionReport {
         duration: Duration::from_millis(1234),
         final_error: Some(PoseError {
@@ -30,12 +41,26 @@ fn a_report_and_the_words_around_it() {
             rotation: 1e-300,
         }),
         lost_states: u64::MAX,
+        skipped_states: 2,
         success_rate_min: 0.97,
         success_rate_avg: 0.99,
         worst_turnaround: Duration::from_nanos(81_234),
+        slack_min: Some(worst.slack),
+        overruns: 1,
+        worst_cycle: Some(worst),
+        interval: None,
+        turnaround: Some(Quantiles {
+            p50: Duration::from_micros(30),
+            ..Quantiles::default()
+        }),
     };
     let json = round_trip(&report);
     assert_eq!(json["duration"], json!({ "secs": 1, "nanos": 234_000_000 }));
+    assert_eq!(json["slack_min"], json!(-12_500));
+    assert_eq!(
+        json["worst_cycle"]["phases"]["program"]["nanos"],
+        json!(80_000)
+    );
     let without = MotionReport {
         final_error: None,
         ..report
@@ -90,6 +115,7 @@ fn a_log_is_its_cycles_oldest_first() {
         program: Program::Callback(Box::new(callback)),
         log: ControlLog::with_capacity(3),
         ticket: None,
+        times: Arc::default(),
     });
     let mut state = RobotState {
         robot_mode: RobotMode::Move,
@@ -100,6 +126,7 @@ fn a_log_is_its_cycles_oldest_first() {
     for time in 1..=5 {
         state.message_id = time;
         driver.on_state(&state);
+        driver.after_send(&state, &Arrival::default(), None);
     }
     state.robot_mode = RobotMode::Idle;
     state.message_id = 6;

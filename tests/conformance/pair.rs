@@ -75,9 +75,12 @@ impl Pair {
         let reception = self.exchange.receive();
         if reception.fresh {
             let mut command = [0; RobotCommand::MAX_SIZE];
-            if let Some(size) = self.client.cycle(self.exchange.state(), &mut command) {
+            self.client.driver.on_skipped(reception.skipped);
+            let size = self.client.answer(self.exchange.state(), &mut command);
+            if let Some(size) = size {
                 self.exchange.send(&command[..size]).expect("loopback");
             }
+            self.client.conclude(size.is_some());
         }
         self.client.now += Duration::from_millis(1);
         self.settle();

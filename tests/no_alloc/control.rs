@@ -1,5 +1,8 @@
 //! The control cycle, over 10^5 cycles of each program.
 
+use std::sync::Arc;
+use std::time::Duration;
+
 use franka_proto::{MoveControllerMode, MoveRequest, RobotMode, RobotState, Version};
 use franka_rt::control::{
     AsynchronousPositions, AsynchronousTarget, Callback, CartesianPose, CartesianVelocities,
@@ -8,7 +11,8 @@ use franka_rt::control::{
 use franka_rt::driver::{ControlLog, Driver, Modes, MotionId, Order, Program};
 use franka_rt::session::{Target, Then};
 use franka_rt::shaping::Shaper;
-use franka_tests::lockstep::{Lockstep, Wander};
+use franka_rt::stats::{Arrival, CycleTimes};
+use franka_tests::lockstep::{Lockstep, Part, Wander};
 use nalgebra::Translation3;
 
 use crate::calls_during;
@@ -19,9 +23,9 @@ fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
     let mut wander = Wander::new(seed);
     let (mut cycles, mut calls) = (0, 0);
     while cycles < 100_000 {
-        wander.tick_around(|cycle| {
-            calls += calls_during(cycle);
-            cycles += 1;
+        wander.tick_around(|part, work| {
+            calls += calls_during(work);
+            cycles += u64::from(part == Part::Answer);
         });
     }
     assert!(
@@ -55,9 +59,9 @@ fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothi
             let id = lockstep.submit(goal).expect("it is near the ready pose");
             let superseded = targets[0] == Some(target);
             for _ in 0..if superseded { 100 } else { u32::MAX } {
-                lockstep.tick_around(|cycle| {
-                    calls += calls_during(cycle);
-                    cycles += 1;
+                lockstep.tick_around(|part, work| {
+                    calls += calls_during(work);
+                    cycles += u64::from(part == Part::Answer);
                 });
                 if let Some(outcome) = lockstep.client.outcome(id) {
                     arrived += u32::from(outcome.is_ok());
@@ -90,6 +94,7 @@ fn calls_of(
         program,
         log: ControlLog::with_capacity(50),
         ticket: None,
+        times: Arc::default(),
     });
     let mut state = RobotState {
         robot_mode: RobotMode::Move,
@@ -101,7 +106,15 @@ fn calls_of(
     for time in 1..=CYCLES {
         before(time);
         state.message_id = time;
-        calls += calls_during(|| commands += u64::from(driver.on_state(&state).is_some()));
+        let cycle = CycleTimes::new(time, Duration::ZERO, Duration::from_nanos(time));
+        calls += calls_during(|| {
+            let sent = driver.on_state(&state).map(|_| &cycle);
+            driver.after_send(&state, &Arrival::default(), sent);
+            if let Some(sent) = sent {
+                driver.note_cycle(sent);
+                commands += 1;
+            }
+        });
     }
     assert!(commands >= CYCLES / 10, "{commands} commands");
     calls

@@ -1,6 +1,8 @@
 //! Motions that begin and end in every way, with somebody who listens and without.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::Duration;
 
 use franka_model::{Model, READY};
 use franka_proto::{
@@ -13,6 +15,7 @@ use franka_rt::driver::{
 use franka_rt::law::Gains;
 use franka_rt::session::{Budget, Goal, GoalId, Target, TargetSession, Then, Tolerance};
 use franka_rt::slot;
+use franka_rt::stats::{Arrival, CycleTimes};
 use franka_rt::together::{StartBarrier, StartTicket};
 
 use crate::calls_during;
@@ -130,6 +133,7 @@ impl Counted {
             program,
             log: ControlLog::with_capacity(50),
             ticket: self.ticket.take(),
+            times: Arc::default(),
         };
         self.order(order);
     }
@@ -156,8 +160,11 @@ impl Counted {
             motion: None,
             torques: Some(Torques([0.0; 7])),
         };
+        let times = CycleTimes::new(self.time, Duration::ZERO, Duration::ZERO);
         self.calls += calls_during(|| {
-            self.driver.on_state(&state);
+            let sent = self.driver.on_state(&state).map(|_| &times);
+            self.driver.after_send(&state, &Arrival::default(), sent);
+            self.driver.note_cycle(&times);
             // Refused by all programs but one.
             let _ = self.driver.write(&command, false);
         });

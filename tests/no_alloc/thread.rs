@@ -14,10 +14,12 @@ use franka_proto::{
 };
 use franka_rt::control::{ActiveControl, Command, Torques};
 use franka_rt::driver::{
-    ControlLog, Driver, Event, LinkTimeout, Modes, MotionId, Order, Program, Record,
+    ControlLog, Driver, Event, LinkTimeout, Modes, MotionId, MotionStatistics, Order, Program,
+    Record,
 };
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, Scheduling};
+use franka_rt::stats::{Arrival, CycleTimes};
 use franka_rt::thread::{self, Core, Handle, Notice, ThreadConfig};
 
 const VERSION: Version = Version::V10;
@@ -25,6 +27,7 @@ const VERSION: Version = Version::V10;
 /// A driver whose every state is answered, and that tells how often its thread has called the allocator.
 struct Watched {
     driver: Driver,
+    statistics: MotionStatistics,
     first: Option<u64>,
     calls: Arc<AtomicU64>,
     /// The order that makes it allocate, to show that this would be seen.
@@ -64,8 +67,21 @@ impl Core for Watched {
         self.driver.on_silence(silence);
     }
 
-    fn note_turnaround(&mut self, turnaround: Duration) {
-        self.driver.note_turnaround(turnaround);
+    fn on_skipped(&mut self, states: u64) {
+        self.driver.on_skipped(states);
+    }
+
+    fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
+        self.driver.after_send(state, arrival, sent);
+    }
+
+    fn note_cycle(&mut self, cycle: &CycleTimes) {
+        self.driver.note_cycle(cycle);
+    }
+
+    /// Some in every cycle, so that they are shown.
+    fn statistics(&self) -> Option<&MotionStatistics> {
+        Some(&self.statistics)
     }
 
     fn record(&self) -> Record {
@@ -110,6 +126,7 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
     let driver = Driver::new(VERSION).with_link_timeout(timeout);
     let core = Watched {
         driver,
+        statistics: MotionStatistics::default(),
         first: None,
         calls: calls.clone(),
         allocates_on: 7,
@@ -153,6 +170,8 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
         stats.commands.get() > 500 && stats.foreign.get() == 4 && stats.malformed.get() == 4,
         "{stats:?}"
     );
+    assert!(stats.states_lost.get() > 0, "nobody takes the states");
+    assert!(stats.worst_cycle().is_some() && stats.motion().is_some());
     (calls.load(Ordering::Relaxed), stats.states.get())
 }
 
@@ -179,6 +198,7 @@ fn turns_and_writes_in_the_hands_of_another_thread_neither_allocate_nor_free() {
         program: Program::Active(ActiveControl),
         log: ControlLog::with_capacity(50),
         ticket: None,
+        times: Arc::default(),
     };
     handle.orders.push(order).expect("the queue is empty");
     let robot = peer(1, port);

@@ -18,7 +18,7 @@ pub(crate) enum Check {
     Clippy,
     /// Documentation, warnings denied.
     Doc,
-    /// All tests and documentation examples.
+    /// All tests and documentation examples; those of the cycle once more with its phases timed.
     Test,
     /// The simulator with its MuJoCo plant.
     Mujoco,
@@ -85,7 +85,20 @@ impl Check {
                 command.args(["doc", "--workspace", "--no-deps"]);
                 workspace.run(command.env("RUSTDOCFLAGS", "-Dwarnings"))?;
             }
-            Self::Test => workspace.run(workspace.cargo().args(["test", "--workspace"]))?,
+            Self::Test => {
+                workspace.run(workspace.cargo().args(["test", "--workspace"]))?;
+                let mut command = workspace.cargo();
+                command.args([
+                    "test",
+                    "--package",
+                    "franka-rt",
+                    "--package",
+                    "franka-tests",
+                ]);
+                command.args(["--features", "cycle-phases", "--lib"]);
+                command.args(["--test", "thread", "--test", "no_alloc"]);
+                workspace.run(&mut command)?;
+            }
             Self::Mujoco => return mujoco::check(workspace),
             Self::Loom => loom(workspace)?,
             Self::NoStd => return no_std(workspace),

@@ -1,10 +1,11 @@
 //! What the driver tells the world outside.
 
 use core::time::Duration;
+use std::sync::Arc;
 
-use franka_proto::{Errors, RobotMode, RobotState};
+use franka_proto::{Errors, RobotMode};
 
-use crate::driver::{ControlLog, Failure, MotionId, Program};
+use crate::driver::{ControlLog, Failure, MotionId, MotionStatistics, MotionTimes, Program};
 use crate::session::SessionEvent;
 use crate::together::{StartFault, StartTicket};
 
@@ -63,6 +64,8 @@ pub struct Ended {
     pub reflex_reason: Errors,
     /// Counts over the motion.
     pub statistics: MotionStatistics,
+    /// Times of its cycles.
+    pub times: Arc<MotionTimes>,
     /// The program, with whatever it learned.
     pub program: Program,
     /// Its last cycles.
@@ -94,68 +97,6 @@ pub enum Ending {
         /// The silence when it was given up.
         silence: Duration,
     },
-}
-
-/// Counts over the running time of one motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionStatistics {
-    /// States answered.
-    pub cycles: u64,
-    /// States that never arrived or were skipped for a newer one.
-    pub lost_states: u64,
-    /// Lowest `control_command_success_rate` seen while running, in `[0, 1]`.
-    pub success_rate_min: f64,
-    success_rate_sum: f64,
-    success_rate_count: u64,
-    /// `message_id` of the first and the last state.
-    span: Option<(u64, u64)>,
-    /// Longest time from the receipt of a state to the departure of its command.
-    pub worst_turnaround: Duration,
-}
-
-impl Default for MotionStatistics {
-    fn default() -> Self {
-        Self {
-            cycles: 0,
-            lost_states: 0,
-            success_rate_min: 1.0,
-            success_rate_sum: 0.0,
-            success_rate_count: 0,
-            span: None,
-            worst_turnaround: Duration::ZERO,
-        }
-    }
-}
-
-impl MotionStatistics {
-    /// Mean `control_command_success_rate`, in `[0, 1]`; 1 for a motion too short to show one.
-    pub fn success_rate_avg(&self) -> f64 {
-        if self.success_rate_count == 0 {
-            1.0
-        } else {
-            self.success_rate_sum / self.success_rate_count as f64
-        }
-    }
-
-    /// Time from the first state of the motion to the last, `[ms]` of the robot's clock.
-    pub fn duration_ms(&self) -> u64 {
-        self.span.map_or(0, |(first, last)| last - first)
-    }
-
-    /// Counts one state of the running motion. The first and the final state of a motion report a success rate of 0
-    /// whatever happened, so zeros do not count.
-    pub(super) fn note(&mut self, state: &RobotState, skipped: u64) {
-        self.cycles += 1;
-        self.lost_states += skipped;
-        let rate = state.control_command_success_rate;
-        let first = self.span.map_or(state.message_id, |(first, _)| first);
-        self.span = Some((first, state.message_id));
-        if rate > 0.0 {
-            self.success_rate_min = self.success_rate_min.min(rate);
-            self.success_rate_sum += rate;
-            self.success_rate_count += 1;
-        }
-    }
 }
 
 /// Events that wait for the thread to carry them out.

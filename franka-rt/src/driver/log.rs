@@ -22,8 +22,9 @@ pub struct LogEntry {
 /// Its memory is laid out when it is made: writing to it neither allocates nor frees.
 #[derive(Clone, Default)]
 pub struct ControlLog {
+    /// One more than the capacity, or none at all.
     entries: Box<[LogEntry]>,
-    /// Where the next entry goes.
+    /// The entry that waits for its state. Its command is there already.
     next: usize,
     len: usize,
 }
@@ -34,8 +35,9 @@ impl ControlLog {
 
     /// An empty log of the newest `capacity` cycles; 0 keeps none.
     pub fn with_capacity(capacity: usize) -> Self {
+        let entries = if capacity == 0 { 0 } else { capacity + 1 };
         Self {
-            entries: vec![LogEntry::default(); capacity].into(),
+            entries: vec![LogEntry::default(); entries].into(),
             next: 0,
             len: 0,
         }
@@ -43,7 +45,7 @@ impl ControlLog {
 
     /// How many cycles it keeps.
     pub fn capacity(&self) -> usize {
-        self.entries.len()
+        self.entries.len().saturating_sub(1)
     }
 
     /// How many cycles it holds.
@@ -58,12 +60,12 @@ impl ControlLog {
 
     /// The cycles, oldest first.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &LogEntry> {
-        let (newer, older) = self.entries.split_at(self.next);
-        let full = self.len == self.entries.len();
-        let (older, newer) = if full {
-            (older, newer)
+        let (newer, rest) = self.entries.split_at(self.next);
+        let full = self.len == self.capacity();
+        let older = if full {
+            rest.get(1..).unwrap_or_default()
         } else {
-            (&[][..], newer)
+            &[]
         };
         older.iter().chain(newer)
     }
@@ -90,15 +92,22 @@ impl ControlLog {
         text
     }
 
-    /// Notes a cycle, in the place of the oldest if it is full.
-    pub(super) fn push(&mut self, state: &RobotState, command: &RobotCommand) {
+    /// Notes a state, in the place of the oldest one if it is full.
+    pub(super) fn note_state(&mut self, state: &RobotState) {
         let Some(entry) = self.entries.get_mut(self.next) else {
             return; // No capacity.
         };
         entry.state = *state;
-        entry.command = *command;
         self.next = (self.next + 1) % self.entries.len();
-        self.len = (self.len + 1).min(self.entries.len());
+        self.len = (self.len + 1).min(self.capacity());
+    }
+
+    /// Notes the newest command, for the state that comes next. To be called after each state: the entry may still hold what
+    /// an older one left.
+    pub(super) fn note_command(&mut self, command: &RobotCommand) {
+        if let Some(entry) = self.entries.get_mut(self.next) {
+            entry.command = *command;
+        }
     }
 }
 
@@ -131,10 +140,14 @@ impl serde::Serialize for ControlLog {
 #[cfg(feature = "serde")]
 impl<'de> serde::Deserialize<'de> for ControlLog {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let entries = Vec::<LogEntry>::deserialize(deserializer)?;
+        let mut entries = Vec::<LogEntry>::deserialize(deserializer)?;
+        let len = entries.len();
+        if len > 0 {
+            entries.push(LogEntry::default());
+        }
         Ok(Self {
-            next: 0,
-            len: entries.len(),
+            next: len,
+            len,
             entries: entries.into(),
         })
     }
@@ -195,7 +208,8 @@ mod tests {
                 message_id: time - 1,
                 ..RobotCommand::default()
             };
-            log.push(&state, &command);
+            log.note_command(&command);
+            log.note_state(&state);
         }
         log
     }
@@ -212,7 +226,11 @@ mod tests {
             let log = log(capacity, 1..=pushed);
             let times = |entry: &LogEntry| entry.state.message_id;
             assert_eq!(log.iter().map(times).collect::<Vec<_>>(), expected);
-            assert_eq!(log.len(), expected.len());
+            assert_eq!((log.len(), log.capacity()), (expected.len(), capacity));
+            assert!(
+                log.iter()
+                    .all(|entry| entry.command.message_id + 1 == entry.state.message_id)
+            );
             let backwards: Vec<_> = log.iter().rev().map(times).collect();
             assert!(backwards.iter().rev().eq(&expected));
         }
@@ -227,7 +245,7 @@ mod tests {
             message_id: 8,
             ..RobotState::default()
         };
-        log.push(&last, &RobotCommand::default());
+        log.note_state(&last);
         let rate = log.success_rate().unwrap();
         assert_eq!(rate.lost, 3);
         assert!((rate.rate - 0.25 * 0.97).abs() < 1e-15);

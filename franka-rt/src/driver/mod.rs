@@ -17,32 +17,37 @@
 //! So does `Order::Silence`, when nobody is in charge of the program any more.
 //!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are the command that
-//! `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. No clock, socket, allocation or log: the thread,
+//! `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. What can wait until the command has left is done in
+//! [`Driver::after_send`], once for each state, and [`Driver::note_cycle`]. No clock, socket, allocation or log: the thread,
 //! and the lockstep tests, supply time and carry the effects out. A program that has ended leaves inside an [`Event`],
 //! so that its memory is freed elsewhere.
 
+mod aftermath;
 mod event;
 mod link_timeout;
 mod log;
 mod order;
 mod program;
 mod record;
+mod statistics;
 #[cfg(test)]
 mod tests;
 
 use core::time::Duration;
+use std::sync::Arc;
 
 use franka_proto::{RobotCommand, RobotMode, RobotState, Version};
 
 use crate::control::{Command, WriteError};
 use crate::together::{Gate, StartTicket};
 
-pub use event::{Ended, Ending, Event, MotionStatistics};
+pub use event::{Ended, Ending, Event};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
 pub use log::{ControlLog, LogEntry};
 pub use order::{Modes, MotionId, Order};
 pub use program::{Failure, Program};
 pub use record::{Activity, Record};
+pub use statistics::{MotionStatistics, MotionTimes};
 
 use event::EventQueue;
 use program::Answer;
@@ -57,6 +62,10 @@ pub struct Driver {
     /// The silence at which the link was given up, until a state revives it.
     lost: Option<Duration>,
     link_timeout: LinkTimeout,
+    /// How many states gave way to the one that comes next.
+    skipped: u64,
+    /// Counts of the motion in the phase, from the moment it is armed.
+    statistics: MotionStatistics,
     record: Record,
     events: EventQueue,
 }
@@ -78,20 +87,14 @@ struct Motion {
     id: MotionId,
     modes: Modes,
     program: Program,
-    statistics: MotionStatistics,
     log: ControlLog,
     ticket: Option<StartTicket>,
+    times: Arc<MotionTimes>,
     /// The newest command that was sent; zeros before the first.
     sent: RobotCommand,
 }
 
 impl Motion {
-    /// Counts and notes a state of the motion.
-    fn note(&mut self, state: &RobotState, skipped: u64) {
-        self.statistics.note(state, skipped);
-        self.log.push(state, &self.sent);
-    }
-
     /// Whether it may begin, or has begun, at this state.
     fn gate(&mut self, state: &RobotState) -> Gate {
         let Some(ticket) = &mut self.ticket else {
@@ -120,6 +123,8 @@ impl Driver {
             newest: None,
             lost: None,
             link_timeout: LinkTimeout::default(),
+            skipped: 0,
+            statistics: MotionStatistics::default(),
             record: Record::default(),
             events: EventQueue::default(),
         }
@@ -152,14 +157,6 @@ impl Driver {
         self.events.pop()
     }
 
-    /// Tells how long the command of this cycle took to leave, from the receipt of its state.
-    pub fn note_turnaround(&mut self, turnaround: Duration) {
-        self.record.turnaround = turnaround;
-        if let Phase::Running(motion) | Phase::Finishing(motion) = &mut self.phase {
-            motion.statistics.worst_turnaround = motion.statistics.worst_turnaround.max(turnaround);
-        }
-    }
-
     /// Takes an order. One that does not fit the phase is answered with an event, never ignored.
     pub fn on_order(&mut self, order: Order) {
         match order {
@@ -169,20 +166,27 @@ impl Driver {
                 program,
                 log,
                 ticket,
+                times,
             } => {
                 let armed = Motion {
                     id: motion,
                     modes,
                     program,
-                    statistics: MotionStatistics::default(),
                     log,
                     ticket,
+                    times,
                     sent: RobotCommand::default(),
                 };
+                let unseen = MotionStatistics::default();
                 match (self.lost, self.is_watching()) {
-                    (None, true) => self.phase = Phase::Armed(armed),
-                    (None, false) => self.give_back(armed, Ending::Refused),
-                    (Some(silence), _) => self.give_back(armed, Ending::LinkLost { silence }),
+                    (None, true) => {
+                        self.statistics = unseen;
+                        self.phase = Phase::Armed(armed);
+                    }
+                    (None, false) => self.give_back(armed, Ending::Refused, unseen),
+                    (Some(silence), _) => {
+                        self.give_back(armed, Ending::LinkLost { silence }, unseen);
+                    }
                 }
             }
             Order::Disarm { motion } => {
@@ -209,28 +213,39 @@ impl Driver {
         }
     }
 
+    /// Tells that so many states came with the next one, and were skipped for it.
+    pub fn on_skipped(&mut self, states: u64) {
+        self.skipped = states;
+    }
+
     /// Takes a newly received state and returns the command that answers it, if one is due.
     ///
     /// Bounded work: at most one step of the program. A state that is not newer than the newest so far is ignored,
     /// as the robot numbers its cycles strictly upwards. A motion does not answer a state whose joint positions,
     /// velocities or torques are not finite: the robot bridges the gap, or stops by itself if more of them follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
-        let skipped = match self.newest {
+        let missing = match self.newest {
             Some(newest) if state.message_id <= newest => return None,
             Some(newest) => state.message_id - newest - 1,
             None => 0,
         };
+        let skipped = core::mem::take(&mut self.skipped).min(missing);
         self.newest = Some(state.message_id);
         self.lost = None;
-        self.record = Record::watching(state, skipped);
+        self.record = Record::watching(state, missing);
+        if self.statistics().is_some() {
+            self.statistics
+                .note_state(state, missing - skipped, skipped);
+        }
         match core::mem::replace(&mut self.phase, Phase::Watching) {
             Phase::Watching => None,
-            Phase::Armed(mut motion) if motion.modes.shown_by(state) && is_sound(state) => {
+            Phase::Armed(motion) if motion.modes.shown_by(state) && is_sound(state) => {
                 self.events.push(Event::Started {
                     motion: motion.id,
                     time: state.message_id,
                 });
-                motion.note(state, 0);
+                // What is missing before its first state is not the motion's loss.
+                self.statistics.note_state(state, 0, 0);
                 self.run(motion, state)
             }
             Phase::Armed(motion) => {
@@ -238,10 +253,9 @@ impl Driver {
                 self.phase = Phase::Armed(motion);
                 None
             }
-            Phase::Running(mut motion) => {
-                motion.note(state, skipped);
+            Phase::Running(motion) => {
                 if has_left(&motion, state) {
-                    self.end(motion, Ending::Aborted)
+                    self.end_at(state, motion, Ending::Aborted)
                 } else if is_sound(state) {
                     self.run(motion, state)
                 } else {
@@ -251,9 +265,8 @@ impl Driver {
                 }
             }
             Phase::Finishing(mut motion) => {
-                motion.note(state, skipped);
                 if has_left(&motion, state) {
-                    return self.end(motion, Ending::Finished);
+                    return self.end_at(state, motion, Ending::Finished);
                 }
                 motion.sent.message_id = state.message_id;
                 let command = motion.sent;
@@ -262,10 +275,9 @@ impl Driver {
                 self.phase = Phase::Finishing(motion);
                 Some(command)
             }
-            Phase::Silent(mut motion) => {
-                motion.note(state, skipped);
+            Phase::Silent(motion) => {
                 if has_left(&motion, state) {
-                    return self.end(motion, Ending::Aborted);
+                    return self.end_at(state, motion, Ending::Aborted);
                 }
                 self.record.activity = Activity::Silent;
                 self.phase = Phase::Silent(motion);
@@ -289,6 +301,7 @@ impl Driver {
         active.check(command, motion.modes, finished)?;
         let sent = command.datagram(newest, finished);
         motion.sent = sent;
+        motion.log.note_command(&sent);
         self.record.tau_c = sent.tau_J_d;
         if finished {
             self.events.push(Event::Finishing { motion: motion.id });
@@ -331,7 +344,7 @@ impl Driver {
             self.events.push(Event::Program {
                 motion: motion.id,
                 event,
-                statistics: motion.statistics,
+                statistics: self.statistics,
             });
         }
         match step.answer {
@@ -366,21 +379,31 @@ impl Driver {
         }
     }
 
-    /// Ends a motion. There is nothing to answer then.
-    fn end(&mut self, motion: Motion, ending: Ending) -> Option<RobotCommand> {
-        self.phase = Phase::Watching;
-        self.give_back(motion, ending);
+    /// Ends a motion with the state that shows its end. There is nothing to answer then, so its log takes the state at once.
+    fn end_at(
+        &mut self,
+        state: &RobotState,
+        mut motion: Motion,
+        ending: Ending,
+    ) -> Option<RobotCommand> {
+        motion.log.note_state(state);
+        self.end(motion, ending);
         None
     }
 
-    fn give_back(&mut self, mut motion: Motion, ending: Ending) {
+    fn end(&mut self, motion: Motion, ending: Ending) {
+        self.phase = Phase::Watching;
+        self.give_back(motion, ending, self.statistics);
+    }
+
+    fn give_back(&mut self, mut motion: Motion, ending: Ending, statistics: MotionStatistics) {
         motion.leave();
         let Motion {
             id,
             program,
-            statistics,
             log,
             ticket,
+            times,
             ..
         } = motion;
         self.events.push(Event::Ended(Ended {
@@ -390,6 +413,7 @@ impl Driver {
             errors: self.record.errors,
             reflex_reason: self.record.reflex_reason,
             statistics,
+            times,
             program,
             log,
             ticket,

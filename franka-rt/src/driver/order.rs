@@ -1,8 +1,10 @@
 //! What the world outside asks of the driver.
 
+use std::sync::Arc;
+
 use franka_proto::{ControllerMode, MotionGeneratorMode, MoveRequest, RobotState};
 
-use crate::driver::{ControlLog, Program};
+use crate::driver::{ControlLog, MotionTimes, Program};
 use crate::together::StartTicket;
 
 /// Names one motion for the life of a driver, from arming to its end.
@@ -25,6 +27,8 @@ pub enum Order {
         /// Of a motion that begins together with others. Until they are all there the driver holds the arm, by goals or a
         /// control function; other programs do not wait.
         ticket: Option<StartTicket>,
+        /// Where the times of its cycles are counted; empty.
+        times: Arc<MotionTimes>,
     },
     /// Forget the armed motion: its `Move` was refused. Has no effect once the motion runs.
     Disarm {

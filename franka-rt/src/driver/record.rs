@@ -5,6 +5,7 @@ use core::time::Duration;
 use franka_proto::{Errors, RobotMode, RobotState};
 
 use crate::session::Bindings;
+use crate::stats::Slack;
 
 /// One cycle of the driver. All joint quantities are in joint order, SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,8 +41,12 @@ pub struct Record {
     pub tau_c: [f64; 7],
     /// Which guards bound the command.
     pub bindings: Bindings,
+    /// From when the state was due to when the thread had it: see [`CycleTimes::late`](crate::stats::CycleTimes::late).
+    pub late: Duration,
     /// Time from the receipt of the state to the departure of its command; zero where none left.
     pub turnaround: Duration,
+    /// What was left until the next state was due when the command left; `None` where none left in this cycle.
+    pub slack: Option<Slack>,
 }
 
 /// What the driver was doing in a cycle.

@@ -9,6 +9,7 @@ use crate::law::Gains;
 use crate::session::{Budget, Goal, GoalId, Target, TargetSession, Then, Tolerance};
 use crate::shaping::{InvalidCommand, Shaper};
 use crate::slot;
+use crate::stats::{Arrival, CycleTimes};
 
 const MODES: Modes = Modes {
     generator: MotionGeneratorMode::None,
@@ -46,8 +47,25 @@ fn armed(target: Target) -> Driver {
         ))),
         log: ControlLog::with_capacity(5),
         ticket: None,
+        times: Arc::default(),
     });
     driver
+}
+
+/// A cycle in which nothing takes time.
+fn answer(driver: &mut Driver, state: &RobotState) -> Option<RobotCommand> {
+    let command = driver.on_state(state);
+    let sent = command.map(|_| times(state.message_id, 0, 0));
+    driver.after_send(state, &Arrival::default(), sent.as_ref());
+    if let Some(sent) = sent {
+        driver.note_cycle(&sent);
+    }
+    command
+}
+
+fn times(time: u64, late: u64, turnaround: u64) -> CycleTimes {
+    let us = Duration::from_micros;
+    CycleTimes::new(time, us(late), us(turnaround))
 }
 
 #[test]
@@ -68,7 +86,7 @@ fn a_state_that_is_not_finite_gets_no_answer_and_does_no_harm() {
             if bad {
                 spoil(&mut state);
             }
-            let command = driver.on_state(&state);
+            let command = answer(&mut driver, &state);
             assert_eq!(command.is_none(), bad, "cycle {step}");
             if let Some(command) = command {
                 assert!(command.tau_J_d.iter().all(|tau| tau.is_finite()));
@@ -77,7 +95,7 @@ fn a_state_that_is_not_finite_gets_no_answer_and_does_no_harm() {
         let mut state = moving(time + 1);
         state.q[3] = f64::NAN;
         state.robot_mode = RobotMode::Reflex;
-        assert!(driver.on_state(&state).is_none());
+        assert!(answer(&mut driver, &state).is_none());
         assert!(driver.is_watching(), "a reflex is seen all the same");
     }
 }
@@ -98,6 +116,7 @@ fn armed_with(program: Program) -> Driver {
         program,
         log: ControlLog::with_capacity(5),
         ticket: None,
+        times: Arc::default(),
     });
     driver
 }
@@ -114,9 +133,9 @@ fn torques(function: impl FnMut(u64) -> f64 + Send + 'static) -> Program {
 #[test]
 fn a_program_that_fails_leaves_the_motion_without_commands_until_the_robot_ends_it() {
     let mut driver = armed_with(torques(|time| if time < 103 { 1.0 } else { f64::NAN }));
-    assert!(driver.on_state(&moving(101)).is_some());
-    assert!(driver.on_state(&moving(102)).is_some());
-    assert!(driver.on_state(&moving(103)).is_none());
+    assert!(answer(&mut driver, &moving(101)).is_some());
+    assert!(answer(&mut driver, &moving(102)).is_some());
+    assert!(answer(&mut driver, &moving(103)).is_none());
     assert_eq!(driver.record().activity, Activity::Silent);
     assert!(matches!(driver.take_event(), Some(Event::Started { .. })));
     let Some(Event::Failed { motion, failure }) = driver.take_event() else {
@@ -128,11 +147,11 @@ fn a_program_that_fails_leaves_the_motion_without_commands_until_the_robot_ends_
         Failure::Invalid(InvalidCommand::NotFinite)
     ));
     for time in 104..110 {
-        assert!(driver.on_state(&moving(time)).is_none());
+        assert!(answer(&mut driver, &moving(time)).is_none());
         assert!(driver.take_event().is_none());
         assert!(!driver.is_watching());
     }
-    assert!(driver.on_state(&resting(110)).is_none());
+    assert!(answer(&mut driver, &resting(110)).is_none());
     let Some(Event::Ended(ended)) = driver.take_event() else {
         panic!("it has ended")
     };
@@ -152,26 +171,29 @@ fn a_motion_told_to_be_silent_gets_no_more_commands_in_any_phase() {
     assert!(
         matches!(armed.take_event(), Some(Event::Ended(ended)) if ended.ending == Ending::Disarmed)
     );
-    assert!(armed.on_state(&moving(101)).is_none());
+    assert!(answer(&mut armed, &moving(101)).is_none());
 
     let mut running = armed_with(torques(|_| 1.0));
-    assert!(running.on_state(&moving(101)).is_some());
+    assert!(answer(&mut running, &moving(101)).is_some());
     running.on_order(Order::Silence {
         motion: MotionId(2),
     });
-    assert!(running.on_state(&moving(102)).is_some(), "another is meant");
+    assert!(
+        answer(&mut running, &moving(102)).is_some(),
+        "another is meant"
+    );
     running.on_order(silence());
-    assert!(running.on_state(&moving(103)).is_none());
-    assert!(running.on_state(&resting(104)).is_none());
+    assert!(answer(&mut running, &moving(103)).is_none());
+    assert!(answer(&mut running, &resting(104)).is_none());
     assert!(running.is_watching());
 
     let mut finishing = armed_with(Program::Active(ActiveControl));
-    assert!(finishing.on_state(&moving(101)).is_none());
+    assert!(answer(&mut finishing, &moving(101)).is_none());
     let command = Command::torques(Version::V10, Torques([0.0; 7]));
     assert!(finishing.write(&command, true).is_ok());
-    assert!(finishing.on_state(&moving(102)).is_some());
+    assert!(answer(&mut finishing, &moving(102)).is_some());
     finishing.on_order(silence());
-    assert!(finishing.on_state(&moving(103)).is_none());
+    assert!(answer(&mut finishing, &moving(103)).is_none());
 }
 
 #[test]
@@ -182,14 +204,14 @@ fn what_is_written_answers_the_newest_state_and_is_logged_with_the_next() {
         driver.write(&command(1.0), false),
         Err(WriteError::NotRunning)
     );
-    assert!(driver.on_state(&moving(101)).is_none());
+    assert!(answer(&mut driver, &moving(101)).is_none());
     assert_eq!(
         driver
             .write(&command(1.0), false)
             .map(|sent| sent.message_id),
         Ok(101)
     );
-    assert!(driver.on_state(&moving(104)).is_none());
+    assert!(answer(&mut driver, &moving(104)).is_none());
     assert_eq!(
         driver
             .write(&command(2.0), false)
@@ -197,17 +219,17 @@ fn what_is_written_answers_the_newest_state_and_is_logged_with_the_next() {
         Ok(104)
     );
     // The last one goes out at once, and again with every state.
-    assert!(driver.on_state(&moving(105)).is_none());
+    assert!(answer(&mut driver, &moving(105)).is_none());
     let last = driver.write(&command(3.0), true).expect("it fits");
     assert!(last.torque_command_finished);
     assert_eq!(
         driver.write(&command(4.0), true),
         Err(WriteError::NotRunning)
     );
-    let again = driver.on_state(&moving(106)).expect("an answer");
+    let again = answer(&mut driver, &moving(106)).expect("an answer");
     assert_eq!((again.message_id, again.tau_J_d), (106, [3.0; 7]));
     assert!(again.torque_command_finished);
-    assert!(driver.on_state(&resting(107)).is_none());
+    assert!(answer(&mut driver, &resting(107)).is_none());
     let ended = core::iter::from_fn(|| driver.take_event()).last();
     let Some(Event::Ended(ended)) = ended else {
         panic!("{ended:?}")
@@ -234,4 +256,80 @@ fn what_is_written_answers_the_newest_state_and_is_logged_with_the_next() {
             (107, 106, 3.0)
         ]
     );
+}
+
+fn ended(driver: &mut Driver) -> Ended {
+    let last = core::iter::from_fn(|| driver.take_event()).last();
+    match last {
+        Some(Event::Ended(ended)) => ended,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_motion_counts_what_was_lost_and_what_was_skipped_until_it_ends() {
+    let mut driver = armed_with(torques(|_| 1.0));
+    let state = |time, rate| RobotState {
+        control_command_success_rate: rate,
+        ..moving(time)
+    };
+    driver.on_skipped(3); // Before it runs: not the motion's.
+    assert!(answer(&mut driver, &state(101, 0.0)).is_some());
+    assert!(answer(&mut driver, &state(102, 1.0)).is_some());
+    driver.on_skipped(2);
+    assert!(answer(&mut driver, &state(108, 0.75)).is_some());
+    assert_eq!(driver.record().skipped, 5);
+    driver.on_skipped(9); // More than there is room for: a robot that counts wrongly.
+    assert!(answer(&mut driver, &state(110, 0.5)).is_some());
+    let running = *driver.statistics().expect("it runs");
+    assert_eq!((running.lost_states, running.skipped_states), (3, 3));
+    assert_eq!(running.success_rate_newest, 0.5);
+    driver.on_skipped(1);
+    assert!(answer(&mut driver, &resting(113)).is_none());
+    assert!(driver.statistics().is_none());
+    let ended = ended(&mut driver);
+    let statistics = ended.statistics;
+    assert_eq!((statistics.cycles, statistics.commands), (5, 4));
+    assert_eq!((statistics.lost_states, statistics.skipped_states), (4, 4));
+    assert_eq!(statistics.success_rate_avg(), 0.75);
+    assert_eq!(statistics.duration_ms(), 12);
+    assert_eq!(ended.times.turnaround.count(), 4);
+}
+
+#[test]
+fn the_record_of_a_cycle_has_its_times_and_the_motion_its_worst() {
+    let mut driver = armed_with(torques(|_| 1.0));
+    let mut cycle = |time, late, turnaround| {
+        let state = moving(time);
+        assert!(driver.on_state(&state).is_some());
+        let sent = times(time, late, turnaround);
+        let arrival = Arrival {
+            interval: Some(Duration::from_micros(1000 + late)),
+            late: sent.late,
+        };
+        driver.after_send(&state, &arrival, Some(&sent));
+        driver.note_cycle(&sent);
+        *driver.record()
+    };
+    let calm = cycle(101, 3, 40);
+    assert_eq!(
+        (calm.late, calm.turnaround),
+        (Duration::from_micros(3), Duration::from_micros(40))
+    );
+    assert_eq!(calm.slack, Some(times(101, 3, 40).slack));
+    assert!(cycle(102, 900, 110).slack < calm.slack);
+    cycle(103, 5, 300);
+    let statistics = driver.statistics().expect("it runs");
+    assert_eq!(statistics.worst_cycle(), Some(times(102, 900, 110)));
+    assert_eq!(statistics.slack_min(), Some(times(102, 900, 110).slack));
+    assert_eq!(statistics.worst_turnaround, Duration::from_micros(300));
+    assert_eq!(statistics.overruns, 1);
+    assert!(answer(&mut driver, &resting(104)).is_none());
+    let ended = ended(&mut driver);
+    assert_eq!(
+        ended.times.interval.max(),
+        Some(Duration::from_micros(1900))
+    );
+    assert_eq!(ended.times.interval.count(), 3);
+    assert_eq!(driver.record().slack, None);
 }

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 
+use super::outcome::Counted;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
-use crate::driver::{Ended, Ending, Failure, MotionId, MotionStatistics, Order, Program};
+use crate::driver::{Ended, Ending, Failure, MotionId, MotionTimes, Order, Program};
 use crate::panic;
 use crate::session::{Goal, GoalError, GoalId, Settlement, Target, Then};
 use crate::slot::SlotWriter;
@@ -31,6 +32,8 @@ pub(super) struct Active {
     pub(super) deadline: Option<Duration>,
     /// What the robot had not done by a deadline, so that it was told to stop.
     pub(super) given_up: Option<&'static str>,
+    /// Where the thread counts the times of its cycles.
+    pub(super) times: Arc<MotionTimes>,
 }
 
 /// What the motion is for.
@@ -69,12 +72,13 @@ pub(super) struct Programmed {
 }
 
 /// What the session said of the goal it settled.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Settled {
     pub(super) goal: GoalId,
     pub(super) settlement: Settlement,
     pub(super) duration_ms: u64,
-    pub(super) statistics: MotionStatistics,
+    /// What the motion had come to by then.
+    pub(super) counted: Counted,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +101,7 @@ pub(super) enum CommandSide {
 pub(super) enum ThreadSide {
     Armed,
     Running,
-    Ended(Ended),
+    Ended(Box<Ended>),
 }
 
 impl Active {
@@ -140,7 +144,7 @@ impl Active {
             None => {}
         }
         let outcome = match &self.work {
-            Work::Goals(goals) if ended.ending == Ending::Finished => goals.outcome(),
+            Work::Goals(goals) if ended.ending == Ending::Finished => goals.outcome(ended),
             Work::Goals(_) => None,
             Work::Program(program) => program.outcome(ended),
         };
@@ -215,12 +219,13 @@ impl Goals {
     }
 
     /// How the current goal turned out in a motion that finished well, if the session said so.
-    fn outcome(&self) -> Option<Result<MotionReport, MotionError>> {
+    fn outcome(&self, ended: &Ended) -> Option<Result<MotionReport, MotionError>> {
         if self.bad_tool {
             return Some(Err(GoalError::Tool.into()));
         }
         let settled = self.settled.as_ref()?;
-        (settled.goal == self.current.goal.id).then(|| settled.result(self.current.cancelled))
+        (settled.goal == self.current.goal.id)
+            .then(|| settled.result(&Counted::of(ended), self.current.cancelled))
     }
 }
 
@@ -251,9 +256,12 @@ impl Programmed {
                 if let Some(fault) = ended.start_fault() {
                     return Some(Err(fault.into()));
                 }
-                let statistics = &ended.statistics;
-                let report = MotionReport::new(statistics, statistics.duration_ms(), None);
-                Some(Ok(report))
+                let duration_ms = ended.statistics.duration_ms();
+                Some(Ok(MotionReport::new(
+                    &Counted::of(ended),
+                    duration_ms,
+                    None,
+                )))
             }
             _ if self.stopped.is_some() => Some(Err(MotionError::Stopped)),
             _ => None,
@@ -282,7 +290,12 @@ impl ControlError {
 }
 
 impl Settled {
-    pub(super) fn result(&self, cancelled: bool) -> Result<MotionReport, MotionError> {
+    /// How the goal turned out, in a motion whose cycles came to what was `counted`.
+    pub(super) fn result(
+        &self,
+        counted: &Counted,
+        cancelled: bool,
+    ) -> Result<MotionReport, MotionError> {
         let final_error = match self.settlement {
             Settlement::Arrived(error) => Some(error),
             Settlement::AtRest if cancelled => return Err(MotionError::Stopped),
@@ -290,11 +303,7 @@ impl Settled {
             Settlement::Short(error) => return Err(MotionError::Short(error)),
             Settlement::Unstarted(fault) => return Err(fault.into()),
         };
-        Ok(MotionReport::new(
-            &self.statistics,
-            self.duration_ms,
-            final_error,
-        ))
+        Ok(MotionReport::new(counted, self.duration_ms, final_error))
     }
 }
 

@@ -5,6 +5,7 @@ use core::time::Duration;
 use franka_proto::{MoveControllerMode, MoveRequest, RobotState};
 
 use super::active::{CommandSide, Goals, Settled, ThreadSide, Waiting, Work};
+use super::outcome::Counted;
 use super::{Lifecycle, MotionError, MotionReport, Phase};
 use crate::driver::{MotionId, MotionStatistics, Program};
 use crate::session::{Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then};
@@ -166,7 +167,10 @@ impl Lifecycle {
                     goal,
                     settlement,
                     duration_ms,
-                    statistics,
+                    counted: Counted {
+                        statistics,
+                        times: active.times.clone(),
+                    },
                 });
             }
             SessionEvent::BadTool => goals.bad_tool = true,
@@ -179,7 +183,7 @@ impl Lifecycle {
         &mut self,
         waiting: Waiting,
         before: &Result<(), MotionError>,
-        statistics: &MotionStatistics,
+        counted: &Counted,
         now: Duration,
     ) {
         if waiting.goal.target != Target::Rest || waiting.goal.then != Then::Finish {
@@ -193,7 +197,7 @@ impl Lifecycle {
                 Err(error.clone())
             }
             _ if waiting.cancelled => Err(MotionError::Stopped),
-            _ => Ok(MotionReport::new(statistics, 0, None)),
+            _ => Ok(MotionReport::new(counted, 0, None)),
         };
         self.resolve(waiting.goal.id, result);
     }
@@ -230,7 +234,7 @@ impl Lifecycle {
                 // A goal that has settled was reached, whatever comes after it.
                 let result = match settled {
                     Some(settled) if settled.goal == previous.goal.id => {
-                        settled.result(previous.cancelled)
+                        settled.result(&settled.counted, previous.cancelled)
                     }
                     _ => Err(reason),
                 };

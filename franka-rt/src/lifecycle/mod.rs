@@ -28,11 +28,12 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{MoveRequest, MoveStatus, Request, Version, Violation};
 
-use crate::driver::{ControlLog, Ending, Event, Modes, MotionId, MotionStatistics, Order, Program};
+use crate::driver::{ControlLog, Ending, Event, Modes, MotionId, MotionTimes, Order, Program};
 use crate::session::GoalId;
 use crate::together::StartTicket;
 
 use active::{Active, CommandSide, NEVER_SHOWN, ThreadSide, Waiting, Work};
+use outcome::Counted;
 pub use outcome::{ControlError, MotionError, MotionReport, Party, Stage};
 
 /// Time for the robot to answer a `Move`, and to show the motion's modes after that.
@@ -43,10 +44,6 @@ pub const END_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Something to carry out, in the order given.
 #[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a handful per motion, passed on at once"
-)]
 pub enum Output {
     /// Hand this to the thread.
     Order(Order),
@@ -187,7 +184,7 @@ impl Lifecycle {
                 let Some(active) = self.active(ended.motion) else {
                     return;
                 };
-                active.thread = ThreadSide::Ended(ended);
+                active.thread = ThreadSide::Ended(Box::new(ended));
                 active.deadline = Some(now + END_TIMEOUT);
                 self.conclude(now);
             }
@@ -323,12 +320,14 @@ impl Lifecycle {
     ) {
         self.motions += 1;
         let motion = MotionId(self.motions);
+        let times = Arc::new(MotionTimes::default());
         self.outputs.push_back(Output::Order(Order::Arm {
             motion,
             modes: Modes::of(&request),
             program,
             log: ControlLog::with_capacity(self.log_size),
             ticket,
+            times: times.clone(),
         }));
         self.send(motion, Request::Move(request));
         self.phase = Phase::Active(Box::new(Active {
@@ -338,6 +337,7 @@ impl Lifecycle {
             thread: ThreadSide::Armed,
             deadline: Some(now + START_TIMEOUT),
             given_up: None,
+            times,
         }));
     }
 
@@ -372,12 +372,12 @@ impl Lifecycle {
         ) {
             self.send(active.motion, Request::StopMove);
         }
-        let (result, statistics) = match (error, &active.thread) {
+        let (result, counted) = match (error, &active.thread) {
             (Some(error), _) => {
                 let order = active.abandon();
                 self.outputs.extend(order.map(Output::Order));
                 let error = active.work.failure().cloned().unwrap_or(error);
-                (Err(error), MotionStatistics::default())
+                (Err(error), Counted::default())
             }
             (None, ThreadSide::Ended(ended)) => {
                 if let Work::Goals(goals) = &active.work
@@ -388,9 +388,9 @@ impl Lifecycle {
                         self.next.is_none(),
                         "a newer goal would have taken its place"
                     );
-                    return self.follow(goals.current, &Ok(()), &ended.statistics, now);
+                    return self.follow(goals.current, &Ok(()), &Counted::of(ended), now);
                 }
-                (active.verdict(ended), ended.statistics)
+                (active.verdict(ended), Counted::of(ended))
             }
             (None, ThreadSide::Armed | ThreadSide::Running) => {
                 unreachable!("a motion concludes when its thread side has ended")
@@ -398,11 +398,11 @@ impl Lifecycle {
         };
         let rest = match &result {
             Err(error) if !error.is_ready_for_more() => Err(error.clone()),
-            _ => Ok(MotionReport::new(&statistics, 0, None)),
+            _ => Ok(MotionReport::new(&counted, 0, None)),
         };
         self.resolve_work(active.work, &result, &rest);
         if let Some(next) = self.next.take() {
-            self.follow(next, &result.map(drop), &statistics, now);
+            self.follow(next, &result.map(drop), &counted, now);
         }
     }
 }

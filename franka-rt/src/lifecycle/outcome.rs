@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
 
-use crate::driver::{ControlLog, MotionStatistics};
+use crate::driver::{ControlLog, Ended, MotionStatistics, MotionTimes};
 use crate::session::{GoalError, PoseError};
 use crate::shaping::InvalidCommand;
+use crate::stats::{CycleTimes, Quantiles, Slack};
 use crate::together::StartFault;
 
 /// A motion that came to its end as asked.
@@ -19,29 +20,61 @@ pub struct MotionReport {
     pub duration: Duration,
     /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,
-    /// States that never arrived, or were skipped for a newer one, while the motion ran.
+    /// States that never arrived while the motion ran.
     pub lost_states: u64,
+    /// States that arrived meanwhile but were skipped, because a newer one had come before they were looked at.
+    pub skipped_states: u64,
     /// Lowest success rate that the robot reported while the motion ran, in `[0, 1]`.
     pub success_rate_min: f64,
     /// Mean of it.
     pub success_rate_avg: f64,
     /// Longest time from the receipt of a state to the departure of its command.
     pub worst_turnaround: Duration,
+    /// The least time that was left until the next state was due when a command departed. `None`, as below, if no command
+    /// left.
+    pub slack_min: Option<Slack>,
+    /// Commands that left only after the next state was due.
+    pub overruns: u64,
+    /// The cycle that took longest, and in what.
+    pub worst_cycle: Option<CycleTimes>,
+    /// Times between two states in a row, by this host's clock.
+    pub interval: Option<Quantiles>,
+    /// Times from the receipt of a state to the departure of its command.
+    pub turnaround: Option<Quantiles>,
 }
 
 impl MotionReport {
-    pub(super) fn new(
-        statistics: &MotionStatistics,
-        duration_ms: u64,
-        final_error: Option<PoseError>,
-    ) -> Self {
+    pub(super) fn new(counted: &Counted, duration_ms: u64, final_error: Option<PoseError>) -> Self {
+        let Counted { statistics, times } = counted;
         Self {
             duration: Duration::from_millis(duration_ms),
             final_error,
             lost_states: statistics.lost_states,
+            skipped_states: statistics.skipped_states,
             success_rate_min: statistics.success_rate_min,
             success_rate_avg: statistics.success_rate_avg(),
             worst_turnaround: statistics.worst_turnaround,
+            slack_min: statistics.slack_min(),
+            overruns: statistics.overruns,
+            worst_cycle: statistics.worst_cycle(),
+            interval: times.interval.quantiles(),
+            turnaround: times.turnaround.quantiles(),
+        }
+    }
+}
+
+/// What the cycles of a motion came to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Counted {
+    pub(super) statistics: MotionStatistics,
+    pub(super) times: Arc<MotionTimes>,
+}
+
+impl Counted {
+    pub(super) fn of(ended: &Ended) -> Self {
+        Self {
+            statistics: ended.statistics,
+            times: ended.times.clone(),
         }
     }
 }

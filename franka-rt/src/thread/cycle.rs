@@ -11,7 +11,7 @@ use super::handle::{Datagram, Notice};
 use super::lifetime::Lifetime;
 use crate::exchange::{Exchange, Reception, SendError};
 use crate::slot::SlotWriter;
-use crate::stats::Stats;
+use crate::stats::{CycleTimes, Laps, Meter, Phase, Stats};
 use crate::wake::Wake;
 
 /// What the thread owns.
@@ -24,16 +24,17 @@ pub(super) struct Cycle<C: Core> {
     pub(super) orders: rtrb::Consumer<C::Order>,
     pub(super) notices: rtrb::Producer<Notice<C::Event>>,
     pub(super) records: rtrb::Producer<C::Record>,
+    /// All states, as they came.
+    pub(super) sequence: rtrb::Producer<Datagram>,
+    /// The newest state.
     pub(super) states: SlotWriter<Datagram>,
-    /// The newest state on its way to the slot.
+    /// That state on its way to both.
     pub(super) datagram: Box<Datagram>,
-    pub(super) stats: Arc<Stats>,
+    pub(super) meter: Meter,
+    /// Times the phases of the cycle.
+    pub(super) laps: Laps,
     pub(super) wake: Wake,
     pub(super) lifetime: Arc<Lifetime>,
-    /// `message_id` and time of receipt of the newest state.
-    pub(super) newest: Option<(u64, Instant)>,
-    /// When the newest state was received.
-    pub(super) received: Instant,
     /// When the cycle was made.
     pub(super) started: Instant,
     pub(super) receive_faults: Latch,
@@ -45,21 +46,20 @@ impl<C: Core> Cycle<C> {
     pub(super) fn turn(&mut self) -> bool {
         let reception = self.exchange.receive();
         let now = Instant::now();
+        self.laps = Laps::start(now);
         self.take_orders();
+        self.laps.end(Phase::Orders);
         let decoded = reception
             .fresh
             .then(|| RobotState::decode(self.version, self.exchange.state()));
         let readable = matches!(decoded, Some(Ok(_)));
+        let mut sent = None;
         if let Some(Ok(state)) = &decoded {
-            self.received = now;
-            if let Some(command) = self.core.on_state(state) {
-                // A command that did not leave is counted and told; the next state may fare better.
-                let _ = self.send(&command);
-            }
+            self.laps.end(Phase::Decode);
+            sent = self.answer(state, now, reception.skipped);
             self.publish();
-            self.note_arrival(state.message_id, now, reception.skipped);
         } else {
-            let heard = self.newest.map_or(self.started, |(_, heard)| heard);
+            let heard = self.meter.heard().unwrap_or(self.started);
             self.core.on_silence(now.saturating_duration_since(heard));
         }
         self.count(&reception);
@@ -68,7 +68,53 @@ impl<C: Core> Cycle<C> {
         if reception.fresh || told {
             self.wake.ring();
         }
+        self.laps.end(Phase::Publish);
+        if let Some(cycle) = sent {
+            self.note(cycle);
+        }
         readable
+    }
+
+    /// Answers a state, if the core does, and then sees to what has waited for that. Returns the times of the command.
+    fn answer(
+        &mut self,
+        state: &RobotState,
+        received: Instant,
+        skipped: u64,
+    ) -> Option<CycleTimes> {
+        if skipped > 0 {
+            self.core.on_skipped(skipped);
+        }
+        let command = self.core.on_state(state);
+        self.laps.end(Phase::Program);
+        // A command that did not leave is counted and told; the next state may fare better.
+        let departed = command.and_then(|command| self.transmit(&command).ok());
+        let arrival = self.meter.note_arrival(state.message_id, received, skipped);
+        let sent = departed.map(|departed| self.meter.answered(departed));
+        self.core.after_send(state, &arrival, sent.as_ref());
+        sent
+    }
+
+    /// Sends a command that answers the newest state, from outside of a turn.
+    pub(super) fn send(&mut self, command: &RobotCommand) -> Result<(), SendError> {
+        // Since the end of the turn, somebody has thought about it.
+        self.laps.end(Phase::Program);
+        let departed = self.transmit(command)?;
+        self.note(self.meter.answered(departed));
+        Ok(())
+    }
+
+    /// Notes a cycle whose command has left, when all that belongs to it is over.
+    fn note(&mut self, cycle: CycleTimes) {
+        let cycle = CycleTimes {
+            phases: self.laps.phases(),
+            ..cycle
+        };
+        self.core.note_cycle(&cycle);
+        self.meter.note_cycle(&cycle);
+        if let Some(motion) = self.core.statistics() {
+            self.meter.note_motion(motion);
+        }
     }
 
     /// The newest state that could be read, if there was one.
@@ -85,52 +131,46 @@ impl<C: Core> Cycle<C> {
         }
     }
 
-    /// Sends a command that answers the newest state.
-    pub(super) fn send(&mut self, command: &RobotCommand) -> Result<(), SendError> {
+    /// Hands a command to the kernel and returns when that was done.
+    fn transmit(&mut self, command: &RobotCommand) -> Result<Instant, SendError> {
         let mut bytes = [0; RobotCommand::MAX_SIZE];
         let size = command
             .encode(self.version, &mut bytes)
             .expect("a command has at most `MAX_SIZE` bytes");
         let sent = self.exchange.send(&bytes[..size]);
-        if sent.is_ok() {
-            let turnaround = self.received.elapsed();
-            self.core.note_turnaround(turnaround);
-            self.stats.turnaround.note(turnaround);
-            self.stats.commands.add(1);
-        } else {
-            self.stats.send_errors.add(1);
+        let departed = sent.map(|()| Instant::now());
+        match departed {
+            Ok(departed) => self.laps.end_at(Phase::Send, departed),
+            Err(_) => self.stats().send_errors.add(1),
         }
         if let Some(fault) = self.send_faults.pass(sent.err().map(LinkFault::Send)) {
             self.queue(fault);
         }
-        sent
+        departed
     }
 
     fn publish(&mut self) {
         self.datagram.0[..self.size].copy_from_slice(self.exchange.state());
         self.states.write(&self.datagram);
+        if self.sequence.push(*self.datagram).is_err() {
+            self.stats().states_lost.add(1);
+        }
         if self.records.push(self.core.record()).is_err() {
-            self.stats.records_lost.add(1);
+            self.stats().records_lost.add(1);
         }
     }
 
-    fn note_arrival(&mut self, message_id: u64, now: Instant, skipped: u64) {
-        self.stats.states.add(1);
-        if let Some((before, heard)) = self.newest.replace((message_id, now)) {
-            let missing = message_id.saturating_sub(before).saturating_sub(1);
-            self.stats.lost.add(missing.saturating_sub(skipped));
-            self.stats
-                .interval
-                .note(now.saturating_duration_since(heard));
-        }
+    fn stats(&self) -> &Stats {
+        self.meter.stats()
     }
 
     fn count(&self, reception: &Reception) {
-        self.stats.skipped.add(reception.skipped);
-        self.stats.stale.add(reception.stale);
-        self.stats.foreign.add(reception.foreign);
-        self.stats.malformed.add(reception.short);
-        self.stats
+        let stats = self.stats();
+        stats.skipped.add(reception.skipped);
+        stats.stale.add(reception.stale);
+        stats.foreign.add(reception.foreign);
+        stats.malformed.add(reception.short);
+        stats
             .receive_errors
             .add(u64::from(reception.error.is_some()));
     }
@@ -140,7 +180,7 @@ impl<C: Core> Cycle<C> {
         reception: &Reception,
         undecodable: Option<DecodeError>,
     ) -> Option<LinkFault> {
-        self.stats.malformed.add(u64::from(undecodable.is_some()));
+        self.stats().malformed.add(u64::from(undecodable.is_some()));
         let short = DecodeError::DatagramSize {
             got: reception.short_length,
             expected: self.size,
@@ -164,7 +204,7 @@ impl<C: Core> Cycle<C> {
     /// Queues a report of the loop; returns whether there was room.
     fn queue(&mut self, fault: LinkFault) -> bool {
         let queued = self.notices.push(Notice::Link(fault)).is_ok();
-        self.stats.reports_lost.add(u64::from(!queued));
+        self.stats().reports_lost.add(u64::from(!queued));
         queued
     }
 

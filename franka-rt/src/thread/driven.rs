@@ -4,13 +4,14 @@ use core::time::Duration;
 
 use franka_proto::{RobotCommand, RobotState};
 
-use crate::driver::{Driver, Event, LINK_TIMEOUT, Order, Record};
+use crate::driver::{Driver, Event, LINK_TIMEOUT, MotionStatistics, Order, Record};
+use crate::stats::{Arrival, CycleTimes};
 
 /// A pure core: states, orders and silences in; commands, records and events out.
 ///
 /// [`Driver`] is the one that programs use. The trait lets the loop be tested, and its allocations be counted, beside
 /// cores that panic, answer everything or hold their events back. No method may allocate, free, lock, log or wait: they
-/// run on the real-time thread.
+/// run on the real-time thread. Those with a body are for cores that keep counts.
 pub trait Core: Send + 'static {
     /// What the world outside asks for.
     type Order: Send + 'static;
@@ -21,6 +22,9 @@ pub trait Core: Send + 'static {
 
     /// Takes an order.
     fn on_order(&mut self, order: Self::Order);
+
+    /// Tells that so many states came with the next one, and were skipped for it. Not called for none.
+    fn on_skipped(&mut self, _states: u64) {}
 
     /// Takes a state, newer than all before it, and returns the command that answers it.
     fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand>;
@@ -33,11 +37,20 @@ pub trait Core: Send + 'static {
         LINK_TIMEOUT
     }
 
-    /// Tells how long the command took to leave, from the receipt of the state that it answers.
-    fn note_turnaround(&mut self, turnaround: Duration);
+    /// Does for a state, after [`Self::on_state`], what can wait until the command has left. `sent` has the times of the
+    /// command, if one left: all but those of what follows it.
+    fn after_send(&mut self, _state: &RobotState, _arrival: &Arrival, _sent: Option<&CycleTimes>) {}
 
-    /// The record of the last cycle.
+    /// The record of the last cycle, after [`Self::after_send`].
     fn record(&self) -> Self::Record;
+
+    /// Takes all times of a cycle whose command has left.
+    fn note_cycle(&mut self, _cycle: &CycleTimes) {}
+
+    /// Counts of the motion that runs, if one does.
+    fn statistics(&self) -> Option<&MotionStatistics> {
+        None
+    }
 
     /// The oldest event not taken yet. Only called when there is room for it outside.
     fn take_event(&mut self) -> Option<Self::Event>;
@@ -52,6 +65,10 @@ impl Core for Driver {
         Self::on_order(self, order);
     }
 
+    fn on_skipped(&mut self, states: u64) {
+        Self::on_skipped(self, states);
+    }
+
     fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         Self::on_state(self, state)
     }
@@ -64,12 +81,20 @@ impl Core for Driver {
         Self::link_timeout(self).get()
     }
 
-    fn note_turnaround(&mut self, turnaround: Duration) {
-        Self::note_turnaround(self, turnaround);
+    fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
+        Self::after_send(self, state, arrival, sent);
     }
 
     fn record(&self) -> Record {
         *Self::record(self)
+    }
+
+    fn note_cycle(&mut self, cycle: &CycleTimes) {
+        Self::note_cycle(self, cycle);
+    }
+
+    fn statistics(&self) -> Option<&MotionStatistics> {
+        Self::statistics(self)
     }
 
     fn take_event(&mut self) -> Option<Event> {

@@ -28,6 +28,8 @@ pub struct Handle<C: Core = Driver> {
     pub records: rtrb::Consumer<C::Record>,
     /// The newest state.
     pub states: StateReader,
+    /// All states, oldest first. Those that find it full are missing, and counted in [`Stats::states_lost`].
+    pub sequence: StateSequence,
     /// Rings after every cycle that left something in the fields above, and when the thread ends.
     pub wake: Wake,
     /// Counts and times of the loop.
@@ -140,11 +142,35 @@ impl StateReader {
     }
 }
 
+/// Takes the states that the thread has received, each once and in order.
+#[derive(Debug)]
+pub struct StateSequence {
+    pub(super) ring: rtrb::Consumer<Datagram>,
+    pub(super) version: Version,
+    pub(super) size: usize,
+}
+
+impl StateSequence {
+    /// The oldest state that has not been taken. Never waits.
+    pub fn pop(&mut self) -> Option<RobotState> {
+        let datagram = self.ring.pop().ok()?;
+        // The thread passes on only what it has decoded itself.
+        RobotState::decode(self.version, &datagram.0[..self.size]).ok()
+    }
+
+    /// Leaves out all that have come so far, undecoded.
+    pub fn skip(&mut self) {
+        if let Ok(chunk) = self.ring.read_chunk(self.ring.slots()) {
+            chunk.commit_all();
+        }
+    }
+}
+
 /// Attempts to read a state that is being replaced. A write takes well under a microsecond, once per millisecond.
 const ATTEMPTS: usize = 16;
 
 /// A state as it came, in the front of the array. Decoded by each reader, which spares the thread a second conversion.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Datagram(pub(super) [u8; RobotState::MAX_SIZE]);
 
 impl Words for Datagram {

@@ -12,6 +12,7 @@ use franka_proto::{DecodeError, RobotCommand, RobotState, Version};
 use franka_rt::driver::{Driver, Event, LinkTimeout};
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, SchedError, Scheduling, kernel_is_realtime};
+use franka_rt::stats::{Arrival, CycleTimes};
 use franka_rt::thread::{
     self, Capacity, Core, Handle, LinkFault, Lost, Notice, StartError, ThreadConfig,
 };
@@ -381,7 +382,11 @@ struct Probe {
     orders: Vec<u32>,
     panics_at: Option<u64>,
     to_say: std::ops::Range<u32>,
+    /// Commands whose times it was told before the record of their cycle was made.
     turnarounds: u64,
+    /// Cycles that it was told of when all was over.
+    cycles: Vec<CycleTimes>,
+    skipped: u64,
 }
 
 impl Core for Probe {
@@ -403,12 +408,21 @@ impl Core for Probe {
 
     fn on_silence(&mut self, _: Duration) {}
 
-    fn note_turnaround(&mut self, _: Duration) {
+    fn on_skipped(&mut self, states: u64) {
+        self.skipped += states;
+    }
+
+    fn after_send(&mut self, state: &RobotState, _: &Arrival, sent: Option<&CycleTimes>) {
+        assert_eq!(sent.map(|sent| sent.time), Some(state.message_id));
         self.turnarounds += 1;
     }
 
     fn record(&self) -> u64 {
         self.turnarounds
+    }
+
+    fn note_cycle(&mut self, cycle: &CycleTimes) {
+        self.cycles.push(*cycle);
     }
 
     fn take_event(&mut self) -> Option<u32> {
@@ -426,13 +440,66 @@ fn every_state_is_answered_to_its_sender_before_its_record_is_made() {
     let core = handle.thread.join().expect("nothing panics");
     assert_eq!(core.turnarounds, 100);
     assert_eq!(handle.stats.commands.get(), 100);
-    assert_eq!(handle.stats.turnaround.count(), 100);
+    let stats = &handle.stats;
+    assert_eq!((stats.turnaround.count(), stats.slack.count()), (100, 100));
     let records: Vec<u64> = std::iter::from_fn(|| handle.records.pop().ok()).collect();
     assert_eq!(
         records,
         (1..=100).collect::<Vec<_>>(),
         "the core has heard of the turnaround before"
     );
+    let times: Vec<_> = core.cycles.iter().map(|cycle| cycle.time).collect();
+    assert_eq!(times, records, "and of the whole cycle after");
+    let worst = core.cycles.iter().max_by_key(|cycle| cycle.total());
+    assert_eq!(stats.worst_cycle().as_ref(), worst);
+    let overruns = core.cycles.iter().filter(|c| c.slack.overrun().is_some());
+    assert_eq!(stats.overrun.count(), overruns.count() as u64);
+    for cycle in &core.cycles {
+        let gone = cycle.late + cycle.turnaround;
+        assert_eq!(
+            i128::from(cycle.slack.as_nanos()),
+            1_000_000 - gone.as_nanos() as i128
+        );
+        assert_eq!(cycle.phases.is_some(), cfg!(feature = "cycle-phases"));
+        if let Some(phases) = cycle.phases {
+            let before = phases.orders + phases.decode + phases.program + phases.send;
+            assert_eq!(before, cycle.turnaround, "the phases leave no gap");
+            assert!(phases.program > Duration::ZERO && phases.publish > Duration::ZERO);
+        }
+    }
+}
+
+#[test]
+fn every_state_comes_once_and_in_order_and_the_rest_is_counted() {
+    let mut config = config();
+    config.capacity.states = 50;
+    let (mut handle, robot) = start(config, Probe::default());
+    let exchange = |message_ids: std::ops::RangeInclusive<u64>| {
+        for message_id in message_ids {
+            robot.send(message_id);
+            assert_eq!(robot.command().message_id, message_id);
+        }
+    };
+    let mut take = || -> Vec<u64> {
+        std::iter::from_fn(|| handle.sequence.pop())
+            .map(|state| {
+                assert_eq!(state.q, [state.message_id as f64; 7]);
+                state.message_id
+            })
+            .collect()
+    };
+    exchange(1..=30);
+    // The last command has left before its state is in the ring: it is left for the next time.
+    let mut taken = take();
+    exchange(31..=40);
+    taken.extend(take());
+    exchange(41..=140);
+    let core = handle.thread.join().expect("nothing panics");
+    taken.extend(take());
+    let lost = handle.stats.states_lost.get();
+    assert!((50..=51).contains(&lost), "{lost} of 100 found 50 places");
+    assert!(taken.iter().copied().eq(1..=140 - lost), "{taken:?}");
+    assert_eq!((core.turnarounds, core.skipped), (140, 0));
 }
 
 #[test]

@@ -45,7 +45,7 @@ fn lockstep(key: &'static str, robot: Robot) -> Benchmark {
     let mut sample = move || {
         let start = processor_time();
         for _ in 0..MILLISECONDS {
-            wander.tick_around(|cycle| cycle());
+            wander.tick_around(|_, work| work());
         }
         let spent = processor_time().saturating_sub(start) / MILLISECONDS;
         u64::try_from(spent.as_nanos()).unwrap_or(u64::MAX)

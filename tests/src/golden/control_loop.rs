@@ -4,6 +4,7 @@
 //! once the values that they returned had passed filter, limiter and checks. Here the driver runs the same functions.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
@@ -121,6 +122,7 @@ impl Trace {
             program: Program::Callback(Box::new(callback)),
             log: ControlLog::default(),
             ticket: None,
+            times: Arc::default(),
         });
         case.equal("cycles", states.len(), self.cycles.len());
         for (state, cycle) in states.iter().zip(&self.cycles) {

@@ -10,6 +10,7 @@ use franka_proto::{CommandId, MoveRequest, Reply, Request, RobotState, Version, 
 use franka_rt::driver::{Driver, MotionId, Program, Record};
 use franka_rt::lifecycle::{Lifecycle, MotionError, Output};
 use franka_rt::session::GoalId;
+use franka_rt::stats::{Arrival, CycleTimes};
 
 use super::Outcome;
 
@@ -23,6 +24,8 @@ pub struct Client {
     pub record: Record,
     /// The newest state that arrived.
     pub state: RobotState,
+    /// From the state before it to that one, `[ms]` of the robot's clock.
+    step: u64,
     /// The time, from any fixed moment.
     pub now: Duration,
     session: Session,
@@ -43,6 +46,7 @@ impl Client {
             lifecycle: Lifecycle::new(model.clone().into(), version),
             record: Record::default(),
             state: RobotState::default(),
+            step: 0,
             now: Duration::ZERO,
             session: Session::new(version),
             motions: HashMap::new(),
@@ -145,13 +149,29 @@ impl Client {
     ///
     /// # Panics
     /// If the datagram is no state.
-    pub fn cycle(&mut self, datagram: &[u8], command: &mut [u8]) -> Option<usize> {
+    pub fn answer(&mut self, datagram: &[u8], command: &mut [u8]) -> Option<usize> {
         let version = self.session.version();
+        let previous = self.state.message_id;
         self.state = RobotState::decode(version, datagram).expect("a state of this version");
+        self.step = self.state.message_id.saturating_sub(previous);
         let answer = self.driver.on_state(&self.state);
-        let size = answer.map(|answer| answer.encode(version, command).expect("it fits"));
+        answer.map(|answer| answer.encode(version, command).expect("it fits"))
+    }
+
+    /// What the control thread does after that: in a world where states come when they are due, and answers take no time.
+    pub fn conclude(&mut self, answered: bool) {
+        let state = &self.state;
+        let arrival = Arrival {
+            interval: Some(Duration::from_millis(self.step)),
+            late: Duration::ZERO,
+        };
+        let sent = CycleTimes::new(state.message_id, arrival.late, Duration::ZERO);
+        let sent = answered.then_some(&sent);
+        self.driver.after_send(state, &arrival, sent);
         self.record = *self.driver.record();
-        size
+        if let Some(sent) = sent {
+            self.driver.note_cycle(sent);
+        }
     }
 
     /// Passes on what the driver has to tell, watches deadlines, and carries out what follows from both. Returns whether

@@ -40,6 +40,15 @@ use guard::CommandGuard;
 /// How a goal turned out.
 pub type Outcome = Result<MotionReport, MotionError>;
 
+/// A part of the control cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// From the datagram of a state to that of the command.
+    Answer,
+    /// What the driver does once the command has left.
+    Aftermath,
+}
+
 /// The whole system, one millisecond at a time.
 pub struct Lockstep {
     /// The simulated robot, for pushing and tripping.
@@ -111,15 +120,15 @@ impl Lockstep {
     /// # Panics
     /// If a command violates a limit of the robot, or the client's session meets a message it cannot read.
     pub fn tick(&mut self) {
-        self.tick_around(|cycle| cycle());
+        self.tick_around(|_, work| work());
     }
 
-    /// Like [`Self::tick`], with the control cycle, datagram in to datagram out, run by `around`: to time it, or to count
-    /// what it allocates.
+    /// Like [`Self::tick`], with both parts of the control cycle run by `around`: to time them, or to count what they
+    /// allocate.
     ///
     /// # Panics
-    /// See [`Self::tick`]; and if `around` does not run the cycle.
-    pub fn tick_around(&mut self, mut around: impl FnMut(&mut dyn FnMut())) {
+    /// See [`Self::tick`]; and if `around` does not run what it is given.
+    pub fn tick_around(&mut self, mut around: impl FnMut(Part, &mut dyn FnMut())) {
         self.milliseconds += 1;
         self.client.now = Duration::from_millis(self.milliseconds);
         while let Some(bytes) = self.client.take_message() {
@@ -139,8 +148,14 @@ impl Lockstep {
                 self.heard = self.milliseconds;
                 let mut answer = None;
                 let mut command = [0; RobotCommand::MAX_SIZE];
-                around(&mut || answer = Some(self.client.cycle(&datagram, &mut command)));
-                if let Some(size) = answer.expect("the cycle has run") {
+                around(Part::Answer, &mut || {
+                    answer = Some(self.client.answer(&datagram, &mut command));
+                });
+                let answer = answer.expect("the cycle has run");
+                around(Part::Aftermath, &mut || {
+                    self.client.conclude(answer.is_some());
+                });
+                if let Some(size) = answer {
                     self.pass_command(&command[..size]);
                 }
             }

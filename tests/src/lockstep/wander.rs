@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-use super::Lockstep;
+use super::{Lockstep, Part};
 
 /// Sends an arm about, from a seed.
 pub struct Wander {
@@ -41,7 +41,7 @@ impl Wander {
     }
 
     /// One millisecond; see [`Lockstep::tick_around`].
-    pub fn tick_around(&mut self, around: impl FnMut(&mut dyn FnMut())) {
+    pub fn tick_around(&mut self, around: impl FnMut(Part, &mut dyn FnMut())) {
         if self.lockstep.now() >= self.next {
             self.next = self.lockstep.now() + self.random.random_range(5..400);
             self.change_course();

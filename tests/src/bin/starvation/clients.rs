@@ -78,8 +78,6 @@ impl Core for Echo {
 
     fn on_silence(&mut self, _silence: Duration) {}
 
-    fn note_turnaround(&mut self, _turnaround: Duration) {}
-
     fn record(&self) {}
 
     fn take_event(&mut self) -> Option<()> {

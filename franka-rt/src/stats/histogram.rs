@@ -1,63 +1,9 @@
-//! Counts and times of the loop, always on.
-//!
-//! One writer, the thread; readers anywhere, at any time, without a lock. Every cell is an atomic of its own, so a
-//! reader may see a cycle half counted: good enough for numbers that are looked at, not computed with. The histograms
-//! are arrays of atomics with logarithmic buckets rather than the `hdrhistogram` crate's, whose plain cells a reader
-//! could only see through a lock or a copy made by the thread.
+//! How often which duration occurred.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
 
-/// What the loop has counted and measured since it started.
-#[derive(Debug, Default)]
-pub struct Stats {
-    /// States received and given to the driver.
-    pub states: Counter,
-    /// Commands sent.
-    pub commands: Counter,
-    /// States that were received but gave way to a newer one that waited too.
-    pub skipped: Counter,
-    /// States that never came, by the gaps in `message_id`; those skipped are not among them.
-    pub lost: Counter,
-    /// States not newer than the newest: late or duplicate ones.
-    pub stale: Counter,
-    /// Datagrams from elsewhere than the robot.
-    pub foreign: Counter,
-    /// Datagrams of the robot too short for a state, or not decodable as one.
-    pub malformed: Counter,
-    /// Receives that failed otherwise than by finding nothing.
-    pub receive_errors: Counter,
-    /// Commands that did not leave.
-    pub send_errors: Counter,
-    /// Records that found their ring full.
-    pub records_lost: Counter,
-    /// Reports of the loop itself (not of the driver) that found the queue full.
-    pub reports_lost: Counter,
-    /// Times between two states in a row, by this host's clock.
-    pub interval: Histogram,
-    /// Times from the receipt of a state to the departure of its command.
-    pub turnaround: Histogram,
-}
-
-/// A count with one writer.
-#[derive(Debug, Default)]
-pub struct Counter(AtomicU64);
-
-impl Counter {
-    /// The count now.
-    pub fn get(&self) -> u64 {
-        // Relaxed: the number stands for itself; nothing else is read on its strength.
-        self.0.load(Ordering::Relaxed)
-    }
-
-    /// Adds, wrapping. For the one writer only: a load and a store, without the cost of a read-modify-write.
-    pub(crate) fn add(&self, more: u64) {
-        if more != 0 {
-            self.0
-                .store(self.get().wrapping_add(more), Ordering::Relaxed);
-        }
-    }
-}
+use super::Counter;
 
 /// How often which duration occurred, to 1/16 of its value (exact below 16 ns), with exact minimum and maximum.
 ///
@@ -84,6 +30,15 @@ impl Default for Histogram {
 }
 
 impl Histogram {
+    /// The numbers that a report names; `None` if there was no duration. Not for the real-time thread.
+    pub fn quantiles(&self) -> Option<Quantiles> {
+        Some(Quantiles {
+            p50: self.quantile(0.5)?,
+            p99: self.quantile(0.99)?,
+            max: self.max()?,
+        })
+    }
+
     /// Counts one duration. For the one writer only. Constant time, no allocation.
     pub(crate) fn note(&self, duration: Duration) {
         let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
@@ -135,6 +90,18 @@ impl Histogram {
         }
         Some(max)
     }
+}
+
+/// Three numbers of a histogram.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Quantiles {
+    /// What half of all durations did not exceed, to 1/16.
+    pub p50: Duration,
+    /// What 99 of 100 did not exceed, to 1/16.
+    pub p99: Duration,
+    /// The longest one, exactly.
+    pub max: Duration,
 }
 
 /// log2 of the buckets per power of two.
@@ -199,6 +166,7 @@ mod tests {
             (0, None, None)
         );
         assert_eq!(histogram.quantile(0.5), None);
+        assert_eq!(histogram.quantiles(), None);
     }
 
     #[test]
@@ -223,6 +191,9 @@ mod tests {
         assert_eq!(histogram.count(), 5000);
         assert_eq!(histogram.min(), Some(Duration::from_nanos(values[0])));
         assert_eq!(histogram.max(), Some(Duration::from_nanos(values[4999])));
+        let quantiles = histogram.quantiles().expect("not empty");
+        assert_eq!(Some(quantiles.p99), histogram.quantile(0.99));
+        assert_eq!(Some(quantiles.max), histogram.max());
     }
 
     #[test]
@@ -234,14 +205,5 @@ mod tests {
             Some(Duration::from_nanos((1 << OCTAVES_MAX) - 1))
         );
         assert_eq!(histogram.max(), Some(Duration::from_secs(3600)));
-    }
-
-    #[test]
-    fn a_counter_adds_up() {
-        let counter = Counter::default();
-        counter.add(3);
-        counter.add(0);
-        counter.add(4);
-        assert_eq!(counter.get(), 7);
     }
 }

@@ -1,0 +1,46 @@
+//! What the driver does once a command has left.
+
+use franka_proto::RobotState;
+
+use super::{Driver, MotionStatistics, Phase};
+use crate::stats::{Arrival, CycleTimes};
+
+impl Driver {
+    /// Does for a state, once [`Self::on_state`] has taken it and the command has left (or none was due), what need not be
+    /// done before. `sent` has the times of the command, if one left, as far as they are known.
+    pub fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
+        self.record.late = arrival.late;
+        if let Some(sent) = sent {
+            self.record.turnaround = sent.turnaround;
+            self.record.slack = Some(sent.slack);
+        }
+        if let Phase::Running(motion) | Phase::Finishing(motion) | Phase::Silent(motion) =
+            &mut self.phase
+        {
+            motion.log.note_state(state);
+            motion.log.note_command(&motion.sent);
+            if let Some(interval) = arrival.interval {
+                motion.times.interval.note(interval);
+            }
+        }
+    }
+
+    /// Takes the times of a cycle whose command has left, when all of them are known.
+    pub fn note_cycle(&mut self, cycle: &CycleTimes) {
+        if let Phase::Running(motion) | Phase::Finishing(motion) | Phase::Silent(motion) =
+            &self.phase
+        {
+            self.statistics.note_cycle(cycle);
+            motion.times.turnaround.note(cycle.turnaround);
+        }
+    }
+
+    /// Counts of the motion that runs; `None` if none does.
+    pub fn statistics(&self) -> Option<&MotionStatistics> {
+        matches!(
+            self.phase,
+            Phase::Running(_) | Phase::Finishing(_) | Phase::Silent(_)
+        )
+        .then_some(&self.statistics)
+    }
+}

@@ -1,0 +1,310 @@
+//! How long one cycle took, and in what.
+
+use core::fmt;
+use core::time::Duration;
+
+use crate::slot::Words;
+
+/// One cycle that sent a command: how long it took, and in what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct CycleTimes {
+    /// `message_id` of the state that the command answers, `[ms]` of the robot's clock.
+    pub time: u64,
+    /// From when the state was due to when the thread had it: network, kernel and waking up. A state is due a whole
+    /// number of milliseconds, by `message_id`, after the most punctual of the last 32 to 64 states. Zero for that one.
+    pub late: Duration,
+    /// From when the thread had the state to the departure of the command: until the system call that sends had returned.
+    pub turnaround: Duration,
+    /// What was left until the next state was due: 1 ms - `late` - `turnaround`. The way to the robot and back is not in
+    /// it and has to fit into it.
+    pub slack: Slack,
+    /// Where the time went; `None` without the feature `cycle-phases`.
+    pub phases: Option<Phases>,
+}
+
+/// The time until the next state is due, when a command leaves. Negative: the command left later than that, which is an
+/// overrun.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct Slack {
+    nanos: i64,
+}
+
+/// The parts of one cycle, in their order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Phases {
+    /// Orders from outside the thread.
+    pub orders: Duration,
+    /// The state read from its bytes.
+    pub decode: Duration,
+    /// The driver: session, generator, inverse kinematics, law, guards; or a function of the user's. Under active control,
+    /// also what the user's thread did until it wrote.
+    pub program: Duration,
+    /// The command written into bytes and handed to the kernel.
+    pub send: Duration,
+    /// What follows the command: log, newest state, rings, events, bell. It delays the next cycle if it is long. Under active
+    /// control it comes before the command.
+    pub publish: Duration,
+}
+
+/// Where the time of a cycle goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Phase {
+    /// The state came late, or the thread woke up late: [`CycleTimes::late`].
+    Arrival,
+    /// All of the thread's work, where its phases are not timed: [`CycleTimes::turnaround`].
+    Answer,
+    /// [`Phases::orders`].
+    Orders,
+    /// [`Phases::decode`].
+    Decode,
+    /// [`Phases::program`].
+    Program,
+    /// [`Phases::send`].
+    Send,
+    /// [`Phases::publish`].
+    Publish,
+}
+
+impl CycleTimes {
+    /// A cycle whose phases are not known.
+    pub fn new(time: u64, late: Duration, turnaround: Duration) -> Self {
+        Self {
+            time,
+            late,
+            turnaround,
+            slack: Slack::of(late, turnaround),
+            phases: None,
+        }
+    }
+
+    /// From when the state was due to the end of all that is timed: the departure of the command, or of what follows it.
+    pub fn total(&self) -> Duration {
+        let work = self.phases.map_or(Duration::ZERO, |phases| phases.sum());
+        self.late.saturating_add(self.turnaround.max(work))
+    }
+
+    /// The part that took longest, and how long.
+    pub fn longest(&self) -> (Phase, Duration) {
+        let late = (Phase::Arrival, self.late);
+        let Some(phases) = &self.phases else {
+            let answer = (Phase::Answer, self.turnaround);
+            return if late.1 > answer.1 { late } else { answer };
+        };
+        phases.parts().into_iter().fold(
+            late,
+            |longest, part| {
+                if part.1 > longest.1 { part } else { longest }
+            },
+        )
+    }
+}
+
+impl Slack {
+    /// What is left of a cycle of which so much is gone.
+    pub(crate) fn of(late: Duration, turnaround: Duration) -> Self {
+        let gone = late.saturating_add(turnaround).as_nanos();
+        let gone = i64::try_from(gone).unwrap_or(i64::MAX);
+        Self {
+            nanos: CYCLE_NANOS.saturating_sub(gone),
+        }
+    }
+
+    pub(crate) fn from_nanos(nanos: i64) -> Self {
+        Self { nanos }
+    }
+
+    /// In nanoseconds; negative for an overrun.
+    pub fn as_nanos(self) -> i64 {
+        self.nanos
+    }
+
+    /// The time that was left; `None` for an overrun.
+    pub fn left(self) -> Option<Duration> {
+        u64::try_from(self.nanos).ok().map(Duration::from_nanos)
+    }
+
+    /// By how much the command was too late; `None` if it was not.
+    pub fn overrun(self) -> Option<Duration> {
+        (self.nanos < 0).then(|| Duration::from_nanos(self.nanos.unsigned_abs()))
+    }
+}
+
+impl fmt::Display for Slack {
+    /// In milliseconds.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.3} ms", self.nanos as f64 * 1e-6)
+    }
+}
+
+impl Phases {
+    /// Where the time of a phase is kept; `None` for what is no part of these.
+    #[cfg(feature = "cycle-phases")]
+    pub(super) fn part_mut(&mut self, phase: Phase) -> Option<&mut Duration> {
+        match phase {
+            Phase::Orders => Some(&mut self.orders),
+            Phase::Decode => Some(&mut self.decode),
+            Phase::Program => Some(&mut self.program),
+            Phase::Send => Some(&mut self.send),
+            Phase::Publish => Some(&mut self.publish),
+            Phase::Arrival | Phase::Answer => None,
+        }
+    }
+
+    fn parts(&self) -> [(Phase, Duration); 5] {
+        [
+            (Phase::Orders, self.orders),
+            (Phase::Decode, self.decode),
+            (Phase::Program, self.program),
+            (Phase::Send, self.send),
+            (Phase::Publish, self.publish),
+        ]
+    }
+
+    fn sum(&self) -> Duration {
+        self.parts()
+            .iter()
+            .fold(Duration::ZERO, |sum, (_, part)| sum.saturating_add(*part))
+    }
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Arrival => "arrival",
+            Self::Answer => "answer",
+            Self::Orders => "orders",
+            Self::Decode => "decode",
+            Self::Program => "program",
+            Self::Send => "send",
+            Self::Publish => "publish",
+        })
+    }
+}
+
+impl Words for CycleTimes {
+    const WORDS: usize = 10;
+
+    fn store(&self, words: &mut [u64]) {
+        let phases = self.phases.unwrap_or_default();
+        words.copy_from_slice(&[
+            self.time,
+            nanos(self.late),
+            nanos(self.turnaround),
+            self.slack.nanos.cast_unsigned(),
+            u64::from(self.phases.is_some()),
+            nanos(phases.orders),
+            nanos(phases.decode),
+            nanos(phases.program),
+            nanos(phases.send),
+            nanos(phases.publish),
+        ]);
+    }
+
+    fn load(words: &[u64]) -> Self {
+        let duration = |index: usize| Duration::from_nanos(words[index]);
+        Self {
+            time: words[0],
+            late: duration(1),
+            turnaround: duration(2),
+            slack: Slack {
+                nanos: words[3].cast_signed(),
+            },
+            phases: (words[4] == 1).then(|| Phases {
+                orders: duration(5),
+                decode: duration(6),
+                program: duration(7),
+                send: duration(8),
+                publish: duration(9),
+            }),
+        }
+    }
+}
+
+/// In nanoseconds, up to 585 years.
+fn nanos(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// Time from one state to the next, in nanoseconds.
+pub(super) const CYCLE_NANOS: i64 = 1_000_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const US: fn(u64) -> Duration = Duration::from_micros;
+
+    fn timed() -> CycleTimes {
+        CycleTimes {
+            phases: Some(Phases {
+                orders: US(1),
+                decode: US(2),
+                program: US(50),
+                send: US(7),
+                publish: US(30),
+            }),
+            ..CycleTimes::new(17, US(20), US(60))
+        }
+    }
+
+    #[test]
+    fn slack_is_what_a_millisecond_has_left() {
+        let slack = |late, turnaround| CycleTimes::new(1, US(late), US(turnaround)).slack;
+        assert_eq!(slack(20, 60).left(), Some(US(920)));
+        assert_eq!(slack(20, 60).overrun(), None);
+        assert_eq!(slack(0, 1000).left(), Some(Duration::ZERO));
+        assert_eq!(slack(0, 1000).overrun(), None);
+        assert_eq!(slack(600, 700).left(), None);
+        assert_eq!(slack(600, 700).overrun(), Some(US(300)));
+        assert_eq!(slack(600, 700).as_nanos(), -300_000);
+        assert_eq!(slack(600, 700).to_string(), "-0.300 ms");
+        assert!(Slack::of(Duration::MAX, Duration::MAX).overrun().is_some());
+    }
+
+    #[test]
+    fn the_total_counts_what_follows_the_command_and_not_twice_what_precedes_it() {
+        assert_eq!(timed().total(), US(20 + 60 + 30));
+        let untimed = CycleTimes {
+            phases: None,
+            ..timed()
+        };
+        assert_eq!(untimed.total(), US(80));
+        let mut active = timed();
+        active.turnaround = US(90); // The command came after the publishing.
+        assert_eq!(active.total(), US(110));
+    }
+
+    #[test]
+    fn the_longest_part_is_named() {
+        assert_eq!(timed().longest(), (Phase::Program, US(50)));
+        let late = CycleTimes {
+            late: US(51),
+            ..timed()
+        };
+        assert_eq!(late.longest(), (Phase::Arrival, US(51)));
+        let untimed = CycleTimes {
+            phases: None,
+            ..late
+        };
+        assert_eq!(untimed.longest(), (Phase::Answer, US(60)));
+        let mut publishing = timed();
+        publishing.phases.as_mut().expect("timed").publish = US(400);
+        assert_eq!(publishing.longest(), (Phase::Publish, US(400)));
+        assert_eq!(Phase::Publish.to_string(), "publish");
+    }
+
+    #[test]
+    fn cycles_survive_their_words() {
+        for cycle in [timed(), CycleTimes::new(u64::MAX, US(800), US(900))] {
+            let mut words = [0; CycleTimes::WORDS];
+            cycle.store(&mut words);
+            assert_eq!(CycleTimes::load(&words), cycle);
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! The writing side of the statistics.
+
+use core::time::Duration;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::arrivals::Arrivals;
+use super::{Counter, CycleTimes, Histogram, Stats};
+use crate::driver::MotionStatistics;
+use crate::slot::{self, SlotWriter};
+
+/// How a state came.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Arrival {
+    /// Time since the state before, by this host's clock; `None` for the first.
+    pub interval: Option<Duration>,
+    /// From when it was due to when the thread had it: see [`CycleTimes::late`].
+    pub late: Duration,
+}
+
+/// What the thread writes the statistics with.
+#[derive(Debug)]
+pub(crate) struct Meter {
+    stats: Arc<Stats>,
+    arrivals: Arrivals,
+    newest: Option<Newest>,
+    /// The longest total so far.
+    longest: Duration,
+    worst: SlotWriter<CycleTimes>,
+    overran: SlotWriter<CycleTimes>,
+    motion: SlotWriter<MotionStatistics>,
+}
+
+/// The newest state.
+#[derive(Clone, Copy, Debug)]
+struct Newest {
+    time: u64,
+    received: Instant,
+    late: Duration,
+}
+
+impl Meter {
+    /// Statistics of nothing yet. Allocates; nothing else here does.
+    pub(crate) fn new() -> Self {
+        let (worst, worst_reader) = slot::slot();
+        let (overran, overran_reader) = slot::slot();
+        let (motion, motion_reader) = slot::slot();
+        let stats = Stats {
+            states: Counter::default(),
+            commands: Counter::default(),
+            skipped: Counter::default(),
+            lost: Counter::default(),
+            stale: Counter::default(),
+            foreign: Counter::default(),
+            malformed: Counter::default(),
+            receive_errors: Counter::default(),
+            send_errors: Counter::default(),
+            records_lost: Counter::default(),
+            states_lost: Counter::default(),
+            reports_lost: Counter::default(),
+            interval: Histogram::default(),
+            turnaround: Histogram::default(),
+            slack: Histogram::default(),
+            overrun: Histogram::default(),
+            worst: worst_reader,
+            overran: overran_reader,
+            motion: motion_reader,
+        };
+        Self {
+            stats: Arc::new(stats),
+            arrivals: Arrivals::default(),
+            newest: None,
+            longest: Duration::ZERO,
+            worst,
+            overran,
+            motion,
+        }
+    }
+
+    /// What is written to.
+    pub(crate) fn stats(&self) -> &Arc<Stats> {
+        &self.stats
+    }
+
+    /// When the newest state was received.
+    pub(crate) fn heard(&self) -> Option<Instant> {
+        self.newest.map(|newest| newest.received)
+    }
+
+    /// Notes a state, which came with so many others that gave way to it.
+    pub(crate) fn note_arrival(&mut self, time: u64, received: Instant, skipped: u64) -> Arrival {
+        let late = self.arrivals.note(time, received);
+        let before = self.newest.replace(Newest {
+            time,
+            received,
+            late,
+        });
+        self.stats.states.add(1);
+        let interval = before.map(|before| {
+            let missing = time.saturating_sub(before.time).saturating_sub(1);
+            self.stats.lost.add(missing.saturating_sub(skipped));
+            received.saturating_duration_since(before.received)
+        });
+        if let Some(interval) = interval {
+            self.stats.interval.note(interval);
+        }
+        Arrival { interval, late }
+    }
+
+    /// The cycle of the newest state, whose command left at `departed`.
+    pub(crate) fn answered(&self, departed: Instant) -> CycleTimes {
+        let newest = self.newest.expect("only a state that came is answered");
+        let turnaround = departed.saturating_duration_since(newest.received);
+        CycleTimes::new(newest.time, newest.late, turnaround)
+    }
+
+    /// Notes a cycle with a command.
+    pub(crate) fn note_cycle(&mut self, cycle: &CycleTimes) {
+        self.stats.commands.add(1);
+        self.stats.turnaround.note(cycle.turnaround);
+        self.stats
+            .slack
+            .note(cycle.slack.left().unwrap_or_default());
+        if let Some(overrun) = cycle.slack.overrun() {
+            self.overran.write(cycle);
+            // After the cycle itself: who sees the count finds a cycle.
+            self.stats.overrun.note(overrun);
+        }
+        if cycle.total() > self.longest {
+            self.longest = cycle.total();
+            self.worst.write(cycle);
+        }
+    }
+
+    /// Shows the numbers of the motion that runs.
+    pub(crate) fn note_motion(&mut self, motion: &MotionStatistics) {
+        self.motion.write(motion);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stats::{Phase, Phases};
+
+    const US: fn(u64) -> Duration = Duration::from_micros;
+
+    #[test]
+    fn an_answer_is_measured_from_the_receipt_and_from_when_it_was_due() {
+        let mut meter = Meter::new();
+        let start = Instant::now();
+        assert_eq!(meter.heard(), None);
+        meter.note_arrival(10, start, 0);
+        let arrival = meter.note_arrival(14, start + US(4200), 2);
+        let expected = Arrival {
+            interval: Some(US(4200)),
+            late: US(200),
+        };
+        assert_eq!(arrival, expected);
+        assert_eq!(meter.stats().lost.get(), 1, "three are missing, two came");
+        assert_eq!(meter.heard(), Some(start + US(4200)));
+        let cycle = meter.answered(start + US(4500));
+        assert_eq!(
+            (cycle.time, cycle.late, cycle.turnaround),
+            (14, US(200), US(300))
+        );
+        assert_eq!(cycle.slack.left(), Some(US(500)));
+    }
+
+    #[test]
+    fn the_worst_cycle_is_kept_with_its_phases_and_the_newest_overrun_beside_it() {
+        let mut meter = Meter::new();
+        let stats = meter.stats().clone();
+        assert_eq!((stats.worst_cycle(), stats.newest_overrun()), (None, None));
+        let timed = CycleTimes {
+            phases: Some(Phases {
+                program: US(80),
+                publish: US(2000),
+                ..Phases::default()
+            }),
+            ..CycleTimes::new(2, US(5), US(90))
+        };
+        let late = CycleTimes::new(3, US(900), US(150));
+        for cycle in [CycleTimes::new(1, US(30), US(100)), timed, late] {
+            meter.note_cycle(&cycle);
+        }
+        meter.note_cycle(&CycleTimes::new(4, US(0), US(90)));
+        assert_eq!(stats.worst_cycle(), Some(timed));
+        assert_eq!(timed.longest(), (Phase::Publish, US(2000)));
+        assert_eq!(stats.newest_overrun(), Some(late));
+        assert_eq!((stats.commands.get(), stats.overrun.count()), (4, 1));
+        assert_eq!(stats.overrun.max(), Some(US(50)));
+        assert_eq!(stats.slack.count(), 4);
+        assert_eq!(stats.slack.min(), Some(Duration::ZERO));
+        assert_eq!(stats.slack.max(), Some(US(910)));
+        assert_eq!(stats.turnaround.max(), Some(US(150)));
+    }
+}

@@ -1,0 +1,140 @@
+//! Counts and times of the loop, always on.
+//!
+//! ```text
+//!  due          received                          left                  published
+//!   |--- late ---|--- turnaround ------------------|                      |
+//!   |            | orders | decode | program | send |      publish        |
+//!   |-------------------- 1 ms --------------------------|-- next state due
+//!                                                   slack
+//! ```
+//!
+//! One writer, the thread; readers anywhere, at any time, without a lock. Every cell is an atomic of its own, so a
+//! reader may see a cycle half counted: good enough for numbers that are looked at, not computed with. The histograms
+//! are arrays of atomics with logarithmic buckets rather than the `hdrhistogram` crate's, whose plain cells a reader
+//! could only see through a lock or a copy made by the thread. What only makes sense as a whole, a cycle or the numbers
+//! of a motion, crosses in a [`slot`](crate::slot).
+//!
+//! * [`Histogram`]: how often which duration occurred. [`CycleTimes`]: one cycle and its phases.
+//! * `arrivals`: when the next state is due. `meter`: the writing side of it all.
+
+mod arrivals;
+mod cycle;
+mod histogram;
+mod laps;
+mod meter;
+
+use core::sync::atomic::{AtomicU64, Ordering};
+
+pub use cycle::{CycleTimes, Phase, Phases, Slack};
+pub use histogram::{Histogram, Quantiles};
+pub use meter::Arrival;
+
+pub(crate) use laps::Laps;
+pub(crate) use meter::Meter;
+
+use crate::driver::MotionStatistics;
+use crate::slot::{Read, SlotReader, Words};
+
+/// What the loop has counted and measured since it started.
+#[derive(Debug)]
+pub struct Stats {
+    /// States received and given to the driver.
+    pub states: Counter,
+    /// Commands sent.
+    pub commands: Counter,
+    /// States that were received but gave way to a newer one that waited too.
+    pub skipped: Counter,
+    /// States that never came, by the gaps in `message_id`; those skipped are not among them.
+    pub lost: Counter,
+    /// States not newer than the newest: late or duplicate ones.
+    pub stale: Counter,
+    /// Datagrams from elsewhere than the robot.
+    pub foreign: Counter,
+    /// Datagrams of the robot too short for a state, or not decodable as one.
+    pub malformed: Counter,
+    /// Receives that failed otherwise than by finding nothing.
+    pub receive_errors: Counter,
+    /// Commands that did not leave.
+    pub send_errors: Counter,
+    /// Records that found their ring full.
+    pub records_lost: Counter,
+    /// States that found the ring of all states full. They were answered, and the newest of them published.
+    pub states_lost: Counter,
+    /// Reports of the loop itself (not of the driver) that found the queue full.
+    pub reports_lost: Counter,
+    /// Times between two states in a row, by this host's clock.
+    pub interval: Histogram,
+    /// Times from the receipt of a state to the departure of its command.
+    pub turnaround: Histogram,
+    /// Times from the departure of a command to when the next state was due: see [`CycleTimes::slack`]. A command that
+    /// left later than that counts as zero here, and in [`Self::overrun`].
+    pub slack: Histogram,
+    /// By how much commands left after the next state was due: as many as there are overruns.
+    pub overrun: Histogram,
+    worst: SlotReader<CycleTimes>,
+    overran: SlotReader<CycleTimes>,
+    motion: SlotReader<MotionStatistics>,
+}
+
+impl Stats {
+    /// The cycle with the longest [`CycleTimes::total`] so far; `None` before the first command.
+    pub fn worst_cycle(&self) -> Option<CycleTimes> {
+        newest(&self.worst)
+    }
+
+    /// The newest cycle whose command left after the next state was due; `None` if there was none.
+    pub fn newest_overrun(&self) -> Option<CycleTimes> {
+        newest(&self.overran)
+    }
+
+    /// The motion that runs, so far, or the last one; `None` before the first. Of a motion that has ended, the state that
+    /// showed its end is not counted here: its report counts it.
+    pub fn motion(&self) -> Option<MotionStatistics> {
+        newest(&self.motion)
+    }
+}
+
+/// The value in a slot whose reader here never reads: its clones do.
+fn newest<T: Words>(slot: &SlotReader<T>) -> Option<T> {
+    match slot.clone().read_retry(ATTEMPTS) {
+        Read::Newer(value) => Some(value),
+        Read::Same | Read::Torn => None,
+    }
+}
+
+/// Attempts to read what is being replaced. A write takes some nanoseconds, once per millisecond.
+const ATTEMPTS: usize = 64;
+
+/// A count with one writer.
+#[derive(Debug, Default)]
+pub struct Counter(AtomicU64);
+
+impl Counter {
+    /// The count now.
+    pub fn get(&self) -> u64 {
+        // Relaxed: the number stands for itself; nothing else is read on its strength.
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Adds, wrapping. For the one writer only: a load and a store, without the cost of a read-modify-write.
+    pub(crate) fn add(&self, more: u64) {
+        if more != 0 {
+            self.0
+                .store(self.get().wrapping_add(more), Ordering::Relaxed);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_counter_adds_up() {
+        let counter = Counter::default();
+        counter.add(3);
+        counter.add(0);
+        counter.add(4);
+        assert_eq!(counter.get(), 7);
+    }
+}
