@@ -8,22 +8,21 @@ use std::io;
 use std::time::Duration;
 
 use franka_proto::RobotState;
-use franka_rt::driver::{Driver, Event, Order, Program, Record};
+use franka_rt::driver::{Driver, Event, Order, Program};
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output};
 use franka_rt::session::{GoalError, GoalId, Target};
 use franka_rt::thread::{Handle, Notice, Thread};
 use franka_rt::wake::Wake;
 use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
-use tokio::sync::{broadcast, mpsc, oneshot, watch};
+use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use crate::channel::{CLOSED_BY_US, Channel, Connection, Report};
 use crate::motion::Work;
-
-/// Records that a slow listener may lag behind before it misses some: two seconds.
-const RECORDS: usize = 2048;
+use crate::publish::{Publisher, Subscriptions};
+use crate::telemetry::{self, Telemetry};
 
 /// Time that a motion gets to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
@@ -74,8 +73,7 @@ pub(crate) struct Waiting {
 pub(crate) struct Inputs {
     /// Unbounded, since dropping a motion must be able to send; what awaits an answer bounds itself.
     pub(crate) queue: mpsc::UnboundedSender<Input>,
-    /// Weak, so that listeners hear of the end.
-    pub(crate) records: broadcast::WeakSender<Record>,
+    pub(crate) subscriptions: Subscriptions,
 }
 
 /// Makes the thread's bell heard on this runtime.
@@ -105,13 +103,11 @@ pub(crate) struct Bridge {
     bell: AsyncFd<Wake>,
     orders: rtrb::Producer<Order>,
     notices: rtrb::Consumer<Notice<Event>>,
-    ring: rtrb::Consumer<Record>,
-    newest: franka_rt::thread::StateReader,
+    publisher: Publisher,
+    telemetry: Telemetry,
     thread: Option<Thread<Driver>>,
     channel: Channel,
     connection: Option<Connection>,
-    states: watch::Sender<RobotState>,
-    records: broadcast::Sender<Record>,
     waiting: HashMap<GoalId, Waiting>,
     started: Instant,
     /// Whether robot or thread is out of reach, for good.
@@ -131,13 +127,11 @@ impl Bridge {
             bell,
             orders: handle.orders,
             notices: handle.notices,
-            ring: handle.records,
-            newest: handle.states,
+            publisher: Publisher::new(handle.states, handle.sequence, handle.records, states),
+            telemetry: Telemetry::new(handle.stats),
             thread: Some(handle.thread),
             channel,
             connection: Some(connection),
-            states,
-            records: broadcast::channel(RECORDS).0,
             waiting: HashMap::new(),
             started: Instant::now(),
             lost: false,
@@ -154,7 +148,7 @@ impl Bridge {
         let (queue, inbox) = mpsc::unbounded_channel();
         let inputs = Inputs {
             queue,
-            records: self.records.downgrade(),
+            subscriptions: self.publisher.subscriptions(),
         };
         tokio::spawn(self.run(inbox, reports, cancellation));
         inputs
@@ -249,22 +243,20 @@ impl Bridge {
 
     /// Takes everything that the thread has left for us.
     fn listen(&mut self) {
-        if let Some(state) = self.newest.newest() {
-            self.states.send_replace(state);
-        }
+        self.publisher.publish();
+        self.telemetry.watch(Instant::now());
         while let Ok(notice) = self.notices.pop() {
             match notice {
                 Notice::Core(event) => {
+                    match &event {
+                        Event::Ended(ended) => telemetry::sum_up(ended),
+                        Event::LinkLost { silence } => self.publisher.tell_silence(*silence),
+                        _ => {}
+                    }
                     let now = self.now();
                     self.lifecycle.on_event(event, now);
                 }
                 Notice::Link(fault) => tracing::warn!(%fault, "control link"),
-            }
-        }
-        while let Ok(record) = self.ring.pop() {
-            if self.records.receiver_count() > 0 {
-                // Fails only if the last listener has just gone.
-                let _ = self.records.send(record);
             }
         }
         if self.thread.as_ref().is_some_and(Thread::has_ended) {
@@ -287,7 +279,7 @@ impl Bridge {
                 let id = work.id();
                 let begun = match work {
                     Work::Goal { goal, ticket } => {
-                        let state = &self.states.borrow();
+                        let state = &self.publisher.state();
                         match ticket {
                             None => self.lifecycle.submit(*goal, state, now),
                             Some(ticket) => {
@@ -331,7 +323,7 @@ impl Bridge {
                 target,
                 taken,
             } => {
-                let updated = self.lifecycle.update(goal, target, &self.states.borrow());
+                let updated = self.lifecycle.update(goal, target, &self.publisher.state());
                 let _ = taken.send(updated);
             }
             Input::Close { goal } => self.lifecycle.close(goal),

@@ -16,6 +16,7 @@ use franka_rt::thread::{LinkFault, StartError};
 
 pub use crate::active::ActiveError;
 pub use crate::endpoint::EndpointError;
+pub use crate::reading::ReadError;
 
 pub use franka_rt::lifecycle::{ControlError, MotionError, Party};
 pub use franka_rt::session::GoalError;
@@ -40,6 +41,9 @@ pub enum Error {
     /// Active control could not go on.
     #[error(transparent)]
     Active(ActiveError),
+    /// States could not be read any further.
+    #[error(transparent)]
+    Read(#[from] ReadError),
     /// There is no connection to the Franka Hand.
     #[error(transparent)]
     ConnectGripper(#[from] ConnectError<gripper::Version>),
@@ -85,6 +89,7 @@ impl Error {
             Self::Control(_) => Party::Robot,
             Self::Motion(error) => error.party(),
             Self::Active(error) => error.party(),
+            Self::Read(error) => error.party(),
             Self::ConnectGripper(error) => error.party(),
             Self::Gripper(error) => error.party(),
             Self::ConnectVacuumGripper(error) => error.party(),
@@ -331,6 +336,13 @@ mod tests {
         );
         check(
             ActionError::<vacuum::Command>::ConnectionClosed {
+                reason: reason.clone(),
+            },
+            &reason,
+            Party::Link,
+        );
+        check(
+            ReadError::ConnectionClosed {
                 reason: reason.clone(),
             },
             &reason,

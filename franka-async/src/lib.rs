@@ -13,6 +13,7 @@
 //!   the user's, which reads states and writes commands. [`AsynchronousControl`]: sparse joint
 //!   targets between which the robot plans.
 //! * [`StartBarrier`]: motions of several robots that begin within the same millisecond.
+//! * [`Robot::read`], [`StateStream`]: every state, whatever moves. [`Robot::stats`]: how punctual control is.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
 //! * [`Robot::model`]: the model of the connected arm, from its own description (feature `urdf`, on by default).
 //!   `Robot::model_library` (feature `model-library`, off by default): the code that a Franka Emika Robot hands out.
@@ -58,7 +59,10 @@ mod gripper;
 mod model;
 mod motion;
 mod parameters;
+mod publish;
+mod reading;
 mod robot;
+mod telemetry;
 mod vacuum;
 
 pub use active::{Active, ActiveError};
@@ -76,6 +80,7 @@ pub use model::ModelError;
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 pub use model::ModelLibraryError;
 pub use motion::{Canceller, Motion, Moving};
+pub use reading::{ReadError, Reading, StateStream};
 pub use robot::Robot;
 pub use vacuum::{VacuumGripper, VacuumGripperError};
 
@@ -100,7 +105,7 @@ pub use franka_rt::lifecycle::{MotionReport, Stage};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};
-pub use franka_rt::stats::Stats;
+pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
 pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};
 
 pub use tokio_util::sync::CancellationToken;
@@ -113,6 +118,7 @@ const _: () = {
     const fn shared<T: Clone + Send + Sync + 'static>() {}
     const fn spawned<T: Send + 'static>() {}
     shared::<Robot>();
+    spawned::<StateStream>();
     shared::<Gripper>();
     shared::<VacuumGripper>();
     shared::<Canceller>();
@@ -136,6 +142,7 @@ mod tests {
         let _: fn(&Robot, Builder) = |robot, builder| {
             sent(builder.connect());
             sent(robot.stop());
+            sent(robot.read(|_| std::ops::ControlFlow::Break(())));
             sent(robot.recover());
             sent(robot.set_joint_impedance([0.0; 7]));
             sent(robot.urdf());

@@ -19,6 +19,7 @@ use crate::builder::Builder;
 use crate::channel::Channel;
 use crate::endpoint::Endpoint;
 use crate::motion::Work;
+use crate::publish::Subscriptions;
 use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 
 /// A connected robot.
@@ -80,7 +81,8 @@ impl Robot {
         *self.shared.states.borrow()
     }
 
-    /// The newest state as it changes, in motion or not. Closes when the connection does.
+    /// The newest state as it changes, in motion or not. Closes when the connection does. For every state, see
+    /// [`Self::state_stream`] and [`Self::read`].
     ///
     /// Do not hold its borrow for long: the task that publishes states waits for it. Control does not.
     pub fn states(&self) -> watch::Receiver<RobotState> {
@@ -90,11 +92,7 @@ impl Robot {
     /// What every cycle of the control thread saw and did, one record per state. A listener that lags more than two
     /// seconds behind is told how many it missed. Closes when the connection does.
     pub fn records(&self) -> broadcast::Receiver<Record> {
-        match self.shared.inputs.records.upgrade() {
-            Some(records) => records.subscribe(),
-            // Closed from the outset.
-            None => broadcast::channel(1).1,
-        }
+        self.subscriptions().records()
     }
 
     /// The measured pose of the end effector, `O_T_EE` of the newest state.
@@ -134,7 +132,8 @@ impl Robot {
         self.shared.address
     }
 
-    /// Counters and histograms of the control thread, live.
+    /// Counters and histograms of the control thread, its worst cycle and the motion that runs, live: written by the thread
+    /// itself, and to be read whatever the runtime is busy with.
     pub fn stats(&self) -> &Stats {
         &self.shared.stats
     }
@@ -192,6 +191,10 @@ impl Robot {
         self.send(Input::Shutdown { done });
         // An error means that the bridge has ended already.
         let _ = ended.await;
+    }
+
+    pub(crate) fn subscriptions(&self) -> &Subscriptions {
+        &self.shared.inputs.subscriptions
     }
 
     pub(crate) fn channel(&self) -> &Channel {

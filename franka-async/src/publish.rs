@@ -1,0 +1,118 @@
+//! What the thread leaves for the world outside, passed on to whoever listens.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use franka_proto::RobotState;
+use franka_rt::driver::Record;
+use franka_rt::thread::{StateReader, StateSequence};
+use tokio::sync::{broadcast, watch};
+
+/// Records and states that a slow listener may lag behind before it misses some: two seconds and one.
+const RECORDS: usize = 2048;
+const STATES: usize = 1024;
+
+/// What those hear who listen to every state.
+#[derive(Clone, Debug)]
+pub(crate) enum Update {
+    State(Arc<RobotState>),
+    /// No state has come for so long that the link counts as lost.
+    Silence(Duration),
+}
+
+/// The reading ends of the thread's queues, each with its listeners.
+pub(crate) struct Publisher {
+    pub(crate) newest: StateReader,
+    pub(crate) sequence: StateSequence,
+    pub(crate) ring: rtrb::Consumer<Record>,
+    listeners: Listeners,
+}
+
+struct Listeners {
+    newest: watch::Sender<RobotState>,
+    updates: broadcast::Sender<Update>,
+    records: broadcast::Sender<Record>,
+}
+
+/// Where to listen. Weak, so that listeners hear of the end.
+#[derive(Clone, Debug)]
+pub(crate) struct Subscriptions {
+    updates: broadcast::WeakSender<Update>,
+    records: broadcast::WeakSender<Record>,
+}
+
+impl Publisher {
+    pub(crate) fn new(
+        newest: StateReader,
+        sequence: StateSequence,
+        ring: rtrb::Consumer<Record>,
+        states: watch::Sender<RobotState>,
+    ) -> Self {
+        Self {
+            newest,
+            sequence,
+            ring,
+            listeners: Listeners {
+                newest: states,
+                updates: broadcast::channel(STATES).0,
+                records: broadcast::channel(RECORDS).0,
+            },
+        }
+    }
+
+    pub(crate) fn subscriptions(&self) -> Subscriptions {
+        Subscriptions {
+            updates: self.listeners.updates.downgrade(),
+            records: self.listeners.records.downgrade(),
+        }
+    }
+
+    /// The newest state that was passed on.
+    pub(crate) fn state(&self) -> watch::Ref<'_, RobotState> {
+        self.listeners.newest.borrow()
+    }
+
+    /// Passes on everything that has come.
+    pub(crate) fn publish(&mut self) {
+        if let Some(state) = self.newest.newest() {
+            self.listeners.newest.send_replace(state);
+        }
+        // Sending fails only if the last listener has just gone.
+        if self.listeners.updates.receiver_count() == 0 {
+            self.sequence.skip();
+        }
+        while let Some(state) = self.sequence.pop() {
+            let _ = self.listeners.updates.send(Update::State(Arc::new(state)));
+        }
+        let heard = self.listeners.records.receiver_count() > 0;
+        while let Ok(record) = self.ring.pop() {
+            if heard {
+                let _ = self.listeners.records.send(record);
+            }
+        }
+    }
+
+    /// Passes on that the robot has been silent for so long.
+    pub(crate) fn tell_silence(&self, silence: Duration) {
+        // Perhaps nobody listens.
+        let _ = self.listeners.updates.send(Update::Silence(silence));
+    }
+}
+
+impl Subscriptions {
+    pub(crate) fn updates(&self) -> broadcast::Receiver<Update> {
+        subscribe(&self.updates)
+    }
+
+    pub(crate) fn records(&self) -> broadcast::Receiver<Record> {
+        subscribe(&self.records)
+    }
+}
+
+fn subscribe<T: Clone>(sender: &broadcast::WeakSender<T>) -> broadcast::Receiver<T> {
+    match sender.upgrade() {
+        Some(sender) => sender.subscribe(),
+        // Closed from the outset.
+        None => broadcast::channel(1).1,
+    }
+}

@@ -1,0 +1,160 @@
+//! Reading: every state of the robot, in motion or not.
+
+use std::ops::ControlFlow;
+use std::pin::Pin;
+use std::task::{Context, Poll, ready};
+use std::time::Duration;
+
+use franka_proto::RobotState;
+use futures::{Stream, StreamExt};
+use tokio::sync::broadcast::error::RecvError;
+use tokio_stream::wrappers::BroadcastStream;
+use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
+
+use crate::publish::Update;
+use crate::{Party, Robot};
+
+/// A state, and how many are missing before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The state.
+    pub state: RobotState,
+    /// How many states the robot sent between the one that this stream gave before and this one: they never came, were
+    /// skipped for a newer one by the control thread, or came while the reader lagged too far behind. Of the first one of
+    /// a stream: how many came since the stream was made, and before this one.
+    pub missed: u64,
+}
+
+/// Every state of the robot from now on, each once and in order: see [`Robot::state_stream`].
+#[derive(Debug)]
+pub struct StateStream {
+    updates: BroadcastStream<Update>,
+    /// `message_id` of the state given last.
+    newest: Option<u64>,
+    /// States that went by before the first.
+    lagged: u64,
+}
+
+/// Why reading has ended.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// Link: the robot fell silent. The text begins as that of the reference client.
+    #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
+    LinkLost {
+        /// The silence so far.
+        silence: Duration,
+    },
+    /// Link: the connection is gone.
+    #[error("{reason}")]
+    ConnectionClosed {
+        /// What ended it.
+        reason: String,
+    },
+}
+
+impl ReadError {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::LinkLost { .. } | Self::ConnectionClosed { .. } => Party::Link,
+        }
+    }
+}
+
+impl Robot {
+    /// Calls `each` with every state that comes, until it breaks; returns what it breaks with. Whatever moves meanwhile.
+    ///
+    /// ```no_run
+    /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::ReadError> {
+    /// use std::ops::ControlFlow;
+    ///
+    /// let touched = |state: &franka_async::RobotState| match state.tau_ext_hat_filtered[1] {
+    ///     torque if torque.abs() > 5.0 => ControlFlow::Break(torque),
+    ///     _ => ControlFlow::Continue(()),
+    /// };
+    /// println!("somebody pushes: {} N m", robot.read(touched).await?);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// `each` runs in the task that awaits, not on the control thread: it holds up whatever else that task does, and
+    /// nothing else. One that takes longer than a millisecond lags behind, and misses states once it lags by more than a
+    /// second; [`Self::state_stream`] says how many.
+    ///
+    /// # Errors
+    /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, [`ReadError::ConnectionClosed`] when
+    /// there is no connection any more.
+    ///
+    /// # Cancel safety
+    /// Dropping the future ends the reading, and nothing else. No state is kept for a later one.
+    pub async fn read<T>(
+        &self,
+        mut each: impl FnMut(&RobotState) -> ControlFlow<T>,
+    ) -> Result<T, ReadError> {
+        let mut updates = self.subscriptions().updates();
+        loop {
+            match updates.recv().await {
+                Ok(Update::State(state)) => {
+                    if let ControlFlow::Break(result) = each(&state) {
+                        return Ok(result);
+                    }
+                }
+                Ok(Update::Silence(silence)) => return Err(ReadError::LinkLost { silence }),
+                Err(RecvError::Lagged(_)) => {}
+                Err(RecvError::Closed) => {
+                    let reason = self.channel().end_reason().to_owned();
+                    return Err(ReadError::ConnectionClosed { reason });
+                }
+            }
+        }
+    }
+
+    /// Every state from now on, each once and in order, with the number of those missed before it; whatever moves
+    /// meanwhile. A reader may lag about a second behind before it misses any. Ends when the connection does, and pauses
+    /// while the robot is silent. It does not keep the connection.
+    ///
+    /// For the newest state whenever one looks, see [`Self::states`]; for what control made of each, [`Self::records`].
+    pub fn state_stream(&self) -> StateStream {
+        StateStream {
+            updates: BroadcastStream::new(self.subscriptions().updates()),
+            newest: None,
+            lagged: 0,
+        }
+    }
+}
+
+impl StateStream {
+    /// The next state; `None` once the connection has ended.
+    ///
+    /// # Cancel safety
+    /// Dropping the future loses nothing: the state is given to the next call.
+    pub async fn next(&mut self) -> Option<Reading> {
+        StreamExt::next(self).await
+    }
+}
+
+impl Stream for StateStream {
+    type Item = Reading;
+
+    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Reading>> {
+        loop {
+            let state = match ready!(self.updates.poll_next_unpin(context)) {
+                Some(Ok(Update::State(state))) => state,
+                // The next state will tell how long it was.
+                Some(Ok(Update::Silence(_))) => continue,
+                Some(Err(BroadcastStreamRecvError::Lagged(states))) => {
+                    self.lagged += states;
+                    continue;
+                }
+                None => return Poll::Ready(None),
+            };
+            let missed = match self.newest.replace(state.message_id) {
+                Some(newest) => state.message_id.saturating_sub(newest + 1),
+                None => self.lagged,
+            };
+            let state = *state;
+            return Poll::Ready(Some(Reading { state, missed }));
+        }
+    }
+}
