@@ -16,7 +16,9 @@ mod misbehaving;
 mod moving;
 mod peer;
 mod raising;
+mod reading;
 mod starving;
+mod telemetry;
 mod together;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -9,4 +9,5 @@ mod reflex_log;
 mod schedules;
 mod silence;
 mod taking_over;
+mod telemetry;
 mod together;

@@ -101,7 +101,7 @@ pub(super) enum CommandSide {
 pub(super) enum ThreadSide {
     Armed,
     Running,
-    Ended(Box<Ended>),
+    Ended(Ended),
 }
 
 impl Active {

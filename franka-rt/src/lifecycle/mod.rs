@@ -184,7 +184,7 @@ impl Lifecycle {
                 let Some(active) = self.active(ended.motion) else {
                     return;
                 };
-                active.thread = ThreadSide::Ended(Box::new(ended));
+                active.thread = ThreadSide::Ended(ended);
                 active.deadline = Some(now + END_TIMEOUT);
                 self.conclude(now);
             }

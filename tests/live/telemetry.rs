@@ -1,0 +1,163 @@
+//! What the statistics tell while a robot is connected, and where they are told.
+
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::sync::{Mutex, Once, PoisonError};
+use std::time::Duration;
+
+use franka_async::{Finish, MotionReport, Phase, Robot, Torques};
+use franka_sim::{Sim, Tool};
+use tracing::field::{Field, Visit};
+use tracing::{Event, Level, Subscriber};
+use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
+use tracing_subscriber::util::SubscriberInitExt;
+
+use crate::{alone, connect};
+
+/// One event, with the thread that it came from.
+struct Told {
+    thread: String,
+    level: Level,
+    fields: BTreeMap<&'static str, String>,
+}
+
+/// Everything told in this process.
+static TOLD: Mutex<Vec<Told>> = Mutex::new(Vec::new());
+
+struct Listener;
+
+impl<S: Subscriber> Layer<S> for Listener {
+    fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
+        struct Fields(BTreeMap<&'static str, String>);
+        impl Visit for Fields {
+            fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
+                self.0.insert(field.name(), format!("{value:?}"));
+            }
+        }
+        let mut fields = Fields(BTreeMap::new());
+        event.record(&mut fields);
+        let thread = std::thread::current().name().unwrap_or_default().to_owned();
+        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+        told.push(Told {
+            thread,
+            level: *event.metadata().level(),
+            fields: fields.0,
+        });
+    }
+}
+
+fn listen() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| tracing_subscriber::registry().with(Listener).init());
+    TOLD.lock().unwrap_or_else(PoisonError::into_inner).clear();
+}
+
+/// What was told since [`listen`] by events that have this field.
+fn told(field: &str) -> Vec<Told> {
+    let told = std::mem::take(&mut *TOLD.lock().unwrap_or_else(PoisonError::into_inner));
+    told.into_iter()
+        .filter(|told| told.fields.contains_key(field))
+        .collect()
+}
+
+/// Floats for 400 ms, and takes 5 ms over each of the cycles at 100 and 110 ms and over that at 300 ms 20 ms.
+async fn dawdle(robot: &Robot) -> MotionReport {
+    let (mut time, mut dawdled) = (Duration::ZERO, 0);
+    let control = robot.control_torques(move |_, step| {
+        time += step;
+        let due = [(100, 5), (110, 5), (300, 20)].get(dawdled);
+        if let Some(&(at, long)) = due
+            && time >= Duration::from_millis(at)
+        {
+            dawdled += 1;
+            std::thread::sleep(Duration::from_millis(long));
+        }
+        Torques([0.0; 7]).finish_if(time >= Duration::from_millis(400))
+    });
+    control.await.expect("the robot is patient")
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
+    let _alone = alone();
+    listen();
+    let sim = Sim::fr3()
+        .enforce_limits(false)
+        .enforce_communication(false);
+    let sim = sim.tool(Tool::hand()).start().await;
+    let sim = sim.expect("a simulator starts");
+    let robot = connect(&sim).await;
+    let report = dawdle(&robot).await;
+
+    assert!(report.overruns >= 3, "{report:?}");
+    assert!(
+        report.skipped_states + report.lost_states >= 10,
+        "{report:?}"
+    );
+    assert!(report.worst_turnaround >= Duration::from_millis(20));
+    let slack = report.slack_min.expect("commands left");
+    assert!(
+        slack.overrun() >= Some(Duration::from_millis(19)),
+        "{slack}"
+    );
+    let worst = report.worst_cycle.expect("commands left");
+    assert!(worst.turnaround >= Duration::from_millis(20), "{worst:?}");
+    let phase = if cfg!(feature = "cycle-phases") {
+        Phase::Program
+    } else {
+        Phase::Answer
+    };
+    assert_eq!(worst.longest().0, phase, "{worst:?}");
+    let turnaround = report.turnaround.expect("commands left");
+    assert_eq!(turnaround.max, report.worst_turnaround);
+    assert!(turnaround.p50 < Duration::from_millis(5), "{turnaround:?}");
+
+    let stats = robot.stats();
+    assert!(stats.overrun.count() >= report.overruns);
+    assert!(stats.worst_cycle().expect("commands left").total() >= worst.total());
+    let motion = stats.motion().expect("there was one");
+    assert_eq!(motion.overruns, report.overruns);
+    assert_eq!(motion.success_rate_min, report.success_rate_min);
+    // A warning that was held back is told within a second.
+    tokio::time::sleep(Duration::from_millis(1500)).await;
+    robot.shutdown().await;
+
+    let events = told("overruns");
+    let threads: Vec<_> = events.iter().map(|told| told.thread.as_str()).collect();
+    assert!(!threads.contains(&"franka-rt"), "{threads:?}");
+    let of = |level| events.iter().filter(move |told| told.level == level);
+    let sums: Vec<_> = of(Level::INFO).collect();
+    assert_eq!(sums.len(), 1, "one motion");
+    let field = |name| sums[0].fields[name].as_str();
+    assert_eq!(field("ending"), "Finished");
+    assert_eq!(field("lost"), report.lost_states.to_string());
+    assert_eq!(field("skipped"), report.skipped_states.to_string());
+    assert_eq!(field("overruns"), report.overruns.to_string());
+    assert_eq!(field("worst_time"), worst.time.to_string());
+    assert_eq!(field("worst_phase"), phase.to_string());
+    let warned: u64 = of(Level::WARN)
+        .map(|told| told.fields["overruns"].parse::<u64>().unwrap())
+        .sum();
+    assert_eq!(warned, stats.overrun.count(), "each is told of once");
+    assert!(of(Level::WARN).count() <= 4, "once a second at most");
+}
+
+/// Shows that the test above could fail: the control thread has the name that it looks for.
+#[tokio::test(flavor = "multi_thread")]
+async fn an_event_on_the_control_thread_would_be_seen() {
+    let _alone = alone();
+    listen();
+    let (robot, _sim) = crate::simulated().await;
+    let mut first = true;
+    let control = robot.control_torques(move |_, _| {
+        if std::mem::take(&mut first) {
+            tracing::info!(misplaced = true);
+        }
+        Torques([0.0; 7]).finish()
+    });
+    control.await.expect("it ends at once");
+    robot.shutdown().await;
+    let events = told("misplaced");
+    let threads: Vec<_> = events.iter().map(|told| told.thread.as_str()).collect();
+    assert_eq!(threads, ["franka-rt"]);
+}
