@@ -19,7 +19,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 
-use crate::python::{Python, Version};
+use crate::python::{NEWEST, Python, Version};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
@@ -249,7 +249,7 @@ const VERSIONED: &str = "libmujoco.so.3.17.0";
 const PYTHON: (&str, &str) = ("3.12", "cp312");
 
 /// Versions of the Python that fetches: all that have pip as it is used here.
-const FETCHING: RangeInclusive<Version> = (3, 9)..=(3, 99);
+const FETCHING: RangeInclusive<Version> = (3, 9)..=NEWEST;
 
 /// The wheels, as PyPI lists them.
 const WHEELS: &[Wheel] = &[

@@ -34,9 +34,9 @@ impl Python {
             [] => "none was found".to_owned(),
             _ => unfit.join(", "),
         };
-        let (oldest, newest) = (text(*versions.start()), text(*versions.end()));
+        let range = text(&versions);
         Err(format!(
-            "Python {oldest} to {newest} with the modules venv and ensurepip is needed: {found}"
+            "Python {range} with the modules venv and ensurepip is needed: {found}"
         ))
     }
 
@@ -90,9 +90,17 @@ fn interpreter_of(directory: &Path) -> PathBuf {
     directory.join("bin").join("python")
 }
 
-fn text((major, minor): Version) -> String {
-    format!("{major}.{minor}")
+/// A range as one says it; one up to [`NEWEST`] has no end.
+fn text(versions: &RangeInclusive<Version>) -> String {
+    let ((major, minor), newest) = (*versions.start(), *versions.end());
+    match newest {
+        NEWEST => format!("{major}.{minor} or newer"),
+        (last, least) => format!("{major}.{minor} to {last}.{least}"),
+    }
 }
+
+/// Newer than any Python 3.
+pub(crate) const NEWEST: Version = (3, u32::MAX);
 
 /// Version of an interpreter that is there and can make virtual environments.
 fn probe(program: &str) -> Option<Version> {
@@ -135,6 +143,12 @@ mod tests {
         assert_eq!(parse_version("3.9\n"), Some((3, 9)));
         assert!(parse_version("3.10") > parse_version("3.9"));
         assert_eq!(parse_version("Python 3"), None);
+    }
+
+    #[test]
+    fn ranges_are_said_with_their_end_if_they_have_one() {
+        assert_eq!(text(&((3, 9)..=(3, 12))), "3.9 to 3.12");
+        assert_eq!(text(&((3, 9)..=NEWEST)), "3.9 or newer");
     }
 
     #[test]

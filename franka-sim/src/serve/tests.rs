@@ -187,3 +187,45 @@ fn robots_share_a_process() {
         assert_eq!(client.state().robot_mode, RobotMode::Idle);
     }
 }
+
+/// The hand's server moves the fingers on the robot's flange, in one process with the arm.
+#[cfg(feature = "mujoco")]
+#[test]
+fn a_hand_on_sockets_moves_the_fingers_in_the_scene() {
+    use crate::end_effector::{Fingers, Mechanism as _};
+    use crate::plant::{MujocoArm, Scene};
+    use franka_proto::gripper;
+
+    /// Between the fingers, as they are in the scene.
+    async fn gap(sim: &Running) -> f64 {
+        sim.with(|robot| {
+            let plant: &dyn std::any::Any = robot.plant();
+            let arm = plant.downcast_ref::<MujocoArm>().expect("MuJoCo");
+            let [left, right] = ["franka_finger_left", "franka_finger_right"]
+                .map(|name| arm.body_pose(name).expect("a finger").translation.vector);
+            (left - right).norm()
+        })
+        .await
+        .expect("running")
+    }
+
+    let runtime = runtime();
+    runtime.block_on(async {
+        let scene = Scene::table().with_hand();
+        let arm = MujocoArm::new(RobotKind::Fr3, scene).expect("a scene");
+        let sim = Sim::fr3().tool(Tool::hand()).plant(arm);
+        let sim = sim.hand(Fingers::new(), 0).start().await.expect("a robot");
+        assert!((gap(&sim).await - Fingers::STROKE).abs() < 2e-3);
+        let hand = sim.hand().expect("a hand");
+        hand.with(|hand| hand.mechanism_mut().begin(&gripper::Request::Homing))
+            .await
+            .expect("running");
+        let deadline = Instant::now() + Duration::from_secs(20);
+        while gap(&sim).await > 0.04 {
+            assert!(Instant::now() < deadline, "the fingers do not close");
+            tokio::time::sleep(Duration::from_millis(10)).await;
+        }
+        let width = hand.with(|hand| hand.state().width).await.expect("running");
+        assert!(width < 0.045, "{width} m");
+    });
+}
