@@ -66,7 +66,7 @@ struct Arguments {
     #[arg(long)]
     noise: bool,
 
-    /// What moves: the arm alone, or the arm in MuJoCo, with a table in front of it or what --scene names,
+    /// What moves: the arm alone, or the arm in MuJoCo, on a table or among what --scene names,
     /// and fingers that grasp if there is a --hand.
     #[arg(long, value_enum, default_value_t = PlantKind::Rigid)]
     plant: PlantKind,

@@ -1,3 +1,4 @@
+use franka_model::collision::Shape;
 use franka_model::{JointVector, Load, Model, READY, RobotKind};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
@@ -115,6 +116,32 @@ fn the_ready_pose_touches_nothing() {
             let arm = MujocoArm::new(kind, scene).expect("a scene");
             assert_eq!(arm.data.ncon(), 0, "{kind:?}");
         }
+    }
+}
+
+#[test]
+fn the_arm_touches_itself_where_the_model_says_so() {
+    let mut random = Random::new(11);
+    for kind in RobotKind::ALL {
+        let mut arm = arm(kind, Load::NONE);
+        let mut touching = 0;
+        for _ in 0..500 {
+            let (q, _) = random_motion(&mut random, Model::of(kind));
+            let distance = Shape::covering(kind).at(&q).nearest_pair().distance;
+            arm.place(&q);
+            let contacts = arm.data.contact().iter().map(|contact| contact.dist);
+            match contacts.reduce(f64::min) {
+                Some(deepest) => {
+                    assert!(
+                        (deepest - distance).abs() < 1e-6,
+                        "{q}: {deepest} m, {distance} m"
+                    );
+                    touching += 1;
+                }
+                None => assert!(distance > -1e-9, "{q}: {distance} m unnoticed"),
+            }
+        }
+        assert!((10..250).contains(&touching), "{kind:?}: {touching} of 500");
     }
 }
 
