@@ -1,5 +1,12 @@
 //! What a simulated robot is like before a client connects.
 
+mod unpublished;
+
+pub use unpublished::{
+    ErrorBits, Extrapolation, FirstCycles, Instability, SelfCollision, Setters, StartTolerance,
+    Unpublished,
+};
+
 use bytes::Bytes;
 use franka_model::{JointVector, Load, READY, RobotKind};
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
@@ -25,6 +32,9 @@ pub struct Config {
     /// Whether commands and motion outside the limits end in a reflex. Without, the arm does what
     /// it physically can.
     pub enforce_limits: bool,
+    /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints: above
+    /// 1 for clients that are rougher than a robot allows. 1 by default.
+    pub joint_discontinuity_scale: f64,
     /// Whether 20 lost commands in a row end in a reflex. Without, a cycle that has no command is
     /// no cycle for the motion generator: it keeps its setpoint until the next command, so that
     /// a client may be slower than 1 kHz or stand in a debugger.
@@ -35,6 +45,8 @@ pub struct Config {
     /// The model library that the robot serves to every architecture and system (protocol 5). The
     /// vendor's is not ours to give: without one the robot answers with an error.
     pub model_library: Option<Bytes>,
+    /// What is assumed where nothing is published.
+    pub unpublished: Unpublished,
 }
 
 impl Default for Config {
@@ -48,9 +60,11 @@ impl Default for Config {
             seed: 1,
             clock: 100_000,
             enforce_limits: true,
+            joint_discontinuity_scale: 1.0,
             enforce_communication: true,
             urdf: None,
             model_library: None,
+            unpublished: Unpublished::default(),
         }
     }
 }

@@ -5,9 +5,9 @@ use franka_proto::{CollisionBehavior, Errors, RobotError};
 use nalgebra::Cholesky;
 
 use crate::generator::Arm;
-use crate::signal::{CYCLE, halves, stack};
+use crate::signal::{halves, stack};
 
-/// Low-passed external torques, the wrench that they mean, and what exceeded its thresholds.
+/// The external torques observed, the wrench that they mean, and what exceeded its thresholds.
 ///
 /// Positive is what the robot does to its environment, as in the state (libfranka 0.21,
 /// `robot_state.h`): an arm that a hand pushes upwards shows a negative force along z.
@@ -40,11 +40,10 @@ impl Estimate {
         }
     }
 
-    /// Takes in one millisecond: `residual` is the measured torque minus what the model with the
-    /// declared load explains, `[N·m]`, at the joint positions `q`.
-    pub(crate) fn update(&mut self, residual: &JointVector, q: &JointVector, arm: &Arm<'_>) {
-        let gain = CYCLE / (TIME_CONSTANT + CYCLE);
-        self.torque += (residual - self.torque) * gain;
+    /// Takes in what the environment does to the joints by the observer, `[N·m]`, at the joint
+    /// positions `q`.
+    pub(crate) fn update(&mut self, external: &JointVector, q: &JointVector, arm: &Arm<'_>) {
+        self.torque = -external;
         let jacobian = arm.model.body_jacobian(Frame::Stiffness, q, arm.frames);
         self.wrench_stiffness = wrench(&jacobian, &self.torque);
         let pose = arm.model.pose(Frame::Stiffness, q, arm.frames);
@@ -124,22 +123,6 @@ fn latch<const N: usize>(flags: &mut [bool; N], set: &[bool; N]) {
     }
 }
 
-/// Thresholds until the client sets others.
-///
-/// The robot's own are not published. These are contact thresholds near those of the vendor's
-/// examples (20 N·m falling to 12 N·m at the wrist, 20 N and 25 N·m) with collisions at twice as
-/// much.
-pub(crate) fn default_thresholds() -> CollisionBehavior {
-    let torque = [20.0, 20.0, 18.0, 18.0, 16.0, 14.0, 12.0];
-    let force = [20.0, 20.0, 20.0, 25.0, 25.0, 25.0];
-    CollisionBehavior::uniform(
-        torque,
-        torque.map(|t| 2.0 * t),
-        force,
-        force.map(|f| 2.0 * f),
-    )
-}
-
 /// The wrench that `torque` means, by least squares: `(J Jᵀ + λ² 1)⁻¹ J τ`.
 ///
 /// Damped, so that it fades instead of growing near a singularity.
@@ -153,9 +136,6 @@ fn wrench(jacobian: &Jacobian, torque: &JointVector) -> Wrench {
         None => Wrench::zeros(),
     }
 }
-
-/// Of the low-pass filter, `[s]`: about 16 Hz. The robot's own is not published.
-const TIME_CONSTANT: f64 = 0.01;
 
 /// Against the smallest singular value of the Jacobian, 0.14 to 0.23 in ordinary poses.
 const WRENCH_DAMPING: f64 = 0.01;

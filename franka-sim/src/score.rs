@@ -1,5 +1,7 @@
 //! Which cycles of a motion the client answered.
 
+use crate::config::FirstCycles;
+
 /// Cycles lost in a row that end a motion (FCI documentation, "communication_constraints_violation").
 pub(crate) const LOST_LIMIT: u32 = 20;
 
@@ -35,14 +37,17 @@ impl Score {
         self.lost_in_a_row
     }
 
-    /// Fraction of commands received over the window, or over the cycles so far while they are
-    /// fewer. Zero before the first command.
-    pub(crate) fn rate(&self) -> f64 {
+    /// Fraction of commands received over the window; while it is not full, over what `first` says.
+    /// Zero before the first command.
+    pub(crate) fn rate(&self, first: FirstCycles) -> f64 {
         if self.counted == 0 {
-            0.0
-        } else {
-            f64::from(self.received.count_ones()) / f64::from(self.counted)
+            return 0.0;
         }
+        let cycles = match first {
+            FirstCycles::SoFar => self.counted,
+            FirstCycles::Window => WINDOW,
+        };
+        f64::from(self.received.count_ones()) / f64::from(cycles)
     }
 
     fn count(&mut self, bit: u128) {
@@ -58,18 +63,22 @@ mod tests {
     #[test]
     fn the_rate_looks_back_a_hundred_cycles() {
         let mut score = Score::default();
-        assert_eq!(score.rate(), 0.0);
+        let rates = |score: &Score| {
+            let rate = |first| score.rate(first);
+            (rate(FirstCycles::SoFar), rate(FirstCycles::Window))
+        };
+        assert_eq!(rates(&score), (0.0, 0.0));
         score.hit();
-        assert_eq!(score.rate(), 1.0);
+        assert_eq!(rates(&score), (1.0, 0.01));
         score.miss();
-        assert_eq!(score.rate(), 0.5);
+        assert_eq!(rates(&score), (0.5, 0.01));
         for _ in 0..98 {
             score.hit();
         }
-        assert_eq!(score.rate(), 0.99);
+        assert_eq!(rates(&score), (0.99, 0.99));
         score.hit();
         score.hit();
-        assert_eq!(score.rate(), 1.0);
+        assert_eq!(rates(&score), (1.0, 1.0));
     }
 
     #[test]

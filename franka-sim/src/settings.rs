@@ -1,11 +1,10 @@
 //! What a client may set: frames, load, stiffnesses, thresholds.
 
-use franka_model::{EndEffector, JointVector, Load, Twist, joint_vector, transform};
+use franka_model::{EndEffector, JointVector, Load, Twist, transform};
 use franka_proto::{CollisionBehavior, Filters, Request, SetterStatus};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
-use crate::config::Tool;
-use crate::estimate::default_thresholds;
+use crate::config::{Tool, Unpublished};
 
 /// The values in force. They outlive the client that set them, as on a robot.
 #[derive(Debug, Clone)]
@@ -22,19 +21,31 @@ pub(crate) struct Settings {
     /// In stiffness-frame axes, `[N/m, N·m/rad]`.
     pub(crate) cartesian_stiffness: Twist,
     pub(crate) thresholds: CollisionBehavior,
+    pub(crate) guiding: Guiding,
+    /// Of commands; `None`: they are taken as they come.
+    pub(crate) filters: Option<Filters>,
 }
 
-/// Stiffness of the joint controller that holds the arm, and of joint motions until the client sets
-/// another, `[N·m/rad]`: the values of libfranka 0.21, `examples_common.cpp`.
-pub(crate) const JOINT_STIFFNESS: JointVector =
-    joint_vector([3000.0, 3000.0, 3000.0, 2500.0, 2500.0, 2000.0, 2000.0]);
+/// What a hand may move while it guides the arm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Guiding {
+    /// Translation along and rotation about the axes of the end effector.
+    pub(crate) axes: [bool; 6],
+    /// The elbow, with the end effector where it is.
+    pub(crate) elbow: bool,
+}
 
-/// Likewise for the Cartesian controller, `[N/m, N·m/rad]`.
-const CARTESIAN_STIFFNESS: [f64; 6] = [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0];
+impl Guiding {
+    /// Everything.
+    pub(crate) const FREE: Self = Self {
+        axes: [true; 6],
+        elbow: true,
+    };
+}
 
 impl Settings {
     /// Factory settings with a tool mounted.
-    pub(crate) fn new(tool: Tool) -> Self {
+    pub(crate) fn new(tool: Tool, factory: &Unpublished) -> Self {
         Self {
             tool,
             ne_t_ee: Matrix4::identity(),
@@ -43,9 +54,11 @@ impl Settings {
                 ee_t_k: Matrix4::identity(),
             },
             load: Load::NONE,
-            joint_stiffness: JOINT_STIFFNESS,
-            cartesian_stiffness: Twist::from(CARTESIAN_STIFFNESS),
-            thresholds: default_thresholds(),
+            joint_stiffness: factory.joint_stiffness,
+            cartesian_stiffness: factory.cartesian_stiffness,
+            thresholds: factory.thresholds,
+            guiding: Guiding::FREE,
+            filters: factory.command_filter.map(Filters::uniform),
         }
     }
 
@@ -54,8 +67,7 @@ impl Settings {
         self.tool.load.combine(&self.load)
     }
 
-    /// Applies a setter, or says why not. Guiding modes and filters are accepted and have no effect:
-    /// no hand guides the arm, and commands are taken as they come.
+    /// Applies a setter, or says why not.
     pub(crate) fn apply(&mut self, request: &Request) -> SetterStatus {
         let applied = match request {
             Request::SetCollisionBehavior(thresholds) => {
@@ -68,13 +80,24 @@ impl Settings {
                 (all_within(linear, 10.0, 3000.0) && all_within(angular, 1.0, 300.0))
                     .then(|| self.cartesian_stiffness = Twist::from(*stiffness))
             }
-            Request::SetGuidingMode { .. } => Some(()),
+            Request::SetGuidingMode {
+                guiding_mode,
+                nullspace,
+            } => {
+                self.guiding = Guiding {
+                    axes: *guiding_mode,
+                    elbow: *nullspace,
+                };
+                Some(())
+            }
             Request::SetEEToK(matrix) => rigid(matrix).map(|m| self.frames.ee_t_k = m),
             Request::SetNEToEE(matrix) => rigid(matrix).map(|m| {
                 self.ne_t_ee = m;
                 self.frames.f_t_ee = self.tool.f_t_ne * m;
             }),
-            Request::SetFilters(filters) => are_filters(filters).then_some(()),
+            Request::SetFilters(filters) => {
+                are_filters(filters).then(|| self.filters = Some(*filters))
+            }
             Request::SetLoad(load) => physical(load).map(|load| self.load = load),
             _ => None,
         };
@@ -156,6 +179,10 @@ mod tests {
 
     const INVALID: SetterStatus = SetterStatus::InvalidArgumentRejected;
 
+    fn factory(tool: Tool) -> Settings {
+        Settings::new(tool, &Unpublished::default())
+    }
+
     fn identity() -> [f64; 16] {
         let mut matrix = [0.0; 16];
         for i in 0..4 {
@@ -166,7 +193,7 @@ mod tests {
 
     #[test]
     fn stiffnesses_have_the_documented_ranges() {
-        let mut settings = Settings::new(Tool::NONE);
+        let mut settings = factory(Tool::NONE);
         for (value, status) in [
             (0.0, SetterStatus::Success),
             (14250.0, SetterStatus::Success),
@@ -191,7 +218,7 @@ mod tests {
 
     #[test]
     fn filters_have_the_documented_range() {
-        let mut settings = Settings::new(Tool::NONE);
+        let mut settings = factory(Tool::NONE);
         for (frequency, status) in [
             (1.0, SetterStatus::Success),
             (1000.0, SetterStatus::Success),
@@ -208,7 +235,7 @@ mod tests {
 
     #[test]
     fn a_refused_value_leaves_the_old_one() {
-        let mut settings = Settings::new(Tool::NONE);
+        let mut settings = factory(Tool::NONE);
         let before = settings.joint_stiffness;
         settings.apply(&Request::SetJointImpedance([1e6; 7]));
         assert_eq!(settings.joint_stiffness, before);
@@ -216,7 +243,7 @@ mod tests {
 
     #[test]
     fn frames_have_to_be_rigid_transforms() {
-        let mut settings = Settings::new(Tool::hand());
+        let mut settings = factory(Tool::hand());
         let mut shifted = identity();
         shifted[14] = 0.1;
         assert_eq!(
@@ -234,7 +261,7 @@ mod tests {
 
     #[test]
     fn loads_have_to_be_physical() {
-        let mut settings = Settings::new(Tool::NONE);
+        let mut settings = factory(Tool::NONE);
         let good = franka_proto::Load {
             m_load: 1.0,
             F_x_Cload: [0.0, 0.0, 0.1],
@@ -255,8 +282,8 @@ mod tests {
 
     #[test]
     fn thresholds_must_be_finite_and_not_negative() {
-        let mut settings = Settings::new(Tool::NONE);
-        let mut thresholds = default_thresholds();
+        let mut settings = factory(Tool::NONE);
+        let mut thresholds = settings.thresholds;
         thresholds.upper_force_thresholds_nominal[2] = f64::INFINITY;
         let request = Request::SetCollisionBehavior(thresholds);
         assert_eq!(settings.apply(&request), INVALID);

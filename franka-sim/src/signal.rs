@@ -7,6 +7,7 @@
 use franka_model::{JointVector, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
 
+use crate::config::Extrapolation;
 use crate::kind::Precision;
 
 /// Duration of a control cycle, `[s]`.
@@ -113,13 +114,25 @@ impl CartesianSignal {
         (next, (acceleration - self.acceleration) / CYCLE)
     }
 
-    /// One cycle later with the acceleration unchanged.
-    pub(crate) fn extrapolated(self) -> Self {
-        let twist = self.twist + self.acceleration * CYCLE;
+    /// One cycle later with the acceleration unchanged; that of the rotation in the axes that
+    /// `orientation` says.
+    pub(crate) fn extrapolated(self, orientation: Extrapolation) -> Self {
+        let (linear, angular) = halves(&self.twist);
+        let (acceleration, turning) = halves(&self.acceleration);
+        let (angular, turning) = match orientation {
+            Extrapolation::BaseAxes => (angular + turning * CYCLE, turning),
+            Extrapolation::BodyAxes => {
+                // The axes turn about the velocity, which is therefore the same in both.
+                let turning = rotation::exp(&(angular * CYCLE)) * turning;
+                (angular + turning * CYCLE, turning)
+            }
+            Extrapolation::Held => (Vector3::zeros(), Vector3::zeros()),
+        };
+        let twist = stack(&(linear + acceleration * CYCLE), &angular);
         Self {
             pose: moved(&self.pose, &twist),
             twist,
-            acceleration: self.acceleration,
+            acceleration: stack(&acceleration, &turning),
         }
     }
 
@@ -241,6 +254,26 @@ mod tests {
         let (by_pose, _) = start.to_pose(&by_twist.pose);
         assert!((by_pose.twist - twist).amax() < 1e-9);
         assert!((by_pose.acceleration - by_twist.acceleration).amax() < 1e-6);
+    }
+
+    #[test]
+    fn an_orientation_goes_on_as_it_is_told_to() {
+        let start = CartesianSignal {
+            twist: Twist::new(0.1, 0.0, 0.0, 0.0, 0.0, 1.0),
+            acceleration: Twist::new(1.0, 0.0, 0.0, 2.0, 0.0, 0.0),
+            ..CartesianSignal::resting(Isometry3::identity())
+        };
+        let angular = |signal: CartesianSignal| halves(&signal.twist).1;
+        let base = start.extrapolated(Extrapolation::BaseAxes);
+        assert_eq!(angular(base), Vector3::new(2e-3, 0.0, 1.0));
+        // The body has turned by a thousandth of a radian, and the acceleration with it.
+        let body = start.extrapolated(Extrapolation::BodyAxes);
+        assert!((angular(body) - Vector3::new(2e-3, 2e-6, 1.0)).amax() < 1e-8);
+        let held = start.extrapolated(Extrapolation::Held);
+        assert_eq!(held.pose.rotation, start.pose.rotation);
+        for signal in [base, body, held] {
+            assert!((signal.twist[0] - 0.101).abs() < 1e-12);
+        }
     }
 
     #[test]

@@ -103,12 +103,13 @@ pub(super) fn joint_bounds(
     arm: &Arm<'_>,
 ) -> Broken {
     let limits = arm.model.joint_limits();
+    let scale = arm.config.joint_discontinuity_scale;
     let (lower, upper) = limits.velocity_envelope(&from.q, 0.0);
     let mut broken = Broken::default();
     for i in 0..7 {
         broken.velocity |= next.dq[i] > upper[i] + ROUNDING || next.dq[i] < lower[i] - ROUNDING;
-        broken.acceleration |= next.ddq[i].abs() > limits.acceleration[i];
-        broken.jerk |= jerk[i].abs() > limits.jerk[i];
+        broken.acceleration |= next.ddq[i].abs() > limits.acceleration[i] * scale;
+        broken.jerk |= jerk[i].abs() > limits.jerk[i] * scale;
     }
     broken
 }

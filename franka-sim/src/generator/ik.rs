@@ -88,21 +88,24 @@ const STEP_MAX: f64 = 0.5;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::Config;
     use crate::kind::Description;
     use franka_model::{EndEffector, Model, READY, RobotKind, transform};
 
-    fn arm(frames: &EndEffector) -> Arm<'_> {
-        Arm {
-            kind: Description::of(RobotKind::Fr3),
-            model: Model::fr3(),
+    fn arm<'a>(frames: &'a EndEffector, config: &'a Config) -> Arm<'a> {
+        Arm::new(
+            Description::of(RobotKind::Fr3),
+            Model::fr3(),
             frames,
-        }
+            config,
+        )
     }
 
     #[test]
     fn reaches_the_pose_and_moves_no_more_than_needed() {
         let frames = EndEffector::default();
-        let arm = arm(&frames);
+        let config = Config::default();
+        let arm = arm(&frames, &config);
         let mut target = arm.pose(&READY);
         target.translation.vector.x += 1e-3;
         let q = solve(&arm, &target, None, &READY);
@@ -114,7 +117,8 @@ mod tests {
     #[test]
     fn keeps_the_pose_while_the_elbow_moves() {
         let frames = EndEffector::default();
-        let arm = arm(&frames);
+        let config = Config::default();
+        let arm = arm(&frames, &config);
         let target = arm.pose(&READY);
         let q = solve(&arm, &target, Some(0.01), &READY);
         assert!((q[2] - 0.01).abs() < 1e-12);
@@ -128,7 +132,8 @@ mod tests {
         #[allow(clippy::approx_constant)] // four digits are what the vendor ships
         let (r, m) = (0.7071, &mut frames.f_t_ee);
         (m.m11, m.m12, m.m21, m.m22, m.m34) = (r, r, -r, r, 0.1034);
-        let arm = arm(&frames);
+        let config = Config::default();
+        let arm = arm(&frames, &config);
         // Not a motion at all: nothing may creep.
         let q = solve(&arm, &arm.pose(&READY), None, &READY);
         assert!((q - READY).amax() < 1e-12);
@@ -137,7 +142,8 @@ mod tests {
     #[test]
     fn a_target_out_of_reach_ends_in_bounded_steps() {
         let frames = EndEffector::default();
-        let arm = arm(&frames);
+        let config = Config::default();
+        let arm = arm(&frames, &config);
         let mut target = arm.pose(&READY);
         target.translation.vector.z += 10.0;
         let q = solve(&arm, &target, None, &READY);

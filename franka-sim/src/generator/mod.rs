@@ -18,6 +18,7 @@ pub(crate) use point_to_point::PointToPoint;
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, elbow, rotation, transform};
 use franka_proto::{Errors, MoveGeneratorMode, RobotCommand, RobotError};
 
+use crate::config::Config;
 use crate::kind::{Description, Precision};
 use crate::signal::{CartesianSignal, ElbowSignal, JointSignal};
 
@@ -73,9 +74,24 @@ pub(crate) struct Arm<'a> {
     pub(crate) kind: &'static Description,
     pub(crate) model: &'static Model,
     pub(crate) frames: &'a EndEffector,
+    pub(crate) config: &'a Config,
 }
 
-impl Arm<'_> {
+impl<'a> Arm<'a> {
+    pub(crate) fn new(
+        kind: &'static Description,
+        model: &'static Model,
+        frames: &'a EndEffector,
+        config: &'a Config,
+    ) -> Self {
+        Self {
+            kind,
+            model,
+            frames,
+            config,
+        }
+    }
+
     /// Pose of the end effector at `q`.
     pub(crate) fn pose(&self, q: &JointVector) -> nalgebra::Isometry3<f64> {
         let matrix = self.model.pose(Frame::EndEffector, q, self.frames);
@@ -140,7 +156,7 @@ fn joint_position(
     use RobotError as E;
     let target = input.command().map(|c| finite(&c.q_c)).transpose()?;
     if let (true, Some(q_c)) = (input.is_first(), &target)
-        && (JointVector::from(*q_c) - before.joints.q).amax() > START_JOINT
+        && (JointVector::from(*q_c) - before.joints.q).amax() > arm.config.unpublished.start.joint
     {
         return Ok((
             *before,
@@ -199,9 +215,9 @@ fn cartesian_position(
         None => None,
     };
     let start_error = target.filter(|_| input.is_first()).filter(|pose| {
-        let now = &before.cartesian.pose;
-        (pose.translation.vector - now.translation.vector).norm() > START_TRANSLATION
-            || rotation::error(&pose.rotation, &now.rotation).norm() > START_ROTATION
+        let (now, tolerance) = (&before.cartesian.pose, &arm.config.unpublished.start);
+        (pose.translation.vector - now.translation.vector).norm() > tolerance.translation
+            || rotation::error(&pose.rotation, &now.rotation).norm() > tolerance.rotation
     });
     if start_error.is_some() {
         return Ok((
@@ -209,11 +225,12 @@ fn cartesian_position(
             E::CartesianPositionMotionGeneratorStartPoseInvalid.into(),
         ));
     }
+    let extrapolation = arm.config.unpublished.extrapolation;
     let (cartesian, broken) =
         checks::cartesian(&before.cartesian, arm, |from| match (&target, input) {
             (Some(pose), _) => from.to_pose(pose),
             (None, Input::Rest) => from.to_pose(&before.cartesian.pose),
-            (None, _) => (from.extrapolated(), Twist::zeros()),
+            (None, _) => (from.extrapolated(extrapolation), Twist::zeros()),
         });
     let errors = broken.named(
         E::CartesianMotionGeneratorVelocityLimitsViolation,
@@ -237,11 +254,12 @@ fn cartesian_velocity(
 ) -> Result<(Desired, Errors), InvalidInput> {
     use RobotError as E;
     let target = input.command().map(|c| finite(&c.O_dP_EE_c)).transpose()?;
+    let extrapolation = arm.config.unpublished.extrapolation;
     let (cartesian, broken) =
         checks::cartesian(&before.cartesian, arm, |from| match (&target, input) {
             (Some(twist), _) => from.to_twist(&Twist::from(*twist)),
             (None, Input::Rest) => from.to_twist(&Twist::zeros()),
-            (None, _) => (from.extrapolated(), Twist::zeros()),
+            (None, _) => (from.extrapolated(extrapolation), Twist::zeros()),
         });
     let errors = broken.named(
         E::CartesianMotionGeneratorVelocityLimitsViolation,
@@ -282,7 +300,8 @@ fn complete(
                     E::CartesianMotionGeneratorElbowSignInconsistent
                 });
             }
-            if input.is_first() && (angle - before.elbow.angle).abs() > START_ELBOW {
+            let off = (angle - before.elbow.angle).abs();
+            if input.is_first() && off > arm.config.unpublished.start.elbow {
                 errors.insert(E::CartesianMotionGeneratorStartElbowInvalid);
                 return Ok((*before, errors));
             }
@@ -341,16 +360,3 @@ fn finite<const N: usize>(values: &[f64; N]) -> Result<[f64; N], InvalidInput> {
         Err(InvalidInput)
     }
 }
-
-// How far the first command may be from what the state publishes as commanded. The robot's own
-// tolerances are not published; these lie between what clients send that seed from measured
-// values and what is known to be refused (0.2 rad on joint 1, 0.5 rad of elbow).
-
-/// Per joint, `[rad]`.
-const START_JOINT: f64 = 0.1;
-/// `[m]`
-const START_TRANSLATION: f64 = 0.05;
-/// `[rad]`
-const START_ROTATION: f64 = 0.1;
-/// `[rad]`
-const START_ELBOW: f64 = 0.1;

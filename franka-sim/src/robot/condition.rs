@@ -17,6 +17,7 @@ use franka_proto::{
 use super::motion::{Motion, Rules, Verdict};
 use super::{Activity, Robot};
 use crate::brake::Brake;
+use crate::config::ErrorBits;
 use crate::generator::Arm;
 use crate::signal::halves;
 
@@ -109,7 +110,9 @@ impl Robot {
         if cartesian && self.is_singular() {
             return self.reply(id, Reply::Move(MoveStatus::StartAtSingularPoseRejected));
         }
-        self.reflex_reason = Errors::NONE;
+        if self.config.unpublished.move_clears_reason {
+            self.reflex_reason = Errors::NONE;
+        }
         self.command = None;
         self.desired = self.desired.as_published(self.kind.precision);
         let limits = self.model.joint_limits();
@@ -123,7 +126,8 @@ impl Robot {
             &self.settings.frames,
         );
         let gram = jacobian * jacobian.transpose();
-        gram.symmetric_eigenvalues().min() <= SINGULAR * SINGULAR
+        let bound = self.config.unpublished.singular;
+        gram.symmetric_eigenvalues().min() <= bound * bound
     }
 
     /// Answers a `StopMove`, once the arm is at rest.
@@ -191,7 +195,11 @@ impl Robot {
 
     /// Latches errors and stops the arm.
     pub(super) fn reflex(&mut self, errors: Errors) {
-        self.errors = self.errors.union(errors);
+        let latched = match self.config.unpublished.error_bits {
+            ErrorBits::All => errors,
+            ErrorBits::First => errors.iter().take(1).collect(),
+        };
+        self.errors = self.errors.union(latched);
         self.reflex_reason = self.errors;
         self.end_motion(MoveStatus::ReflexAborted);
         if let Some(Recovery { id: Some(id), .. }) = self.recovery.take() {
@@ -212,11 +220,12 @@ impl Robot {
         let start = self.brake_start(!external);
         let brake = Brake::from(&start, &limits.acceleration, &limits.jerk);
         self.desired.joints = start;
-        self.desired.follow_joints(&Arm {
-            kind: self.kind,
-            model: self.model,
-            frames: &self.settings.frames,
-        });
+        self.desired.follow_joints(&Arm::new(
+            self.kind,
+            self.model,
+            &self.settings.frames,
+            &self.config,
+        ));
         self.activity = Activity::Braking(brake);
         self.command = None;
         self.reply(id, Reply::Move(status));
@@ -228,14 +237,11 @@ impl Robot {
         let Activity::Moving(motion) = &mut self.activity else {
             return;
         };
-        let arm = Arm {
-            kind: self.kind,
-            model: self.model,
-            frames: &self.settings.frames,
-        };
+        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
         let rules = Rules {
             limits: self.config.enforce_limits,
             communication: self.config.enforce_communication,
+            filters: self.settings.filters,
         };
         match motion.cycle(command.as_ref(), &mut self.desired, &arm, rules) {
             Verdict::Continues => {}
@@ -251,7 +257,7 @@ impl Robot {
     /// Checks on the arm itself, and on what touches it.
     pub(super) fn supervise(&mut self) {
         let moving = self.is_moving();
-        let accelerating = self.measurement.ddq.amax() > ACCELERATING;
+        let accelerating = self.measurement.ddq.amax() > self.config.unpublished.accelerating;
         let mut errors = self
             .estimate
             .compare(&self.settings.thresholds, accelerating, moving);
@@ -269,6 +275,7 @@ impl Robot {
         let (lower, upper) = limits.velocity_envelope(q, -VELOCITY_MARGIN);
         let (linear, _) = halves(&(self.dynamics.jacobian * dq));
         let torque = &self.measurement.torque;
+        let range = limits.torque * self.config.unpublished.sensor_range;
         [
             (self.is_outside(), RobotError::JointPositionLimitsViolation),
             (
@@ -280,7 +287,7 @@ impl Robot {
                 RobotError::CartesianVelocityViolation,
             ),
             (
-                (0..7).any(|i| torque[i].abs() > limits.torque[i] * SENSOR_RANGE),
+                (0..7).any(|i| torque[i].abs() > range[i]),
                 RobotError::TauJRangeViolation,
             ),
             (
@@ -349,21 +356,11 @@ impl Robot {
 // None of these figures is published for the robot. Where nothing else is said they are choices of
 // this simulator.
 
-/// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
-/// start: a pose that a robot refuses has 0.011, ordinary ones 0.14 to 0.23.
-const SINGULAR: f64 = 0.05;
-
 /// How far measured positions may be outside the range, `[rad]`.
 const POSITION_MARGIN: f64 = 0.01;
 
 /// How far measured velocities may be outside their envelope, `[rad/s]`.
 const VELOCITY_MARGIN: f64 = 0.1;
-
-/// Range of the torque sensors over the nominal torque.
-const SENSOR_RANGE: f64 = 1.1;
-
-/// Measured joint acceleration from which the thresholds for acceleration phases hold, `[rad/s²]`.
-const ACCELERATING: f64 = 1.0;
 
 /// Joint velocity below which the arm is still, `[rad/s]`.
 const STILL: f64 = 0.01;

@@ -1,13 +1,13 @@
 //! One millisecond of control and physics.
 
-use franka_model::{GRAVITY_EARTH, JointVector, Model};
+use franka_model::{GRAVITY_EARTH, JointVector};
 use franka_proto::MoveControllerMode;
 
 use super::{Activity, Robot};
 use crate::generator::Arm;
 use crate::law::{Law, cartesian_impedance, joint_impedance};
+use crate::observer::Instant;
 use crate::plant::Plant;
-use crate::settings::JOINT_STIFFNESS;
 use crate::signal::{CYCLE, JointSignal};
 
 /// Steps of the plant, and of the innermost control loops, per millisecond.
@@ -16,6 +16,10 @@ const STEPS: u32 = 4;
 /// What the sensors read over the last millisecond.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measurement {
+    /// `q`, `[rad]`.
+    pub(super) q: JointVector,
+    /// `dq`, `[rad/s]`.
+    pub(super) dq: JointVector,
     /// `tau_J`, `[N·m]`.
     pub(super) torque: JointVector,
     /// `dtau_J`, `[N·m/s]`.
@@ -28,6 +32,8 @@ impl Measurement {
     /// An arm that has always been still.
     pub(super) fn resting(plant: &dyn Plant) -> Self {
         Self {
+            q: *plant.q(),
+            dq: *plant.dq(),
             torque: *plant.sensed_torque(),
             torque_rate: JointVector::zeros(),
             ddq: JointVector::zeros(),
@@ -40,11 +46,7 @@ impl Robot {
     pub(super) fn control(&mut self) -> JointVector {
         if let Activity::Braking(brake) = &mut self.activity {
             self.desired.joints = brake.advance(CYCLE);
-            let arm = Arm {
-                kind: self.kind,
-                model: self.model,
-                frames: &self.settings.frames,
-            };
+            let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
             if brake.is_over() {
                 self.activity = Activity::Holding;
@@ -53,7 +55,7 @@ impl Robot {
         let law = self.law();
         let external = self.external_torque();
         let limit = self.model.joint_limits().torque;
-        let (q, dq) = (*self.plant.q(), *self.plant.dq());
+        let dq = *self.plant.dq();
         let mut torque = JointVector::zeros();
         let mut sensed = JointVector::zeros();
         for _ in 0..STEPS {
@@ -62,17 +64,13 @@ impl Robot {
             self.plant.step(&motor, &external, CYCLE / f64::from(STEPS));
             sensed += self.plant.sensed_torque();
         }
-        self.measure(&(sensed / f64::from(STEPS)), &q, &dq);
+        self.measure(&(sensed / f64::from(STEPS)), &dq);
         if let Activity::Moving(motion) = &self.activity
             && motion.is_torque_only()
         {
             // Nothing generates a motion: what is desired is what happens.
             self.desired.joints = self.measured_signal();
-            let arm = Arm {
-                kind: self.kind,
-                model: self.model,
-                frames: &self.settings.frames,
-            };
+            let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
         }
         torque
@@ -97,7 +95,7 @@ impl Robot {
         };
         let Activity::Moving(motion) = &self.activity else {
             // Holding and braking are the robot's own business: a soft setting does not weaken it.
-            return joint(&JOINT_STIFFNESS);
+            return joint(&self.config.unpublished.joint_stiffness);
         };
         match motion.request().controller {
             MoveControllerMode::ExternalController => Law::constant(*motion.torque()),
@@ -134,31 +132,26 @@ impl Robot {
         }
     }
 
-    /// Takes in the mean sensor torque of the millisecond that began at `q`, `dq`.
-    fn measure(&mut self, sensed: &JointVector, q: &JointVector, dq: &JointVector) {
-        let ddq = (self.plant.dq() - dq) / CYCLE;
-        let explained = self.model.inverse_dynamics(
-            &((self.plant.q() + q) / 2.0),
-            &((self.plant.dq() + dq) / 2.0),
-            &ddq,
-            &self.settings.declared_load(),
-            &GRAVITY_EARTH,
-        );
-        let torque = sensed + self.random.joints(self.config.noise.torque);
-        self.measurement = Measurement {
+    /// Takes in the mean sensor torque of the millisecond that began with joint velocities `dq`.
+    fn measure(&mut self, sensed: &JointVector, dq: &JointVector) {
+        let noise = self.config.noise;
+        let torque = sensed + self.random.joints(noise.torque);
+        let measured = Measurement {
+            q: self.plant.q() + self.random.joints(noise.position),
+            dq: self.plant.dq() + self.random.joints(noise.velocity),
+            ddq: (self.plant.dq() - dq) / CYCLE,
             torque_rate: (torque - self.measurement.torque) / CYCLE,
             torque,
-            ddq,
         };
-        let model: &'static Model = self.model;
-        let arm = Arm {
-            kind: self.kind,
-            model,
-            frames: &self.settings.frames,
-        };
-        self.estimate
-            .update(&(torque - explained), self.plant.q(), &arm);
+        let before = Instant::new(&self.measurement.dq, &self.dynamics);
+        self.measurement = measured;
         self.refresh_dynamics();
+        let after = Instant::new(&self.measurement.dq, &self.dynamics);
+        let gain = self.config.unpublished.observer_gain;
+        self.observer.update(&before, &after, &torque, gain);
+        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let external = self.observer.external_torque();
+        self.estimate.update(external, self.plant.q(), &arm);
     }
 
     /// The reference from which a stop begins: the desired motion where the arm follows it, else

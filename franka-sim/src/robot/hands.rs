@@ -5,7 +5,9 @@ use franka_proto::{Errors, RobotError};
 
 use super::{Activity, Robot};
 use crate::end_effector::Hand;
-use crate::generator::Desired;
+use crate::estimate::Estimate;
+use crate::generator::{Arm, Desired};
+use crate::observer::MomentumObserver;
 
 /// A push that lasts for a while.
 #[derive(Debug, Clone, Copy)]
@@ -57,12 +59,9 @@ impl Robot {
         self.desired = Desired::resting(&self.arm(), *q);
         self.activity = Activity::Holding;
         self.refresh_dynamics();
-        let arm = crate::generator::Arm {
-            kind: self.kind,
-            model: self.model,
-            frames: &self.settings.frames,
-        };
-        self.estimate = crate::estimate::Estimate::new();
+        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+        self.observer = MomentumObserver::new();
+        self.estimate = Estimate::new();
         self.estimate
             .update(&JointVector::zeros(), self.plant.q(), &arm);
         self.measurement = super::Measurement::resting(self.plant.as_ref());

@@ -34,6 +34,7 @@ use crate::estimate::Estimate;
 use crate::generator::{Arm, Desired};
 use crate::kind::Description;
 use crate::noise::Random;
+use crate::observer::MomentumObserver;
 use crate::plant::{ArmParameters, Plant, RigidArm};
 use crate::settings::Settings;
 use crate::signal::JointSignal;
@@ -71,6 +72,7 @@ pub struct Robot {
     reflex_reason: Errors,
 
     desired: Desired,
+    observer: MomentumObserver,
     estimate: Estimate,
     measurement: Measurement,
     /// At the measured state, with the declared load.
@@ -122,14 +124,9 @@ impl Robot {
         plant.place(&config.q);
         let kind = Description::of(config.kind);
         let model = Model::realisable(config.kind);
-        let settings = Settings::new(config.tool);
+        let settings = Settings::new(config.tool, &config.unpublished);
         let q = *plant.q();
-        let arm = Arm {
-            kind,
-            model,
-            frames: &settings.frames,
-        };
-        let desired = Desired::resting(&arm, q);
+        let desired = Desired::resting(&Arm::new(kind, model, &settings.frames, &config), q);
         let dynamics = model.dynamics(
             &q,
             plant.dq(),
@@ -157,6 +154,7 @@ impl Robot {
             reflex_reason: Errors::NONE,
             desired,
             estimate: Estimate::new(),
+            observer: MomentumObserver::new(),
             measurement: Measurement::resting(plant.as_ref()),
             dynamics,
             pushes: Vec::new(),
@@ -239,11 +237,7 @@ impl Robot {
     }
 
     fn arm(&self) -> Arm<'_> {
-        Arm {
-            kind: self.kind,
-            model: self.model,
-            frames: &self.settings.frames,
-        }
+        Arm::new(self.kind, self.model, &self.settings.frames, &self.config)
     }
 
     fn is_moving(&self) -> bool {

@@ -3,10 +3,12 @@
 use franka_model::JointVector;
 use franka_model::limits::JointLimits;
 use franka_proto::{
-    CommandId, ControllerMode, Errors, MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode,
-    MoveRequest, RobotCommand, RobotError,
+    CommandId, ControllerMode, Errors, Filters, MotionGeneratorMode, MoveControllerMode,
+    MoveGeneratorMode, MoveRequest, RobotCommand, RobotError,
 };
 
+use crate::config::FirstCycles;
+use crate::filter::filtered;
 use crate::generator::{Arm, Desired, Input, PointToPoint, advance};
 use crate::score::{LOST_LIMIT, Score};
 use crate::signal::{CYCLE, JointSignal};
@@ -33,6 +35,7 @@ pub(super) struct Motion {
 pub(super) struct Rules {
     pub(super) limits: bool,
     pub(super) communication: bool,
+    pub(super) filters: Option<Filters>,
 }
 
 /// What became of a motion in one cycle.
@@ -106,8 +109,8 @@ impl Motion {
     }
 
     /// `control_command_success_rate`.
-    pub(super) fn success_rate(&self) -> f64 {
-        self.score.rate()
+    pub(super) fn success_rate(&self, first: FirstCycles) -> f64 {
+        self.score.rate(first)
     }
 
     /// Whether a command counts that answers state `answers` while `newest` is the last one
@@ -133,6 +136,12 @@ impl Motion {
         }
         let mut errors = Errors::NONE;
         self.paused = false;
+        // The first command is compared with the start as it is.
+        let filters = rules.filters.filter(|_| self.score.has_begun());
+        let smooth = command
+            .zip(filters)
+            .map(|(command, filters)| filtered(command, desired, &self.torque, &filters));
+        let command = smooth.as_ref().or(command);
         let input = match command {
             Some(command) => {
                 // Without limits there is no wrong place to start from, either.

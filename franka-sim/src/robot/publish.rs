@@ -3,24 +3,20 @@
 use franka_model::{EndEffector, Frame, JointVector, Load, Model, Twist, elbow, transform};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
-use super::{Activity, Robot};
-
-/// Stiffness between motor and link, `[N·m/rad]`: what `theta` differs from `q` by. About the
-/// magnitude that is published for this kind of joint.
-const JOINT_ELASTICITY: f64 = 1e4;
+use super::{Activity, Measurement, Robot};
 
 impl Robot {
     /// Writes the state; `torque` is what the controllers commanded last, gravity excluded.
     pub(super) fn publish(&mut self, torque: &JointVector) {
-        let noise = self.config.noise;
-        let q = self.plant.q() + self.random.joints(noise.position);
-        let dq = self.plant.dq() + self.random.joints(noise.velocity);
+        let Measurement { q, dq, .. } = self.measurement;
+        let rate = self.config.unpublished.first_cycles;
+        let elasticity = self.config.unpublished.joint_elasticity;
         let (mode, (generator, controller)) = (self.robot_mode(), self.modes());
         let (desired_torque, success_rate) = match &self.activity {
             Activity::Moving(motion) if motion.is_external() => {
-                (*motion.torque(), motion.success_rate())
+                (*motion.torque(), motion.success_rate(rate))
             }
-            Activity::Moving(motion) => (*torque, motion.success_rate()),
+            Activity::Moving(motion) => (*torque, motion.success_rate(rate)),
             _ => (JointVector::zeros(), 0.0),
         };
         let (pose_d, twist_d) = self.desired_pose();
@@ -61,8 +57,8 @@ impl Robot {
         state.q_d = desired.joints.q.into();
         state.dq_d = desired.joints.dq.into();
         state.ddq_d = desired.joints.ddq.into();
-        state.theta = (q + measurement.torque / JOINT_ELASTICITY).into();
-        state.dtheta = (dq + measurement.torque_rate / JOINT_ELASTICITY).into();
+        state.theta = (q + measurement.torque / elasticity).into();
+        state.dtheta = (dq + measurement.torque_rate / elasticity).into();
 
         state.joint_contact = estimate.joint_contact.map(flag);
         state.cartesian_contact = estimate.cartesian_contact.map(flag);

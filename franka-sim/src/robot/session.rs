@@ -8,7 +8,7 @@ use franka_proto::{
     SetterStatus, Version, Violation, VirtualWall,
 };
 
-use super::{Activity, Robot};
+use super::{Activity, Arm, Robot};
 
 /// The client that is connected.
 pub(super) struct Client {
@@ -144,10 +144,10 @@ impl Robot {
             Request::GetCartesianLimit { .. } => self.reply(id, NO_WALL),
             Request::LoadModelLibrary { .. } => self.send_library(id),
             setter => {
-                let status = if self.robot_mode() == RobotMode::Move {
-                    SetterStatus::CommandNotPossibleRejected
-                } else {
+                let status = if self.takes_setters() {
                     self.settings.apply(setter)
+                } else {
+                    SetterStatus::CommandNotPossibleRejected
                 };
                 self.refresh_frames();
                 self.reply(id, Reply::Setter(status));
@@ -155,15 +155,23 @@ impl Robot {
         }
     }
 
+    fn takes_setters(&self) -> bool {
+        let setters = &self.config.unpublished.setters;
+        match self.robot_mode() {
+            RobotMode::Idle => true,
+            RobotMode::Move => false,
+            RobotMode::Reflex => setters.reflex,
+            RobotMode::Guiding => setters.guiding,
+            RobotMode::UserStopped => setters.user_stopped,
+            RobotMode::Other | RobotMode::AutomaticErrorRecovery => setters.other,
+        }
+    }
+
     /// Frames and load may have changed: what is derived from them follows.
     fn refresh_frames(&mut self) {
         self.refresh_dynamics();
         if !self.is_moving() {
-            let arm = crate::generator::Arm {
-                kind: self.kind,
-                model: self.model,
-                frames: &self.settings.frames,
-            };
+            let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
         }
     }

@@ -1,0 +1,214 @@
+//! What nobody outside the vendor knows of a robot, and what is taken for it here.
+
+use franka_model::{JointVector, Twist, joint_vector};
+use franka_proto::CollisionBehavior;
+
+/// Answers to what is not published about the robot. Each is an assumption and none has been measured;
+/// a client that depends on one of them may be tested against others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unpublished {
+    /// How far the first command of a motion may be from what the state publishes as commanded.
+    pub start: StartTolerance,
+    /// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
+    /// start. Default 0.05: a pose that a robot refuses has 0.011, ordinary ones 0.14 to 0.23.
+    pub singular: f64,
+    /// How the orientation goes on in a cycle whose command is lost.
+    pub extrapolation: Extrapolation,
+    /// Cutoff of a first-order low-pass that the robot itself applies to commands, `[Hz]`; `None` for
+    /// commands taken as they come, the default. Protocol 5 begins with this and has a request to
+    /// change it.
+    pub command_filter: Option<f64>,
+    /// What `control_command_success_rate` divides by while a motion is younger than its window of
+    /// 100 cycles.
+    pub first_cycles: FirstCycles,
+    /// Whether an accepted `Move` clears `reflex_reason`. Default yes.
+    pub move_clears_reason: bool,
+    /// How many errors a cycle that breaks several bounds latches.
+    pub error_bits: ErrorBits,
+    /// The modes besides Idle in which setters are taken.
+    pub setters: Setters,
+    /// Stiffness of the internal joint impedance controller until a client sets another, `[N·m/rad]`.
+    /// Default: the values of libfranka 0.21, `examples_common.cpp`.
+    pub joint_stiffness: JointVector,
+    /// Likewise of the Cartesian one, in stiffness-frame axes, `[N/m, N·m/rad]`. Default: as there.
+    pub cartesian_stiffness: Twist,
+    /// Thresholds of contact and collision until a client sets others. Default: contact near the
+    /// values of the vendor's examples (20 N·m falling to 12 N·m at the wrist, 20 N and 25 N·m),
+    /// collision at twice as much.
+    pub thresholds: CollisionBehavior,
+    /// Joint acceleration, measured, from which the thresholds for acceleration phases hold,
+    /// `[rad/s²]`. Default 1.
+    pub accelerating: f64,
+    /// Gain of the momentum observer behind `tau_ext_hat_filtered`, `[1/s]`: the inverse of the time
+    /// constant with which it follows. Default 100, about 16 Hz.
+    pub observer_gain: f64,
+    /// When the arm counts as about to hit itself.
+    pub self_collision: SelfCollision,
+    /// Mechanical power of all joints together that raises `power_limit_violation`, `[W]`. Default
+    /// 600, more than any motion within the limits of a Franka Research 3 takes without a load.
+    pub power: f64,
+    /// What `instability_detected` means.
+    pub instability: Instability,
+    /// Range of the torque sensors over the nominal torque. Default 1.1.
+    pub sensor_range: f64,
+    /// Stiffness between motor and link, which `theta` differs from `q` by, `[N·m/rad]`. Default
+    /// 10 000, about the magnitude that is published for this kind of joint.
+    pub joint_elasticity: f64,
+}
+
+impl Default for Unpublished {
+    fn default() -> Self {
+        let torque = [20.0, 20.0, 18.0, 18.0, 16.0, 14.0, 12.0];
+        let force = [20.0, 20.0, 20.0, 25.0, 25.0, 25.0];
+        Self {
+            start: StartTolerance::default(),
+            singular: 0.05,
+            extrapolation: Extrapolation::BaseAxes,
+            command_filter: None,
+            first_cycles: FirstCycles::SoFar,
+            move_clears_reason: true,
+            error_bits: ErrorBits::All,
+            setters: Setters::default(),
+            joint_stiffness: joint_vector([3000.0, 3000.0, 3000.0, 2500.0, 2500.0, 2000.0, 2000.0]),
+            cartesian_stiffness: Twist::new(3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0),
+            thresholds: CollisionBehavior::uniform(
+                torque,
+                torque.map(|t| 2.0 * t),
+                force,
+                force.map(|f| 2.0 * f),
+            ),
+            accelerating: 1.0,
+            observer_gain: 100.0,
+            self_collision: SelfCollision::default(),
+            power: 600.0,
+            instability: Instability::default(),
+            sensor_range: 1.1,
+            joint_elasticity: 1e4,
+        }
+    }
+}
+
+/// Distance of a first command from what the state publishes. The defaults lie between what clients
+/// send that seed from measured values and what robots are known to refuse (0.2 rad on joint 1,
+/// 0.5 rad of elbow).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StartTolerance {
+    /// Per joint, `[rad]`. Default 0.1.
+    pub joint: f64,
+    /// `[m]`. Default 0.05.
+    pub translation: f64,
+    /// `[rad]`. Default 0.1.
+    pub rotation: f64,
+    /// `[rad]`. Default 0.1.
+    pub elbow: f64,
+}
+
+impl Default for StartTolerance {
+    fn default() -> Self {
+        Self {
+            joint: 0.1,
+            translation: 0.05,
+            rotation: 0.1,
+            elbow: 0.1,
+        }
+    }
+}
+
+/// How the orientation of a lost Cartesian command is extrapolated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Extrapolation {
+    /// With constant angular acceleration in base axes, as the translation goes on.
+    #[default]
+    BaseAxes,
+    /// With constant angular acceleration in the axes of the end effector.
+    BodyAxes,
+    /// It stays.
+    Held,
+}
+
+/// What the success rate divides by before 100 cycles have passed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FirstCycles {
+    /// The cycles since the first command.
+    #[default]
+    SoFar,
+    /// The whole window.
+    Window,
+}
+
+/// The errors of a cycle that breaks several bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ErrorBits {
+    /// All of them, as public reports of robots show.
+    #[default]
+    All,
+    /// The first in the order of the wire.
+    First,
+}
+
+/// Where setters are taken besides Idle. In a motion they never are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Setters {
+    /// After a reflex. Default yes.
+    pub reflex: bool,
+    /// While guided. Default yes.
+    pub guiding: bool,
+    /// With the user stop pressed. Default yes.
+    pub user_stopped: bool,
+    /// With the brakes closed, and during a recovery. Default yes.
+    pub other: bool,
+}
+
+impl Default for Setters {
+    fn default() -> Self {
+        Self {
+            reflex: true,
+            guiding: true,
+            user_stopped: true,
+            other: true,
+        }
+    }
+}
+
+/// The arm against itself, by the vendor's capsules.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfCollision {
+    /// Distance between two capsules from which on they may not approach each other, `[m]`. Default
+    /// 0.05.
+    pub margin: f64,
+    /// How far they may approach all the same, from where they were last furthest apart, `[m]`.
+    /// Default 0.001. A motion out of the margin is always possible.
+    pub closing: f64,
+}
+
+impl Default for SelfCollision {
+    fn default() -> Self {
+        Self {
+            margin: 0.05,
+            closing: 0.001,
+        }
+    }
+}
+
+/// A joint that shakes: its velocity reverses again and again, faster and wider than any motion
+/// within the limits on acceleration does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instability {
+    /// Velocity to either side that counts, `[rad/s]`. Default 0.2.
+    pub velocity: f64,
+    /// Reversals within [`window`](Self::window). Default 8: with 0.2 rad/s to each side, 8 of them in
+    /// 0.1 s take 32 rad/s² on average; commands may have 20 at most, on the robot that allows most.
+    pub reversals: u32,
+    /// In milliseconds. Default 100.
+    pub window: u32,
+}
+
+impl Default for Instability {
+    fn default() -> Self {
+        Self {
+            velocity: 0.2,
+            reversals: 8,
+            window: 100,
+        }
+    }
+}
