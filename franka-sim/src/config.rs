@@ -9,6 +9,7 @@ pub use unpublished::{
 
 use bytes::Bytes;
 use franka_model::{JointVector, Load, READY, RobotKind};
+use franka_proto::VirtualWall;
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 
 /// The make-up of one simulated robot. [`Default`] is a Franka Research 3 with a bare flange in the
@@ -45,6 +46,10 @@ pub struct Config {
     /// The model library that the robot serves to every architecture and system (protocol 5). The
     /// vendor's is not ours to give: without one the robot answers with an error.
     pub model_library: Option<Bytes>,
+    /// Virtual walls, as set up in Desk, by the number that a client asks for (protocol 5). The end
+    /// effector stays inside the cuboid of each active one, which reaches from the origin of its frame
+    /// to its corner.
+    pub walls: Vec<(i32, VirtualWall)>,
     /// What is assumed where nothing is published.
     pub unpublished: Unpublished,
 }
@@ -64,6 +69,7 @@ impl Default for Config {
             enforce_communication: true,
             urdf: None,
             model_library: None,
+            walls: Vec::new(),
             unpublished: Unpublished::default(),
         }
     }

@@ -2,7 +2,7 @@
 //! that tells the kinds apart.
 
 use franka_model::RobotKind;
-use franka_proto::{RobotError, Version};
+use franka_proto::{MoveStatus, RecoveryStatus, RobotError, SetterStatus, Version};
 
 use crate::plant::ArmParameters;
 
@@ -19,6 +19,18 @@ pub(crate) struct Description {
     pub(crate) precision: Precision,
     /// Errors of desired joint positions outside their range.
     pub(crate) range: RangeErrors,
+    /// Answers while a safety function is active.
+    pub(crate) safety: SafetyStatuses,
+}
+
+/// What requests are answered while a safety function forbids motion.
+pub(crate) struct SafetyStatuses {
+    /// A motion that was under way.
+    pub(crate) preempted: MoveStatus,
+    /// One that is asked for.
+    pub(crate) rejected: MoveStatus,
+    pub(crate) setter: SetterStatus,
+    pub(crate) recovery: RecoveryStatus,
 }
 
 /// The precision of the numbers in a state.
@@ -67,6 +79,12 @@ static FR3: Description = Description {
         joint_velocity: RobotError::JointPositionLimitsViolation,
         cartesian: RobotError::JointPositionLimitsViolation,
     },
+    safety: SafetyStatuses {
+        preempted: MoveStatus::PreemptedDueToActivatedSafetyFunctions,
+        rejected: MoveStatus::CommandRejectedDueToActivatedSafetyFunctions,
+        setter: SetterStatus::CommandRejectedDueToActivatedSafetyFunctions,
+        recovery: RecoveryStatus::CommandRejectedDueToActivatedSafetyFunctions,
+    },
 };
 
 static FER: Description = Description {
@@ -79,6 +97,13 @@ static FER: Description = Description {
         joint_position: RobotError::JointMotionGeneratorPositionLimitsViolation,
         joint_velocity: RobotError::JointPositionLimitsViolation,
         cartesian: RobotError::CartesianMotionGeneratorJointPositionLimitsViolation,
+    },
+    // Its protocol has no statuses for them: they act like the user stop.
+    safety: SafetyStatuses {
+        preempted: MoveStatus::EmergencyAborted,
+        rejected: MoveStatus::CommandNotPossibleRejected,
+        setter: SetterStatus::CommandNotPossibleRejected,
+        recovery: RecoveryStatus::CommandNotPossibleRejected,
     },
 };
 

@@ -71,7 +71,7 @@ mod settings;
 mod signal;
 mod urdf;
 
-pub use config::{Config, Noise, Tool};
+pub use config::{Config, Noise, Tool, Unpublished};
 pub use end_effector::{Fingers, Hand, Suction, VacuumGripper};
-pub use robot::{Datagram, Robot, SessionError};
+pub use robot::{Datagram, Robot, SessionError, Touch, TouchId};
 pub use serve::{Pace, Running, Service, Sim, Stopped};

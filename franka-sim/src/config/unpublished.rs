@@ -179,6 +179,9 @@ pub struct SelfCollision {
     /// How far they may approach all the same, from where they were last furthest apart, `[m]`.
     /// Default 0.001. A motion out of the margin is always possible.
     pub closing: f64,
+    /// How many links further along the chain the other one has to be; a tool counts as link 8.
+    /// Default 3: closer ones come near each other in postures that the arm takes every day.
+    pub apart: u8,
 }
 
 impl Default for SelfCollision {
@@ -186,6 +189,7 @@ impl Default for SelfCollision {
         Self {
             margin: 0.05,
             closing: 0.001,
+            apart: 3,
         }
     }
 }

@@ -63,6 +63,11 @@ impl PointToPoint {
         };
     }
 
+    /// Whether the target, if there is one, has been reached.
+    pub(crate) fn is_over(&self) -> bool {
+        matches!(self.plan, Plan::Resting)
+    }
+
     /// Where the joints are one cycle after `now`.
     pub(crate) fn advance(&mut self, now: &JointSignal) -> JointSignal {
         let next = match &mut self.plan {

@@ -9,14 +9,23 @@ use nalgebra::{Cholesky, Isometry3, SMatrix};
 use super::{Law, Spring};
 use crate::signal::{JointSignal, stack};
 
+/// How firm the springs are.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Firmness {
+    /// Of the stiffness frame, in its axes, `[N/m, N·m/rad]`.
+    pub(crate) task: Twist,
+    /// Of joint motions that the end effector does not feel, `[N·m/rad]`.
+    pub(crate) posture: f64,
+}
+
 /// A spring and critical damper between the stiffness frame and where the desired pose puts it,
-/// and a soft joint spring in what the end effector does not feel.
+/// and a joint spring in what the end effector does not feel.
 ///
-/// `stiffness` in stiffness-frame axes, `[N/m, N·m/rad]`; `pose` is the desired one of the end
+/// `pose` is the desired one of the end
 /// effector; `desired` the joints that belong to it; `q` where the joints are.
 #[allow(clippy::too_many_arguments)] // the two halves of the error and what they are made of
 pub(crate) fn cartesian_impedance(
-    stiffness: &Twist,
+    firmness: &Firmness,
     pose: &Isometry3<f64>,
     desired: &JointSignal,
     q: &JointVector,
@@ -32,18 +41,19 @@ pub(crate) fn cartesian_impedance(
         inertia[(i, i)] += armature[i];
     }
 
-    let task_stiffness = SMatrix::<f64, 6, 6>::from_diagonal(stiffness);
-    let damping = task_damping(stiffness, &jacobian, &inertia);
+    let task_stiffness = SMatrix::<f64, 6, 6>::from_diagonal(&firmness.task);
+    let damping = task_damping(&firmness.task, &jacobian, &inertia);
     let task_damping = SMatrix::<f64, 6, 6>::from_diagonal(&damping);
     let free = null_space(&jacobian);
 
     let to_pose = jacobian.tr_mul(&(task_stiffness * error));
-    let to_posture = free * ((desired.q - q) * POSTURE_STIFFNESS);
+    let to_posture = free * ((desired.q - q) * firmness.posture);
     Law {
         feedforward: dynamics.coriolis + inertia * desired.ddq + to_pose + to_posture,
         spring: Some(Spring {
-            stiffness: jacobian.tr_mul(&(task_stiffness * jacobian)) + free * POSTURE_STIFFNESS,
-            damping: jacobian.tr_mul(&(task_damping * jacobian)) + free * POSTURE_DAMPING,
+            stiffness: jacobian.tr_mul(&(task_stiffness * jacobian)) + free * firmness.posture,
+            damping: jacobian.tr_mul(&(task_damping * jacobian))
+                + free * (firmness.posture * POSTURE_DAMPING),
             q: *q,
             dq: desired.dq,
         }),
@@ -92,10 +102,12 @@ fn null_space(jacobian: &Jacobian) -> MassMatrix {
     }
 }
 
-/// Stiffness `[N·m/rad]` and damping `[N·m·s/rad]` of the posture: choices of this simulator, soft
-/// beside the joint impedance and overdamped for the arm's 1 to 2 kg·m².
-const POSTURE_STIFFNESS: f64 = 50.0;
-const POSTURE_DAMPING: f64 = 20.0;
+/// Posture stiffness in a motion, `[N·m/rad]`: a choice of this simulator, soft beside the joint
+/// impedance.
+pub(crate) const POSTURE_STIFFNESS: f64 = 50.0;
+
+/// Damping per stiffness, `[s]`: at 50 N·m/rad overdamped for the arm's 1 to 2 kg·m².
+const POSTURE_DAMPING: f64 = 0.4;
 
 /// Least mobility, `[1/kg, 1/(kg·m²)]`: near a singularity the inertia felt grows without bound.
 const MOBILITY_MIN: f64 = 0.02;

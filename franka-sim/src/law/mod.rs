@@ -7,7 +7,7 @@
 mod cartesian_impedance;
 mod joint_impedance;
 
-pub(crate) use cartesian_impedance::cartesian_impedance;
+pub(crate) use cartesian_impedance::{Firmness, POSTURE_STIFFNESS, cartesian_impedance};
 pub(crate) use joint_impedance::joint_impedance;
 
 use franka_model::{JointVector, MassMatrix};

@@ -15,23 +15,49 @@ use franka_proto::{
 };
 
 use super::motion::{Motion, Rules, Verdict};
+use super::watch::Sight;
 use super::{Activity, Robot};
 use crate::brake::Brake;
 use crate::config::ErrorBits;
-use crate::generator::Arm;
+use crate::generator::{Arm, PointToPoint};
 use crate::signal::halves;
 
 /// An automatic error recovery under way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Recovery {
     /// Whom to answer, if that client is still there.
     id: Option<CommandId>,
     since: u64,
+    /// Back into the range, if a person asks for it.
+    way: Option<PointToPoint>,
+}
+
+impl Recovery {
+    /// A person's, with the way back.
+    pub(super) fn by_hand(since: u64, way: PointToPoint) -> Self {
+        Self {
+            id: None,
+            since,
+            way: Some(way),
+        }
+    }
+
+    pub(super) fn id(&self) -> Option<CommandId> {
+        self.id
+    }
+
+    pub(super) fn way(&mut self) -> Option<&mut PointToPoint> {
+        self.way.as_mut()
+    }
 }
 
 impl Robot {
     pub(super) fn robot_mode(&self) -> RobotMode {
-        if self.user_stop {
+        if matches!(self.activity, Activity::Guided(_)) {
+            RobotMode::Guiding
+        } else if self.lock.brakes_closed {
+            RobotMode::Other
+        } else if self.lock.user_stop || self.lock.safety_function {
             RobotMode::UserStopped
         } else if self.recovery.is_some() {
             RobotMode::AutomaticErrorRecovery
@@ -54,6 +80,7 @@ impl Robot {
     /// Answers a `Move`.
     pub(super) fn request_move(&mut self, id: CommandId, request: MoveRequest) {
         let refusal = match self.robot_mode() {
+            _ if self.lock.safety_function => Some(self.kind.safety.rejected),
             RobotMode::Idle | RobotMode::Move if !self.is_possible(&request) => {
                 Some(MoveStatus::InvalidArgumentRejected)
             }
@@ -113,6 +140,7 @@ impl Robot {
         if self.config.unpublished.move_clears_reason {
             self.reflex_reason = Errors::NONE;
         }
+        self.watch.begin();
         self.command = None;
         self.desired = self.desired.as_published(self.kind.precision);
         let limits = self.model.joint_limits();
@@ -142,6 +170,7 @@ impl Robot {
     /// Answers an `AutomaticErrorRecovery`, now or when it is over.
     pub(super) fn request_recovery(&mut self, id: CommandId) {
         let status = match self.robot_mode() {
+            _ if self.lock.safety_function => self.kind.safety.recovery,
             RobotMode::Idle => RecoveryStatus::Success,
             RobotMode::Reflex if self.is_outside() => {
                 RecoveryStatus::ManualErrorRecoveryRequiredRejected
@@ -150,6 +179,7 @@ impl Robot {
                 self.recovery = Some(Recovery {
                     id: Some(id),
                     since: self.clock,
+                    way: None,
                 });
                 return;
             }
@@ -166,21 +196,6 @@ impl Robot {
             q[i] < limits.hard_lower[i] - POSITION_MARGIN
                 || q[i] > limits.hard_upper[i] + POSITION_MARGIN
         })
-    }
-
-    /// Presses or releases the user stop.
-    pub(super) fn set_user_stop(&mut self, pressed: bool) {
-        self.user_stop = pressed;
-        if !pressed {
-            return;
-        }
-        self.end_motion(MoveStatus::EmergencyAborted);
-        if let Some((id, _)) = self.waiting.take() {
-            self.reply(id, Reply::Move(MoveStatus::EmergencyAborted));
-        }
-        if let Some(Recovery { id: Some(id), .. }) = self.recovery.take() {
-            self.reply(id, Reply::Recovery(RecoveryStatus::EmergencyAborted));
-        }
     }
 
     /// Forgets whom to answer; the motion stops.
@@ -202,6 +217,7 @@ impl Robot {
         self.errors = self.errors.union(latched);
         self.reflex_reason = self.errors;
         self.end_motion(MoveStatus::ReflexAborted);
+        self.guide(false);
         if let Some(Recovery { id: Some(id), .. }) = self.recovery.take() {
             self.reply(id, Reply::Recovery(RecoveryStatus::ReflexAborted));
         }
@@ -211,7 +227,7 @@ impl Robot {
     }
 
     /// Ends the motion under way, if any: final reply, and the arm comes to rest by itself.
-    fn end_motion(&mut self, status: MoveStatus) {
+    pub(super) fn end_motion(&mut self, status: MoveStatus) {
         let Activity::Moving(motion) = &self.activity else {
             return;
         };
@@ -262,7 +278,17 @@ impl Robot {
             .estimate
             .compare(&self.settings.thresholds, accelerating, moving);
         if moving && self.config.enforce_limits {
-            errors = errors.union(self.violations());
+            let sight = Sight {
+                q: self.plant.q(),
+                dq: self.plant.dq(),
+                torque: &self.measurement.torque,
+                pose: &self.dynamics.pose,
+            };
+            let seen = self.watch.violations(&sight, &self.config);
+            errors = errors.union(self.violations()).union(seen);
+        }
+        if self.is_guided_out() {
+            errors.insert(RobotError::JointMoveInWrongDirection);
         }
         if !errors.is_empty() {
             self.reflex(errors);
@@ -331,25 +357,34 @@ impl Robot {
 
     /// What waits for the arm to be at rest.
     pub(super) fn settle(&mut self) {
-        if !matches!(self.activity, Activity::Holding) {
+        if !matches!(self.activity, Activity::Holding | Activity::Guided(_)) {
             return;
         }
         for id in core::mem::take(&mut self.stops) {
             self.reply(id, Reply::StopMove(StopStatus::Success));
         }
-        if let Some(recovery) = self.recovery {
-            let elapsed = self.clock - recovery.since;
-            let still = self.plant.dq().amax() < STILL;
-            if elapsed >= RECOVERY_MIN && (still || elapsed >= RECOVERY_MAX) {
-                self.recovery = None;
-                self.errors = Errors::NONE;
-                self.estimate.clear();
-                if let Some(id) = recovery.id {
-                    self.reply(id, Reply::Recovery(RecoveryStatus::Success));
-                }
-            }
-        }
+        self.end_recovery();
         self.start_waiting();
+    }
+
+    /// Clears the errors when the arm is at rest and, if need be, back in its range.
+    fn end_recovery(&mut self) {
+        let Some(recovery) = &self.recovery else {
+            return;
+        };
+        let elapsed = self.clock - recovery.since;
+        let still = self.plant.dq().amax() < STILL || elapsed >= RECOVERY_MAX;
+        let back = recovery.way.as_ref().is_none_or(PointToPoint::is_over);
+        if elapsed < RECOVERY_MIN || !still || !back {
+            return;
+        }
+        let id = recovery.id;
+        self.recovery = None;
+        self.errors = Errors::NONE;
+        self.estimate.clear();
+        if let Some(id) = id {
+            self.reply(id, Reply::Recovery(RecoveryStatus::Success));
+        }
     }
 }
 

@@ -1,11 +1,14 @@
 //! One millisecond of control and physics.
 
-use franka_model::{GRAVITY_EARTH, JointVector};
+use franka_model::{EndEffector, GRAVITY_EARTH, JointVector, MassMatrix, Twist, joint_vector};
 use franka_proto::MoveControllerMode;
+use nalgebra::Matrix4;
 
+use super::condition::Recovery;
+use super::operation::Guidance;
 use super::{Activity, Robot};
 use crate::generator::Arm;
-use crate::law::{Law, cartesian_impedance, joint_impedance};
+use crate::law::{Firmness, Law, POSTURE_STIFFNESS, cartesian_impedance, joint_impedance};
 use crate::observer::Instant;
 use crate::plant::Plant;
 use crate::signal::{CYCLE, JointSignal};
@@ -44,36 +47,62 @@ impl Measurement {
 impl Robot {
     /// Drives the arm for one millisecond; returns the controller's last torques, gravity excluded.
     pub(super) fn control(&mut self) -> JointVector {
-        if let Activity::Braking(brake) = &mut self.activity {
-            self.desired.joints = brake.advance(CYCLE);
-            let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
-            self.desired.follow_joints(&arm);
-            if brake.is_over() {
-                self.activity = Activity::Holding;
-            }
-        }
+        self.advance_desired();
         let law = self.law();
-        let external = self.external_torque();
-        let limit = self.model.joint_limits().torque;
+        self.touches.advance(self.clock);
+        let limit = match self.are_brakes_holding() {
+            true => JointVector::repeat(f64::INFINITY),
+            false => self.model.joint_limits().torque,
+        };
         let dq = *self.plant.dq();
         let mut torque = JointVector::zeros();
         let mut sensed = JointVector::zeros();
         for _ in 0..STEPS {
-            torque = law.torque(self.plant.q(), self.plant.dq());
+            let (q_now, dq_now) = (self.plant.q(), self.plant.dq());
+            torque = law.torque(q_now, dq_now);
             let motor = (torque + self.dynamics.gravity).zip_map(&limit, |t, l| t.clamp(-l, l));
+            let frames = &self.settings.frames;
+            let external = self.touches.torque(self.model, frames, q_now, dq_now);
             self.plant.step(&motor, &external, CYCLE / f64::from(STEPS));
             sensed += self.plant.sensed_torque();
         }
         self.measure(&(sensed / f64::from(STEPS)), &dq);
-        if let Activity::Moving(motion) = &self.activity
-            && motion.is_torque_only()
-        {
+        let is_led = match &self.activity {
+            Activity::Moving(motion) => motion.is_torque_only(),
+            Activity::Guided(_) => true,
+            _ => false,
+        };
+        if is_led {
             // Nothing generates a motion: what is desired is what happens.
             self.desired.joints = self.measured_signal();
             let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
         }
         torque
+    }
+
+    /// What the robot desires by itself: a stop goes on, a recovery leads back.
+    fn advance_desired(&mut self) {
+        match &mut self.activity {
+            Activity::Braking(brake) => {
+                self.desired.joints = brake.advance(CYCLE);
+                if brake.is_over() {
+                    self.activity = Activity::Holding;
+                }
+            }
+            Activity::Holding => match self.recovery.as_mut().and_then(Recovery::way) {
+                Some(way) => self.desired.joints = way.advance(&self.desired.joints),
+                None => return,
+            },
+            Activity::Moving(_) | Activity::Guided(_) => return,
+        }
+        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+        self.desired.follow_joints(&arm);
+    }
+
+    /// Whether the brakes stand between motors and links: they close when the arm has come to rest.
+    fn are_brakes_holding(&self) -> bool {
+        self.lock.brakes_closed && matches!(self.activity, Activity::Holding)
     }
 
     /// Recomputes what depends on frames and load.
@@ -93,15 +122,21 @@ impl Robot {
         let joint = |stiffness: &JointVector| {
             joint_impedance(stiffness, &desired, &self.dynamics, armature)
         };
-        let Activity::Moving(motion) = &self.activity else {
+        let motion = match &self.activity {
+            Activity::Moving(motion) => motion,
+            Activity::Guided(guidance) => return self.guiding_law(guidance),
+            _ if self.are_brakes_holding() => return joint(&BRAKE_STIFFNESS),
             // Holding and braking are the robot's own business: a soft setting does not weaken it.
-            return joint(&self.config.unpublished.joint_stiffness);
+            _ => return joint(&self.config.unpublished.joint_stiffness),
         };
         match motion.request().controller {
             MoveControllerMode::ExternalController => Law::constant(*motion.torque()),
             MoveControllerMode::JointImpedance => joint(&self.settings.joint_stiffness),
             MoveControllerMode::CartesianImpedance => cartesian_impedance(
-                &self.settings.cartesian_stiffness,
+                &Firmness {
+                    task: self.settings.cartesian_stiffness,
+                    posture: POSTURE_STIFFNESS,
+                },
                 &self.arm().pose(&desired.q),
                 &desired,
                 self.plant.q(),
@@ -111,6 +146,34 @@ impl Robot {
                 armature,
             ),
         }
+    }
+
+    /// Gravity compensation with a light damper, and springs in the directions that are locked.
+    fn guiding_law(&self, guidance: &Guidance) -> Law {
+        let guiding = &self.settings.guiding;
+        // The axes are those of the end effector, whatever the stiffness frame is.
+        let frames = EndEffector {
+            ee_t_k: Matrix4::identity(),
+            ..self.settings.frames
+        };
+        let firmness = Firmness {
+            task: Twist::from_fn(|i, _| if guiding.axes[i] { 0.0 } else { LOCKED[i] }),
+            posture: if guiding.elbow { 0.0 } else { LOCKED_ELBOW },
+        };
+        let mut law = cartesian_impedance(
+            &firmness,
+            &self.arm().pose(&guidance.start),
+            &JointSignal::resting(guidance.start),
+            self.plant.q(),
+            self.model,
+            &frames,
+            &self.dynamics,
+            self.plant.armature(),
+        );
+        if let Some(spring) = &mut law.spring {
+            spring.damping += MassMatrix::from_diagonal(&GUIDING_DAMPING);
+        }
+        law
     }
 
     /// The desired joints with derivatives that the arm can have. They always can unless limits are
@@ -166,6 +229,19 @@ impl Robot {
         }
     }
 }
+
+/// What closed brakes amount to, `[N·m/rad]`: as stiff as the internal controller can be set.
+const BRAKE_STIFFNESS: JointVector = joint_vector([14_250.0; 7]);
+
+/// Of a guided arm, `[N·m·s/rad]`, so that it comes to rest when nobody pushes: a choice.
+const GUIDING_DAMPING: JointVector = joint_vector([2.0, 2.0, 2.0, 2.0, 0.5, 0.5, 0.5]);
+
+/// Stiffness of locked directions of a guided arm, `[N/m, N·m/rad]`: the most that the Cartesian
+/// controller can be set to.
+const LOCKED: [f64; 6] = [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0];
+
+/// And of a locked elbow, `[N·m/rad]`.
+const LOCKED_ELBOW: f64 = 300.0;
 
 /// Up to this tracking error a stop continues the desired motion, `[rad]`.
 const FOLLOWING: f64 = 0.02;

@@ -1,54 +1,39 @@
-//! What a person beside the robot can do: push it, press the stop, hang a load on it.
+//! What a person beside the robot can do to the arm: push it, hold it, hang a load on it. What can be
+//! operated is in [`operation`](super::operation).
 
-use franka_model::{Frame, JointVector, Load, Wrench};
-use franka_proto::{Errors, RobotError};
+use franka_model::{JointVector, Load, Wrench};
 
-use super::{Activity, Robot};
+use super::touch::{Touch, TouchId};
+use super::{Activity, Measurement, Robot};
 use crate::end_effector::Hand;
 use crate::estimate::Estimate;
 use crate::generator::{Arm, Desired};
 use crate::observer::MomentumObserver;
 
-/// A push that lasts for a while.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Push {
-    force: Force,
-    /// Clock of the last millisecond in which it acts.
-    until: u64,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Force {
-    Joints(JointVector),
-    EndEffector(Wrench),
-}
-
 impl Robot {
-    /// Lets torques act on the joints from outside for `duration` milliseconds, `[N·m]`; positive
-    /// ones push towards positive angles. Pushes add up.
-    pub fn push_joints(&mut self, torque: JointVector, duration: u64) {
-        self.push(Force::Joints(torque), duration);
+    /// Lets something act on the arm from outside; see [`Touch`].
+    pub fn touch(&mut self, touch: Touch) -> TouchId {
+        self.touches.add(touch, self.clock)
     }
 
-    /// Lets a wrench `[force; torque]` act on the end effector from outside for `duration`
-    /// milliseconds, in base axes, `[N, N·m]`. Pushes add up.
-    pub fn push_end_effector(&mut self, wrench: Wrench, duration: u64) {
-        self.push(Force::EndEffector(wrench), duration);
+    /// Ends a touch. False if it has ended before.
+    pub fn release(&mut self, touch: TouchId) -> bool {
+        self.touches.remove(touch)
     }
 
-    /// Takes all hands off the arm.
+    /// Takes all hands off the arm, and everything else that touches it.
     pub fn let_go(&mut self) {
-        self.pushes.clear();
+        self.touches.clear();
     }
 
-    /// Presses or releases the user stop. Pressed, it ends any motion and allows no other.
-    pub fn press_user_stop(&mut self, pressed: bool) {
-        self.set_user_stop(pressed);
+    /// [`Touch::torque`] for so many milliseconds.
+    pub fn push_joints(&mut self, torque: JointVector, duration: u64) {
+        self.touch(Touch::torque(torque).lasting(duration));
     }
 
-    /// Makes the robot believe in an error: a reflex with all that follows from it.
-    pub fn trip(&mut self, error: RobotError) {
-        self.reflex(Errors::from(error));
+    /// [`Touch::wrench`] on the end effector for so many milliseconds.
+    pub fn push_end_effector(&mut self, wrench: Wrench, duration: u64) {
+        self.touch(Touch::wrench(wrench).lasting(duration));
     }
 
     /// Puts the arm at rest at `q`, `[rad]`, as if someone had guided it there. A motion under way
@@ -59,15 +44,16 @@ impl Robot {
         self.desired = Desired::resting(&self.arm(), *q);
         self.activity = Activity::Holding;
         self.refresh_dynamics();
-        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
         self.observer = MomentumObserver::new();
         self.estimate = Estimate::new();
+        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
         self.estimate
             .update(&JointVector::zeros(), self.plant.q(), &arm);
-        self.measurement = super::Measurement::resting(self.plant.as_ref());
+        self.measurement = Measurement::resting(self.plant.as_ref());
     }
 
-    /// Hangs a load on the flange, beside the tool, without telling the robot.
+    /// Hangs a load on the flange, beside the tool and in place of any before, without telling the
+    /// robot. [`Load::NONE`] takes it off.
     pub fn attach(&mut self, load: Load) {
         self.plant.attach(self.config.tool.load.combine(&load));
     }
@@ -89,31 +75,5 @@ impl Robot {
     /// True joint velocities, `[rad/s]`.
     pub fn dq(&self) -> &JointVector {
         self.plant.dq()
-    }
-
-    /// Joint torques of everything that pushes in this millisecond, `[N·m]`.
-    pub(super) fn external_torque(&mut self) -> JointVector {
-        if self.pushes.is_empty() {
-            return JointVector::zeros();
-        }
-        let clock = self.clock;
-        self.pushes.retain(|push| push.until >= clock);
-        let jacobian =
-            self.model
-                .zero_jacobian(Frame::EndEffector, self.plant.q(), &self.settings.frames);
-        self.pushes
-            .iter()
-            .map(|push| match &push.force {
-                Force::Joints(torque) => *torque,
-                Force::EndEffector(wrench) => jacobian.tr_mul(wrench),
-            })
-            .sum()
-    }
-
-    fn push(&mut self, force: Force, duration: u64) {
-        self.pushes.push(Push {
-            force,
-            until: self.clock.saturating_add(duration),
-        });
     }
 }

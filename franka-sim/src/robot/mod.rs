@@ -17,10 +17,16 @@ mod condition;
 mod control;
 mod hands;
 mod motion;
+mod operation;
 mod publish;
+mod ratchet;
 mod session;
+mod shaking;
+mod touch;
+mod watch;
 
 pub use session::SessionError;
+pub use touch::{Touch, TouchId};
 
 use std::collections::VecDeque;
 
@@ -40,9 +46,11 @@ use crate::settings::Settings;
 use crate::signal::JointSignal;
 use condition::Recovery;
 use control::Measurement;
-use hands::Push;
 use motion::Motion;
+use operation::{Guidance, Lock};
 use session::Client;
+use touch::Touches;
+use watch::Watch;
 
 /// A simulated robot; see the [module](self).
 pub struct Robot {
@@ -67,7 +75,7 @@ pub struct Robot {
     /// `StopMove`s to answer as soon as the arm has come to rest.
     stops: Vec<CommandId>,
     recovery: Option<Recovery>,
-    user_stop: bool,
+    lock: Lock,
     errors: Errors,
     reflex_reason: Errors,
 
@@ -77,7 +85,8 @@ pub struct Robot {
     measurement: Measurement,
     /// At the measured state, with the declared load.
     dynamics: Dynamics,
-    pushes: Vec<Push>,
+    watch: Watch,
+    touches: Touches,
     random: Random,
 
     state: RobotState,
@@ -94,6 +103,8 @@ enum Activity {
     Braking(Brake),
     /// Following a client.
     Moving(Motion),
+    /// Going where a hand guides it.
+    Guided(Guidance),
 }
 
 /// A state to send to the client.
@@ -149,7 +160,7 @@ impl Robot {
             waiting: None,
             stops: Vec::new(),
             recovery: None,
-            user_stop: false,
+            lock: Lock::default(),
             errors: Errors::NONE,
             reflex_reason: Errors::NONE,
             desired,
@@ -157,7 +168,8 @@ impl Robot {
             observer: MomentumObserver::new(),
             measurement: Measurement::resting(plant.as_ref()),
             dynamics,
-            pushes: Vec::new(),
+            watch: Watch::new(&config),
+            touches: Touches::default(),
             random: Random::new(config.seed),
             state: RobotState::default(),
             datagram: [0; RobotState::MAX_SIZE],

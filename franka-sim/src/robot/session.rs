@@ -141,10 +141,12 @@ impl Robot {
             Request::StopMove => self.request_stop(id),
             Request::AutomaticErrorRecovery => self.request_recovery(id),
             Request::GetRobotModel => self.send_description(id),
-            Request::GetCartesianLimit { .. } => self.reply(id, NO_WALL),
+            Request::GetCartesianLimit { id: wall } => self.send_wall(id, *wall),
             Request::LoadModelLibrary { .. } => self.send_library(id),
             setter => {
-                let status = if self.takes_setters() {
+                let status = if self.lock.safety_function {
+                    self.kind.safety.setter
+                } else if self.takes_setters() {
                     self.settings.apply(setter)
                 } else {
                     SetterStatus::CommandNotPossibleRejected
@@ -188,6 +190,14 @@ impl Robot {
         }
     }
 
+    /// A wall that nobody has set up is not active.
+    fn send_wall(&mut self, id: CommandId, number: i32) {
+        let known = self.config.walls.iter().find(|(known, _)| *known == number);
+        let wall = known.map_or(NO_WALL, |(_, wall)| *wall);
+        let status = SetterStatus::Success;
+        self.reply(id, Reply::CartesianLimit { status, wall });
+    }
+
     fn send_description(&mut self, id: CommandId) {
         let Some(client) = &mut self.client else {
             return;
@@ -228,16 +238,13 @@ fn joined(header: &[u8], tail: &[u8]) -> Bytes {
     [header, tail].concat().into()
 }
 
-/// Whatever wall a client asks for: it is not active. There is no Desk to set one up.
-const NO_WALL: Reply<'static> = Reply::CartesianLimit {
-    status: SetterStatus::Success,
-    wall: VirtualWall {
-        object_world_size: [0.0; 3],
-        object_frame: [
-            1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-        ],
-        object_activation: false,
-    },
+/// A wall that is none.
+const NO_WALL: VirtualWall = VirtualWall {
+    object_world_size: [0.0; 3],
+    object_frame: [
+        1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+    ],
+    object_activation: false,
 };
 
 /// There is no model library to load.

@@ -1,0 +1,160 @@
+//! What a person beside the robot operates: user stop, brakes, guiding, safety functions, Desk.
+//!
+//! ```text
+//!   Other <── close brakes ── any ── press the stop, safety function ──> User stopped
+//!     └─ open brakes ─> Idle <─────────── release, deactivate ─────────────────┘
+//!   Idle, Reflex, User stopped <── let go ── guide ──> Guiding
+//! ```
+
+use franka_model::JointVector;
+use franka_proto::{MoveStatus, RecoveryStatus, Reply, RobotError, RobotMode};
+
+use super::condition::Recovery;
+use super::ratchet::Ratchet;
+use super::{Activity, Robot};
+use crate::brake::Brake;
+use crate::generator::PointToPoint;
+
+/// An arm that a hand guides.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Guidance {
+    /// Where it began, which is where locked directions stay, `[rad]`.
+    pub(super) start: JointVector,
+    /// Of each joint towards the ends of its range.
+    ends: [Ratchet; 7],
+}
+
+/// What keeps the robot from moving, besides errors.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Lock {
+    pub(super) user_stop: bool,
+    pub(super) safety_function: bool,
+    pub(super) brakes_closed: bool,
+}
+
+impl Robot {
+    /// Presses or releases the user stop. Pressed, it ends any motion and recovery, and allows no
+    /// other; the arm can be guided.
+    pub fn press_user_stop(&mut self, pressed: bool) {
+        self.lock.user_stop = pressed;
+        if pressed {
+            self.end_everything(
+                MoveStatus::EmergencyAborted,
+                RecoveryStatus::EmergencyAborted,
+            );
+        }
+    }
+
+    /// Activates or deactivates a safety function that forbids motion, as set up in Desk. A Franka
+    /// Research 3 answers with statuses of its own; an FER has none and acts as if the user stop were
+    /// pressed.
+    pub fn activate_safety_function(&mut self, active: bool) {
+        self.lock.safety_function = active;
+        if active {
+            let safety = &self.kind.safety;
+            self.end_everything(safety.preempted, safety.recovery);
+            self.guide(false);
+        }
+    }
+
+    /// Closes the brakes: any motion ends, and the arm stands whatever pushes it.
+    pub fn close_brakes(&mut self) {
+        self.lock.brakes_closed = true;
+        self.end_everything(MoveStatus::Aborted, RecoveryStatus::Aborted);
+        self.guide(false);
+    }
+
+    /// Opens the brakes.
+    pub fn open_brakes(&mut self) {
+        self.lock.brakes_closed = false;
+    }
+
+    /// Presses the guiding buttons, or lets go of them; whether the arm is guided then.
+    ///
+    /// A guided arm carries itself and its declared load, and goes where it is pushed, as far as
+    /// `SetGuidingMode` allows. That is possible with the brakes open while nothing moves, also after
+    /// a reflex and with the user stop pressed. When let go, the arm comes to rest and stays.
+    pub fn guide(&mut self, pressed: bool) -> bool {
+        match (&self.activity, pressed) {
+            (Activity::Guided(_), true) => {}
+            (Activity::Guided(_), false) => {
+                let limits = self.model.joint_limits();
+                let start = self.measured_signal();
+                let brake = Brake::from(&start, &limits.acceleration, &limits.jerk);
+                self.activity = Activity::Braking(brake);
+            }
+            (Activity::Holding, true) if self.can_be_guided() => {
+                self.activity = Activity::Guided(Guidance {
+                    start: *self.plant.q(),
+                    ends: [Ratchet::new(); 7],
+                });
+            }
+            _ => {}
+        }
+        matches!(self.activity, Activity::Guided(_))
+    }
+
+    /// Performs the recovery that needs a person, as Desk offers it: joints outside their range are
+    /// brought back into it, slowly, then errors are cleared. It does what the automatic one does if
+    /// nothing is outside, and nothing without an error, in a motion, or while the robot is locked.
+    pub fn recover_manually(&mut self) {
+        if self.robot_mode() != RobotMode::Reflex {
+            return;
+        }
+        let limits = self.model.joint_limits();
+        let inside = self.plant.q().zip_zip_map(
+            &limits.hard_lower.add_scalar(INSIDE),
+            &limits.hard_upper.add_scalar(-INSIDE),
+            |q, lower, upper| q.clamp(lower, upper),
+        );
+        let mut way = PointToPoint::new(&JointVector::repeat(RETURN_VELOCITY), limits);
+        way.go_to(&inside, &self.desired.joints);
+        self.recovery = Some(Recovery::by_hand(self.clock, way));
+    }
+
+    fn can_be_guided(&self) -> bool {
+        !self.lock.brakes_closed && !self.lock.safety_function && self.recovery.is_none()
+    }
+
+    /// Whether a hand has guided a joint further out of its range than it was.
+    pub(super) fn is_guided_out(&mut self) -> bool {
+        let limits = self.model.joint_limits();
+        let q = self.plant.q();
+        let Activity::Guided(guidance) = &mut self.activity else {
+            return false;
+        };
+        let mut out = false;
+        for (i, end) in guidance.ends.iter_mut().enumerate() {
+            let clearance = (q[i] - limits.hard_lower[i]).min(limits.hard_upper[i] - q[i]);
+            out |= end.is_passed(clearance, 0.0, GUIDED_OUT);
+        }
+        out
+    }
+
+    /// Ends motion, waiting motion and recovery, and tells their clients.
+    fn end_everything(&mut self, moves: MoveStatus, recovery: RecoveryStatus) {
+        self.end_motion(moves);
+        if let Some((id, _)) = self.waiting.take() {
+            self.reply(id, Reply::Move(moves));
+        }
+        if let Some(id) = self.recovery.take().and_then(|recovery| recovery.id()) {
+            self.reply(id, Reply::Recovery(recovery));
+        }
+    }
+
+    /// Makes the robot believe in an error: a reflex with all that follows from it.
+    pub fn trip(&mut self, error: RobotError) {
+        self.reflex(error.into());
+    }
+}
+
+// Choices of this simulator.
+
+/// How far inside its range a joint is brought back, `[rad]`.
+const INSIDE: f64 = 0.02;
+
+/// How fast, `[rad/s]`.
+const RETURN_VELOCITY: f64 = 0.2;
+
+/// How far a joint may be guided out of its range, `[rad]`.
+const GUIDED_OUT: f64 = 0.01;

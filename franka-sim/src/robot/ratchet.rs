@@ -1,0 +1,65 @@
+//! Bounds that something may be beyond and may leave, but not pass further.
+
+/// Watches a clearance: below `bound` it may not shrink by more than `allowed` from the largest that
+/// it has had there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ratchet {
+    best: f64,
+}
+
+impl Ratchet {
+    /// Begins to watch: a clearance that is below the bound already may stay what it is.
+    pub(super) fn new() -> Self {
+        Self {
+            best: f64::NEG_INFINITY,
+        }
+    }
+
+    /// Begins with a clearance beyond the bound.
+    pub(super) fn outside(bound: f64) -> Self {
+        Self { best: bound }
+    }
+
+    /// Takes in the clearance of now; whether it has shrunk too far.
+    pub(super) fn is_passed(&mut self, clearance: f64, bound: f64, allowed: f64) -> bool {
+        self.best = self.best.max(clearance).min(bound);
+        clearance < self.best - allowed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_from_afar_may_pass_the_bound_by_the_allowance() {
+        let mut ratchet = Ratchet::new();
+        for (clearance, passed) in [(3.0, false), (1.0, false), (0.95, false), (0.85, true)] {
+            assert_eq!(
+                ratchet.is_passed(clearance, 1.0, 0.1),
+                passed,
+                "{clearance}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_begins_beyond_the_bound_may_leave_but_not_go_back() {
+        let mut ratchet = Ratchet::new();
+        for (clearance, passed) in [
+            (0.3, false),
+            (0.25, false),
+            (0.5, false),
+            (0.45, false),
+            (0.35, true),
+            (2.0, false),
+            (0.95, false),
+        ] {
+            assert_eq!(
+                ratchet.is_passed(clearance, 1.0, 0.1),
+                passed,
+                "{clearance}"
+            );
+        }
+    }
+}

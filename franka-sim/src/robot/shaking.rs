@@ -1,0 +1,70 @@
+//! Joints that shake.
+
+use franka_model::JointVector;
+
+use crate::config::Instability;
+
+/// Counts the reversals of each joint's velocity.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shaking {
+    joints: [Reversals; 7],
+}
+
+/// The reversals of one joint in the last 128 milliseconds, newest in the lowest bit.
+#[derive(Debug, Clone, Copy, Default)]
+struct Reversals {
+    history: u128,
+    /// The side on which the velocity was last large: −1, 0 or 1.
+    side: i8,
+}
+
+impl Shaking {
+    pub(super) fn new() -> Self {
+        Self {
+            joints: [Reversals::default(); 7],
+        }
+    }
+
+    /// Takes in the velocities of a millisecond, `[rad/s]`; whether a joint shakes.
+    pub(super) fn is_seen(&mut self, dq: &JointVector, what: &Instability) -> bool {
+        let window = u128::MAX >> (128 - what.window.clamp(1, 128));
+        let mut shakes = false;
+        for (joint, dq) in self.joints.iter_mut().zip(dq.iter()) {
+            let side = if dq.abs() < what.velocity {
+                joint.side
+            } else if *dq > 0.0 {
+                1
+            } else {
+                -1
+            };
+            let reversed = joint.side != 0 && side != joint.side;
+            joint.side = side;
+            joint.history = joint.history << 1 | u128::from(reversed);
+            shakes |= (joint.history & window).count_ones() >= what.reversals.max(1);
+        }
+        shakes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// After how many milliseconds a joint is found to shake that swings with this frequency, `[Hz]`.
+    fn swing(frequency: f64, velocity: f64) -> Option<usize> {
+        let mut shaking = Shaking::new();
+        (0..2000).find(|k| {
+            let phase = core::f64::consts::TAU * frequency * (*k as f64) * 1e-3;
+            let mut dq = JointVector::zeros();
+            dq[4] = velocity * phase.sin();
+            shaking.is_seen(&dq, &Instability::default())
+        })
+    }
+
+    #[test]
+    fn wide_fast_swings_are_found_and_slow_or_narrow_ones_are_not() {
+        assert!(swing(60.0, 0.5).is_some_and(|after| after < 100));
+        assert_eq!(swing(20.0, 0.5), None);
+        assert_eq!(swing(60.0, 0.15), None);
+    }
+}

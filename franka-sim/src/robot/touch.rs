@@ -1,0 +1,374 @@
+//! What touches the arm: hands that push, springs that pull, tables that are in the way.
+
+use franka_model::{EndEffector, Frame, JointVector, Model, Twist, Wrench, rotation, transform};
+use nalgebra::{Isometry3, Matrix3, Vector3};
+
+use crate::signal::{CYCLE, halves, stack};
+
+/// Something that acts on the arm from outside, at one place, for a while.
+///
+/// Positive torques push joints towards positive angles; forces, positions and velocities are in base
+/// axes. All touches add up. Give one to [`Robot::touch`](super::Robot::touch):
+///
+/// ```
+/// use franka_model::{Frame, Wrench};
+/// use franka_sim::{Config, Robot, Touch};
+/// use nalgebra::Vector3;
+///
+/// let mut robot = Robot::new(Config::default());
+/// // Two seconds of a swaying push on the elbow.
+/// let sway = |t: f64| Wrench::new(0.0, 4.0 * (3.0 * t).sin(), 0.0, 0.0, 0.0, 0.0);
+/// robot.touch(Touch::over_time(sway).at(Frame::Joint4).lasting(2000));
+/// // A table below the hand, until it is taken away.
+/// let table = robot.touch(Touch::wall(Vector3::new(0.0, 0.0, 0.3), Vector3::z()));
+/// for _ in 0..2000 {
+///     robot.tick();
+/// }
+/// robot.release(table);
+/// ```
+pub struct Touch {
+    effort: Effort,
+    frame: Frame,
+    /// In the axes of the frame.
+    offset: Vector3<f64>,
+    lasts: Option<u64>,
+}
+
+/// Names a touch, to end it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct TouchId(u64);
+
+enum Effort {
+    Torque(JointVector),
+    Wrench(Wrench),
+    OverTime(Box<dyn FnMut(f64) -> Wrench + Send>),
+    Spring {
+        to: Vector3<f64>,
+        spring: Spring,
+    },
+    /// Holds the pose that the place has when the touch begins.
+    Hold {
+        pose: Option<Isometry3<f64>>,
+        linear: Spring,
+        angular: Spring,
+    },
+    /// Holds the angle that a joint has when the touch begins.
+    Block {
+        joint: usize,
+        angle: Option<f64>,
+    },
+    Wall {
+        point: Vector3<f64>,
+        normal: Vector3<f64>,
+        spring: Spring,
+    },
+}
+
+/// `[N/m]`, `[N·s/m]` or the like of rotations.
+#[derive(Debug, Clone, Copy)]
+struct Spring {
+    stiffness: f64,
+    damping: f64,
+}
+
+impl Touch {
+    /// Torques on the joints, `[N·m]`.
+    pub fn torque(torque: JointVector) -> Self {
+        Self::new(Effort::Torque(torque))
+    }
+
+    /// A constant force, `[N]`.
+    pub fn force(force: Vector3<f64>) -> Self {
+        Self::wrench(stack(&force, &Vector3::zeros()))
+    }
+
+    /// A constant wrench `[force; torque]` about the place that is touched, `[N, N·m]`.
+    pub fn wrench(wrench: Wrench) -> Self {
+        Self::new(Effort::Wrench(wrench))
+    }
+
+    /// A wrench as a function of the time since the touch began, `[s]` to `[N, N·m]`. It is asked once
+    /// per millisecond.
+    pub fn over_time(wrench: impl FnMut(f64) -> Wrench + Send + 'static) -> Self {
+        Self::new(Effort::OverTime(Box::new(wrench)))
+    }
+
+    /// A spring to the point `to`, `[m]`, of this stiffness, `[N/m]`, with a damper that is about
+    /// critical for the mass of an arm's end.
+    pub fn spring(to: Vector3<f64>, stiffness: f64) -> Self {
+        Self::new(Effort::Spring {
+            to,
+            spring: Spring::damped(stiffness, FELT_MASS),
+        })
+    }
+
+    /// A firm grip that keeps position and orientation of the place where they are now.
+    pub fn hold() -> Self {
+        Self::new(Effort::Hold {
+            pose: None,
+            linear: Spring::damped(FIRM, FELT_MASS),
+            angular: Spring::damped(FIRM_TURN, FELT_INERTIA),
+        })
+    }
+
+    /// Something that lets a joint (0 to 6) turn no further, either way.
+    ///
+    /// # Panics
+    /// If there is no such joint.
+    pub fn block(joint: usize) -> Self {
+        assert!(joint < 7, "an arm has joints 0 to 6, there is no {joint}");
+        Self::new(Effort::Block { joint, angle: None })
+    }
+
+    /// A wall or table: the place cannot go behind the plane through `point`, `[m]`, whose `normal`
+    /// points to where the arm may be. It gives way by a millimetre under 20 N, and is smooth.
+    ///
+    /// # Panics
+    /// If the normal has no length.
+    pub fn wall(point: Vector3<f64>, normal: Vector3<f64>) -> Self {
+        let length = normal.norm();
+        assert!(length > 0.0, "a plane without a normal");
+        Self::new(Effort::Wall {
+            point,
+            normal: normal / length,
+            spring: Spring::damped(FIRM, FELT_MASS),
+        })
+    }
+
+    /// With this stiffness instead, `[N/m]`, and a damper to match: of a spring, a grip's translation
+    /// or a wall. Others have none.
+    pub fn stiffness(mut self, stiffness: f64) -> Self {
+        match &mut self.effort {
+            Effort::Spring { spring, .. }
+            | Effort::Wall { spring, .. }
+            | Effort::Hold { linear: spring, .. } => {
+                *spring = Spring::damped(stiffness, FELT_MASS);
+            }
+            Effort::Torque(_) | Effort::Wrench(_) | Effort::OverTime(_) | Effort::Block { .. } => {}
+        }
+        self
+    }
+
+    /// On this frame; on the end effector if nothing is said.
+    pub fn at(mut self, frame: Frame) -> Self {
+        self.frame = frame;
+        self
+    }
+
+    /// Not at the frame's origin but at `offset` from it, in the frame's axes, `[m]`.
+    pub fn offset(mut self, offset: Vector3<f64>) -> Self {
+        self.offset = offset;
+        self
+    }
+
+    /// For so many milliseconds; until it is released if nothing is said.
+    pub fn lasting(mut self, milliseconds: u64) -> Self {
+        self.lasts = Some(milliseconds);
+        self
+    }
+
+    fn new(effort: Effort) -> Self {
+        Self {
+            effort,
+            frame: Frame::EndEffector,
+            offset: Vector3::zeros(),
+            lasts: None,
+        }
+    }
+}
+
+impl core::fmt::Debug for Touch {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let effort: &dyn core::fmt::Debug = match &self.effort {
+            Effort::Torque(torque) => torque,
+            Effort::Wrench(wrench) => wrench,
+            Effort::OverTime(_) => &"over time",
+            Effort::Spring { .. } => &"spring",
+            Effort::Hold { .. } => &"hold",
+            Effort::Block { .. } => &"block",
+            Effort::Wall { .. } => &"wall",
+        };
+        f.debug_struct("Touch")
+            .field("effort", effort)
+            .field("frame", &self.frame)
+            .field("lasts", &self.lasts)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Spring {
+    /// Critically damped with a mass or inertia.
+    fn damped(stiffness: f64, inertia: f64) -> Self {
+        Self {
+            stiffness,
+            damping: 2.0 * (stiffness * inertia).sqrt(),
+        }
+    }
+
+    fn pull(&self, stretch: Vector3<f64>, velocity: &Vector3<f64>) -> Vector3<f64> {
+        stretch * self.stiffness - velocity * self.damping
+    }
+}
+
+/// Everything that touches the arm now.
+#[derive(Debug, Default)]
+pub(super) struct Touches {
+    touches: Vec<Present>,
+    count: u64,
+}
+
+#[derive(Debug)]
+struct Present {
+    id: TouchId,
+    touch: Touch,
+    since: u64,
+    /// Of a touch as a function of time, in this millisecond.
+    wrench: Wrench,
+}
+
+impl Touches {
+    pub(super) fn add(&mut self, touch: Touch, now: u64) -> TouchId {
+        self.count += 1;
+        let id = TouchId(self.count);
+        self.touches.push(Present {
+            id,
+            touch,
+            since: now,
+            wrench: Wrench::zeros(),
+        });
+        id
+    }
+
+    pub(super) fn remove(&mut self, id: TouchId) -> bool {
+        let count = self.touches.len();
+        self.touches.retain(|present| present.id != id);
+        self.touches.len() < count
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.touches.clear();
+    }
+
+    /// Begins the millisecond that ends at `now`: what is over ends, functions of time are asked.
+    pub(super) fn advance(&mut self, now: u64) {
+        self.touches.retain(|present| {
+            let end = present
+                .touch
+                .lasts
+                .map(|lasts| present.since.saturating_add(lasts));
+            end.is_none_or(|end| now <= end)
+        });
+        for present in &mut self.touches {
+            if let Effort::OverTime(wrench) = &mut present.touch.effort {
+                // At the beginning of the millisecond.
+                let elapsed = now.saturating_sub(present.since + 1);
+                present.wrench = wrench(elapsed as f64 * CYCLE);
+            }
+        }
+    }
+
+    /// Their torques on the joints in this state of the arm, `[N·m]`.
+    pub(super) fn torque(
+        &mut self,
+        model: &Model,
+        frames: &EndEffector,
+        q: &JointVector,
+        dq: &JointVector,
+    ) -> JointVector {
+        let mut sum = JointVector::zeros();
+        for present in &mut self.touches {
+            sum += present.torque(model, frames, q, dq);
+        }
+        sum
+    }
+}
+
+impl Present {
+    fn torque(
+        &mut self,
+        model: &Model,
+        frames: &EndEffector,
+        q: &JointVector,
+        dq: &JointVector,
+    ) -> JointVector {
+        let frame = self.touch.frame;
+        match &mut self.touch.effort {
+            Effort::Torque(torque) => return *torque,
+            Effort::Block { joint, angle } => {
+                let angle = angle.get_or_insert(q[*joint]);
+                let spring = Spring::damped(FIRM_JOINT, JOINT_INERTIA);
+                let mut torque = JointVector::zeros();
+                torque[*joint] =
+                    spring.stiffness * (*angle - q[*joint]) - spring.damping * dq[*joint];
+                return torque;
+            }
+            _ => {}
+        }
+        let pose = model.pose(frame, q, frames);
+        let turn: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
+        let arm = turn * self.touch.offset;
+        let position = Vector3::new(pose.m14, pose.m24, pose.m34) + arm;
+        let jacobian = model.zero_jacobian(frame, q, frames);
+        let (linear, angular) = halves(&Twist::from(jacobian * dq));
+        let velocity = linear + angular.cross(&arm);
+        let (force, torque) = match &mut self.touch.effort {
+            Effort::Wrench(wrench) => halves(wrench),
+            Effort::OverTime(_) => halves(&self.wrench),
+            Effort::Spring { to, spring } => {
+                (spring.pull(*to - position, &velocity), Vector3::zeros())
+            }
+            Effort::Hold {
+                pose: held,
+                linear,
+                angular: turning,
+            } => {
+                let Some(mut here) = transform::isometry(&pose) else {
+                    return JointVector::zeros();
+                };
+                here.translation.vector = position;
+                let held = held.get_or_insert(here);
+                let way = held.translation.vector - position;
+                let off = rotation::error(&held.rotation, &here.rotation);
+                (linear.pull(way, &velocity), turning.pull(off, &angular))
+            }
+            Effort::Wall {
+                point,
+                normal,
+                spring,
+            } => {
+                let depth = (*point - position).dot(normal);
+                // Nothing sticks to a wall.
+                let push = if depth > 0.0 {
+                    (spring.stiffness * depth - spring.damping * velocity.dot(normal)).max(0.0)
+                } else {
+                    0.0
+                };
+                (*normal * push, Vector3::zeros())
+            }
+            Effort::Torque(_) | Effort::Block { .. } => return JointVector::zeros(),
+        };
+        jacobian.tr_mul(&stack(&force, &(torque + arm.cross(&force))))
+    }
+}
+
+// How firm things are. Choices of this simulator: as stiff as steps of a quarter of a millisecond
+// carry with a margin.
+
+/// Of a table or a firm grip, `[N/m]`.
+const FIRM: f64 = 20_000.0;
+
+/// Of a firm grip against turning, `[N·m/rad]`.
+const FIRM_TURN: f64 = 500.0;
+
+/// Of a blocked joint, `[N·m/rad]`.
+const FIRM_JOINT: f64 = 20_000.0;
+
+/// What the end of an arm weighs to a hand, `[kg]`.
+const FELT_MASS: f64 = 3.0;
+
+/// And its inertia, `[kg·m²]`.
+const FELT_INERTIA: f64 = 0.05;
+
+/// Inertia of a joint with its rotor, `[kg·m²]`, for the damper of a blocked one. The lightest has
+/// 0.075.
+const JOINT_INERTIA: f64 = 0.075;

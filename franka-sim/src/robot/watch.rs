@@ -1,0 +1,163 @@
+//! What the robot watches in a motion besides the limits of its joints and what touches it.
+
+use franka_model::JointVector;
+use franka_model::collision::{Body, Shape};
+use franka_proto::{Errors, RobotError, VirtualWall};
+use nalgebra::{Matrix4, Vector3};
+
+use super::ratchet::Ratchet;
+use super::shaking::Shaking;
+use crate::config::{Config, Tool};
+
+/// Self-collision, virtual walls, power and stability.
+#[derive(Debug, Clone)]
+pub(super) struct Watch {
+    shape: Shape<'static>,
+    pairs: Vec<Ratchet>,
+    walls: Vec<Ratchet>,
+    shaking: Shaking,
+}
+
+/// The arm at one instant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sight<'a> {
+    /// `[rad]`
+    pub(super) q: &'a JointVector,
+    /// `[rad/s]`
+    pub(super) dq: &'a JointVector,
+    /// Between motors and links, `[N·m]`.
+    pub(super) torque: &'a JointVector,
+    /// Of the end effector.
+    pub(super) pose: &'a Matrix4<f64>,
+}
+
+impl Watch {
+    pub(super) fn new(config: &Config) -> Self {
+        let arm = Shape::vendor();
+        // Of other tools the robot knows no shape.
+        let shape = if config.tool == Tool::hand() {
+            arm.with_hand()
+        } else {
+            arm
+        };
+        Self {
+            shape,
+            pairs: vec![Ratchet::new(); shape.at(&config.q).pairs().count()],
+            walls: vec![Ratchet::new(); config.walls.len()],
+            shaking: Shaking::new(),
+        }
+    }
+
+    /// Begins a motion: wherever the arm is, it may leave.
+    pub(super) fn begin(&mut self) {
+        self.pairs.fill(Ratchet::new());
+        self.walls.fill(Ratchet::new());
+        self.shaking = Shaking::new();
+    }
+
+    /// Takes in a millisecond of the motion.
+    pub(super) fn violations(&mut self, sight: &Sight<'_>, config: &Config) -> Errors {
+        let unpublished = &config.unpublished;
+        let position = Vector3::new(sight.pose.m14, sight.pose.m24, sight.pose.m34);
+        [
+            (
+                self.closes_in_on_itself(sight.q, config),
+                RobotError::SelfCollisionAvoidanceViolation,
+            ),
+            (
+                self.leaves_walls(&position, config),
+                RobotError::CartesianPositionLimitsViolation,
+            ),
+            (
+                sight.torque.dot(sight.dq).abs() > unpublished.power,
+                RobotError::PowerLimitViolation,
+            ),
+            (
+                self.shaking.is_seen(sight.dq, &unpublished.instability),
+                RobotError::InstabilityDetected,
+            ),
+        ]
+        .into_iter()
+        .filter_map(|(violated, error)| violated.then_some(error))
+        .collect()
+    }
+
+    fn closes_in_on_itself(&mut self, q: &JointVector, config: &Config) -> bool {
+        let rule = &config.unpublished.self_collision;
+        let arm = self.shape.at(q);
+        // Nearly always there is nothing to compare one by one.
+        if arm.nearest_pair().distance >= rule.margin {
+            self.pairs.fill(Ratchet::outside(rule.margin));
+            return false;
+        }
+        let mut violated = false;
+        for (pair, ratchet) in arm.pairs().zip(&mut self.pairs) {
+            let (inner, outer) = pair.bodies;
+            let passed = ratchet.is_passed(pair.distance, rule.margin, rule.closing);
+            violated |= passed && number(outer) - number(inner) >= rule.apart;
+        }
+        violated
+    }
+
+    fn leaves_walls(&mut self, position: &Vector3<f64>, config: &Config) -> bool {
+        let mut violated = false;
+        for ((_, wall), ratchet) in config.walls.iter().zip(&mut self.walls) {
+            if wall.object_activation {
+                violated |= ratchet.is_passed(depth(wall, position), 0.0, WALL_ALLOWANCE);
+            }
+        }
+        violated
+    }
+}
+
+/// Links count from the base; the tool comes after the last.
+fn number(body: Body) -> u8 {
+    match body {
+        Body::Link(link) => link,
+        Body::Tool => 8,
+    }
+}
+
+/// How far a point is inside the cuboid, `[m]`; negative outside.
+fn depth(wall: &VirtualWall, position: &Vector3<f64>) -> f64 {
+    let frame = Matrix4::from_column_slice(&wall.object_frame);
+    let origin = Vector3::new(frame.m14, frame.m24, frame.m34);
+    let inside = frame.fixed_view::<3, 3>(0, 0).tr_mul(&(position - origin));
+    (0..3)
+        .map(|axis| {
+            let corner = wall.object_world_size[axis];
+            let (low, high) = (corner.min(0.0), corner.max(0.0));
+            (inside[axis] - low).min(high - inside[axis])
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// How far the end effector may be beyond a virtual wall, `[m]`: a choice of this simulator, above
+/// what an arm at rest strays.
+const WALL_ALLOWANCE: f64 = 0.001;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_is_measured_to_the_nearest_face_whatever_the_corners_signs() {
+        let mut frame = Matrix4::<f64>::identity();
+        frame.m14 = 1.0;
+        let mut object_frame = [0.0; 16];
+        object_frame.copy_from_slice(frame.as_slice());
+        let wall = VirtualWall {
+            object_world_size: [2.0, -1.0, 4.0],
+            object_frame,
+            object_activation: true,
+        };
+        for (point, expected) in [
+            ([1.5, -0.4, 1.0], 0.4),
+            ([0.8, -0.5, 1.0], -0.2),
+            ([2.0, 0.1, 1.0], -0.1),
+        ] {
+            let found = depth(&wall, &Vector3::from(point));
+            assert!((found - expected).abs() < 1e-12, "{point:?}: {found}");
+        }
+    }
+}
