@@ -28,7 +28,7 @@ use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::{Budget, Goal, GoalError, GoalId, Target, Then, Tolerance};
 use franka_rt::together::StartTicket;
-use franka_sim::{Config, Robot};
+use franka_sim::{Config, Robot, Unpublished};
 use nalgebra::Isometry3;
 
 pub use client::Client;
@@ -102,10 +102,16 @@ impl Lockstep {
     }
 
     /// A robot of this kind in the ready pose with its hand, strict about limits.
+    ///
+    /// It does not mind coming near itself: the goals of these tests go to the ends of what joints can do, and the driver
+    /// does not plan around the arm.
     pub fn ready_of(kind: RobotKind) -> Self {
+        let mut unpublished = Unpublished::default();
+        unpublished.self_collision.margin = f64::NEG_INFINITY;
         Self::new(Config {
             kind,
             tool: franka_sim::Tool::hand(),
+            unpublished,
             ..Config::default()
         })
     }
