@@ -36,8 +36,8 @@ pub struct Unpublished {
     /// values of the vendor's examples (20 N·m falling to 12 N·m at the wrist, 20 N and 25 N·m),
     /// collision at twice as much.
     pub thresholds: CollisionBehavior,
-    /// Joint acceleration, measured, from which the thresholds for acceleration phases hold,
-    /// `[rad/s²]`. Default 1.
+    /// Joint acceleration from which the thresholds for acceleration phases hold, `[rad/s²]`: the
+    /// desired one under the robot's own controllers, the measured one under a client's. Default 1.
     pub accelerating: f64,
     /// Gain of the momentum observer behind `tau_ext_hat_filtered`, `[1/s]`: the inverse of the time
     /// constant with which it follows. Default 100, about 16 Hz.
@@ -198,10 +198,10 @@ impl Default for SelfCollision {
 /// within the limits on acceleration does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instability {
-    /// Velocity to either side that counts, `[rad/s]`. Default 0.2.
+    /// Velocity to either side that counts, `[rad/s]`. Default 0.15.
     pub velocity: f64,
-    /// Reversals within [`window`](Self::window). Default 8: with 0.2 rad/s to each side, 8 of them in
-    /// 0.1 s take 32 rad/s² on average; commands may have 20 at most, on the robot that allows most.
+    /// Reversals within [`window`](Self::window). Default 8: with 0.15 rad/s to each side, 8 of them in
+    /// 0.1 s take 24 rad/s² on average; commands may have 20 at most, on the robot that allows most.
     pub reversals: u32,
     /// In milliseconds. Default 100.
     pub window: u32,
@@ -210,7 +210,7 @@ pub struct Instability {
 impl Default for Instability {
     fn default() -> Self {
         Self {
-            velocity: 0.2,
+            velocity: 0.15,
             reversals: 8,
             window: 100,
         }

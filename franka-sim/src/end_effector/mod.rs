@@ -36,7 +36,8 @@ pub type Hand = EndEffector<Fingers>;
 /// A vacuum gripper and its server.
 pub type VacuumGripper = EndEffector<Suction>;
 
-/// Time between two states `[ms]`. The vendor publishes no rate; clients wait for a second at most.
+/// Time between two states `[ms]` if nothing else is said. The vendor publishes no rate; clients wait for
+/// a second at most.
 pub const STATE_PERIOD: u32 = 20;
 
 /// What an end effector does with its requests, apart from all messages.
@@ -75,6 +76,7 @@ pub struct EndEffector<M: Mechanism> {
     /// Whether an action has ended since the last state.
     ended: bool,
     clock: u32,
+    state_period: u32,
     datagram: Bytes,
 }
 
@@ -94,8 +96,16 @@ impl<M: Mechanism> EndEffector<M> {
             running: None,
             ended: false,
             clock: 0,
+            state_period: STATE_PERIOD,
             datagram: Bytes::new(),
         }
+    }
+
+    /// With this time between two states `[ms]`, at least 1, instead of [`STATE_PERIOD`].
+    #[must_use]
+    pub fn with_state_period(mut self, milliseconds: u32) -> Self {
+        self.state_period = milliseconds.max(1);
+        self
     }
 
     /// Takes a client in. False if another one is there: there is one client at a time.
@@ -154,7 +164,7 @@ impl<M: Mechanism> EndEffector<M> {
     }
 
     /// Advances by one millisecond and returns the state to send, if a client is there and it is
-    /// time: every [`STATE_PERIOD`], and when an action has ended.
+    /// time: once in a [state period](Self::with_state_period), and when an action has ended.
     pub fn tick(&mut self) -> Option<Datagram<'_>> {
         self.clock = self.clock.wrapping_add(1);
         if let Some(status) = self.mechanism.tick()
@@ -162,7 +172,7 @@ impl<M: Mechanism> EndEffector<M> {
         {
             self.reply(id, status);
         }
-        let due = self.clock.is_multiple_of(STATE_PERIOD);
+        let due = self.clock.is_multiple_of(self.state_period);
         if !std::mem::take(&mut self.ended) && !due {
             return None;
         }

@@ -273,7 +273,12 @@ impl Robot {
     /// Checks on the arm itself, and on what touches it.
     pub(super) fn supervise(&mut self) {
         let moving = self.is_moving();
-        let accelerating = self.measurement.ddq.amax() > self.config.unpublished.accelerating;
+        let ddq = match &self.activity {
+            // What pushes the arm about is no acceleration phase of the motion.
+            Activity::Moving(motion) if !motion.is_external() => self.desired.joints.ddq,
+            _ => self.measurement.ddq,
+        };
+        let accelerating = ddq.amax() > self.config.unpublished.accelerating;
         let mut errors = self
             .estimate
             .compare(&self.settings.thresholds, accelerating, moving);

@@ -215,6 +215,10 @@ impl Robot {
         let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
         let external = self.observer.external_torque();
         self.estimate.update(external, self.plant.q(), &arm);
+        if self.kind.version.has_accelerometers() {
+            self.boards
+                .advance(self.model, self.plant.q(), self.plant.dq());
+        }
     }
 
     /// The reference from which a stop begins: the desired motion where the arm follows it, else

@@ -3,6 +3,7 @@
 
 use franka_model::{JointVector, Load, Wrench};
 
+use super::boards::Boards;
 use super::touch::{Touch, TouchId};
 use super::{Activity, Measurement, Robot};
 use crate::end_effector::Hand;
@@ -50,6 +51,7 @@ impl Robot {
         self.estimate
             .update(&JointVector::zeros(), self.plant.q(), &arm);
         self.measurement = Measurement::resting(self.plant.as_ref());
+        self.boards = Boards::resting(self.model, q);
     }
 
     /// Hangs a load on the flange, beside the tool and in place of any before, without telling the

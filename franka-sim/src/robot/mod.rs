@@ -13,6 +13,7 @@
 //! 2. [`tick`](Robot::tick), and sends its datagram **before** the replies that follow: a reply
 //!    like `kReflexAborted` must not overtake the state that explains it.
 
+mod boards;
 mod condition;
 mod control;
 mod hands;
@@ -44,6 +45,7 @@ use crate::observer::MomentumObserver;
 use crate::plant::{ArmParameters, Plant, RigidArm};
 use crate::settings::Settings;
 use crate::signal::JointSignal;
+use boards::Boards;
 use condition::Recovery;
 use control::Measurement;
 use motion::Motion;
@@ -85,6 +87,7 @@ pub struct Robot {
     measurement: Measurement,
     /// At the measured state, with the declared load.
     dynamics: Dynamics,
+    boards: Boards,
     watch: Watch,
     touches: Touches,
     random: Random,
@@ -168,6 +171,7 @@ impl Robot {
             observer: MomentumObserver::new(),
             measurement: Measurement::resting(plant.as_ref()),
             dynamics,
+            boards: Boards::resting(model, &q),
             watch: Watch::new(&config),
             touches: Touches::default(),
             random: Random::new(config.seed),

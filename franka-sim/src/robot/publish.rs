@@ -1,7 +1,7 @@
 //! The state of one millisecond, from everything that the robot knows.
 
-use franka_model::{EndEffector, Frame, JointVector, Load, Model, Twist, elbow, transform};
-use nalgebra::{Matrix3, Matrix4, Vector3};
+use franka_model::{Frame, JointVector, Load, Twist, elbow, transform};
+use nalgebra::Matrix4;
 
 use super::{Activity, Measurement, Robot};
 
@@ -74,7 +74,7 @@ impl Robot {
         state.O_ddP_EE_c = desired.cartesian.acceleration.into();
         state.O_ddP_O = franka_model::GRAVITY_EARTH.into();
         if self.kind.version.has_accelerometers() {
-            (state.accelerometer_top, state.accelerometer_bottom) = accelerometers(self.model, &q);
+            (state.accelerometer_top, state.accelerometer_bottom) = self.boards.read();
         }
 
         state.motion_generator_mode = generator;
@@ -110,57 +110,3 @@ fn body(load: &Load) -> (f64, [f64; 3], [f64; 9]) {
     inertia.copy_from_slice(load.inertia.as_slice());
     (load.mass, load.com.into(), inertia)
 }
-
-/// What the two acceleration sensors of each joint's board read: the support against gravity, in
-/// the board's axes, `[m/s²]`. The motion of the boards is left out.
-fn accelerometers(model: &Model, q: &JointVector) -> ([[f32; 3]; 6], [[f32; 3]; 6]) {
-    let up = -franka_model::GRAVITY_EARTH;
-    let mut top = [[0.0; 3]; 6];
-    let mut bottom = [[0.0; 3]; 6];
-    for board in 0..6 {
-        let rotation: Matrix3<f64> = match board {
-            0 => Matrix3::identity(),
-            link => model
-                .pose(Frame::ALL[link - 1], q, &EndEffector::default())
-                .fixed_view::<3, 3>(0, 0)
-                .into_owned(),
-        };
-        let in_link = rotation.tr_mul(&up);
-        let (over, under) = BOARDS[board];
-        top[board] = over.read(&in_link);
-        bottom[board] = under.read(&in_link);
-    }
-    (top, bottom)
-}
-
-/// How a sensor's axes are turned about the x axis of its link.
-#[derive(Debug, Clone, Copy)]
-enum Turn {
-    None,
-    Quarter,
-    Half,
-    QuarterBack,
-}
-
-impl Turn {
-    /// A vector of the link in the sensor's axes.
-    fn read(self, v: &Vector3<f64>) -> [f32; 3] {
-        let (x, y, z) = (v.x as f32, v.y as f32, v.z as f32);
-        match self {
-            Self::None => [x, y, z],
-            Self::Quarter => [x, z, -y],
-            Self::Half => [x, -y, -z],
-            Self::QuarterBack => [x, -z, y],
-        }
-    }
-}
-
-/// Top and bottom sensor of links 0 to 5 (libfranka 0.21, `test/fr3.urdf`, accelerometer links).
-const BOARDS: [(Turn, Turn); 6] = [
-    (Turn::Half, Turn::None),
-    (Turn::Quarter, Turn::QuarterBack),
-    (Turn::QuarterBack, Turn::Quarter),
-    (Turn::QuarterBack, Turn::Quarter),
-    (Turn::Quarter, Turn::QuarterBack),
-    (Turn::QuarterBack, Turn::Quarter),
-];

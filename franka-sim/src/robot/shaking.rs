@@ -65,6 +65,6 @@ mod tests {
     fn wide_fast_swings_are_found_and_slow_or_narrow_ones_are_not() {
         assert!(swing(60.0, 0.5).is_some_and(|after| after < 100));
         assert_eq!(swing(20.0, 0.5), None);
-        assert_eq!(swing(60.0, 0.15), None);
+        assert_eq!(swing(60.0, 0.1), None);
     }
 }
