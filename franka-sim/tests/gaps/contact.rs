@@ -1,0 +1,290 @@
+use franka_model::{Frame, JointVector, Load, READY, Wrench};
+use franka_proto::{
+    CollisionBehavior, MoveControllerMode, MoveGeneratorMode, Request, RobotCommand,
+    RobotError as E, RobotMode, RobotState,
+};
+use franka_sim::{Config, Touch};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::pair::{Pair, positions, ramp, stay};
+
+const HIGH: f64 = 1e4;
+
+fn thresholds(lower: f64, upper: f64) -> Request {
+    Request::SetCollisionBehavior(CollisionBehavior::uniform(
+        [HIGH; 7], [HIGH; 7], [lower; 6], [upper; 6],
+    ))
+}
+
+fn half_kilogram() -> Load {
+    Load {
+        mass: 0.5,
+        com: Vector3::new(0.0, 0.0, 0.05),
+        inertia: Matrix3::identity() * 1e-3,
+    }
+}
+
+fn declare(load: &Load) -> Request {
+    let mut inertia = [0.0; 9];
+    inertia.copy_from_slice(load.inertia.as_slice());
+    Request::SetLoad(franka_proto::Load {
+        m_load: load.mass,
+        F_x_Cload: load.com.into(),
+        I_load: inertia,
+    })
+}
+
+/// Directions that a hand may push in.
+fn directions() -> impl Iterator<Item = Vector3<f64>> {
+    [
+        [1.0, 0.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [0.0, 0.0, -1.0],
+        [0.6, 0.0, 0.8],
+        [-0.48, 0.64, 0.6],
+    ]
+    .into_iter()
+    .map(Vector3::from)
+}
+
+fn felt(state: &RobotState) -> Vector3<f64> {
+    let [x, y, z, ..] = state.O_F_ext_hat_K;
+    // The state has what the robot does to the hand.
+    -Vector3::new(x, y, z)
+}
+
+#[test]
+fn a_push_of_5_newton_on_the_flange_reads_5_newton_within_100_milliseconds() {
+    for make in [Pair::fr3, Pair::fer] {
+        for direction in directions() {
+            let mut pair = make();
+            let push = Touch::force(direction * 5.0).at(Frame::Flange);
+            let push = pair.robot.touch(push);
+            pair.idle(100);
+            for _ in 0..400 {
+                pair.tick(None);
+                let seen = felt(&pair.state);
+                assert!((seen.norm() - 5.0).abs() < 0.3, "{direction}: {seen}");
+                assert!((seen - direction * 5.0).norm() < 0.3, "{direction}: {seen}");
+            }
+            assert!(pair.robot.release(push));
+            pair.idle(100);
+            assert!(felt(&pair.state).norm() < 0.3);
+        }
+    }
+}
+
+#[test]
+fn an_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness() {
+    for direction in directions() {
+        let mut pair = Pair::fr3();
+        pair.request(&Request::SetCartesianImpedance([
+            750.0, 750.0, 750.0, 200.0, 200.0, 200.0,
+        ]));
+        pair.start(
+            MoveControllerMode::CartesianImpedance,
+            MoveGeneratorMode::CartesianPosition,
+        );
+        let start = Vector3::from(pair.position());
+        let command = stay(&pair.state);
+        pair.robot
+            .touch(Touch::force(direction * 5.0).at(Frame::Flange));
+        let mut worst = 0.0_f64;
+        for cycle in 0..3000 {
+            pair.tick(Some(command));
+            if (100..500).contains(&cycle) {
+                worst = worst.max((felt(&pair.state).norm() - 5.0).abs());
+            }
+        }
+        // It reads right while the arm gives way, too.
+        assert!(worst < 0.3, "{direction}: {worst}");
+        let moved = Vector3::from(pair.position()) - start;
+        let expected = direction * (5.0 / 750.0);
+        assert!(
+            (moved - expected).norm() < 0.05 * expected.norm(),
+            "{direction}: {moved} instead of {expected}"
+        );
+    }
+}
+
+/// Lets the hand sink at 0.1 m/s onto a table, and tells how hard it gets.
+fn fall(collision: Option<f64>) -> (f64, RobotState) {
+    let mut pair = Pair::fr3();
+    pair.request(&thresholds(HIGH, collision.unwrap_or(HIGH)));
+    let height = pair.position()[2];
+    let point = Vector3::new(0.0, 0.0, height - 0.04);
+    pair.robot.touch(Touch::wall(point, Vector3::z()));
+    pair.start(
+        MoveControllerMode::CartesianImpedance,
+        MoveGeneratorMode::CartesianVelocity,
+    );
+    let mut hardest = 0.0_f64;
+    for cycle in 0..650 {
+        let t = f64::from(cycle) * 1e-3;
+        let mut command = RobotCommand::default();
+        command.O_dP_EE_c[2] = -0.1 * (ramp(t, 0.1) - ramp(t - 0.5, 0.1));
+        pair.tick(Some(command));
+        if pair.state.robot_mode != RobotMode::Move {
+            break;
+        }
+        hardest = hardest.max(pair.state.K_F_ext_hat_K[2].abs());
+    }
+    (hardest, pair.state)
+}
+
+#[test]
+fn a_fall_trips_the_threshold_that_was_set_and_not_one_30_percent_higher() {
+    let (hardest, state) = fall(None);
+    assert!(state.errors.is_empty(), "{}", state.errors);
+    assert!(hardest > 10.0, "it hardly touches: {hardest}");
+    let (_, state) = fall(Some(0.98 * hardest));
+    assert_eq!(state.errors, E::CartesianReflex.into());
+    assert_eq!(state.cartesian_collision[2], 1.0);
+    let (again, state) = fall(Some(1.3 * hardest));
+    assert_eq!(again, hardest);
+    assert!(state.errors.is_empty());
+    assert_eq!(state.cartesian_collision, [0.0; 6]);
+}
+
+#[test]
+fn the_thresholds_of_joints_give_a_joint_reflex() {
+    let mut pair = Pair::fr3();
+    let behavior = CollisionBehavior::uniform([6.0; 7], [12.0; 7], [HIGH; 6], [HIGH; 6]);
+    pair.request(&Request::SetCollisionBehavior(behavior));
+    let id = pair.start_joints();
+    let lean = |torque: f64| Touch::torque(JointVector::repeat(0.0) + axis(3) * torque);
+    pair.robot.touch(lean(9.0));
+    for _ in 0..300 {
+        pair.tick(Some(positions(&READY)));
+    }
+    assert_eq!(pair.state.robot_mode, RobotMode::Move);
+    assert_eq!(
+        pair.state.joint_contact,
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    );
+    pair.robot.touch(lean(5.0));
+    pair.run_out(positions(&READY), 300);
+    pair.assert_reflex(id, &[E::JointReflex]);
+    assert_eq!(pair.state.joint_collision[3], 1.0);
+    pair.robot.let_go();
+    pair.idle(200);
+    assert_eq!(pair.state.joint_contact, [0.0; 7], "contact goes");
+    assert_eq!(pair.state.joint_collision[3], 1.0, "collision stays");
+    pair.recover();
+    pair.tick(None);
+    assert_eq!(pair.state.joint_collision, [0.0; 7]);
+}
+
+fn axis(joint: usize) -> JointVector {
+    JointVector::from_fn(|i, _| if i == joint { 1.0 } else { 0.0 })
+}
+
+#[test]
+fn acceleration_phases_have_thresholds_of_their_own() {
+    let run = |acceleration: f64, nominal: f64, moves: bool| {
+        let mut pair = Pair::fr3();
+        let mut behavior =
+            CollisionBehavior::uniform([HIGH; 7], [HIGH; 7], [HIGH; 6], [nominal; 6]);
+        behavior.upper_force_thresholds_acceleration = [acceleration; 6];
+        pair.request(&Request::SetCollisionBehavior(behavior));
+        pair.start_joints();
+        let push = Vector3::new(0.0, 0.0, -10.0);
+        for cycle in 0..700 {
+            let mut q = READY;
+            if moves {
+                // More than 1 rad/s² from 0.1 s to 0.25 s.
+                q[0] += 0.1 * ramp(f64::from(cycle) * 1e-3, 0.6);
+            }
+            if cycle == 100 {
+                pair.robot.touch(Touch::force(push).lasting(100));
+            }
+            pair.tick(Some(positions(&q)));
+        }
+        pair.state.errors
+    };
+    assert!(run(5.0, HIGH, true).contains(E::CartesianReflex));
+    assert!(run(HIGH, 5.0, true).is_empty());
+    assert!(run(HIGH, 5.0, false).contains(E::CartesianReflex));
+    assert!(run(5.0, HIGH, false).is_empty());
+}
+
+#[test]
+fn equal_lower_and_upper_thresholds_are_legal() {
+    let mut pair = Pair::fr3();
+    pair.request(&thresholds(10.0, 10.0));
+    let id = pair.start_joints();
+    let push = Vector3::new(0.0, 0.0, -12.0);
+    pair.robot.touch(Touch::force(push));
+    pair.run_out(positions(&READY), 500);
+    pair.assert_reflex(id, &[E::CartesianReflex]);
+    assert_eq!(pair.state.cartesian_contact[2], 1.0);
+}
+
+#[test]
+fn a_load_that_is_not_declared_seems_external_and_sinks_and_a_declared_one_does_neither() {
+    for declared in [false, true] {
+        let load = half_kilogram();
+        let mut pair = Pair::fr3();
+        if declared {
+            pair.request(&declare(&load));
+            pair.idle(1000);
+        }
+        pair.robot.attach(load);
+        let height = pair.position()[2];
+        pair.start_torques();
+        for _ in 0..700 {
+            pair.tick(Some(RobotCommand::default()));
+        }
+        let (weight, sunk) = (pair.state.O_F_ext_hat_K[2], height - pair.position()[2]);
+        if declared {
+            assert!(weight.abs() < 0.1, "{weight}");
+            assert!(sunk.abs() < 0.01, "{sunk}");
+        } else {
+            assert!((weight - 0.5 * 9.81).abs() < 1.0, "{weight}");
+            assert!(sunk > 0.05, "{sunk}");
+        }
+    }
+}
+
+#[test]
+fn a_declared_load_that_is_not_there_lifts_the_arm() {
+    let mut pair = Pair::fr3();
+    pair.request(&declare(&half_kilogram()));
+    let height = pair.position()[2];
+    pair.start_torques();
+    for _ in 0..700 {
+        pair.tick(Some(RobotCommand::default()));
+    }
+    assert!(pair.position()[2] - height > 0.05);
+    assert!(pair.state.O_F_ext_hat_K[2] < -3.0);
+}
+
+#[test]
+fn the_wrench_is_told_at_the_stiffness_frame() {
+    let mut pair = Pair::fr3();
+    let lever = 0.2;
+    let mut ee_t_k = pair.state.EE_T_K;
+    ee_t_k[14] = lever;
+    pair.request(&Request::SetEEToK(ee_t_k));
+    pair.robot
+        .touch(Touch::wrench(Wrench::new(4.0, 0.0, 0.0, 0.0, 0.0, 0.0)));
+    pair.idle(500);
+    let seen = pair.state.O_F_ext_hat_K;
+    assert!((seen[0] + 4.0).abs() < 0.1, "{seen:?}");
+    // The tool points down, so the force acts above the frame's origin: about y.
+    assert!((seen[4] + 4.0 * lever).abs() < 0.05, "{seen:?}");
+}
+
+#[test]
+fn noise_of_the_sensors_reaches_the_estimate() {
+    let mut pair = Pair::new(Config {
+        noise: franka_sim::Noise::MODERATE,
+        ..Config::default()
+    });
+    let mut most = 0.0_f64;
+    for _ in 0..500 {
+        pair.tick(None);
+        most = most.max(felt(&pair.state).norm());
+    }
+    assert!(most > 0.05 && most < 5.0, "{most}");
+}

@@ -1,0 +1,162 @@
+use franka_proto::gripper::{Grasp, Move, Reply, Request, Status};
+use franka_proto::{CommandId, client, gripper};
+use franka_sim::{Fingers, Hand, Sim, Suction};
+
+/// A hand and its client: time is a counter.
+struct Grip {
+    hand: Hand,
+    client: gripper::Client,
+    answers: Vec<(CommandId, Status)>,
+}
+
+impl Grip {
+    fn new(fingers: Fingers) -> Self {
+        let mut grip = Self {
+            hand: Hand::new(fingers),
+            client: gripper::Client::new(gripper::Version::V3),
+            answers: Vec::new(),
+        };
+        assert!(grip.hand.connect());
+        let hello = grip.client.connect(4711);
+        grip.hand.receive(hello.as_bytes()).expect("a handshake");
+        grip.read();
+        grip
+    }
+
+    fn homed(fingers: Fingers) -> Self {
+        let mut grip = Self::new(fingers);
+        assert_eq!(grip.complete(&Request::Homing).0, Status::Success);
+        grip
+    }
+
+    fn ask(&mut self, request: &Request) -> CommandId {
+        let message = self.client.request(request).expect("a session");
+        self.hand.receive(message.as_bytes()).expect("a request");
+        self.read();
+        message.id()
+    }
+
+    fn run(&mut self, milliseconds: u32) {
+        for _ in 0..milliseconds {
+            self.hand.tick();
+            self.read();
+        }
+    }
+
+    fn complete(&mut self, request: &Request) -> (Status, u32) {
+        let id = self.ask(request);
+        for elapsed in 0..200_000 {
+            if let Some((_, status)) = self.answers.iter().find(|(known, _)| *known == id) {
+                return (*status, elapsed);
+            }
+            self.run(1);
+        }
+        panic!("no answer to {request:?}");
+    }
+
+    fn answer(&self, id: CommandId) -> Option<Status> {
+        let of_id = |answer: &&(CommandId, Status)| answer.0 == id;
+        self.answers.iter().find(of_id).map(|(_, status)| *status)
+    }
+
+    fn read(&mut self) {
+        while let Some(reply) = self.hand.take_reply() {
+            let message = gripper::next_message(&reply)
+                .expect("a message")
+                .expect("whole");
+            if let client::Event::Reply {
+                id,
+                reply: Reply::Done(status),
+                ..
+            } = self.client.on_message(message).expect("an answer")
+            {
+                self.answers.push((id, status));
+            }
+        }
+    }
+}
+
+#[test]
+fn stop_is_read_while_an_action_runs_and_aborts_it() {
+    let mut grip = Grip::homed(Fingers::new());
+    let action = grip.ask(&Request::Move(Move {
+        width: 0.01,
+        speed: 0.02,
+    }));
+    grip.run(500);
+    assert_eq!(grip.answer(action), None);
+    let width = grip.hand.state().width;
+    let stop = grip.ask(&Request::Stop);
+    grip.run(1);
+    assert_eq!(grip.answer(stop), Some(Status::Success));
+    assert_eq!(grip.answer(action), Some(Status::Aborted));
+    grip.run(500);
+    let stands = grip.hand.state().width;
+    assert!(
+        (stands - width).abs() < 1e-3,
+        "it stays where it is, and does not open: {stands}"
+    );
+}
+
+#[test]
+fn speed_and_force_count() {
+    for (speed, milliseconds) in [(0.02, 2000), (0.1, 400)] {
+        let mut grip = Grip::homed(Fingers::new());
+        let (status, elapsed) = grip.complete(&Request::Move(Move { width: 0.04, speed }));
+        assert_eq!(status, Status::Success);
+        assert!(elapsed.abs_diff(milliseconds) <= 2, "{speed}: {elapsed}");
+    }
+    for (asked, exerted) in [(60.0, 60.0), (10.0, 30.0), (500.0, 140.0)] {
+        let mut grip = Grip::homed(Fingers::new().with_object(0.04));
+        let grasp = Request::Grasp(Grasp::new(0.04, 0.1, asked));
+        assert_eq!(grip.complete(&grasp).0, Status::Success);
+        assert_eq!(grip.hand.mechanism().force(), exerted);
+    }
+}
+
+#[test]
+fn homing_finds_the_largest_width_and_takes_its_time() {
+    let mut grip = Grip::new(Fingers::new());
+    assert_eq!(grip.hand.state().max_width, 0.0);
+    let (status, elapsed) = grip.complete(&Request::Homing);
+    assert_eq!(status, Status::Success);
+    assert!(elapsed > 1000, "{elapsed}");
+    assert_eq!(grip.hand.state().max_width, Fingers::STROKE);
+}
+
+#[test]
+fn a_lost_object_is_reported() {
+    let mut grip = Grip::homed(Fingers::new().with_object(0.04));
+    let grasp = Request::Grasp(Grasp::new(0.04, 0.1, 60.0));
+    assert_eq!(grip.complete(&grasp).0, Status::Success);
+    assert!(grip.hand.state().is_grasped);
+    grip.hand.mechanism_mut().take_object();
+    grip.run(1000);
+    assert!(!grip.hand.state().is_grasped);
+}
+
+#[test]
+fn a_robot_with_hand_and_vacuum_gripper_needs_nothing_but_this_process() {
+    let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+    runtime.block_on(async {
+        let start = std::time::Instant::now();
+        let sim = Sim::fr3()
+            .hand(Fingers::new(), 0)
+            .vacuum_gripper(Suction::new(), 0)
+            .start()
+            .await
+            .expect("a robot");
+        for address in [
+            sim.addr(),
+            sim.hand().expect("a hand").addr(),
+            sim.vacuum_gripper().expect("a vacuum gripper").addr(),
+        ] {
+            tokio::net::TcpStream::connect(address)
+                .await
+                .expect("a listener");
+        }
+        // Generous: a loaded machine is no reason to fail, a download would be.
+        assert!(start.elapsed().as_secs() < 5);
+        sim.stop().await;
+    });
+}

@@ -1,0 +1,263 @@
+//! A client and a robot in one thread; time is a counter.
+
+use franka_model::{JointVector, RobotKind};
+use franka_proto::framing::next_message;
+use franka_proto::{
+    CommandId, Errors, MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus, Reply,
+    Request, RobotCommand, RobotError, RobotMode, RobotState, Status, VirtualWall, client,
+};
+use franka_sim::{Config, Robot};
+
+/// Both ends of a session, and what the client has got so far.
+pub(crate) struct Pair {
+    pub(crate) robot: Robot,
+    /// As decoded from the newest datagram.
+    pub(crate) state: RobotState,
+    client: client::Session,
+    stream: Vec<u8>,
+    answers: Vec<(CommandId, Status)>,
+    wall: VirtualWall,
+    /// The size of every reply so far.
+    pub(crate) sizes: Vec<usize>,
+}
+
+impl Pair {
+    pub(crate) fn new(config: Config) -> Self {
+        let mut robot = Robot::new(config);
+        assert!(robot.connect());
+        let mut pair = Self {
+            client: client::Session::new(robot.version()),
+            robot,
+            state: RobotState::default(),
+            stream: Vec::new(),
+            answers: Vec::new(),
+            wall: VirtualWall::default(),
+            sizes: Vec::new(),
+        };
+        let hello = pair.client.connect(5000);
+        pair.send(hello.as_bytes());
+        assert!(pair.client.is_connected());
+        pair.tick(None);
+        pair
+    }
+
+    pub(crate) fn of(kind: RobotKind) -> Self {
+        Self::new(Config {
+            kind,
+            ..Config::default()
+        })
+    }
+
+    pub(crate) fn fr3() -> Self {
+        Self::of(RobotKind::Fr3)
+    }
+
+    pub(crate) fn fer() -> Self {
+        Self::of(RobotKind::Fer)
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.robot.receive(bytes).expect("a conforming client");
+        self.read();
+    }
+
+    fn read(&mut self) {
+        while let Some(message) = self.robot.take_reply() {
+            self.stream.extend_from_slice(&message);
+        }
+        while let Some(message) = next_message(&self.stream).expect("whole messages") {
+            let size = message.size();
+            self.sizes.push(size);
+            if let client::Event::Reply { id, reply, .. } =
+                self.client.on_message(message).expect("a conforming robot")
+            {
+                if let Reply::CartesianLimit { wall, .. } = reply {
+                    self.wall = wall;
+                }
+                self.answers
+                    .push((id, reply.status().expect("not a handshake")));
+            }
+            self.stream.drain(..size);
+        }
+    }
+
+    pub(crate) fn request(&mut self, request: &Request) -> CommandId {
+        let message = self.client.request(request).expect("room for a request");
+        self.send(message.as_bytes());
+        message.id()
+    }
+
+    /// The answers to a request so far.
+    pub(crate) fn statuses(&self, id: CommandId) -> Vec<Status> {
+        let of_id = |answer: &&(CommandId, Status)| answer.0 == id;
+        self.answers.iter().filter(of_id).map(|a| a.1).collect()
+    }
+
+    /// The only answer to a request, which has come at once.
+    pub(crate) fn ask(&mut self, request: &Request) -> Status {
+        let id = self.request(request);
+        match self.statuses(id)[..] {
+            [status] => status,
+            ref other => panic!("{other:?}"),
+        }
+    }
+
+    /// The virtual wall of this number (protocol 5).
+    pub(crate) fn wall(&mut self, id: i32) -> VirtualWall {
+        self.ask(&Request::GetCartesianLimit { id });
+        self.wall
+    }
+
+    /// One cycle: the command answers the newest state, then the next state comes.
+    pub(crate) fn tick(&mut self, command: Option<RobotCommand>) {
+        if let Some(command) = command {
+            self.datagram(&RobotCommand {
+                message_id: self.state.message_id,
+                ..command
+            });
+        }
+        let datagram = self.robot.tick().expect("a client is there");
+        self.state = RobotState::decode(self.client.version(), datagram.bytes).expect("a state");
+        self.read();
+    }
+
+    pub(crate) fn datagram(&mut self, command: &RobotCommand) {
+        let mut bytes = [0; RobotCommand::MAX_SIZE];
+        let length = command.encode(self.client.version(), &mut bytes);
+        self.robot.command(&bytes[..length.expect("room")]);
+    }
+
+    pub(crate) fn idle(&mut self, cycles: usize) {
+        for _ in 0..cycles {
+            self.tick(None);
+        }
+    }
+
+    /// Starts a motion and waits for the state that shows it.
+    pub(crate) fn begin(&mut self, request: MoveRequest) -> CommandId {
+        let id = self.request(&Request::Move(request));
+        assert_eq!(self.statuses(id), [Status::Move(MoveStatus::MotionStarted)]);
+        self.tick(None);
+        assert_eq!(self.state.robot_mode, RobotMode::Move);
+        id
+    }
+
+    pub(crate) fn start(
+        &mut self,
+        controller: MoveControllerMode,
+        generator: MoveGeneratorMode,
+    ) -> CommandId {
+        self.begin(MoveRequest::new(controller, generator))
+    }
+
+    /// Joint positions under the internal joint impedance controller.
+    pub(crate) fn start_joints(&mut self) -> CommandId {
+        self.start(
+            MoveControllerMode::JointImpedance,
+            MoveGeneratorMode::JointPosition,
+        )
+    }
+
+    pub(crate) fn start_torques(&mut self) -> CommandId {
+        let generator = self.client.version().torque_generator();
+        self.start(MoveControllerMode::ExternalController, generator)
+    }
+
+    /// What a `Move` of torques is answered.
+    pub(crate) fn ask_to_move(&mut self) -> Status {
+        let generator = self.client.version().torque_generator();
+        let controller = MoveControllerMode::ExternalController;
+        self.ask(&Request::Move(MoveRequest::new(controller, generator)))
+    }
+
+    /// How a motion ended.
+    pub(crate) fn outcome(&self, id: CommandId) -> MoveStatus {
+        match self.statuses(id)[..] {
+            [
+                Status::Move(MoveStatus::MotionStarted),
+                Status::Move(status),
+            ] => status,
+            ref other => panic!("{other:?}"),
+        }
+    }
+
+    /// Repeats a command until the motion has ended, which takes at most so many cycles.
+    pub(crate) fn run_out(&mut self, command: RobotCommand, cycles: usize) {
+        for _ in 0..cycles {
+            self.tick(Some(command));
+            if self.state.robot_mode != RobotMode::Move {
+                return;
+            }
+        }
+        panic!("the motion goes on");
+    }
+
+    /// Recovers, and returns in how many cycles.
+    pub(crate) fn recover(&mut self) -> usize {
+        let id = self.request(&Request::AutomaticErrorRecovery);
+        let mut cycles = 0;
+        while self.statuses(id).is_empty() {
+            self.tick(None);
+            cycles += 1;
+            assert!(cycles < 10_000, "no answer to the recovery");
+        }
+        let success = franka_proto::RecoveryStatus::Success;
+        assert_eq!(self.statuses(id), [Status::Recovery(success)]);
+        cycles
+    }
+
+    /// Asserts that the motion ended by a reflex for exactly these reasons.
+    pub(crate) fn assert_reflex(&self, id: CommandId, reasons: &[RobotError]) {
+        let reasons: Errors = reasons.iter().copied().collect();
+        assert_eq!(self.state.errors, reasons);
+        assert_eq!(self.state.robot_mode, RobotMode::Reflex);
+        assert_eq!(self.outcome(id), MoveStatus::ReflexAborted);
+    }
+
+    pub(crate) fn q(&self) -> JointVector {
+        JointVector::from(self.state.q)
+    }
+
+    /// Position of the end effector, `[m]`.
+    pub(crate) fn position(&self) -> [f64; 3] {
+        let pose = &self.state.O_T_EE;
+        [pose[12], pose[13], pose[14]]
+    }
+}
+
+/// A path from 0 to 1 within `duration` seconds, smooth to the acceleration.
+pub(crate) fn ramp(t: f64, duration: f64) -> f64 {
+    let x = (t / duration).clamp(0.0, 1.0);
+    x * x * x * (10.0 + x * (-15.0 + 6.0 * x))
+}
+
+pub(crate) fn positions(q: &JointVector) -> RobotCommand {
+    RobotCommand {
+        q_c: (*q).into(),
+        ..RobotCommand::default()
+    }
+}
+
+pub(crate) fn torques(tau: &JointVector) -> RobotCommand {
+    RobotCommand {
+        tau_J_d: (*tau).into(),
+        ..RobotCommand::default()
+    }
+}
+
+/// A command to go on with what is commanded already.
+pub(crate) fn stay(state: &RobotState) -> RobotCommand {
+    RobotCommand {
+        q_c: state.q_d,
+        O_T_EE_c: state.O_T_EE_c,
+        ..RobotCommand::default()
+    }
+}
+
+pub(crate) fn finished(command: RobotCommand) -> RobotCommand {
+    RobotCommand {
+        motion_generation_finished: true,
+        torque_command_finished: true,
+        ..command
+    }
+}
