@@ -5,7 +5,7 @@ use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, ValueEnum};
+use clap::{ArgAction, Parser, ValueEnum};
 use franka_model::{JointVector, Load, RobotKind};
 #[cfg(feature = "mujoco")]
 use franka_sim::plant::{MujocoArm, Scene};
@@ -20,6 +20,17 @@ use tokio::signal::unix::{SignalKind, signal};
 /// libfranka's `franka::Robot robot("127.0.0.1")` or pylibfranka's
 /// `Robot("127.0.0.1", RealtimeConfig.kIgnore)`. There is one client at a time; the robot stays as
 /// it is between clients.
+///
+/// The robot is as strict as a real one: a command beyond a limit, a step in velocity or torque, a
+/// collision and 20 missing commands in a row end a motion in a reflex, which the client clears with
+/// an automatic error recovery. With --permissive it lets commands pass, so that a program can be
+/// brought to run before it is made safe.
+///
+/// Examples:
+///
+///   franka-sim --robot fer --hand --gripper-object-width 0.04
+///   franka-sim --payload 0.5 --noise --seed 7
+///   franka-sim --enforce-comm-constraints=false   (a client in a debugger)
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -80,14 +91,31 @@ struct Arguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
 
-    /// Accepts commands and motions beyond the limits, which a robot answers with a reflex.
-    #[arg(long)]
-    no_enforce_limits: bool,
+    /// Whether commands and motions beyond the limits end in a reflex, as on a robot. With `false` the
+    /// arm does what it physically can.
+    #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
+          num_args = 0..=1, action = ArgAction::Set)]
+    enforce_motion_limits: bool,
 
-    /// Waits for commands that are missing, where a robot stops after 20 in a row: for slow or
-    /// debugged clients.
+    /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints. Above 1
+    /// for clients that are rougher than a robot allows: it would stop with a discontinuity error.
+    #[arg(long, value_name = "FACTOR", value_parser = factor, default_value = "1")]
+    joint_discontinuity_scale: f64,
+
+    /// Whether 20 commands missing in a row end in a reflex, as on a robot. With `false` the robot waits
+    /// for them: for slow or debugged clients.
+    #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
+          num_args = 0..=1, action = ArgAction::Set)]
+    enforce_comm_constraints: bool,
+
+    /// Lets pass what a robot stops for: neither limits nor missing commands are enforced.
     #[arg(long)]
-    no_enforce_communication: bool,
+    permissive: bool,
+
+    /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond, which takes
+    /// the right to one. Without the right, the simulator says so and goes on without.
+    #[arg(long)]
+    realtime: bool,
 }
 
 /// The kinds of robot by their short names.
@@ -122,8 +150,9 @@ impl Arguments {
         let mut config = Config {
             kind: self.robot.into(),
             seed: self.seed,
-            enforce_limits: !self.no_enforce_limits,
-            enforce_communication: !self.no_enforce_communication,
+            enforce_limits: self.enforce_motion_limits && !self.permissive,
+            joint_discontinuity_scale: self.joint_discontinuity_scale,
+            enforce_communication: self.enforce_comm_constraints && !self.permissive,
             ..Config::default()
         };
         if let Some(q) = self.q {
@@ -147,7 +176,9 @@ impl Arguments {
 
     /// The robot, or why there is none.
     fn sim(&self) -> Result<Sim, String> {
-        let sim = Sim::new(self.config()).bind(SocketAddr::new(self.bind, self.port));
+        let sim = Sim::new(self.config())
+            .bind(SocketAddr::new(self.bind, self.port))
+            .realtime(self.realtime);
         let sim = self.with_plant(sim)?;
         if self.no_gripper {
             return Ok(sim);
@@ -226,6 +257,15 @@ fn object_width(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A factor that leaves something.
+fn factor(text: &str) -> Result<f64, String> {
+    let [factor] = numbers::<1>(text)?;
+    if factor <= 0.0 {
+        return Err("a factor is positive".into());
+    }
+    Ok(factor)
+}
+
 /// A mass that a load can have.
 fn mass(text: &str) -> Result<f64, String> {
     let [mass] = numbers::<1>(text)?;
@@ -299,8 +339,23 @@ mod tests {
         assert_eq!(config.payload.com.z, 0.05);
         assert_eq!(config.tool, Tool::hand());
         assert!(config.enforce_limits && config.enforce_communication);
-        let config = parse(&["--no-enforce-limits"]).expect("valid").config();
-        assert!(!config.enforce_limits);
+        assert_eq!(config.joint_discontinuity_scale, 1.0);
+        for (arguments, limits, communication) in [
+            (&["--enforce-motion-limits=false"][..], false, true),
+            (&["--enforce-motion-limits", "false"], false, true),
+            (&["--enforce-motion-limits"], true, true),
+            (&["--enforce-comm-constraints=false"], true, false),
+            (&["--permissive"], false, false),
+            (&["--joint-discontinuity-scale", "2.5"], true, true),
+        ] {
+            let config = parse(arguments).expect("valid").config();
+            let enforced = (config.enforce_limits, config.enforce_communication);
+            assert_eq!(enforced, (limits, communication), "{arguments:?}");
+        }
+        let config = parse(&["--joint-discontinuity-scale", "2.5"])
+            .expect("valid")
+            .config();
+        assert_eq!(config.joint_discontinuity_scale, 2.5);
         assert_eq!(config.kind, RobotKind::Fr3);
         let config = parse(&["--robot", "fer"]).expect("valid").config();
         assert_eq!(config.kind, RobotKind::Fer);
@@ -336,6 +391,8 @@ mod tests {
             ["--q", "nan,0,0,0,0,0,0"],
             ["--payload", "-1"],
             ["--payload-com", "0,0"],
+            ["--joint-discontinuity-scale", "0"],
+            ["--enforce-motion-limits", "maybe"],
             ["--gripper-object-width", "0.09"],
             ["--gripper-object-width", "nan"],
         ] {

@@ -8,7 +8,7 @@ use crate::robot::Robot;
 
 /// How well a simulation has kept its millisecond.
 ///
-/// The thread has ordinary priority. When the host lets it sleep over deadlines, it publishes the
+/// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) asks for another. When the host lets it sleep over deadlines, it publishes the
 /// states that are due in a burst, as a robot's network does after a stall; when more than
 /// [`Pace::BURST`] are due, it lets the rest of the lost time go. `message_id` advances by one per
 /// state in any case, so robot time then runs behind the clock on the wall.

@@ -11,8 +11,10 @@
 
 mod cycle;
 mod device;
+mod hands;
 mod lobby;
 mod portion;
+mod priority;
 mod seat;
 mod service;
 mod tcp;
@@ -53,6 +55,7 @@ pub struct Sim {
     bind: SocketAddr,
     hand: Option<(Fingers, u16)>,
     vacuum_gripper: Option<(Suction, u16)>,
+    realtime: bool,
 }
 
 impl Sim {
@@ -77,6 +80,7 @@ impl Sim {
             bind: SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0),
             hand: None,
             vacuum_gripper: None,
+            realtime: false,
         }
     }
 
@@ -148,6 +152,13 @@ impl Sim {
         self
     }
 
+    /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond. Without the
+    /// right to one, or beside Linux, that is logged, and the thread goes on without.
+    pub fn realtime(mut self, realtime: bool) -> Self {
+        self.realtime = realtime;
+        self
+    }
+
     /// See [`Config::urdf`].
     pub fn urdf(mut self, text: impl Into<String>) -> Self {
         self.config.urdf = Some(text.into());
@@ -199,10 +210,14 @@ impl Sim {
             hand: hand_seat,
             vacuum: vacuum_seat,
         };
+        let realtime = self.realtime;
         let (done, finished) = watch::channel(());
         std::thread::Builder::new()
             .name("franka-sim".into())
             .spawn(move || {
+                if realtime && let Err(error) = priority::raise() {
+                    tracing::warn!(%error, "no real-time priority");
+                }
                 cycle.run();
                 drop(done);
             })?;

@@ -3,9 +3,10 @@ use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
 use franka_proto::framing::next_message;
-use franka_proto::{Request, RobotMode, RobotState, Version, client};
+use franka_proto::{Request, RobotError, RobotMode, RobotState, Version, client};
 
 use super::*;
+use crate::robot::Touch;
 
 /// A plain blocking client.
 struct Client {
@@ -156,6 +157,43 @@ fn hands_reach_the_robot_and_stopping_frees_the_port() {
         sim.stop().await;
         let again = Sim::fr3().bind(address).start().await;
         assert!(again.is_ok(), "{again:?}");
+    });
+}
+
+#[test]
+fn a_person_beside_the_robot_reaches_it_from_any_task() {
+    let runtime = runtime();
+    runtime.block_on(async {
+        let sim = Sim::fr3()
+            .hand(Fingers::new(), 0)
+            .realtime(true)
+            .start()
+            .await
+            .expect("a robot");
+        let mode = async |sim: &Running| {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+            sim.state().await.expect("running").robot_mode
+        };
+        sim.close_brakes().await.expect("running");
+        assert_eq!(mode(&sim).await, RobotMode::Other);
+        sim.open_brakes().await.expect("running");
+        assert!(sim.guide(true).await.expect("running"));
+        assert_eq!(mode(&sim).await, RobotMode::Guiding);
+        let torque = JointVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        let push = sim.touch(Touch::torque(torque)).await.expect("running");
+        tokio::time::sleep(Duration::from_millis(100)).await;
+        assert!(sim.state().await.expect("running").q[6] > franka_model::READY[6]);
+        assert!(sim.release(push).await.expect("running"));
+        sim.guide(false).await.expect("running");
+        tokio::time::sleep(Duration::from_millis(100)).await;
+        sim.activate_safety_function(true).await.expect("running");
+        assert_eq!(mode(&sim).await, RobotMode::UserStopped);
+        sim.activate_safety_function(false).await.expect("running");
+        sim.trip(RobotError::JointReflex).await.expect("running");
+        assert_eq!(mode(&sim).await, RobotMode::Reflex);
+        assert!(sim.drop_into_hand(0.04).await.expect("running"));
+        assert_eq!(sim.take_from_hand().await, Ok(Some(0.04)));
+        sim.stop().await;
     });
 }
 
