@@ -19,37 +19,8 @@ use super::watch::Sight;
 use super::{Activity, Robot};
 use crate::brake::Brake;
 use crate::config::ErrorBits;
-use crate::generator::{Arm, PointToPoint};
+use crate::generator::Arm;
 use crate::signal::halves;
-
-/// An automatic error recovery under way.
-#[derive(Debug, Clone)]
-pub(super) struct Recovery {
-    /// Whom to answer, if that client is still there.
-    id: Option<CommandId>,
-    since: u64,
-    /// Back into the range, if a person asks for it.
-    way: Option<PointToPoint>,
-}
-
-impl Recovery {
-    /// A person's, with the way back.
-    pub(super) fn by_hand(since: u64, way: PointToPoint) -> Self {
-        Self {
-            id: None,
-            since,
-            way: Some(way),
-        }
-    }
-
-    pub(super) fn id(&self) -> Option<CommandId> {
-        self.id
-    }
-
-    pub(super) fn way(&mut self) -> Option<&mut PointToPoint> {
-        self.way.as_mut()
-    }
-}
 
 impl Robot {
     pub(super) fn robot_mode(&self) -> RobotMode {
@@ -167,43 +138,12 @@ impl Robot {
         self.stops.push(id);
     }
 
-    /// Answers an `AutomaticErrorRecovery`, now or when it is over.
-    pub(super) fn request_recovery(&mut self, id: CommandId) {
-        let status = match self.robot_mode() {
-            _ if self.lock.safety_function => self.kind.safety.recovery,
-            RobotMode::Idle => RecoveryStatus::Success,
-            RobotMode::Reflex if self.is_outside() => {
-                RecoveryStatus::ManualErrorRecoveryRequiredRejected
-            }
-            RobotMode::Reflex => {
-                self.recovery = Some(Recovery {
-                    id: Some(id),
-                    since: self.clock,
-                    way: None,
-                });
-                return;
-            }
-            _ => RecoveryStatus::CommandNotPossibleRejected,
-        };
-        self.reply(id, Reply::Recovery(status));
-    }
-
-    /// Whether a joint is further out than the robot brings it back by itself.
-    fn is_outside(&self) -> bool {
-        let limits = self.model.joint_limits();
-        let q = self.plant.q();
-        (0..7).any(|i| {
-            q[i] < limits.hard_lower[i] - POSITION_MARGIN
-                || q[i] > limits.hard_upper[i] + POSITION_MARGIN
-        })
-    }
-
     /// Forgets whom to answer; the motion stops.
     pub(super) fn forget_client(&mut self) {
         self.waiting = None;
         self.stops.clear();
         if let Some(recovery) = &mut self.recovery {
-            recovery.id = None;
+            recovery.forget_client();
         }
         self.end_motion(MoveStatus::Aborted);
     }
@@ -218,9 +158,7 @@ impl Robot {
         self.reflex_reason = self.errors;
         self.end_motion(MoveStatus::ReflexAborted);
         self.guide(false);
-        if let Some(Recovery { id: Some(id), .. }) = self.recovery.take() {
-            self.reply(id, Reply::Recovery(RecoveryStatus::ReflexAborted));
-        }
+        self.abort_recovery(RecoveryStatus::ReflexAborted);
         if let Some((id, _)) = self.waiting.take() {
             self.reply(id, Reply::Move(MoveStatus::CommandNotPossibleRejected));
         }
@@ -371,42 +309,10 @@ impl Robot {
         self.end_recovery();
         self.start_waiting();
     }
-
-    /// Clears the errors when the arm is at rest and, if need be, back in its range.
-    fn end_recovery(&mut self) {
-        let Some(recovery) = &self.recovery else {
-            return;
-        };
-        let elapsed = self.clock - recovery.since;
-        let still = self.plant.dq().amax() < STILL || elapsed >= RECOVERY_MAX;
-        let back = recovery.way.as_ref().is_none_or(PointToPoint::is_over);
-        if elapsed < RECOVERY_MIN || !still || !back {
-            return;
-        }
-        let id = recovery.id;
-        self.recovery = None;
-        self.errors = Errors::NONE;
-        self.estimate.clear();
-        if let Some(id) = id {
-            self.reply(id, Reply::Recovery(RecoveryStatus::Success));
-        }
-    }
 }
 
 // None of these figures is published for the robot. Where nothing else is said they are choices of
 // this simulator.
 
-/// How far measured positions may be outside the range, `[rad]`.
-const POSITION_MARGIN: f64 = 0.01;
-
 /// How far measured velocities may be outside their envelope, `[rad/s]`.
 const VELOCITY_MARGIN: f64 = 0.1;
-
-/// Joint velocity below which the arm is still, `[rad/s]`.
-const STILL: f64 = 0.01;
-
-/// A recovery takes at least so many cycles, so that its mode is seen.
-const RECOVERY_MIN: u64 = 100;
-
-/// And at most so many more than the brake takes: something may shake the arm forever.
-const RECOVERY_MAX: u64 = 2000;

@@ -4,8 +4,8 @@ use franka_model::{EndEffector, GRAVITY_EARTH, JointVector, MassMatrix, Twist, j
 use franka_proto::MoveControllerMode;
 use nalgebra::Matrix4;
 
-use super::condition::Recovery;
 use super::operation::Guidance;
+use super::recovery::Recovery;
 use super::{Activity, Robot};
 use crate::generator::Arm;
 use crate::law::{Firmness, Law, POSTURE_STIFFNESS, cartesian_impedance, joint_impedance};

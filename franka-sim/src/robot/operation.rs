@@ -7,13 +7,11 @@
 //! ```
 
 use franka_model::JointVector;
-use franka_proto::{MoveStatus, RecoveryStatus, Reply, RobotError, RobotMode};
+use franka_proto::{MoveStatus, RecoveryStatus, Reply, RobotError};
 
-use super::condition::Recovery;
 use super::ratchet::Ratchet;
 use super::{Activity, Robot};
 use crate::brake::Brake;
-use crate::generator::PointToPoint;
 
 /// An arm that a hand guides.
 #[derive(Debug, Clone, Copy)]
@@ -94,24 +92,6 @@ impl Robot {
         matches!(self.activity, Activity::Guided(_))
     }
 
-    /// Performs the recovery that needs a person, as Desk offers it: joints outside their range are
-    /// brought back into it, slowly, then errors are cleared. It does what the automatic one does if
-    /// nothing is outside, and nothing without an error, in a motion, or while the robot is locked.
-    pub fn recover_manually(&mut self) {
-        if self.robot_mode() != RobotMode::Reflex {
-            return;
-        }
-        let limits = self.model.joint_limits();
-        let inside = self.plant.q().zip_zip_map(
-            &limits.hard_lower.add_scalar(INSIDE),
-            &limits.hard_upper.add_scalar(-INSIDE),
-            |q, lower, upper| q.clamp(lower, upper),
-        );
-        let mut way = PointToPoint::new(&JointVector::repeat(RETURN_VELOCITY), limits);
-        way.go_to(&inside, &self.desired.joints);
-        self.recovery = Some(Recovery::by_hand(self.clock, way));
-    }
-
     fn can_be_guided(&self) -> bool {
         !self.lock.brakes_closed && !self.lock.safety_function && self.recovery.is_none()
     }
@@ -137,9 +117,7 @@ impl Robot {
         if let Some((id, _)) = self.waiting.take() {
             self.reply(id, Reply::Move(moves));
         }
-        if let Some(id) = self.recovery.take().and_then(|recovery| recovery.id()) {
-            self.reply(id, Reply::Recovery(recovery));
-        }
+        self.abort_recovery(recovery);
     }
 
     /// Makes the robot believe in an error: a reflex with all that follows from it.
@@ -148,13 +126,5 @@ impl Robot {
     }
 }
 
-// Choices of this simulator.
-
-/// How far inside its range a joint is brought back, `[rad]`.
-const INSIDE: f64 = 0.02;
-
-/// How fast, `[rad/s]`.
-const RETURN_VELOCITY: f64 = 0.2;
-
-/// How far a joint may be guided out of its range, `[rad]`.
+/// How far a joint may be guided out of its range, `[rad]`: a choice of this simulator.
 const GUIDED_OUT: f64 = 0.01;
