@@ -24,4 +24,7 @@ mod programs {
 
     #[doc = include_str!("../../docs/src/model.md")]
     struct Model;
+
+    #[doc = include_str!("../../docs/src/simulated-robot.md")]
+    struct Simulator;
 }
