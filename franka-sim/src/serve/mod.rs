@@ -109,7 +109,8 @@ impl Sim {
     }
 
     /// Serves a Franka Hand beside the robot, on this TCP port; 0 takes a free one. Hands listen on
-    /// 1338. Its mass and frame are those of [`Tool::hand`], to be mounted with [`tool`](Self::tool).
+    /// 1338. Its mass and frame are those of [`Tool::hand`], to be mounted with [`tool`](Self::tool). If the
+    /// [plant](Self::plant) has fingers, they are the hand's.
     pub fn hand(mut self, fingers: Fingers, port: u16) -> Self {
         self.hand = Some((fingers, port));
         self

@@ -90,7 +90,7 @@ impl MujocoArm {
         Some(Isometry3::from_parts(position.into(), rotation))
     }
 
-    /// Torques on the joints by contact, on this step's side of the sensors, `[N·m]`.
+    /// What contact exerted on the joints in the last step, `[N·m]`; positive torques push towards positive angles.
     pub fn contact_torque(&self) -> JointVector {
         let force = self.data.qfrc_constraint();
         self.places.dof.map(|dof| force[dof]).into()
@@ -153,9 +153,11 @@ impl Plant for MujocoArm {
         self.sensed = self.places.dof.map(|dof| bias[dof]).into();
     }
 
+    /// Makes the scene anew, which takes milliseconds.
+    ///
     /// # Panics
     /// If no body has this load (a number that is not finite, a negative mass), or if the file of the scene is no longer what
-    /// it was: the scene is made anew.
+    /// it was.
     fn attach(&mut self, load: Load) {
         if load == self.load {
             return;
