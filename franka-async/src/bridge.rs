@@ -115,6 +115,7 @@ pub(crate) struct Bridge {
 }
 
 impl Bridge {
+    /// `states` has, beside those who wait for states, the receivers that exist now.
     pub(crate) fn new(
         lifecycle: Lifecycle,
         handle: Handle,
@@ -127,7 +128,13 @@ impl Bridge {
             bell,
             orders: handle.orders,
             notices: handle.notices,
-            publisher: Publisher::new(handle.states, handle.sequence, handle.records, states),
+            publisher: Publisher::new(
+                handle.states,
+                handle.sequence,
+                handle.records,
+                handle.audience,
+                states,
+            ),
             telemetry: Telemetry::new(handle.stats),
             thread: Some(handle.thread),
             channel,
@@ -274,6 +281,8 @@ impl Bridge {
 
     fn on_input(&mut self, input: Input) {
         let now = self.now();
+        // Without an audience, what was published last is not the newest.
+        self.publisher.refresh();
         match input {
             Input::Begin { work, waiting } => {
                 let id = work.id();

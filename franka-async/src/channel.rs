@@ -10,12 +10,12 @@ use std::time::Duration;
 
 use franka_proto::client::{Event, Session};
 use franka_proto::{
-    Command, CommandId, MoveStatus, Refusal, Reply, Request, RobotState, Violation, VirtualWall,
+    Command, CommandId, MoveStatus, Refusal, Reply, Request, Violation, VirtualWall,
 };
 use franka_rt::driver::MotionId;
 use futures::StreamExt;
 use tokio::net::TcpStream;
-use tokio::sync::{mpsc, oneshot, watch};
+use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
 use tokio_util::codec::Framed;
@@ -23,6 +23,7 @@ use tokio_util::sync::CancellationToken;
 
 use crate::codec::{self, Frame, MessageCodec};
 use crate::error::CommandError;
+use crate::newest::Newest;
 
 /// Requests that may wait for the task. A caller beyond that waits for room.
 const CAPACITY: usize = 32;
@@ -119,7 +120,7 @@ impl Channel {
     pub(crate) fn start(
         stream: Framed<TcpStream, MessageCodec>,
         session: Session,
-        states: watch::Receiver<RobotState>,
+        newest: Newest,
     ) -> (Self, Connection, mpsc::UnboundedReceiver<Report>) {
         let (calls, queue) = mpsc::channel(CAPACITY);
         let (motions, first) = mpsc::unbounded_channel();
@@ -129,7 +130,7 @@ impl Channel {
         let task = Task {
             stream,
             session,
-            states,
+            newest,
             reports,
             waiting: HashMap::new(),
         };
@@ -198,7 +199,7 @@ type Queues = (mpsc::UnboundedReceiver<Call>, mpsc::Receiver<Call>);
 struct Task {
     stream: Framed<TcpStream, MessageCodec>,
     session: Session,
-    states: watch::Receiver<RobotState>,
+    newest: Newest,
     reports: mpsc::UnboundedSender<Report>,
     waiting: HashMap<CommandId, Waiting>,
 }
@@ -366,7 +367,7 @@ impl Task {
         else {
             return;
         };
-        let mode = self.states.borrow().robot_mode;
+        let mode = self.newest.state().robot_mode;
         let outcome = match (Refusal::from_reply(command, reply, mode), reply) {
             (Some(refusal), _) => Err(refusal.into()),
             (None, Reply::Model { text, .. }) => Ok(Answer::Model(text.to_vec())),

@@ -27,6 +27,7 @@ use crate::codec::{MessageCodec, StreamError, reason};
 use crate::endpoint::{Endpoint, EndpointError, Host};
 use crate::error::Attempt;
 use crate::model;
+use crate::newest::Newest;
 use crate::robot::Shared;
 use crate::{ConnectError, Robot};
 
@@ -49,8 +50,10 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let (tcp, address) = dial(&addresses, limit).await?;
     let opened = open(tcp, address, &builder).await?;
     let (states, published) = watch::channel(opened.first);
+    let (reader, audience) = (&opened.handle.states, &opened.handle.audience);
+    let newest = Newest::new(reader.clone(), published, audience.clone());
     let (channel, connection, reports) =
-        Channel::start(opened.stream, opened.session, published.clone());
+        Channel::start(opened.stream, opened.session, newest.clone());
     let stats = opened.handle.stats.clone();
     let granted = opened.handle.granted.clone();
     let lender = opened.handle.lender.clone();
@@ -70,7 +73,7 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         address,
         inputs,
         channel,
-        states: published,
+        newest,
         stats,
         granted,
         lender,

@@ -58,6 +58,7 @@ mod follow;
 mod gripper;
 mod model;
 mod motion;
+mod newest;
 mod parameters;
 mod publish;
 mod reading;

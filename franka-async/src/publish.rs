@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use franka_proto::RobotState;
+use franka_rt::audience::Audience;
 use franka_rt::driver::Record;
 use franka_rt::thread::{StateReader, StateSequence};
 use tokio::sync::{broadcast, watch};
@@ -25,34 +26,42 @@ pub(crate) struct Publisher {
     pub(crate) newest: StateReader,
     pub(crate) sequence: StateSequence,
     pub(crate) ring: rtrb::Consumer<Record>,
+    audience: Audience,
     listeners: Listeners,
 }
 
 struct Listeners {
     newest: watch::Sender<RobotState>,
+    /// How many of the receivers of the newest are ours, and wait for none.
+    own: usize,
     updates: broadcast::Sender<Update>,
     records: broadcast::Sender<Record>,
 }
 
-/// Where to listen. Weak, so that listeners hear of the end.
+/// Where to listen. Weak, so that listeners hear of the end. Whoever does enters the audience.
 #[derive(Clone, Debug)]
 pub(crate) struct Subscriptions {
     updates: broadcast::WeakSender<Update>,
     records: broadcast::WeakSender<Record>,
+    audience: Audience,
 }
 
 impl Publisher {
+    /// `states` has, beside those who wait for states, the receivers that exist now.
     pub(crate) fn new(
         newest: StateReader,
         sequence: StateSequence,
         ring: rtrb::Consumer<Record>,
+        audience: Audience,
         states: watch::Sender<RobotState>,
     ) -> Self {
         Self {
             newest,
             sequence,
             ring,
+            audience,
             listeners: Listeners {
+                own: states.receiver_count(),
                 newest: states,
                 updates: broadcast::channel(STATES).0,
                 records: broadcast::channel(RECORDS).0,
@@ -64,6 +73,7 @@ impl Publisher {
         Subscriptions {
             updates: self.listeners.updates.downgrade(),
             records: self.listeners.records.downgrade(),
+            audience: self.audience.clone(),
         }
     }
 
@@ -72,11 +82,9 @@ impl Publisher {
         self.listeners.newest.borrow()
     }
 
-    /// Passes on everything that has come.
+    /// Passes on everything that has come. Without anybody who listens, the thread does not ring for every state any more.
     pub(crate) fn publish(&mut self) {
-        if let Some(state) = self.newest.newest() {
-            self.listeners.newest.send_replace(state);
-        }
+        self.refresh();
         // Sending fails only if the last listener has just gone.
         if self.listeners.updates.receiver_count() == 0 {
             self.sequence.skip();
@@ -84,11 +92,21 @@ impl Publisher {
         while let Some(state) = self.sequence.pop() {
             let _ = self.listeners.updates.send(Update::State(Arc::new(state)));
         }
-        let heard = self.listeners.records.receiver_count() > 0;
+        if self.listeners.records.receiver_count() == 0
+            && let Ok(records) = self.ring.read_chunk(self.ring.slots())
+        {
+            records.commit_all();
+        }
         while let Ok(record) = self.ring.pop() {
-            if heard {
-                let _ = self.listeners.records.send(record);
-            }
+            let _ = self.listeners.records.send(record);
+        }
+        self.audience.leave(|| self.listeners.are_there());
+    }
+
+    /// Passes on the newest state only. While nobody listens, the one that was passed on last may be some states old.
+    pub(crate) fn refresh(&mut self) {
+        if let Some(state) = self.newest.newest() {
+            self.listeners.newest.send_replace(state);
         }
     }
 
@@ -99,13 +117,27 @@ impl Publisher {
     }
 }
 
+impl Listeners {
+    fn are_there(&self) -> bool {
+        self.newest.receiver_count() > self.own
+            || self.updates.receiver_count() > 0
+            || self.records.receiver_count() > 0
+    }
+}
+
 impl Subscriptions {
+    /// The first ones may be of states that came before.
     pub(crate) fn updates(&self) -> broadcast::Receiver<Update> {
-        subscribe(&self.updates)
+        let updates = subscribe(&self.updates);
+        self.audience.enter();
+        updates
     }
 
+    /// As [`Self::updates`].
     pub(crate) fn records(&self) -> broadcast::Receiver<Record> {
-        subscribe(&self.records)
+        let records = subscribe(&self.records);
+        self.audience.enter();
+        records
     }
 }
 

@@ -21,7 +21,7 @@ pub struct Reading {
     pub state: RobotState,
     /// How many states the robot sent between the one that this stream gave before and this one: they never came, were
     /// skipped for a newer one by the control thread, or came while the reader lagged too far behind. Of the first one of
-    /// a stream: how many came since the stream was made, and before this one.
+    /// a stream: how many it sent since the stream was made, and before this one.
     pub missed: u64,
 }
 
@@ -29,10 +29,8 @@ pub struct Reading {
 #[derive(Debug)]
 pub struct StateStream {
     updates: BroadcastStream<Update>,
-    /// `message_id` of the state given last.
-    newest: Option<u64>,
-    /// States that went by before the first.
-    lagged: u64,
+    /// `message_id` of the state given last; at first, of the newest when the stream was made.
+    newest: u64,
 }
 
 /// Why reading has ended.
@@ -93,8 +91,10 @@ impl Robot {
         mut each: impl FnMut(&RobotState) -> ControlFlow<T>,
     ) -> Result<T, ReadError> {
         let mut updates = self.subscriptions().updates();
+        let begun = self.state().message_id;
         loop {
             match updates.recv().await {
+                Ok(Update::State(state)) if state.message_id <= begun => {}
                 Ok(Update::State(state)) => {
                     if let ControlFlow::Break(result) = each(&state) {
                         return Ok(result);
@@ -116,11 +116,9 @@ impl Robot {
     ///
     /// For the newest state whenever one looks, see [`Self::states`]; for what control made of each, [`Self::records`].
     pub fn state_stream(&self) -> StateStream {
-        StateStream {
-            updates: BroadcastStream::new(self.subscriptions().updates()),
-            newest: None,
-            lagged: 0,
-        }
+        let updates = BroadcastStream::new(self.subscriptions().updates());
+        let newest = self.state().message_id;
+        StateStream { updates, newest }
     }
 }
 
@@ -142,17 +140,14 @@ impl Stream for StateStream {
             let state = match ready!(self.updates.poll_next_unpin(context)) {
                 Some(Ok(Update::State(state))) => state,
                 // The next state will tell how long it was.
-                Some(Ok(Update::Silence(_))) => continue,
-                Some(Err(BroadcastStreamRecvError::Lagged(states))) => {
-                    self.lagged += states;
-                    continue;
-                }
+                Some(Ok(Update::Silence(_)) | Err(BroadcastStreamRecvError::Lagged(_))) => continue,
                 None => return Poll::Ready(None),
             };
-            let missed = match self.newest.replace(state.message_id) {
-                Some(newest) => state.message_id.saturating_sub(newest + 1),
-                None => self.lagged,
+            // What was there before the stream was made may still come.
+            let Some(missed) = state.message_id.checked_sub(self.newest + 1) else {
+                continue;
             };
+            self.newest = state.message_id;
             let state = *state;
             return Poll::Ready(Some(Reading { state, missed }));
         }

@@ -19,6 +19,7 @@ use crate::builder::Builder;
 use crate::channel::Channel;
 use crate::endpoint::Endpoint;
 use crate::motion::Work;
+use crate::newest::Newest;
 use crate::publish::Subscriptions;
 use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 
@@ -45,7 +46,7 @@ pub(crate) struct Shared {
     pub(crate) address: SocketAddr,
     pub(crate) inputs: Inputs,
     pub(crate) channel: Channel,
-    pub(crate) states: watch::Receiver<RobotState>,
+    pub(crate) newest: Newest,
     pub(crate) stats: Arc<Stats>,
     pub(crate) granted: Granted,
     pub(crate) lender: Lender,
@@ -76,20 +77,24 @@ impl Robot {
         Builder::new(endpoint.into())
     }
 
-    /// The newest state, at most a few milliseconds old while the link is alive.
+    /// The newest state.
     pub fn state(&self) -> RobotState {
-        *self.shared.states.borrow()
+        self.shared.newest.state()
     }
 
     /// The newest state as it changes, in motion or not. Closes when the connection does. For every state, see
     /// [`Self::state_stream`] and [`Self::read`].
     ///
+    /// Until the first change it may hold a state some milliseconds old: for one at once, see [`Self::state`]. As long as
+    /// anybody has one of these, a task is woken for every state; drop it when it is not needed.
+    ///
     /// Do not hold its borrow for long: the task that publishes states waits for it. Control does not.
     pub fn states(&self) -> watch::Receiver<RobotState> {
-        self.shared.states.clone()
+        self.shared.newest.changes()
     }
 
-    /// What every cycle of the control thread saw and did, one record per state. A listener that lags more than two
+    /// What every cycle of the control thread saw and did, one record per state; the first ones may be of cycles up to 50 ms
+    /// ago. A listener that lags more than two
     /// seconds behind is told how many it missed. Closes when the connection does.
     pub fn records(&self) -> broadcast::Receiver<Record> {
         self.subscriptions().records()

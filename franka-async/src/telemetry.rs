@@ -25,7 +25,7 @@ impl Telemetry {
         }
     }
 
-    /// Warns of commands that left too late since the last time: at once, and then once a second while there are more.
+    /// Warns of commands that left too late since the last time: once a second while there are more.
     pub(crate) fn watch(&mut self, now: Instant) {
         let overruns = self.stats.overrun.count();
         let quiet = self.last.is_some_and(|last| now < last + WARNING_INTERVAL);

@@ -15,10 +15,11 @@
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP. Pure.
 //! * [`together`]: motions of several robots that begin at the same time.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
-//! * [`slot`], [`wake`], [`exchange`], [`sched`], [`stats`]: what the loop is built of.
+//! * [`slot`], [`wake`], [`audience`], [`exchange`], [`sched`], [`stats`]: what the loop is built of.
 //!
 //! This crate knows no async runtime, opens no TCP connection and reads no file but the kernel's real-time flag.
 
+pub mod audience;
 pub mod control;
 pub mod driver;
 pub mod exchange;

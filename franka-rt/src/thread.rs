@@ -51,6 +51,7 @@ use self::desk::Desk;
 use self::fault::Latch;
 use self::handle::Datagram;
 use self::lifetime::Lifetime;
+use crate::audience::Audience;
 use crate::exchange::{self, Exchange};
 use crate::sched::{SchedError, Scheduling};
 use crate::slot;
@@ -124,6 +125,7 @@ pub fn spawn<C: Core>(
     } = config;
     let size = version.state_size();
     let wake = Wake::new()?;
+    let audience = Audience::default();
     let meter = Meter::new();
     let stats = meter.stats().clone();
     let lifetime = Arc::new(Lifetime::default());
@@ -151,6 +153,8 @@ pub fn spawn<C: Core>(
         meter,
         laps: Laps::start(now),
         wake: wake.clone(),
+        audience: audience.clone(),
+        unheard: 0,
         lifetime: lifetime.clone(),
         started: now,
         receive_faults: Latch::default(),
@@ -210,6 +214,7 @@ pub fn spawn<C: Core>(
             size,
         },
         wake,
+        audience,
         stats,
         granted,
         lender,

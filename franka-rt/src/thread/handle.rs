@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 use franka_proto::{RobotState, Version};
 
 use super::lifetime::Lifetime;
+use crate::audience::Audience;
 use crate::driver::Driver;
 use crate::panic;
 use crate::sched::Granted;
@@ -30,8 +31,11 @@ pub struct Handle<C: Core = Driver> {
     pub states: StateReader,
     /// All states, oldest first. Those that find it full are missing, and counted in [`Stats::states_lost`].
     pub sequence: StateSequence,
-    /// Rings after every cycle that left something in the fields above, and when the thread ends.
+    /// Rings after every cycle that left a notice, or a state while there is an audience; for every fiftieth state without
+    /// one; and when the thread ends.
     pub wake: Wake,
+    /// Whether anybody wants to hear of every state. There is somebody at first.
+    pub audience: Audience,
     /// Counts and times of the loop.
     pub stats: Arc<Stats>,
     /// What the operating system granted the thread.
@@ -129,8 +133,8 @@ pub struct StateReader {
 impl StateReader {
     /// The newest state, if this reader has not returned it yet. Never waits.
     ///
-    /// The thread may be writing at this very moment: after a few attempts the answer is `None`. The bell rings after
-    /// each write, so a listener comes back in any case.
+    /// The thread may be writing at this very moment: after a few attempts the answer is `None`. A later
+    /// ring of the bell brings a listener back in any case.
     pub fn newest(&mut self) -> Option<RobotState> {
         match self.slot.read_retry(ATTEMPTS) {
             // The thread publishes only what it has decoded itself.

@@ -8,12 +8,14 @@
 //! | [`desk`] | the cycle, lent to a thread of the user's |
 //! | [`bell`] | "look", and "it has ended" |
 //! | [`together`] | motions of several robots that begin together, or not at all |
+//! | [`audience`] | whether to ring for every state |
 //!
 //! The queues are rtrb's and not explored here: nothing of ours is inside them, and loom cannot see into a crate that is
 //! not built for it. rtrb 0.4 has no loom models; its own tests are written for Miri and the thread sanitizer. Counters and
 //! histograms are relaxed on purpose: each number stands for itself, and nothing is concluded from two.
 #![cfg(loom)]
 
+mod audience;
 mod bell;
 mod desk;
 mod slot;

@@ -3,6 +3,7 @@
 //! Waits have generous deadlines and end as soon as what they wait for is there: the margins are for a loaded machine
 //! with two processors, not for the code.
 
+mod audience;
 mod lease;
 
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};

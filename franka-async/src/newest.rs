@@ -1,0 +1,48 @@
+//! The newest state, for those who look now and then and for those who wait for each.
+
+use franka_proto::RobotState;
+use franka_rt::audience::Audience;
+use franka_rt::thread::StateReader;
+use tokio::sync::watch;
+
+/// Reads the newest state where the control thread has left it.
+///
+/// Whoever looks takes it from there, by himself, at no cost to the thread or to any task. Whoever waits for changes enters
+/// the audience: from then on the bridge is woken for every state.
+#[derive(Clone, Debug)]
+pub(crate) struct Newest {
+    /// Stays as it is, so that each of its clones finds whatever came later.
+    reader: StateReader,
+    /// What the bridge has published. Without an audience it may be some states behind.
+    published: watch::Receiver<RobotState>,
+    audience: Audience,
+}
+
+impl Newest {
+    /// Reads what `reader` has not read yet; `published` has the state before.
+    pub(crate) fn new(
+        reader: StateReader,
+        published: watch::Receiver<RobotState>,
+        audience: Audience,
+    ) -> Self {
+        Self {
+            reader,
+            published,
+            audience,
+        }
+    }
+
+    /// The newest state.
+    pub(crate) fn state(&self) -> RobotState {
+        // The thread may be writing at each attempt, if the kernel stopped it there: then what was published has to do.
+        let newest = self.reader.clone().newest();
+        newest.unwrap_or_else(|| *self.published.borrow())
+    }
+
+    /// The newest state as it changes.
+    pub(crate) fn changes(&self) -> watch::Receiver<RobotState> {
+        let states = self.published.clone();
+        self.audience.enter();
+        states
+    }
+}
