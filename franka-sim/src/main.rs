@@ -25,14 +25,8 @@ use tokio::signal::unix::{SignalKind, signal};
 /// collision and 20 missing commands in a row end a motion in a reflex, which the client clears with
 /// an automatic error recovery. With --permissive it lets commands pass, so that a program can be
 /// brought to run before it is made safe.
-///
-/// Examples:
-///
-///   franka-sim --robot fer --hand --gripper-object-width 0.04
-///   franka-sim --payload 0.5 --noise --seed 7
-///   franka-sim --enforce-comm-constraints=false   (a client in a debugger)
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(version, after_help = EXAMPLES)]
 struct Arguments {
     /// Which robot, and with it which protocol version.
     #[arg(long, value_enum, default_value_t = Kind::Fr3)]
@@ -117,6 +111,16 @@ struct Arguments {
     #[arg(long)]
     realtime: bool,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  franka-sim                                    a Franka Research 3 with a hand's server, on 1337 and 1338
+  franka-sim --robot fer --hand --gripper-object-width 0.04
+                                                a Panda with its hand, and something to grasp
+  franka-sim --payload 0.5 --noise --seed 7     half a kilogram that no client has declared, and sensors
+                                                that are not perfect, the same way every time
+  franka-sim --enforce-comm-constraints=false   for a client in a debugger
+  franka-sim --port 0                           on free ports, which it prints";
 
 /// The kinds of robot by their short names.
 #[derive(Debug, Clone, Copy, ValueEnum)]
