@@ -60,17 +60,24 @@ pub(crate) struct Measured {
     pub(crate) fifo_priority: Option<u32>,
 }
 
-impl Case {
+impl Client {
     /// The client in words.
     pub(crate) fn name(&self) -> &'static str {
-        match (&self.client, self.scheduler) {
-            (Client::Echo, Scheduler::Fifo) => "echo",
-            (Client::Torques, Scheduler::Fifo) => "control function",
-            (Client::Targets, Scheduler::Fifo) => "target control",
-            (Client::Vendor { .. }, _) => "pylibfranka",
-            (Client::Echo, Scheduler::Normal) => "echo, normal",
-            (Client::Torques, Scheduler::Normal) => "control function, normal",
-            (Client::Targets, Scheduler::Normal) => "target control, normal",
+        match self {
+            Self::Echo => "echo",
+            Self::Torques => "control function",
+            Self::Targets => "target control",
+            Self::Vendor { .. } => "pylibfranka",
+        }
+    }
+}
+
+impl Case {
+    /// Client and scheduler in words.
+    pub(crate) fn name(&self) -> String {
+        match self.scheduler {
+            Scheduler::Fifo => self.client.name().to_owned(),
+            Scheduler::Normal => format!("{}, normal", self.client.name()),
         }
     }
 

@@ -18,7 +18,7 @@ pub(crate) fn markdown(rows: &[Row], time: Duration) -> String {
     text += "| client | scheduler | success rate, mean / least | lost of states | interval p50 / p99 / p99.9 / max, µs | turnaround p50 / p99 / p99.9 / max, µs | times the echo's p50 / p99 | CPU, % of a core |\n";
     text += "|---|---|---|---|---|---|---|---|\n";
     for (case, result) in rows {
-        let client = case.name();
+        let client = case.client.name();
         let row = match result {
             Err(error) => format!("| {client} | failed: {error:#} |||||||"),
             Ok(measured) => {
