@@ -27,10 +27,10 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 
 use bytes::Bytes;
 use franka_model::{JointVector, Load, RobotKind};
-use franka_proto::RobotState;
+use franka_proto::{RobotState, VirtualWall};
 use tokio::sync::watch;
 
-use crate::config::{Config, Noise, Tool};
+use crate::config::{Config, Noise, Tool, Unpublished};
 use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
 use crate::plant::Plant;
 use crate::robot::Robot;
@@ -144,6 +144,24 @@ impl Sim {
     /// See [`Config::enforce_limits`].
     pub fn enforce_limits(mut self, enforce: bool) -> Self {
         self.config.enforce_limits = enforce;
+        self
+    }
+
+    /// See [`Config::joint_discontinuity_scale`].
+    pub fn joint_discontinuity_scale(mut self, factor: f64) -> Self {
+        self.config.joint_discontinuity_scale = factor;
+        self
+    }
+
+    /// Sets up a virtual wall: see [`Config::walls`].
+    pub fn wall(mut self, number: i32, wall: VirtualWall) -> Self {
+        self.config.walls.push((number, wall));
+        self
+    }
+
+    /// See [`Config::unpublished`].
+    pub fn unpublished(mut self, unpublished: Unpublished) -> Self {
+        self.config.unpublished = unpublished;
         self
     }
 
