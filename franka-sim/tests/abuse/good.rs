@@ -81,6 +81,15 @@ pub(crate) fn assert_moves(binary: &Binary) {
     });
 }
 
+/// Clears what a client has left behind that was kept from answering by a busy machine.
+pub(crate) fn recover(binary: &Binary) {
+    runtime().block_on(async {
+        let robot = connect(binary, Instant::now()).await;
+        robot.recover().await.expect("a recovery");
+        robot.shutdown().await;
+    });
+}
+
 /// Moves a good client for a second or so and does `mischief` meanwhile. The motion arrives.
 pub(crate) fn assert_moves_during(binary: &Binary, mischief: impl FnOnce()) {
     runtime().block_on(async {

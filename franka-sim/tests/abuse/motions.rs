@@ -6,7 +6,7 @@ use franka_proto::{
 
 use crate::client::Client;
 use crate::each_robot;
-use crate::good::{assert_moves, assert_served};
+use crate::good::{assert_moves, assert_served, recover};
 use crate::port::Connection;
 
 const CONTROLLER: MoveControllerMode = MoveControllerMode::JointImpedance;
@@ -53,6 +53,7 @@ fn a_client_may_leave_the_protocol_while_it_moves() {
             // The end of its motion may be the last that it hears.
             client.connection.read_to_end();
             assert_served(binary);
+            recover(binary);
         }
         assert_moves(binary);
     });
