@@ -125,7 +125,8 @@ impl AsynchronousControl {
     pub async fn reached(&self) -> Result<(), MotionError> {
         let mut states = self.robot.states();
         loop {
-            let status = self.status_in(&states.borrow_and_update());
+            // What `states` holds at first may be older than the target.
+            let status = self.status_in(&self.robot.state());
             if status == TargetStatus::TargetReached {
                 return Ok(());
             }

@@ -39,10 +39,12 @@ impl Newest {
         newest.unwrap_or_else(|| *self.published.borrow())
     }
 
-    /// The newest state as it changes.
+    /// The newest state as it changes from now on.
     pub(crate) fn changes(&self) -> watch::Receiver<RobotState> {
-        let states = self.published.clone();
+        let mut states = self.published.clone();
         self.audience.enter();
+        // What was published without an audience is no change: it may be some states old.
+        states.mark_unchanged();
         states
     }
 }

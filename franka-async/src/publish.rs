@@ -1,6 +1,6 @@
 //! What the thread leaves for the world outside, passed on to whoever listens.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use franka_proto::RobotState;
@@ -27,7 +27,16 @@ pub(crate) struct Publisher {
     pub(crate) sequence: StateSequence,
     pub(crate) ring: rtrb::Consumer<Record>,
     audience: Audience,
+    silent: Arc<Mutex<Option<Silent>>>,
     listeners: Listeners,
+}
+
+/// The silence that was told last.
+#[derive(Clone, Copy, Debug)]
+struct Silent {
+    /// `message_id` of the state before it.
+    since: u64,
+    silence: Duration,
 }
 
 struct Listeners {
@@ -44,6 +53,7 @@ pub(crate) struct Subscriptions {
     updates: broadcast::WeakSender<Update>,
     records: broadcast::WeakSender<Record>,
     audience: Audience,
+    silent: Arc<Mutex<Option<Silent>>>,
 }
 
 impl Publisher {
@@ -60,6 +70,7 @@ impl Publisher {
             sequence,
             ring,
             audience,
+            silent: Arc::default(),
             listeners: Listeners {
                 own: states.receiver_count(),
                 newest: states,
@@ -74,6 +85,7 @@ impl Publisher {
             updates: self.listeners.updates.downgrade(),
             records: self.listeners.records.downgrade(),
             audience: self.audience.clone(),
+            silent: self.silent.clone(),
         }
     }
 
@@ -85,10 +97,12 @@ impl Publisher {
     /// Passes on everything that has come. Without anybody who listens, the thread does not ring for every state any more.
     pub(crate) fn publish(&mut self) {
         self.refresh();
-        // Sending fails only if the last listener has just gone.
+        // Counted before the listeners are: whoever begins to listen after that has none of these to come.
+        let come = self.sequence.waiting();
         if self.listeners.updates.receiver_count() == 0 {
-            self.sequence.skip();
+            self.sequence.skip(come);
         }
+        // Sending fails only if the last listener has just gone.
         while let Some(state) = self.sequence.pop() {
             let _ = self.listeners.updates.send(Update::State(Arc::new(state)));
         }
@@ -112,7 +126,9 @@ impl Publisher {
 
     /// Passes on that the robot has been silent for so long.
     pub(crate) fn tell_silence(&self, silence: Duration) {
-        // Perhaps nobody listens.
+        let since = self.state().message_id;
+        *lock(&self.silent) = Some(Silent { since, silence });
+        // Perhaps nobody listens. Whoever begins to has not heard this, and looks there.
         let _ = self.listeners.updates.send(Update::Silence(silence));
     }
 }
@@ -133,12 +149,24 @@ impl Subscriptions {
         updates
     }
 
+    /// The silence that the link was given up for, if no state has come since: `newest` is the `message_id` of the newest.
+    /// Told once, and not to those who come later.
+    pub(crate) fn silence(&self, newest: u64) -> Option<Duration> {
+        let silent = *lock(&self.silent);
+        silent.and_then(|told| (newest <= told.since).then_some(told.silence))
+    }
+
     /// As [`Self::updates`].
     pub(crate) fn records(&self) -> broadcast::Receiver<Record> {
         let records = subscribe(&self.records);
         self.audience.enter();
         records
     }
+}
+
+fn lock(silent: &Mutex<Option<Silent>>) -> std::sync::MutexGuard<'_, Option<Silent>> {
+    // Nothing in there can be half done.
+    silent.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn subscribe<T: Clone>(sender: &broadcast::WeakSender<T>) -> broadcast::Receiver<T> {

@@ -81,8 +81,8 @@ impl Robot {
     /// second; [`Self::state_stream`] says how many.
     ///
     /// # Errors
-    /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, [`ReadError::ConnectionClosed`] when
-    /// there is no connection any more.
+    /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, at once if it is silent already;
+    /// [`ReadError::ConnectionClosed`] when there is no connection any more.
     ///
     /// # Cancel safety
     /// Dropping the future ends the reading, and nothing else. No state is kept for a later one.
@@ -92,6 +92,11 @@ impl Robot {
     ) -> Result<T, ReadError> {
         let mut updates = self.subscriptions().updates();
         let begun = self.state().message_id;
+        if let Some(silence) = self.subscriptions().silence(begun)
+            && !updates.is_closed()
+        {
+            return Err(ReadError::LinkLost { silence });
+        }
         loop {
             match updates.recv().await {
                 Ok(Update::State(state)) if state.message_id <= begun => {}

@@ -125,7 +125,8 @@ impl Exchange {
         self.message_id
     }
 
-    /// Waits for a datagram, up to [`TICK`] or what [`with_wait`](Self::with_wait) was given, then takes those that are there, up to [`DRAIN_MAX`] in all.
+    /// Waits for a datagram, up to [`TICK`] or what [`with_wait`](Self::with_wait) was given, then takes those that are there,
+    /// up to [`DRAIN_MAX`] in all.
     pub fn receive(&mut self) -> Reception {
         let mut reception = Reception::default();
         let mut flags = 0;

@@ -1,4 +1,4 @@
-//! The bell that the thread rings after each cycle: an eventfd, which any reactor can wait for.
+//! The bell that the thread rings when it has left something to be looked at: an eventfd, which any reactor can wait for.
 //!
 //! Ringing is one non-blocking `write`, without a lock and without knowledge of who listens. Rings add up until the
 //! listener clears them, so a slow listener is woken once and then looks at the slot and the queues.

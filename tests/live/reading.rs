@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use franka_async::{Finish, MotionError, Pose, ReadError, Reading, Robot, Torques};
 use franka_proto::RobotError;
@@ -165,18 +165,24 @@ async fn reading_ends_with_an_error_when_the_robot_falls_silent_or_the_connectio
     };
     let _alone = alone();
     let (robot, sim) = patient().await;
-    let reading = forever(&robot);
-    sim.with(|_| std::thread::sleep(Duration::from_millis(1500)))
-        .await
-        .unwrap();
-    let silent = timeout(SOON, reading).await.expect("no hang").unwrap();
-    let error = silent.unwrap_err();
-    assert!(matches!(error, ReadError::LinkLost { .. }), "{error:?}");
-    assert!(
-        error
-            .to_string()
-            .starts_with("libfranka: UDP receive: Timeout")
-    );
+    // Both the one that was there before the robot fell silent, and one that comes when it is.
+    let readings = async {
+        for _ in 0..2 {
+            let silent = timeout(SOON, forever(&robot)).await.expect("no hang");
+            let error = silent.unwrap().unwrap_err();
+            assert!(matches!(error, ReadError::LinkLost { .. }), "{error:?}");
+            let text = "libfranka: UDP receive: Timeout";
+            assert!(error.to_string().starts_with(text), "{error}");
+        }
+        Instant::now()
+    };
+    let silence = async {
+        let silence = sim.with(|_| std::thread::sleep(Duration::from_millis(2500)));
+        silence.await.unwrap();
+        Instant::now()
+    };
+    let (told, back) = tokio::join!(readings, silence);
+    assert!(told < back, "the second one was told while it lasted");
 
     // The robot is back, and the stream with it.
     let mut stream = robot.state_stream();

@@ -43,9 +43,11 @@ pub struct Record {
     pub bindings: Bindings,
     /// From when the state was due to when the thread had it: see [`CycleTimes::late`](crate::stats::CycleTimes::late).
     pub late: Duration,
-    /// Time from the receipt of the state to the departure of its command; zero where none left.
+    /// Time from the receipt of the state to the departure of its command; zero where none left, and under active control,
+    /// where the command leaves after the record is made.
     pub turnaround: Duration,
-    /// What was left until the next state was due when the command left; `None` where none left in this cycle.
+    /// What was left until the next state was due when the command left; `None` where none left, as
+    /// above.
     pub slack: Option<Slack>,
 }
 

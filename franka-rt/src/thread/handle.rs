@@ -162,9 +162,14 @@ impl StateSequence {
         RobotState::decode(self.version, &datagram.0[..self.size]).ok()
     }
 
-    /// Leaves out all that have come so far, undecoded.
-    pub fn skip(&mut self) {
-        if let Ok(chunk) = self.ring.read_chunk(self.ring.slots()) {
+    /// How many have come and were not taken. The newest of them was the newest state before it was counted here.
+    pub fn waiting(&self) -> usize {
+        self.ring.slots()
+    }
+
+    /// Leaves the oldest `count` out, undecoded, or as many as there are.
+    pub fn skip(&mut self, count: usize) {
+        if let Ok(chunk) = self.ring.read_chunk(count.min(self.ring.slots())) {
             chunk.commit_all();
         }
     }

@@ -18,10 +18,8 @@ use franka_rt::shaping::Shaper;
 
 use super::{Case, Malformed, Node, Report};
 
-/// Of joint values, torques, twists and elbows, in their SI units: as the vectors ask.
-const SCALARS: f64 = 1e-12;
-/// Of the elements of poses, which go through quaternions: as the vectors ask.
-const POSES: f64 = 1e-11;
+/// Of every number of a command, in its SI unit. The vectors allow 1e-12, and 1e-11 for poses, which go through quaternions.
+const TOLERANCE: f64 = 5e-15;
 
 /// Checks `control_loop_vectors.json`.
 pub(super) fn traces(root: &Node<'_>) -> Result<Report, Malformed> {
@@ -159,15 +157,15 @@ impl Cycle {
         case.equal("message_id", sent.message_id, message_id);
         let finished = sent.motion_generation_finished || sent.torque_command_finished;
         case.equal("finished", finished, self.finished);
-        case.near("q_c", &sent.q_c, &expected.q_c, SCALARS);
-        case.near("dq_c", &sent.dq_c, &expected.dq_c, SCALARS);
-        case.near("O_T_EE_c", &sent.O_T_EE_c, &expected.O_T_EE_c, POSES);
-        case.near("O_dP_EE_c", &sent.O_dP_EE_c, &expected.O_dP_EE_c, SCALARS);
-        case.near("tau_J_d", &sent.tau_J_d, &expected.tau_J_d, SCALARS);
+        case.near("q_c", &sent.q_c, &expected.q_c, TOLERANCE);
+        case.near("dq_c", &sent.dq_c, &expected.dq_c, TOLERANCE);
+        case.near("O_T_EE_c", &sent.O_T_EE_c, &expected.O_T_EE_c, TOLERANCE);
+        case.near("O_dP_EE_c", &sent.O_dP_EE_c, &expected.O_dP_EE_c, TOLERANCE);
+        case.near("tau_J_d", &sent.tau_J_d, &expected.tau_J_d, TOLERANCE);
         let (elbow, expected) = (sent.elbow_c, expected.elbow_c);
         case.equal("valid_elbow", elbow.is_some(), expected.is_some());
         let (elbow, expected) = (elbow.unwrap_or_default(), expected.unwrap_or_default());
-        case.near("elbow_c", &elbow, &expected, SCALARS);
+        case.near("elbow_c", &elbow, &expected, TOLERANCE);
     }
 }
 
