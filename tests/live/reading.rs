@@ -133,6 +133,22 @@ async fn a_slow_reader_is_told_how_many_states_it_missed() {
     assert!(lagged.missed > 300, "{} before the first", lagged.missed);
 }
 
+/// While nobody waits for states, what was published last may be fifty of them old.
+#[tokio::test(flavor = "multi_thread")]
+async fn the_first_change_is_no_older_than_the_wish_to_hear_of_it() {
+    let _alone = alone();
+    let (robot, _sim) = patient().await;
+    for pause in (100..150).step_by(7) {
+        sleep(Duration::from_millis(pause)).await;
+        let now = robot.state().message_id;
+        let mut states = robot.states();
+        states.changed().await.expect("states come");
+        let heard = states.borrow().message_id;
+        assert!(heard >= now, "{heard} after {now}");
+    }
+    robot.shutdown().await;
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn reading_ends_when_the_closure_says_so() {
     let _alone = alone();
