@@ -81,7 +81,7 @@ async fn a_closed_port_refuses() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_host_that_does_not_exist_is_not_found() {
     let _alone = alone();
-    let error = refused("no host of this name").await;
+    let error = refused("no-host-of-this-name.invalid").await;
     assert_eq!(
         error.to_string(),
         "libfranka: Connection error: Host not found"
