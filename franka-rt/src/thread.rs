@@ -17,8 +17,8 @@
 //! The cycle can be lent out: a thread of the user's then runs it in this one's place,
 //! through a [`Lease`], for as long as it likes.
 //!
-//! The clock is read here and nowhere else in the crate, for three things: how long the robot has been silent, how far
-//! apart its states arrive, and how long an answer takes. Control itself lives by the robot's clock, in the core.
+//! The clock is read for this loop and for nothing else in the crate: how long the robot has been silent, how far apart its
+//! states arrive, and how long an answer takes and (feature `cycle-phases`) each part of it. Control itself lives by the robot's clock, in the core.
 //!
 //! A panic in the core ends the loop and nothing else: the robot misses its commands and stops by itself, the bell
 //! rings, and [`Thread::join`] tells. Printing the panic is the business of the process's panic hook.

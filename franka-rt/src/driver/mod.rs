@@ -26,6 +26,7 @@ mod aftermath;
 mod event;
 mod link_timeout;
 mod log;
+mod motion;
 mod order;
 mod program;
 mod record;
@@ -34,12 +35,11 @@ mod statistics;
 mod tests;
 
 use core::time::Duration;
-use std::sync::Arc;
 
-use franka_proto::{RobotCommand, RobotMode, RobotState, Version};
+use franka_proto::{RobotCommand, RobotState, Version};
 
 use crate::control::{Command, WriteError};
-use crate::together::{Gate, StartTicket};
+use crate::together::Gate;
 
 pub use event::{Ended, Ending, Event};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
@@ -50,6 +50,7 @@ pub use record::{Activity, Record};
 pub use statistics::{MotionStatistics, MotionTimes};
 
 use event::EventQueue;
+use motion::{Motion, Phase};
 use program::Answer;
 
 /// The pure core of one robot's control thread.
@@ -68,50 +69,6 @@ pub struct Driver {
     statistics: MotionStatistics,
     record: Record,
     events: EventQueue,
-}
-
-#[derive(Debug)]
-enum Phase {
-    Watching,
-    Armed(Motion),
-    Running(Motion),
-    /// The finishing command is repeated until the robot leaves the motion's modes.
-    Finishing(Motion),
-    /// The program has failed, or was left alone: nothing is sent until the robot leaves the motion's modes.
-    Silent(Motion),
-}
-
-/// What a motion owns from arming to its end.
-#[derive(Debug)]
-struct Motion {
-    id: MotionId,
-    modes: Modes,
-    program: Program,
-    log: ControlLog,
-    ticket: Option<StartTicket>,
-    times: Arc<MotionTimes>,
-    /// The newest command that was sent; zeros before the first.
-    sent: RobotCommand,
-}
-
-impl Motion {
-    /// Whether it may begin, or has begun, at this state.
-    fn gate(&mut self, state: &RobotState) -> Gate {
-        let Some(ticket) = &mut self.ticket else {
-            return Gate::Open;
-        };
-        if ticket.is_undecided() && self.program.is_withdrawn() {
-            ticket.withdraw();
-        }
-        ticket.pass(state.message_id)
-    }
-
-    /// Lets those go that it was to begin with.
-    fn leave(&mut self) {
-        if let Some(ticket) = &mut self.ticket {
-            ticket.end();
-        }
-    }
 }
 
 impl Driver {
@@ -254,7 +211,7 @@ impl Driver {
                 None
             }
             Phase::Running(motion) => {
-                if has_left(&motion, state) {
+                if motion.is_left_by(state) {
                     self.end_at(state, motion, Ending::Aborted)
                 } else if is_sound(state) {
                     self.run(motion, state)
@@ -265,7 +222,7 @@ impl Driver {
                 }
             }
             Phase::Finishing(mut motion) => {
-                if has_left(&motion, state) {
+                if motion.is_left_by(state) {
                     return self.end_at(state, motion, Ending::Finished);
                 }
                 motion.sent.message_id = state.message_id;
@@ -276,7 +233,7 @@ impl Driver {
                 Some(command)
             }
             Phase::Silent(motion) => {
-                if has_left(&motion, state) {
+                if motion.is_left_by(state) {
                     return self.end_at(state, motion, Ending::Aborted);
                 }
                 self.record.activity = Activity::Silent;
@@ -419,11 +376,6 @@ impl Driver {
             ticket,
         }));
     }
-}
-
-/// Whether the robot no longer runs the motion.
-fn has_left(motion: &Motion, state: &RobotState) -> bool {
-    !motion.modes.shown_by(state) || state.robot_mode != RobotMode::Move
 }
 
 /// Whether what every program computes with is finite. Anything a program made of other numbers would go to the motors.

@@ -1,5 +1,7 @@
 //! The driver beside states and programs that a test makes up.
 
+use std::sync::Arc;
+
 use franka_model::{Model, READY};
 use franka_proto::{ControllerMode, MotionGeneratorMode, RobotMode, RobotState, Version};
 

@@ -1,0 +1,58 @@
+//! A motion in the driver's hands, and how far it has come.
+
+use std::sync::Arc;
+
+use franka_proto::{RobotCommand, RobotMode, RobotState};
+
+use super::{ControlLog, Modes, MotionId, MotionTimes, Program};
+use crate::together::{Gate, StartTicket};
+
+/// What the driver is doing.
+#[derive(Debug)]
+pub(super) enum Phase {
+    Watching,
+    Armed(Motion),
+    Running(Motion),
+    /// The finishing command is repeated until the robot leaves the motion's modes.
+    Finishing(Motion),
+    /// The program has failed, or was left alone: nothing is sent until the robot leaves the motion's modes.
+    Silent(Motion),
+}
+
+/// What a motion owns from arming to its end.
+#[derive(Debug)]
+pub(super) struct Motion {
+    pub(super) id: MotionId,
+    pub(super) modes: Modes,
+    pub(super) program: Program,
+    pub(super) log: ControlLog,
+    pub(super) ticket: Option<StartTicket>,
+    pub(super) times: Arc<MotionTimes>,
+    /// The newest command that was sent; zeros before the first.
+    pub(super) sent: RobotCommand,
+}
+
+impl Motion {
+    /// Whether it may begin, or has begun, at this state.
+    pub(super) fn gate(&mut self, state: &RobotState) -> Gate {
+        let Some(ticket) = &mut self.ticket else {
+            return Gate::Open;
+        };
+        if ticket.is_undecided() && self.program.is_withdrawn() {
+            ticket.withdraw();
+        }
+        ticket.pass(state.message_id)
+    }
+
+    /// Lets those go that it was to begin with.
+    pub(super) fn leave(&mut self) {
+        if let Some(ticket) = &mut self.ticket {
+            ticket.end();
+        }
+    }
+
+    /// Whether the robot no longer runs the motion.
+    pub(super) fn is_left_by(&self, state: &RobotState) -> bool {
+        !self.modes.shown_by(state) || state.robot_mode != RobotMode::Move
+    }
+}

@@ -1,0 +1,234 @@
+//! What the kernel makes of the options.
+
+use super::*;
+
+/// Runs `asked.enter()` in a thread of its own and returns what it got and what `/proc` says of that thread.
+fn entered(asked: Scheduling) -> (Result<Granted, SchedError>, String, String) {
+    std::thread::spawn(move || {
+        let granted = asked.enter();
+        let read = |file| std::fs::read_to_string(file).expect("Linux has /proc");
+        (
+            granted,
+            read("/proc/thread-self/stat"),
+            read("/proc/thread-self/status"),
+        )
+    })
+    .join()
+    .expect("entering does not panic")
+}
+
+/// Real-time priority and policy: fields 40 and 41 of proc_pid_stat(5), counted after the parenthesised name.
+fn priority_and_policy(stat: &str) -> (i32, i32) {
+    let fields: Vec<&str> = stat[stat.rfind(')').expect("a name") + 1..]
+        .split_whitespace()
+        .collect();
+    (
+        fields[40 - 3].parse().expect("a number"),
+        fields[41 - 3].parse().expect("a number"),
+    )
+}
+
+#[test]
+fn ignore_accepts_refusals_and_reports_what_the_kernel_did() {
+    let asked = Scheduling {
+        realtime: Realtime::Ignore,
+        priority: Some(7),
+        ..Scheduling::default()
+    };
+    let (granted, stat, _) = entered(asked);
+    let granted = granted.expect("nothing is enforced");
+    match granted.priority {
+        Some(priority) => {
+            assert_eq!(
+                (priority, 1),
+                priority_and_policy(&stat),
+                "policy 1 is SCHED_FIFO"
+            );
+            assert_eq!(granted.refusals, []);
+        }
+        None => {
+            assert_eq!(
+                (0, 0),
+                priority_and_policy(&stat),
+                "policy 0 is the normal one"
+            );
+            assert_eq!(granted.refusals, [SchedError::SetScheduling(libc::EPERM)]);
+        }
+    }
+}
+
+#[test]
+fn a_priority_out_of_range_is_refused() {
+    let asked = Scheduling {
+        priority: Some(1000),
+        ..Scheduling::default()
+    };
+    assert_eq!(
+        entered(asked.clone()).0,
+        Err(SchedError::SetScheduling(libc::EINVAL))
+    );
+    assert_eq!(asked.probe(), Err(SchedError::SetScheduling(libc::EINVAL)));
+    let (granted, stat, _) = entered(Scheduling {
+        realtime: Realtime::Ignore,
+        ..asked
+    });
+    assert_eq!(
+        granted.expect("nothing is enforced").refusals,
+        [SchedError::SetScheduling(libc::EINVAL)]
+    );
+    assert_eq!((0, 0), priority_and_policy(&stat));
+}
+
+#[test]
+fn enforce_needs_both_the_right_to_fifo_and_a_realtime_kernel() {
+    let outcome = entered(Scheduling::default()).0;
+    if kernel_is_realtime() {
+        assert!(
+            matches!(outcome, Ok(_) | Err(SchedError::SetScheduling(_))),
+            "{outcome:?}"
+        );
+    } else {
+        let error = outcome.expect_err("the kernel is no real-time one");
+        assert!(
+            matches!(
+                error,
+                SchedError::KernelNotRealtime | SchedError::SetScheduling(_)
+            ),
+            "{error:?}"
+        );
+    }
+}
+
+#[test]
+fn the_thread_runs_on_the_processor_asked_for_and_not_on_one_that_does_not_exist() {
+    let asked = Scheduling {
+        realtime: Realtime::Ignore,
+        cpu: Some(0),
+        ..Scheduling::default()
+    };
+    let (granted, _, status) = entered(asked.clone());
+    let pinned = status.contains("Cpus_allowed_list:\t0\n");
+    let refused = granted
+        .expect("nothing is enforced")
+        .refusals
+        .iter()
+        .any(|r| matches!(r, SchedError::Pin { .. }));
+    assert_ne!(pinned, refused, "{status}");
+
+    let absent = SchedError::Pin {
+        cpu: 1023,
+        errno: libc::EINVAL,
+    };
+    let granted = entered(Scheduling {
+        cpu: Some(1023),
+        ..asked
+    })
+    .0
+    .expect("nothing is enforced");
+    assert!(granted.refusals.contains(&absent), "{granted:?}");
+}
+
+#[test]
+fn a_socket_is_polled_as_asked_or_the_refusal_is_told() {
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
+    let duration = Duration::from_micros(50);
+    let mut asked = Scheduling {
+        realtime: Realtime::Ignore,
+        busy_poll: Some(duration),
+        ..Scheduling::default()
+    };
+    let mut granted = Granted::default();
+    let outcome = asked.tune(&socket, &mut granted);
+    assert_eq!(outcome, Ok(()), "nothing is enforced");
+    match granted.busy_poll {
+        Some(polled) => {
+            assert_eq!(polled, duration);
+            assert_eq!(sys::busy_poll_of(&socket), Ok(50), "what the kernel says");
+            assert_eq!(granted.refusals, []);
+        }
+        None => {
+            let [refusal] = granted.refusals[..] else {
+                panic!("{granted:?}")
+            };
+            println!("not polled: {refusal}");
+            asked.realtime = Realtime::Enforce;
+            assert_eq!(asked.tune(&socket, &mut granted), Err(refusal));
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_polled_is_refused_under_enforce_and_noted_under_ignore() {
+    // A descriptor that is no socket.
+    let file = std::fs::File::open("/dev/null").expect("Linux has it");
+    let duration = Duration::from_micros(50);
+    let errno = libc::ENOTSOCK;
+    let refusal = SchedError::BusyPoll { duration, errno };
+    for realtime in [Realtime::Enforce, Realtime::Ignore] {
+        let asked = Scheduling {
+            realtime,
+            busy_poll: Some(duration),
+            ..Scheduling::default()
+        };
+        let mut granted = Granted::default();
+        let outcome = asked.tune(&file, &mut granted);
+        match realtime {
+            Realtime::Enforce => assert_eq!(outcome, Err(refusal)),
+            Realtime::Ignore => {
+                assert_eq!((outcome, &granted.refusals[..]), (Ok(()), &[refusal][..]));
+            }
+        }
+        assert_eq!(granted.busy_poll, None);
+    }
+}
+
+#[test]
+fn options_out_of_range_are_refused_whether_enforced_or_not() {
+    let good = Scheduling {
+        realtime: Realtime::Ignore,
+        ..Scheduling::default()
+    };
+    for got in [Duration::ZERO, Duration::from_millis(1)] {
+        let asked = Scheduling {
+            busy_poll: Some(got),
+            ..good.clone()
+        };
+        let refusal = SchedError::BusyPollRange { got };
+        assert_eq!(asked.probe(), Err(refusal));
+        assert_eq!(asked.enter(), Err(refusal));
+    }
+    let asked = Scheduling {
+        prefault_stack: PREFAULT_MAX + 1,
+        ..good.clone()
+    };
+    let text = asked.probe().expect_err("too much").to_string();
+    assert_eq!(
+        text,
+        "a stack of 67108865 bytes is out of range: expected at most 67108864 bytes"
+    );
+    let most = Scheduling {
+        prefault_stack: PREFAULT_MAX,
+        ..good
+    };
+    most.probe().expect("the most that can be asked for");
+}
+
+#[test]
+fn the_texts_are_those_of_libfranka() {
+    for (error, text) in [
+        (
+            SchedError::MaximumPriority(libc::EINVAL),
+            "libfranka: unable to get maximum possible thread priority: Invalid argument",
+        ),
+        (
+            SchedError::SetScheduling(libc::EPERM),
+            "libfranka: unable to set realtime scheduling: Operation not permitted",
+        ),
+        (
+            SchedError::KernelNotRealtime,
+            "libfranka: Running kernel does not have realtime capabilities.",
+        ),
+    ] {
+        assert_eq!(error.to_string(), text);
+    }
+}
