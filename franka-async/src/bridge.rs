@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 use std::io;
+use std::sync::Arc;
 use std::time::Duration;
 
 use franka_proto::RobotState;
@@ -121,7 +122,7 @@ impl Bridge {
         handle: Handle,
         bell: AsyncFd<Wake>,
         (channel, connection): (Channel, Connection),
-        states: watch::Sender<RobotState>,
+        states: Arc<watch::Sender<RobotState>>,
     ) -> Self {
         Self {
             lifecycle,

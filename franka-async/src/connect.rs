@@ -49,9 +49,9 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         .unwrap_or(Err(ConnectError::Timeout))?;
     let (tcp, address) = dial(&addresses, limit).await?;
     let opened = open(tcp, address, &builder).await?;
-    let (states, published) = watch::channel(opened.first);
+    let states = Arc::new(watch::Sender::new(opened.first));
     let (reader, audience) = (&opened.handle.states, &opened.handle.audience);
-    let newest = Newest::new(reader.clone(), published, audience.clone());
+    let newest = Newest::new(reader.clone(), &states, audience.clone());
     let (channel, connection, reports) =
         Channel::start(opened.stream, opened.session, newest.clone());
     let stats = opened.handle.stats.clone();

@@ -1,5 +1,7 @@
 //! The newest state, for those who look now and then and for those who wait for each.
 
+use std::sync::{Arc, Weak};
+
 use franka_proto::RobotState;
 use franka_rt::audience::Audience;
 use franka_rt::thread::StateReader;
@@ -15,19 +17,33 @@ pub(crate) struct Newest {
     reader: StateReader,
     /// What the bridge has published. Without an audience it may be some states behind.
     published: watch::Receiver<RobotState>,
+    /// Weak, so that those who wait hear of the end.
+    publisher: Weak<watch::Sender<RobotState>>,
     audience: Audience,
 }
 
+/// Publishes a state, unless a newer one is published already.
+pub(crate) fn publish(publisher: &watch::Sender<RobotState>, state: RobotState) {
+    publisher.send_if_modified(|newest| {
+        let newer = state.message_id > newest.message_id;
+        if newer {
+            *newest = state;
+        }
+        newer
+    });
+}
+
 impl Newest {
-    /// Reads what `reader` has not read yet; `published` has the state before.
+    /// Reads what `reader` has not read yet; `publisher` has the state before.
     pub(crate) fn new(
         reader: StateReader,
-        published: watch::Receiver<RobotState>,
+        publisher: &Arc<watch::Sender<RobotState>>,
         audience: Audience,
     ) -> Self {
         Self {
             reader,
-            published,
+            published: publisher.subscribe(),
+            publisher: Arc::downgrade(publisher),
             audience,
         }
     }
@@ -39,11 +55,14 @@ impl Newest {
         newest.unwrap_or_else(|| *self.published.borrow())
     }
 
-    /// The newest state as it changes from now on.
+    /// The newest state, and as it changes from now on.
     pub(crate) fn changes(&self) -> watch::Receiver<RobotState> {
         let mut states = self.published.clone();
         self.audience.enter();
-        // What was published without an audience is no change: it may be some states old.
+        // What was published without an audience may be some states old.
+        if let Some(publisher) = self.publisher.upgrade() {
+            publish(&publisher, self.state());
+        }
         states.mark_unchanged();
         states
     }

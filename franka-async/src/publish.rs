@@ -9,6 +9,8 @@ use franka_rt::driver::Record;
 use franka_rt::thread::{StateReader, StateSequence};
 use tokio::sync::{broadcast, watch};
 
+use crate::newest;
+
 /// Records and states that a slow listener may lag behind before it misses some: two seconds and one.
 const RECORDS: usize = 2048;
 const STATES: usize = 1024;
@@ -40,7 +42,7 @@ struct Silent {
 }
 
 struct Listeners {
-    newest: watch::Sender<RobotState>,
+    newest: Arc<watch::Sender<RobotState>>,
     /// How many of the receivers of the newest are ours, and wait for none.
     own: usize,
     updates: broadcast::Sender<Update>,
@@ -63,7 +65,7 @@ impl Publisher {
         sequence: StateSequence,
         ring: rtrb::Consumer<Record>,
         audience: Audience,
-        states: watch::Sender<RobotState>,
+        states: Arc<watch::Sender<RobotState>>,
     ) -> Self {
         Self {
             newest,
@@ -120,7 +122,7 @@ impl Publisher {
     /// Passes on the newest state only. While nobody listens, the one that was passed on last may be some states old.
     pub(crate) fn refresh(&mut self) {
         if let Some(state) = self.newest.newest() {
-            self.listeners.newest.send_replace(state);
+            newest::publish(&self.listeners.newest, state);
         }
     }
 

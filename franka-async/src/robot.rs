@@ -85,10 +85,11 @@ impl Robot {
     /// The newest state as it changes, in motion or not. Closes when the connection does. For every state, see
     /// [`Self::state_stream`] and [`Self::read`].
     ///
-    /// Until the first change it may hold a state some milliseconds old: for one at once, see [`Self::state`]. As long as
-    /// anybody has one of these, a task is woken for every state; drop it when it is not needed.
+    /// It begins with the newest state of now, which is no change. As long as anybody has one of these, a task is woken for
+    /// every state; drop it when it is not needed.
     ///
-    /// Do not hold its borrow for long: the task that publishes states waits for it. Control does not.
+    /// Do not hold its borrow for long: the task that publishes states waits for it. Control does not. Nor call this while
+    /// holding one: it waits too, for the same reason.
     pub fn states(&self) -> watch::Receiver<RobotState> {
         self.shared.newest.changes()
     }

@@ -135,16 +135,18 @@ async fn a_slow_reader_is_told_how_many_states_it_missed() {
 
 /// While nobody waits for states, what was published last may be fifty of them old.
 #[tokio::test(flavor = "multi_thread")]
-async fn the_first_change_is_no_older_than_the_wish_to_hear_of_it() {
+async fn a_watch_begins_with_the_newest_state_and_changes_to_newer_ones() {
     let _alone = alone();
     let (robot, _sim) = patient().await;
     for pause in (100..150).step_by(7) {
         sleep(Duration::from_millis(pause)).await;
         let now = robot.state().message_id;
         let mut states = robot.states();
+        let first = states.borrow().message_id;
+        assert!(first >= now, "{first} after {now}");
         states.changed().await.expect("states come");
-        let heard = states.borrow().message_id;
-        assert!(heard >= now, "{heard} after {now}");
+        let second = states.borrow().message_id;
+        assert!(second > first, "{second} after {first}");
     }
     robot.shutdown().await;
 }
