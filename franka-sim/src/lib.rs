@@ -13,6 +13,7 @@
 //! | [`robot`] | the robot as a value, without clock and sockets: what tests in virtual time drive |
 //! | [`end_effector`] | the Franka Hand and the vacuum gripper as values, with servers of their own |
 //! | [`plant`] | the physics of the arm |
+//! | [`network`] | what is between a robot and its client, as a value: loss, delay, stalls |
 //! | [`config`] | what a robot is like: pose, tool, load, noise, strictness |
 //!
 //! The binary `franka-sim` is [`serve`] with a command line, for clients in any language.
@@ -68,6 +69,7 @@ mod filter;
 mod generator;
 mod kind;
 mod law;
+pub mod network;
 mod noise;
 mod observer;
 pub mod plant;
@@ -80,5 +82,6 @@ mod urdf;
 
 pub use config::{Config, Noise, Tool, Unpublished};
 pub use end_effector::{Fingers, Hand, Suction, VacuumGripper};
+pub use network::Network;
 pub use robot::{Datagram, Robot, SessionError, Touch, TouchId};
 pub use serve::{Pace, Running, Service, Sim, Stopped};

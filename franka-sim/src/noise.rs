@@ -1,9 +1,9 @@
-//! Sensor noise from a seed.
+//! Randomness from a seed.
 
 use franka_model::JointVector;
 
-/// A small generator of normally distributed numbers: SplitMix64 (Steele, Lea and Flood, 2014) and
-/// the Box-Muller transform.
+/// A small generator of numbers: SplitMix64 (Steele, Lea and Flood, 2014), and the Box-Muller transform for
+/// those that are normally distributed.
 #[derive(Debug, Clone)]
 pub(crate) struct Random {
     state: u64,
@@ -30,13 +30,17 @@ impl Random {
     }
 
     /// In [0, 1).
-    fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Any number.
+    pub(crate) fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.state;
         z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        (z >> 11) as f64 / (1_u64 << 53) as f64
+        z ^ z >> 31
     }
 }
 

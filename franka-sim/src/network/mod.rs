@@ -1,0 +1,81 @@
+//! The network between client and robot, as a value.
+//!
+//! ```text
+//!  send(now, datagram)                                                        take(now)
+//!  ──────> jitter ──> line ──────────> loss, cuts ──> duplication ──> delay ──────────>
+//!                     (rate, stalls)   (per packet)                   (reordering)
+//! ```
+//!
+//! Datagrams and the time go in; what arrives comes out. A [`Network`] has no clock, no socket and no
+//! randomness but its seed's: the same datagrams at the same times always arrive the same way. Its two
+//! directions are [`Path`]s of their own, each under its own [`Conditions`].
+//!
+//! Time is that of the caller, counted from any moment, and must not run backwards. The server feeds a
+//! network from its sockets ([`Sim::network`](crate::Sim::network)); tests feed it in virtual time.
+//!
+//! It is a model of datagrams only. The command connection (TCP) repairs what a network does to it, and
+//! passes by.
+
+mod conditions;
+mod line;
+mod loss;
+mod path;
+
+pub use conditions::{BurstLoss, Conditions, Loss, Reordering, Stalls};
+pub use path::{Delivery, Path, Tally};
+
+/// The way to the client and the way to the robot.
+///
+/// ```
+/// use std::time::Duration;
+/// use franka_sim::network::{Conditions, Network};
+///
+/// let slow = Conditions {
+///     delay: Duration::from_micros(300),
+///     ..Conditions::default()
+/// };
+/// let mut network = Network::new(7, slow, Conditions::default());
+/// network.to_client.send(Duration::from_millis(1), b"a state");
+/// assert!(network.to_client.take(Duration::from_millis(1)).is_none());
+/// let delivery = network.to_client.take(Duration::from_millis(2)).expect("it has arrived");
+/// assert_eq!(delivery.at, Duration::from_micros(1300));
+/// ```
+#[derive(Debug, Clone)]
+pub struct Network {
+    /// States.
+    pub to_client: Path,
+    /// Commands.
+    pub to_robot: Path,
+}
+
+impl Network {
+    /// A network under these conditions. All its randomness is that of `seed`.
+    pub fn new(seed: u64, to_client: Conditions, to_robot: Conditions) -> Self {
+        Self {
+            to_client: Path::new(to_client, seed),
+            to_robot: Path::new(to_robot, !seed),
+        }
+    }
+
+    /// One that everything passes at once.
+    pub fn perfect() -> Self {
+        Self::new(0, Conditions::default(), Conditions::default())
+    }
+
+    /// An FER on a cable of its own: what it sends waits out the stalls of its network interface
+    /// ([`Stalls::FER`]); what it is sent does not.
+    pub fn fer(seed: u64) -> Self {
+        let cable = Conditions::cable();
+        let stalling = Conditions {
+            stalls: Some(Stalls::FER),
+            ..cable
+        };
+        Self::new(seed, stalling, cable)
+    }
+
+    /// Forgets what is under way, as when the client changes.
+    pub fn clear(&mut self) {
+        self.to_client.clear();
+        self.to_robot.clear();
+    }
+}

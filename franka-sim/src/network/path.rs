@@ -1,0 +1,206 @@
+//! One direction of a network.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+use std::ops::Range;
+use std::time::Duration;
+
+use super::conditions::Conditions;
+use super::line::Line;
+use super::loss::Losses;
+use crate::noise::Random;
+
+/// What carries datagrams one way.
+///
+/// [`send`](Self::send) is the input, [`take`](Self::take) the output; [`next_arrival`](Self::next_arrival) says when there
+/// will be one. [`cut`](Self::cut) and [`drop_next`](Self::drop_next) are for whoever wants a certain fault and not a likely one.
+#[derive(Debug, Clone)]
+pub struct Path {
+    conditions: Conditions,
+    line: Line,
+    losses: Losses,
+    /// Of jitter, duplication and reordering.
+    random: Random,
+    cuts: Vec<Range<Duration>>,
+    drop_next: u64,
+    under_way: BinaryHeap<Reverse<UnderWay>>,
+    tally: Tally,
+}
+
+/// A datagram that has arrived.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Delivery {
+    /// When.
+    pub at: Duration,
+    /// What was sent.
+    pub datagram: Vec<u8>,
+}
+
+/// What has become of the datagrams of a [`Path`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Tally {
+    /// All of them.
+    pub sent: u64,
+    /// Those that do not arrive.
+    pub lost: u64,
+    /// Those among them of which some packets arrive and others do not. A host throws such pieces away, so
+    /// that programs see what they see of any loss: nothing.
+    pub halved: u64,
+}
+
+impl Path {
+    /// A path under these conditions. All its randomness is that of `seed`.
+    pub fn new(conditions: Conditions, seed: u64) -> Self {
+        // Streams of their own: whether there is loss does not move the stalls.
+        let mut seeds = Random::new(seed);
+        Self {
+            line: Line::new(&conditions, seeds.bits()),
+            losses: Losses::new(conditions.loss, seeds.bits()),
+            random: Random::new(seeds.bits()),
+            conditions,
+            cuts: Vec::new(),
+            drop_next: 0,
+            under_way: BinaryHeap::new(),
+            tally: Tally::default(),
+        }
+    }
+
+    /// What happens to datagrams.
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
+    }
+
+    /// What has happened to them.
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// Loses whatever leaves within `time`, its end excluded. Cuts add up.
+    pub fn cut(&mut self, time: Range<Duration>) {
+        self.cuts.push(time);
+    }
+
+    /// Loses the next `count` datagrams, instead of what was left of an earlier count.
+    pub fn drop_next(&mut self, count: u64) {
+        self.drop_next = count;
+    }
+
+    /// Sends a datagram at `now`, which is not before the last one was sent.
+    pub fn send(&mut self, now: Duration, datagram: &[u8]) {
+        self.tally.sent += 1;
+        let ready = match self.conditions.jitter {
+            Duration::ZERO => now,
+            jitter => now + jitter.mul_f64(self.random.uniform()),
+        };
+        let packets = packets(datagram.len());
+        let left = self.line.carry(ready, on_the_wire(datagram.len()));
+        // Every packet, also when one is lost already: bursts go on.
+        let lost = (0..packets).filter(|_| self.losses.lose()).count();
+        self.cuts.retain(|cut| left < cut.end);
+        let cut = self.cuts.iter().any(|cut| cut.contains(&left));
+        let dropped = self.drop_next > 0;
+        self.drop_next = self.drop_next.saturating_sub(1);
+        if cut || dropped || lost > 0 {
+            self.tally.lost += 1;
+            self.tally.halved += u64::from(!cut && !dropped && lost < packets);
+            return;
+        }
+        let Conditions {
+            delay,
+            reordering,
+            duplication,
+            ..
+        } = self.conditions;
+        let mut at = left + delay;
+        if self.happens(reordering.probability) {
+            at += reordering.delay;
+        }
+        let copies = 1 + usize::from(self.happens(duplication));
+        for _ in 0..copies {
+            self.under_way.push(Reverse(UnderWay {
+                at,
+                number: self.tally.sent,
+                datagram: datagram.to_vec(),
+            }));
+        }
+    }
+
+    /// The first datagram of those that have arrived by `now`.
+    pub fn take(&mut self, now: Duration) -> Option<Delivery> {
+        if self.next_arrival()? > now {
+            return None;
+        }
+        let Reverse(UnderWay { at, datagram, .. }) = self.under_way.pop()?;
+        Some(Delivery { at, datagram })
+    }
+
+    /// When the next of the datagrams arrives that are under way.
+    pub fn next_arrival(&self) -> Option<Duration> {
+        self.under_way.peek().map(|Reverse(first)| first.at)
+    }
+
+    /// Forgets what is under way.
+    pub fn clear(&mut self) {
+        self.under_way.clear();
+    }
+
+    fn happens(&mut self, probability: f64) -> bool {
+        probability > 0.0 && self.random.uniform() < probability
+    }
+}
+
+/// Ordered by arrival, and then as sent.
+#[derive(Debug, Clone)]
+struct UnderWay {
+    at: Duration,
+    number: u64,
+    datagram: Vec<u8>,
+}
+
+impl UnderWay {
+    fn key(&self) -> (Duration, u64) {
+        (self.at, self.number)
+    }
+}
+
+impl Ord for UnderWay {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.key().cmp(&other.key())
+    }
+}
+
+impl PartialOrd for UnderWay {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for UnderWay {
+    fn eq(&self, other: &Self) -> bool {
+        self.key() == other.key()
+    }
+}
+
+impl Eq for UnderWay {}
+
+/// IPv4 packets that a datagram of so many bytes becomes: a protocol 5 state two, all others one.
+const fn packets(bytes: usize) -> usize {
+    (UDP_HEADER + bytes).div_ceil(MTU - IP_HEADER)
+}
+
+/// Bytes that they take on Ethernet.
+const fn on_the_wire(bytes: usize) -> usize {
+    UDP_HEADER + bytes + packets(bytes) * (IP_HEADER + ETHERNET)
+}
+
+/// Largest IP packet on Ethernet, `[byte]`.
+const MTU: usize = 1500;
+/// Without options (RFC 791), `[byte]`.
+const IP_HEADER: usize = 20;
+/// RFC 768, `[byte]`.
+const UDP_HEADER: usize = 8;
+/// Preamble, header, checksum and gap of a frame (IEEE 802.3), `[byte]`.
+const ETHERNET: usize = 8 + 14 + 4 + 12;
+
+#[cfg(test)]
+mod tests;
