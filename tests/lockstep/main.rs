@@ -8,6 +8,7 @@ mod random_targets;
 mod reflex_log;
 mod schedules;
 mod silence;
+mod stalls;
 mod taking_over;
 mod telemetry;
 mod together;

@@ -28,6 +28,10 @@ pub struct Client {
     step: u64,
     /// The time, from any fixed moment.
     pub now: Duration,
+    /// How long it takes from a state to its answer, and to being ready for the next state.
+    pub turnaround: Duration,
+    /// When it has answered the newest state.
+    pub(super) free: Duration,
     session: Session,
     motions: HashMap<CommandId, MotionId>,
     to_robot: VecDeque<Vec<u8>>,
@@ -48,6 +52,8 @@ impl Client {
             state: RobotState::default(),
             step: 0,
             now: Duration::ZERO,
+            turnaround: Duration::ZERO,
+            free: Duration::ZERO,
             session: Session::new(version),
             motions: HashMap::new(),
             to_robot: VecDeque::new(),

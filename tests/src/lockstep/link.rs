@@ -1,18 +1,15 @@
-//! What the network loses: from a seed, or what it is told to.
+//! What is between client and robot: the simulator's network, and what only a test can want of it.
 
-use rand::rngs::SmallRng;
-use rand::{Rng, SeedableRng};
+use std::time::Duration;
 
-/// A link that loses datagrams in either direction.
+use franka_sim::Network;
+use franka_sim::network::{Conditions, Loss};
+
+/// Between client and robot: datagrams pass a [`Network`], messages arrive or do not.
 #[derive(Clone, Debug)]
 pub struct Link {
-    random: SmallRng,
-    /// Probability that a state is lost.
-    pub state_loss: f64,
-    /// Probability that a command is lost.
-    pub command_loss: f64,
-    /// Datagrams that are lost next, whatever the probabilities say: states, commands.
-    drop_next: (u64, u64),
+    /// The network that states and commands pass.
+    pub network: Network,
     /// Finishing commands that are lost next.
     drop_finishing: u64,
     /// Whether requests reach the robot. While they do not, they are lost.
@@ -21,19 +18,32 @@ pub struct Link {
     pub replies: bool,
 }
 
+/// A state that the client takes from its socket.
+pub(super) struct Reception {
+    /// When it does.
+    pub(super) at: Duration,
+    pub(super) datagram: Vec<u8>,
+    /// Others that were there, and are older than this one.
+    pub(super) skipped: u64,
+}
+
 impl Link {
     /// Loses nothing.
     pub fn perfect() -> Self {
-        Self::lossy(0, 0.0, 0.0)
+        Self::over(Network::perfect())
     }
 
     /// Loses states and commands with these probabilities.
     pub fn lossy(seed: u64, state_loss: f64, command_loss: f64) -> Self {
+        let [states, commands] = [state_loss, command_loss]
+            .map(|loss| Conditions::default().with_loss(Loss::Independent(loss)));
+        Self::over(Network::new(seed, states, commands))
+    }
+
+    /// This network. Its time is that of [`Lockstep::now`](super::Lockstep::now).
+    pub fn over(network: Network) -> Self {
         Self {
-            random: SmallRng::seed_from_u64(seed),
-            state_loss,
-            command_loss,
-            drop_next: (0, 0),
+            network,
             drop_finishing: 0,
             requests: true,
             replies: true,
@@ -42,12 +52,12 @@ impl Link {
 
     /// Loses the next `count` states.
     pub fn drop_states(&mut self, count: u64) {
-        self.drop_next.0 = count;
+        self.network.to_client.drop_next(count);
     }
 
     /// Loses the next `count` commands.
     pub fn drop_commands(&mut self, count: u64) {
-        self.drop_next.1 = count;
+        self.network.to_robot.drop_next(count);
     }
 
     /// Loses the next `count` commands that end a motion.
@@ -55,22 +65,58 @@ impl Link {
         self.drop_finishing = count;
     }
 
-    pub(super) fn passes_state(&mut self) -> bool {
-        let lost = self.random.random_bool(self.state_loss);
-        let dropped = take_one(&mut self.drop_next.0);
-        !(lost || dropped)
+    /// What a client takes that reads when something is there, from `free` on and before `end`: the newest of the states
+    /// that have come, if it is newer than `last`.
+    pub(super) fn receive(
+        &mut self,
+        free: Duration,
+        end: Duration,
+        last: u64,
+    ) -> Option<Reception> {
+        let states = &mut self.network.to_client;
+        while let Some(arrival) = states.next_arrival() {
+            let at = arrival.max(free);
+            if at >= end {
+                return None;
+            }
+            let mut newest = (last, None);
+            let mut fresh = 0;
+            while let Some(delivery) = states.take(at) {
+                let id = message_id(&delivery.datagram);
+                fresh += u64::from(id > last);
+                if id > newest.0 {
+                    newest = (id, Some(delivery.datagram));
+                }
+            }
+            if let (_, Some(datagram)) = newest {
+                return Some(Reception {
+                    at,
+                    datagram,
+                    skipped: fresh - 1,
+                });
+            }
+        }
+        None
     }
 
-    pub(super) fn passes_command(&mut self, finishing: bool) -> bool {
-        let lost = self.random.random_bool(self.command_loss);
-        let dropped = take_one(&mut self.drop_next.1);
-        let last = finishing && take_one(&mut self.drop_finishing);
-        !(lost || dropped || last)
+    /// Sends a command.
+    pub(super) fn send(&mut self, now: Duration, command: &[u8], finishing: bool) {
+        if finishing && self.drop_finishing > 0 {
+            self.drop_finishing -= 1;
+        } else {
+            self.network.to_robot.send(now, command);
+        }
+    }
+
+    /// The next command that has arrived before `end`.
+    pub(super) fn command(&mut self, end: Duration) -> Option<Vec<u8>> {
+        let commands = &mut self.network.to_robot;
+        let is_there = commands.next_arrival().is_some_and(|at| at < end);
+        is_there.then(|| commands.take(end))?.map(|it| it.datagram)
     }
 }
 
-fn take_one(count: &mut u64) -> bool {
-    let some = *count > 0;
-    *count = count.saturating_sub(1);
-    some
+/// The first field of a state, in either version.
+fn message_id(state: &[u8]) -> u64 {
+    u64::from_le_bytes(*state.first_chunk().expect("a state has a number"))
 }

@@ -8,8 +8,9 @@
 //!   '---------------- Client ----------------'
 //! ```
 //!
-//! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`] that loses what its seed
-//! says. One call of [`Lockstep::tick`] is one millisecond. Whatever a test does, every command of target control that leaves
+//! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`]: datagrams the simulator's
+//! network, which delays and loses what its seed says. One call of [`Lockstep::tick`] is one millisecond, from one cycle of
+//! the robot to the next; within it, datagrams arrive when they arrive. Whatever a test does, every command of target control that leaves
 //! the driver is held against the robot's limits. The [`Client`] half also runs beside robots that follow a script.
 
 mod client;
@@ -144,36 +145,71 @@ impl Lockstep {
                     .expect("the client's messages are well-formed");
             }
         }
-        let state = self.robot.tick().map(|datagram| datagram.bytes.to_vec());
+        let now = self.client.now;
+        if let Some(state) = self.robot.tick() {
+            self.link.network.to_client.send(now, state.bytes);
+        }
         let mut replies = Vec::new();
         while let Some(reply) = self.robot.take_reply() {
             replies.extend_from_slice(&reply);
         }
-        match state.filter(|_| self.link.passes_state()) {
-            Some(datagram) => {
-                self.heard = self.milliseconds;
-                let mut answer = None;
-                let mut command = [0; RobotCommand::MAX_SIZE];
-                around(Part::Answer, &mut || {
-                    answer = Some(self.client.answer(&datagram, &mut command));
-                });
-                let answer = answer.expect("the cycle has run");
-                around(Part::Aftermath, &mut || {
-                    self.client.conclude(answer.is_some());
-                });
-                if let Some(size) = answer {
-                    self.pass_command(&command[..size]);
-                }
-            }
-            None => {
-                let silence = Duration::from_millis(self.milliseconds - self.heard);
-                self.client.driver.on_silence(silence);
-            }
+        if !self.take_states(&mut around) {
+            let silence = Duration::from_millis(self.milliseconds - self.heard);
+            self.client.driver.on_silence(silence);
         }
+        self.deliver_commands();
         if self.link.replies {
             self.client.on_bytes(&replies);
         }
         self.client.settle();
+    }
+
+    /// Gives the client the states that come before the robot's next cycle. Returns whether any does.
+    fn take_states(&mut self, around: &mut impl FnMut(Part, &mut dyn FnMut())) -> bool {
+        let end = self.next_cycle();
+        let mut heard = false;
+        while let Some(reception) =
+            self.link
+                .receive(self.client.free, end, self.client.state.message_id)
+        {
+            if heard {
+                // What the state before has led to.
+                self.client.settle();
+            }
+            heard = true;
+            self.heard = self.milliseconds;
+            self.client.now = reception.at;
+            self.client.free = reception.at + self.client.turnaround;
+            if reception.skipped > 0 {
+                self.client.driver.on_skipped(reception.skipped);
+            }
+            let mut answer = None;
+            let mut command = [0; RobotCommand::MAX_SIZE];
+            around(Part::Answer, &mut || {
+                answer = Some(self.client.answer(&reception.datagram, &mut command));
+            });
+            let answer = answer.expect("the cycle has run");
+            around(Part::Aftermath, &mut || {
+                self.client.conclude(answer.is_some());
+            });
+            if let Some(size) = answer {
+                self.pass_command(&command[..size]);
+            }
+        }
+        heard
+    }
+
+    /// Gives the robot the commands that come before its next cycle.
+    fn deliver_commands(&mut self) {
+        let end = self.next_cycle();
+        while let Some(command) = self.link.command(end) {
+            self.robot.command(&command);
+        }
+    }
+
+    /// When the robot has its next one.
+    fn next_cycle(&self) -> Duration {
+        Duration::from_millis(self.milliseconds + 1)
     }
 
     /// So many milliseconds in which nothing arrives from a robot whose own time stands still.
@@ -204,6 +240,7 @@ impl Lockstep {
         let mut bytes = [0; RobotCommand::MAX_SIZE];
         let size = sent.encode(self.client.version(), &mut bytes);
         self.pass_command(&bytes[..size.expect("it fits")]);
+        self.deliver_commands();
         self.client.settle();
         Ok(())
     }
@@ -238,9 +275,8 @@ impl Lockstep {
             guard.check(&decoded, state, record, over_joints);
         }
         let finishing = decoded.motion_generation_finished || decoded.torque_command_finished;
-        if self.link.passes_command(finishing) {
-            self.robot.command(command);
-        }
+        let sent = self.client.now + self.client.turnaround;
+        self.link.send(sent, command, finishing);
     }
 
     /// So many milliseconds.

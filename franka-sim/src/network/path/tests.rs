@@ -190,6 +190,40 @@ fn a_stall_holds_datagrams_back_and_sends_them_all_at_the_rate_of_the_line() {
     }
 }
 
+/// What was measured on robots: see [`Stalls::FER`].
+#[test]
+fn the_silences_of_an_fer_are_those_measured() {
+    let conditions = Conditions {
+        stalls: Some(Stalls::FER),
+        ..CLEAR
+    };
+    let (mut count, mut longest) = (0, Duration::ZERO);
+    let runs = 20;
+    for seed in 0..runs {
+        let arrived = pass(&mut Path::new(conditions, seed), 30_000, STATES[0]);
+        let mut gaps: Vec<_> = arrived
+            .windows(2)
+            .map(|pair| pair[1].0 - pair[0].0)
+            .collect();
+        gaps.sort_unstable();
+        let middle = gaps[gaps.len() / 2];
+        assert!(
+            middle.abs_diff(ms(1)) < Duration::from_micros(5),
+            "{middle:?}"
+        );
+        count += gaps
+            .iter()
+            .filter(|&&gap| gap >= Duration::from_micros(1500))
+            .count();
+        longest += *gaps.last().expect("some");
+    }
+    let rate = count as f64 / (30.0 * runs as f64);
+    assert!((rate - 7.0).abs() < 0.4, "{rate} /s");
+    let longest = longest / runs as u32;
+    assert!(longest > Duration::from_micros(4800), "{longest:?}");
+    assert!(longest < Duration::from_micros(6900), "{longest:?}");
+}
+
 #[test]
 fn a_seed_repeats_itself_and_another_one_does_not() {
     let conditions = Conditions {

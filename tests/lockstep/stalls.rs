@@ -1,0 +1,134 @@
+//! What an FER's transmit stalls do to its client.
+//!
+//! Measured on robots, in 30 s under control by a client that answers the newest state there is: some 28 of the 30 000
+//! states gave way to a newer one, never two in a row, and the mean of `control_command_success_rate` was 0.986. These are
+//! the figures of libfranka's example `communication_test`, and are counted here as there: by the program, from the time
+//! that it is told has passed and the rate in each state.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use franka_model::RobotKind;
+use franka_proto::{MoveControllerMode, Version};
+use franka_rt::control::{Callback, Finish, Torques};
+use franka_rt::driver::Program;
+use franka_sim::Network;
+use franka_sim::network::Conditions;
+use franka_tests::lockstep::{Link, Lockstep};
+
+/// What a program notes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    /// Cycles of the robot, by the time that has passed.
+    cycles: u64,
+    calls: u64,
+    /// Most of the cycles without a call that followed each other.
+    row: u64,
+    rates: f64,
+}
+
+impl Tally {
+    fn lost(&self) -> u64 {
+        self.cycles - self.calls
+    }
+
+    fn rate(&self) -> f64 {
+        self.rates / self.calls as f64
+    }
+}
+
+/// Commands no torque to an FER for so many cycles, over `network`.
+fn communicate(network: Network, turnaround: Duration, cycles: u64) -> Tally {
+    let mut lockstep = Lockstep::ready_of(RobotKind::Fer);
+    lockstep.link = Link::over(network);
+    lockstep.client.turnaround = turnaround;
+    let tally = Arc::new(Mutex::new(Tally::default()));
+    let noted = Arc::clone(&tally);
+    let callback = Callback::torques(Version::V5, move |state, step| {
+        let mut tally = noted.lock().expect("no panic");
+        let passed = step.as_millis() as u64;
+        // The first call is told that no time has passed.
+        if passed > 0 {
+            tally.cycles += passed;
+            tally.calls += 1;
+            tally.row = tally.row.max(passed - 1);
+            tally.rates += state.control_command_success_rate;
+        }
+        Torques([0.0; 7]).finish_if(tally.cycles >= cycles)
+    });
+    let request = callback.request(Version::V5, MoveControllerMode::JointImpedance);
+    let id = lockstep
+        .control(Program::Callback(Box::new(callback)), request)
+        .expect("nothing else runs");
+    let outcome = lockstep.until_resolved(id, cycles + 1000);
+    outcome.expect("the robot bridges such gaps");
+    *tally.lock().expect("no panic")
+}
+
+/// A measurement, `[ms]`.
+const RUN: u64 = 30_000;
+
+/// Measurements: one seed each.
+const RUNS: u64 = 12;
+
+/// What the client of the measurement takes from a state to being ready for the next. It has not been published. Below 20 us,
+/// which a state takes on the line, every state of a burst is answered; from 40 us on, two in a row give way to a newer one.
+const TURNAROUND: Duration = Duration::from_micros(35);
+
+fn measure(turnaround: Duration, runs: u64) -> Vec<Tally> {
+    let run = |seed| {
+        let tally = communicate(Network::fer(seed), turnaround, RUN);
+        let (lost, rate) = (tally.lost(), tally.rate());
+        println!("{turnaround:?}, seed {seed}: {lost} lost, rate {rate:.4}");
+        tally
+    };
+    (0..runs).map(run).collect()
+}
+
+fn mean(runs: &[Tally], figure: impl Fn(&Tally) -> f64) -> f64 {
+    runs.iter().map(figure).sum::<f64>() / runs.len() as f64
+}
+
+fn mean_rate(runs: &[Tally]) -> f64 {
+    mean(runs, Tally::rate)
+}
+
+fn mean_loss(runs: &[Tally]) -> f64 {
+    mean(runs, |tally| tally.lost() as f64)
+}
+
+/// Between runs, as between measurements, the losses deviate by some 5, since few stalls are long enough for one, and the
+/// rate by 0.001. A run is allowed three to four times that, the mean of all less.
+#[test]
+fn the_figures_measured_on_fers_come_out_of_the_stalls() {
+    let runs = measure(TURNAROUND, RUNS);
+    println!("{} lost, rate {:.4}", mean_loss(&runs), mean_rate(&runs));
+    for tally in &runs {
+        assert!(tally.lost().abs_diff(28) <= 20, "{tally:?}");
+        assert_eq!(tally.row, 1, "{tally:?}");
+        assert!((tally.rate() - 0.986).abs() < 0.004, "{tally:?}");
+    }
+    let (lost, rate) = (mean_loss(&runs), mean_rate(&runs));
+    assert!((lost - 28.0).abs() < 6.0, "{lost}");
+    assert!((rate - 0.986).abs() < 0.002, "{rate}");
+}
+
+/// What a client answers in time is up to the robot; how many states of a burst it sees, up to the client.
+#[test]
+fn a_faster_client_loses_no_state_and_is_as_late_with_its_answers() {
+    let [fast, measured, slow] =
+        [10, 35, 120].map(|us| measure(Duration::from_micros(us), RUNS / 4));
+    assert_eq!(mean_loss(&fast), 0.0);
+    assert!((mean_rate(&fast) - mean_rate(&measured)).abs() < 5e-4);
+    // It misses all but the first and the last of a burst, or nearly.
+    assert!(mean_loss(&slow) > 3.0 * mean_loss(&measured));
+    assert!(slow.iter().all(|tally| tally.row > 1));
+    assert!((mean_rate(&slow) - mean_rate(&measured)).abs() < 2e-3);
+}
+
+#[test]
+fn on_the_same_cable_without_stalls_nothing_is_late() {
+    let cable = Conditions::cable();
+    let tally = communicate(Network::new(1, cable, cable), TURNAROUND, 5000);
+    assert_eq!((tally.lost(), tally.rate()), (0, 1.0));
+}
