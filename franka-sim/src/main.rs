@@ -7,9 +7,10 @@ use std::process::ExitCode;
 
 use clap::{ArgAction, Parser, ValueEnum};
 use franka_model::{JointVector, Load, RobotKind};
+use franka_sim::network::{BurstLoss, Conditions, Loss};
 #[cfg(feature = "mujoco")]
 use franka_sim::plant::{MujocoArm, Scene};
-use franka_sim::{Config, Fingers, Noise, Sim, Suction, Tool};
+use franka_sim::{Config, Fingers, Network, Noise, Sim, Suction, Tool};
 use nalgebra::{Matrix3, Vector3};
 use tokio::signal::unix::{SignalKind, signal};
 
@@ -81,6 +82,10 @@ struct Arguments {
     #[arg(long, value_name = "FILE.xml")]
     scene: Option<PathBuf>,
 
+    /// What happens to states and commands on their way, besides what the network between the hosts does.
+    #[arg(long, value_enum, default_value_t = NetworkKind::Perfect)]
+    network: NetworkKind,
+
     /// Seed of all randomness.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -119,6 +124,7 @@ Examples:
                                                 a Panda with its hand, and something to grasp
   franka-sim --payload 0.5 --noise --seed 7     half a kilogram that no client has declared, and sensors
                                                 that are not perfect, the same way every time
+  franka-sim --robot fer --network fer-stalls   a Panda that sends its states as late as a Panda does
   franka-sim --enforce-comm-constraints=false   for a client in a debugger
   franka-sim --port 0                           on free ports, which it prints";
 
@@ -138,6 +144,34 @@ enum PlantKind {
     Rigid,
     /// MuJoCo: contact, objects, fingers
     Mujoco,
+}
+
+/// Networks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum NetworkKind {
+    /// Nothing
+    Perfect,
+    /// The robot's network interface stalls for 2 to 7 ms seven times a second, as an FER's does
+    FerStalls,
+    /// One packet in a hundred is lost, in either direction
+    Lossy,
+    /// The same number is lost, eight in a row in the mean
+    Bursts,
+}
+
+impl NetworkKind {
+    fn network(self, seed: u64) -> Option<Network> {
+        let losing = |loss| {
+            let conditions = Conditions::default().with_loss(loss);
+            Some(Network::new(seed, conditions, conditions))
+        };
+        match self {
+            Self::Perfect => None,
+            Self::FerStalls => Some(Network::fer(seed)),
+            Self::Lossy => losing(Loss::Independent(0.01)),
+            Self::Bursts => losing(Loss::Bursts(BurstLoss::of(0.01, 8.0))),
+        }
+    }
 }
 
 impl From<Kind> for RobotKind {
@@ -183,6 +217,10 @@ impl Arguments {
         let sim = Sim::new(self.config())
             .bind(SocketAddr::new(self.bind, self.port))
             .realtime(self.realtime);
+        let sim = match self.network.network(self.seed) {
+            Some(network) => sim.network(network),
+            None => sim,
+        };
         let sim = self.with_plant(sim)?;
         if self.no_gripper {
             return Ok(sim);
@@ -366,6 +404,27 @@ mod tests {
     }
 
     #[test]
+    fn every_network_but_the_perfect_one_does_something() {
+        let network = |kind: &str| {
+            let arguments = parse(&["--network", kind]).expect("valid");
+            arguments.network.network(arguments.seed)
+        };
+        assert!(network("perfect").is_none());
+        for kind in ["fer-stalls", "lossy", "bursts"] {
+            let mut network = network(kind).expect("one");
+            let perfect = Conditions::default();
+            assert_ne!(*network.to_client.conditions(), perfect, "{kind}");
+            let ms = std::time::Duration::from_millis;
+            let mut late = 0;
+            for n in 1..3000 {
+                network.to_client.send(ms(n), &[0; 100]);
+                late += i32::from(network.to_client.take(ms(n + 1)).is_none());
+            }
+            assert!(late > 0, "{kind}");
+        }
+    }
+
+    #[test]
     fn a_plant_that_cannot_be_says_why() {
         let why = |arguments: &[&str]| parse(arguments).expect("valid").sim().map(drop);
         let error = why(&["--scene", "table.xml"]).expect_err("nothing is around a rigid arm");
@@ -399,6 +458,7 @@ mod tests {
             ["--enforce-motion-limits", "maybe"],
             ["--gripper-object-width", "0.09"],
             ["--gripper-object-width", "nan"],
+            ["--network", "carrier-pigeon"],
         ] {
             assert!(parse(&wrong).is_err(), "{wrong:?}");
         }

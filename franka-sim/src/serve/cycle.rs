@@ -42,7 +42,7 @@ impl Cycle {
         let mut pace = Pace::default();
         let mut deadline = Instant::now() + PERIOD;
         loop {
-            std::thread::sleep(deadline.saturating_duration_since(Instant::now()));
+            self.wait(deadline);
             let late = deadline.elapsed().as_micros() / PERIOD.as_micros();
             let due = 1 + u32::try_from(late).unwrap_or(u32::MAX - 1);
             for n in 0..due.min(Pace::BURST) {
@@ -54,6 +54,20 @@ impl Cycle {
             }
             pace.skipped += u64::from(due.saturating_sub(Pace::BURST));
             deadline += PERIOD * due;
+        }
+    }
+
+    /// Sleeps, and relays what passes a network meanwhile.
+    fn wait(&mut self, deadline: Instant) {
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            match self.robot.pause() {
+                Some(pause) if !left.is_zero() => {
+                    std::thread::sleep(pause.min(left));
+                    self.robot.relay();
+                }
+                _ => return std::thread::sleep(left),
+            }
         }
     }
 

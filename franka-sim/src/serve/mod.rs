@@ -9,6 +9,7 @@
 //! runtime delays requests and replies, and no state. A hand and a vacuum gripper have listeners,
 //! queues and sockets of their own and share thread and clock.
 
+mod between;
 mod cycle;
 mod device;
 mod hands;
@@ -32,6 +33,7 @@ use tokio::sync::watch;
 
 use crate::config::{Config, Noise, Tool, Unpublished};
 use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
+use crate::network::Network;
 use crate::plant::Plant;
 use crate::robot::Robot;
 use cycle::Cycle;
@@ -56,6 +58,8 @@ pub struct Sim {
     hand: Option<(Fingers, u16)>,
     vacuum_gripper: Option<(Suction, u16)>,
     realtime: bool,
+    /// The host's alone if there is none.
+    network: Option<Network>,
 }
 
 impl Sim {
@@ -81,6 +85,7 @@ impl Sim {
             hand: None,
             vacuum_gripper: None,
             realtime: false,
+            network: None,
         }
     }
 
@@ -178,6 +183,17 @@ impl Sim {
         self
     }
 
+    /// Lets states and commands pass this network, besides that between the sockets. Its time begins with the
+    /// robot's start.
+    ///
+    /// Datagrams are up to 0.2 ms later than the network has it, by what sleeping on the host is worth; the
+    /// thread then looks after them ten times a millisecond. The command connection is not affected, nor is that
+    /// of a hand.
+    pub fn network(mut self, network: Network) -> Self {
+        self.network = Some(network);
+        self
+    }
+
     /// See [`Config::urdf`].
     pub fn urdf(mut self, text: impl Into<String>) -> Self {
         self.config.urdf = Some(text.into());
@@ -225,7 +241,7 @@ impl Sim {
             None => (None, None),
         };
         let cycle = Cycle {
-            robot: seat,
+            robot: seat.behind(self.network),
             hand: hand_seat,
             vacuum: vacuum_seat,
         };

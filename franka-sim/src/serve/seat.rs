@@ -1,13 +1,16 @@
 //! A device on its sockets, one client at a time.
 
 use std::net::{SocketAddr, UdpSocket};
+use std::time::Duration;
 
 use bytes::Bytes;
 use franka_proto::{RobotCommand, server};
 use tokio::sync::mpsc;
 
+use super::between::Between;
 use super::cycle::Pace;
 use super::device::Device;
+use crate::network::Network;
 
 /// Something to do with a device between two milliseconds.
 pub(super) type Hands<D> = Box<dyn FnOnce(&mut D, Pace) + Send>;
@@ -36,13 +39,14 @@ const ORDERS: usize = 32;
 pub(super) const REPLIES: usize = 2 * ANSWERS;
 const ANSWERS: usize = 1 + <server::Session>::PENDING_LIMIT;
 
-/// Device, UDP socket and the queues.
+/// Device, UDP socket and the queues; and the network, if it is not the host's alone.
 pub(super) struct Seat<D> {
     device: D,
     socket: UdpSocket,
     orders: mpsc::Receiver<Order>,
     hands: mpsc::Receiver<Hands<D>>,
     client: Option<(SocketAddr, mpsc::Sender<Bytes>)>,
+    between: Option<Between>,
 }
 
 impl<D: Device> Seat<D> {
@@ -58,7 +62,14 @@ impl<D: Device> Seat<D> {
             orders,
             hands,
             client: None,
+            between: None,
         }
+    }
+
+    /// With this network between socket and device.
+    pub(super) fn behind(mut self, network: Option<Network>) -> Self {
+        self.between = network.map(Between::new);
+        self
     }
 
     /// The device, between two milliseconds.
@@ -78,11 +89,31 @@ impl<D: Device> Seat<D> {
             // With the interface of a link-local peer.
             let mut listener = *peer;
             listener.set_port(datagram.port);
-            // A client that does not listen loses states; TCP tells when it has gone.
-            let _ = self.socket.send_to(datagram.bytes, listener);
+            match &mut self.between {
+                Some(between) => between.send_state(datagram.bytes, listener),
+                None => publish(&self.socket, datagram.bytes, listener),
+            }
         }
+        self.deliver_states();
         self.send_replies();
         true
+    }
+
+    /// Whether datagrams are to be [`relay`](Self::relay)ed, and how long not.
+    pub(super) fn pause(&self) -> Option<Duration> {
+        self.between.as_ref().map(Between::pause)
+    }
+
+    /// What the network does between two milliseconds.
+    pub(super) fn relay(&mut self) {
+        self.take_commands();
+        self.deliver_states();
+    }
+
+    fn deliver_states(&mut self) {
+        while let Some((state, listener)) = self.between.as_mut().and_then(Between::take_state) {
+            publish(&self.socket, &state, listener);
+        }
     }
 
     fn take_commands(&mut self) {
@@ -92,13 +123,19 @@ impl<D: Device> Seat<D> {
                 Ok((length, source)) => {
                     let known = self.client.as_ref().map(|(peer, _)| peer.ip());
                     if known == Some(source.ip()) {
-                        self.device.command(&buffer[..length]);
+                        match &mut self.between {
+                            Some(between) => between.send_command(&buffer[..length]),
+                            None => self.device.command(&buffer[..length]),
+                        }
                     }
                 }
                 // A client's closed port comes back as an error of this socket.
                 Err(error) if error.kind() == std::io::ErrorKind::ConnectionRefused => {}
                 Err(_) => break,
             }
+        }
+        while let Some(command) = self.between.as_mut().and_then(Between::take_command) {
+            self.device.command(&command);
         }
     }
 
@@ -109,7 +146,7 @@ impl<D: Device> Seat<D> {
             }
             match self.orders.try_recv() {
                 Ok(Order::Connect { peer, replies }) => {
-                    self.device.disconnect();
+                    self.disconnect();
                     self.device.connect();
                     self.client = Some((peer, replies));
                 }
@@ -118,13 +155,10 @@ impl<D: Device> Seat<D> {
                     self.send_replies();
                     if let Err(error) = result {
                         tracing::warn!(%error, "client of the {} disconnected", self.device.name());
-                        self.client = None;
+                        self.forget_client();
                     }
                 }
-                Ok(Order::Disconnect) => {
-                    self.device.disconnect();
-                    self.client = None;
-                }
+                Ok(Order::Disconnect) => self.disconnect(),
                 Err(_) => return,
             }
         }
@@ -161,9 +195,26 @@ impl<D: Device> Seat<D> {
             };
             if gone {
                 // It has gone: without the sender the connection closes.
-                self.device.disconnect();
-                self.client = None;
+                self.disconnect();
             }
         }
     }
+
+    fn disconnect(&mut self) {
+        self.device.disconnect();
+        self.forget_client();
+    }
+
+    /// Forgets it, and what is on its way to it and from it.
+    fn forget_client(&mut self) {
+        self.client = None;
+        if let Some(between) = &mut self.between {
+            between.clear();
+        }
+    }
+}
+
+/// A client that does not listen loses states; TCP tells when it has gone.
+fn publish(socket: &UdpSocket, state: &[u8], listener: SocketAddr) {
+    let _ = socket.send_to(state, listener);
 }

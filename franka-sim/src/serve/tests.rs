@@ -6,6 +6,7 @@ use franka_proto::framing::next_message;
 use franka_proto::{Request, RobotError, RobotMode, RobotState, Version, client};
 
 use super::*;
+use crate::network::Conditions;
 use crate::robot::Touch;
 
 /// A plain blocking client.
@@ -212,6 +213,42 @@ fn a_simulation_that_dies_says_so_and_closes_its_port() {
         sim.stop().await;
         assert!(TcpStream::connect(address).is_err());
     });
+}
+
+#[test]
+fn what_clients_hear_passes_the_network() {
+    let runtime = runtime();
+    let delay = Duration::from_millis(30);
+    let late = Conditions {
+        delay,
+        ..Conditions::default()
+    };
+    let mut network = Network::new(1, late, Conditions::default());
+    let cut = Duration::from_secs(4);
+    network.to_client.cut(cut..Duration::MAX);
+    let start = Instant::now();
+    let sim = Sim::fr3().network(network);
+    let sim = runtime.block_on(sim.start()).expect("a robot");
+    let newest = || runtime.block_on(sim.state()).expect("running").message_id;
+    let client = Client::connect(sim.addr());
+    for _ in 0..20 {
+        let asked = Instant::now();
+        let published = newest();
+        // The state after that one is published after the question.
+        while client.state().message_id <= published {}
+        assert!(asked.elapsed() >= delay, "{:?}", asked.elapsed());
+    }
+    let before = newest();
+    drop(client);
+    // What was on its way to one client does not reach the next.
+    let next = Client::connect(sim.addr());
+    assert!(next.state().message_id > before);
+    let wait = Some(Duration::from_secs(1));
+    next.socket.set_read_timeout(wait).expect("a timeout");
+    while next.socket.recv(&mut []).is_ok() {
+        assert!(start.elapsed() < 5 * cut, "no cut");
+    }
+    assert!(start.elapsed() > cut);
 }
 
 #[test]
