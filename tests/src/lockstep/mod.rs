@@ -22,11 +22,11 @@ use std::collections::HashSet;
 use std::time::Duration;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
-use franka_proto::{MoveRequest, Request, RobotCommand};
+use franka_proto::{MoveRequest, Request, RobotCommand, RobotState};
 use franka_rt::control::{Callback, Command, WriteError};
 use franka_rt::driver::Program;
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{MotionError, MotionReport};
+use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport};
 use franka_rt::session::{Budget, Goal, GoalError, GoalId, Target, Then, Tolerance};
 use franka_rt::together::StartTicket;
 use franka_sim::{Config, Robot, Unpublished};
@@ -306,18 +306,7 @@ impl Lockstep {
     /// # Errors
     /// As the lifecycle.
     pub fn submit(&mut self, goal: Goal) -> Result<GoalId, MotionError> {
-        if !matches!(goal.target, Target::Pose(_)) {
-            self.joint_goals.insert(goal.id);
-        }
-        let Client {
-            lifecycle,
-            state,
-            now,
-            ..
-        } = &mut self.client;
-        let submitted = lifecycle.submit(goal, state, *now);
-        self.client.carry_out();
-        submitted.map(|()| goal.id)
+        self.submit_by(goal, Lifecycle::submit)
     }
 
     /// Submits a goal that begins together with those of other robots.
@@ -329,16 +318,21 @@ impl Lockstep {
         goal: Goal,
         ticket: StartTicket,
     ) -> Result<GoalId, MotionError> {
+        self.submit_by(goal, |lifecycle, goal, state, now| {
+            lifecycle.submit_together(goal, ticket, state, now)
+        })
+    }
+
+    fn submit_by(
+        &mut self,
+        goal: Goal,
+        submit: impl FnOnce(&mut Lifecycle, Goal, &RobotState, Duration) -> Result<(), MotionError>,
+    ) -> Result<GoalId, MotionError> {
         if !matches!(goal.target, Target::Pose(_)) {
             self.joint_goals.insert(goal.id);
         }
-        let Client {
-            lifecycle,
-            state,
-            now,
-            ..
-        } = &mut self.client;
-        let submitted = lifecycle.submit_together(goal, ticket, state, *now);
+        let client = &mut self.client;
+        let submitted = submit(&mut client.lifecycle, goal, &client.state, client.now);
         self.client.carry_out();
         submitted.map(|()| goal.id)
     }
