@@ -188,8 +188,8 @@ fn named_by_user(workspace: &Workspace) -> Option<&'static str> {
 
 /// Whether this is the value that the configuration in `root` gives.
 fn is_in(root: &Path, value: &OsStr) -> bool {
-    let same =
-        |own: &Path| own == root || fs::canonicalize(own).ok() == fs::canonicalize(root).ok();
+    let real = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let same = |own: &Path| real(own) == real(root);
     let path = Path::new(value);
     path.ends_with(Path::new(".mujoco").join(LIBRARIES))
         && path.ancestors().nth(2).is_some_and(same)
@@ -271,8 +271,11 @@ mod tests {
 
     #[test]
     fn the_configured_directory_is_not_the_users_own() {
-        let root = Path::new("/work");
-        assert!(is_in(root, "/work/.mujoco/by-cargo-xtask-mujoco".as_ref()));
+        let root = Path::new("/project");
+        assert!(is_in(
+            root,
+            "/project/.mujoco/by-cargo-xtask-mujoco".as_ref()
+        ));
         assert!(!is_in(
             root,
             "/home/someone/.mujoco/by-cargo-xtask-mujoco".as_ref()
