@@ -66,7 +66,9 @@ impl Histogram {
 
     /// The shortest one, exactly; `None` if there was none.
     pub fn min(&self) -> Option<Duration> {
-        (self.count() > 0).then(|| Duration::from_nanos(self.min.load(Ordering::Relaxed)))
+        // Not by the count, which a reader may see before the minimum.
+        let min = self.min.load(Ordering::Relaxed);
+        (min != u64::MAX).then(|| Duration::from_nanos(min))
     }
 
     /// The longest one, exactly; `None` if there was none.

@@ -1,0 +1,196 @@
+//! What comes in: states, datagrams that are none, and silence.
+
+use super::*;
+
+#[test]
+fn states_are_published_as_they_come() {
+    let (mut handle, robot) = start(config(), Driver::new(VERSION));
+    let mut late_reader = handle.states.clone();
+    let mut newest = 0;
+    let mut sent = 0;
+    // At least 300, and then until the last one has been seen: a host that stands still for long loses states.
+    wait_for("state that is the last one sent", || {
+        if let Some(state) = handle.states.newest() {
+            assert!(
+                state.message_id > newest,
+                "{} after {newest}",
+                state.message_id
+            );
+            assert_eq!(state.q, [state.message_id as f64; 7]);
+            newest = state.message_id;
+        }
+        if newest >= 300 && newest == sent {
+            return Some(());
+        }
+        sent += 1;
+        robot.send(sent);
+        None
+    });
+    assert_eq!(
+        late_reader.newest().map(|state| state.message_id),
+        Some(sent)
+    );
+    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+
+    handle.thread.join().expect("nothing panics");
+    let stats = &handle.stats;
+    assert_eq!(
+        stats.states.get() + stats.skipped.get() + stats.lost.get(),
+        sent
+    );
+    assert_eq!(stats.interval.count(), stats.states.get() - 1);
+    let times: Vec<u64> = std::iter::from_fn(|| handle.records.pop().ok())
+        .map(|record| record.time)
+        .collect();
+    assert!(
+        times.is_sorted() && times.last() == Some(&sent),
+        "{times:?}"
+    );
+    assert_eq!(
+        (times.len() as u64, stats.records_lost.get()),
+        (stats.states.get(), 0)
+    );
+}
+
+#[test]
+fn the_newest_of_a_burst_wins() {
+    let (socket, port) = socket();
+    let robot = Peer::new([127, 0, 0, 1], port);
+    // All of them wait in the kernel before there is a thread; 37 is prime to 50, so each id comes once.
+    for i in 0..50 {
+        robot.send(100 + i * 37 % 50);
+    }
+    let mut handle =
+        thread::spawn(config(), Driver::new(VERSION), socket, ROBOT, VERSION).expect("it starts");
+    let state = wait_for("state", || handle.states.newest());
+    assert_eq!(state.message_id, 149);
+    robot.send(153);
+    assert_eq!(wait_for("state", || handle.states.newest()).message_id, 153);
+    handle.thread.join().expect("nothing panics");
+    assert_eq!(handle.stats.states.get(), 2);
+    assert_eq!(handle.stats.skipped.get() + handle.stats.stale.get(), 49);
+    assert_eq!(handle.stats.lost.get(), 3);
+}
+
+#[test]
+fn datagrams_from_elsewhere_change_nothing() {
+    let (socket, port) = socket();
+    let robot = Peer::new([127, 0, 0, 1], port);
+    let stranger = Peer::new([127, 0, 0, 2], port);
+    stranger.send(9_000);
+    robot.send(5);
+    stranger.0.send(&[0xff; 3000]).expect("loopback");
+    let mut handle =
+        thread::spawn(config(), Driver::new(VERSION), socket, ROBOT, VERSION).expect("it starts");
+    assert_eq!(wait_for("state", || handle.states.newest()).message_id, 5);
+    stranger.send(9_001);
+    robot.send(6);
+    assert_eq!(wait_for("state", || handle.states.newest()).message_id, 6);
+    handle.thread.join().expect("nothing panics");
+    assert_eq!(handle.stats.foreign.get(), 3);
+    assert!(handle.notices.pop().is_err(), "there is nothing to report");
+}
+
+#[test]
+fn short_datagrams_are_reported_once_and_the_next_state_is_taken() {
+    let (mut handle, robot) = start(config(), Driver::new(VERSION));
+    let expected = state(1).len();
+    for _ in 0..20 {
+        robot.0.send(&state(1)[..expected - 1]).expect("loopback");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let notice = wait_for("notice", || handle.notices.pop().ok());
+    let Notice::Link(fault) = notice else {
+        panic!("{notice:?}")
+    };
+    assert_eq!(
+        fault,
+        LinkFault::Datagram(DecodeError::DatagramSize {
+            got: expected - 1,
+            expected
+        })
+    );
+    assert_eq!(fault.to_string(), "libfranka: incorrect object size");
+    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+    robot.send(2);
+    assert_eq!(wait_for("state", || handle.states.newest()).message_id, 2);
+    handle.thread.join().expect("nothing panics");
+    assert_eq!(handle.stats.malformed.get(), 20);
+    assert!(
+        handle.notices.pop().is_err(),
+        "nineteen more of the same are no news"
+    );
+}
+
+#[test]
+fn silence_is_reported_and_a_later_state_taken() {
+    let timeout = LinkTimeout::new(Duration::from_millis(100)).expect("in range");
+    let driver = Driver::new(VERSION).with_link_timeout(timeout);
+    let (mut handle, robot) = start(config(), driver);
+    robot.send(1);
+    wait_for("state", || handle.states.newest());
+    let heard = Instant::now();
+    handle.wake.clear();
+    let notice = wait_for("notice", || handle.notices.pop().ok());
+    let Notice::Core(Event::LinkLost { silence }) = notice else {
+        panic!("{notice:?}")
+    };
+    // It was received a little before `heard`; the latest tick after the timeout tells.
+    assert!(silence >= Duration::from_millis(100), "{silence:?}");
+    assert!(
+        silence <= heard.elapsed() + Duration::from_secs(1),
+        "{silence:?}"
+    );
+    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+    robot.send(2_000);
+    assert_eq!(
+        wait_for("state", || handle.states.newest()).message_id,
+        2_000
+    );
+}
+
+/// The median of five, as any one of them may meet a machine that is busy with something else.
+#[test]
+fn the_shortest_link_timeout_is_noticed_before_another_has_passed() {
+    let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");
+    let mut noticed: Vec<Duration> = (0..5)
+        .map(|_| {
+            let driver = Driver::new(VERSION).with_link_timeout(timeout);
+            let (mut handle, robot) = start(config(), driver);
+            robot.send(1);
+            wait_for("loss", || match handle.notices.pop() {
+                Ok(Notice::Core(Event::LinkLost { silence })) if handle.stats.states.get() > 0 => {
+                    Some(silence)
+                }
+                _ => None,
+            })
+        })
+        .collect();
+    noticed.sort_unstable();
+    assert!(noticed[0] >= LinkTimeout::MIN, "{noticed:?}");
+    assert!(noticed[2] < 2 * LinkTimeout::MIN, "{noticed:?}");
+}
+
+/// Two states in each timeout, whatever a busy machine makes of the pauses: without a busy one in between, none is lost.
+#[test]
+fn a_link_within_the_shortest_timeout_is_not_lost() {
+    let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");
+    let driver = Driver::new(VERSION).with_link_timeout(timeout);
+    let (mut handle, robot) = start(config(), driver);
+    robot.send(1);
+    wait_for("state", || handle.states.newest());
+    let mut longest = Duration::ZERO;
+    let mut sent = Instant::now();
+    for message_id in 2..=100 {
+        std::thread::sleep(LinkTimeout::MIN / 2);
+        longest = longest.max(sent.elapsed());
+        sent = Instant::now();
+        robot.send(message_id);
+    }
+    let worst = handle.stats.interval.max().unwrap_or_default();
+    let losses = std::iter::from_fn(|| handle.notices.pop().ok()).count();
+    assert!(
+        losses == 0 || longest.max(worst) >= LinkTimeout::MIN,
+        "{losses} losses with pauses of {longest:?} at most"
+    );
+}

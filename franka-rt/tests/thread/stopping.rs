@@ -1,0 +1,90 @@
+//! The beginning and the end of the thread.
+
+use super::*;
+
+/// The median of five, as any one of them may meet a machine that is busy with something else.
+#[test]
+fn stopping_takes_less_than_a_tenth_of_a_second() {
+    for silent in [true, false] {
+        let mut durations: Vec<Duration> = (0..5)
+            .map(|_| {
+                let (mut handle, robot) = start(config(), Driver::new(VERSION));
+                robot.send(1);
+                wait_for("state", || handle.states.newest());
+                let sender = (!silent).then(|| {
+                    std::thread::spawn(move || {
+                        for message_id in 2..100 {
+                            // The port closes under it.
+                            let _ = robot.0.send(&state(message_id));
+                            std::thread::sleep(Duration::from_millis(1));
+                        }
+                    })
+                });
+                assert!(!handle.thread.has_ended());
+                let start = Instant::now();
+                handle.thread.join().expect("nothing panics");
+                let duration = start.elapsed();
+                if let Some(sender) = sender {
+                    sender.join().expect("sending does not panic");
+                }
+                duration
+            })
+            .collect();
+        durations.sort_unstable();
+        assert!(
+            durations[2] < Duration::from_millis(100),
+            "silent {silent}: {durations:?}"
+        );
+    }
+}
+
+#[test]
+fn dropping_the_owner_stops_the_thread_without_waiting() {
+    let (handle, _robot) = start(config(), Driver::new(VERSION));
+    let stats = handle.stats.clone();
+    drop(handle);
+    // The thread's own clone of the counters goes with it.
+    wait_for("end", || {
+        (std::sync::Arc::strong_count(&stats) == 1).then_some(())
+    });
+}
+
+#[test]
+fn what_is_enforced_and_refused_starts_nothing() {
+    let (socket, _) = socket();
+    let scheduling = Scheduling {
+        priority: Some(1_000),
+        ..Scheduling::default()
+    };
+    let config = ThreadConfig {
+        scheduling,
+        ..ThreadConfig::default()
+    };
+    let error = thread::spawn(config, Driver::new(VERSION), socket, ROBOT, VERSION)
+        .expect_err("no such priority");
+    assert_eq!(
+        error.to_string(),
+        "libfranka: unable to set realtime scheduling: Invalid argument"
+    );
+
+    if !kernel_is_realtime() {
+        let (socket, _) = self::socket();
+        let outcome = thread::spawn(
+            ThreadConfig::default(),
+            Driver::new(VERSION),
+            socket,
+            ROBOT,
+            VERSION,
+        );
+        let Err(StartError::Scheduling(error)) = outcome else {
+            panic!("this kernel is no real-time one")
+        };
+        assert!(
+            matches!(
+                error,
+                SchedError::KernelNotRealtime | SchedError::SetScheduling(_)
+            ),
+            "{error}"
+        );
+    }
+}
