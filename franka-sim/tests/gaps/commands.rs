@@ -49,6 +49,9 @@ fn one_abort_carries_every_error_of_its_cycle() {
         ],
     );
     assert_eq!(pair.state.reflex_reason, pair.state.errors);
+    // Nothing of the command has been taken over.
+    let moved = JointVector::from(pair.state.q_d) - READY;
+    assert!(moved.amax() < 1e-6, "{moved}");
 }
 
 #[test]
@@ -140,9 +143,9 @@ fn an_asynchronous_motion_keeps_the_velocities_of_its_move() {
     assert_eq!(pair.state.robot_mode, RobotMode::Move);
     assert!(fastest > 0.15 && fastest <= 0.3 + 1e-6, "{fastest}");
     assert!((JointVector::from(pair.state.q_d) - target).amax() < 1e-6);
-    // The reference client ends with seven zeros.
+    // The reference client ends with seven zeros, and late.
     let mut end = finished(RobotCommand::default());
-    end.message_id = pair.state.message_id;
+    end.message_id = pair.state.message_id - 3;
     pair.datagram(&end);
     pair.tick(None);
     assert_eq!(pair.outcome(id), MoveStatus::Success);

@@ -44,6 +44,7 @@ fn connect_checks_the_version_and_tells_its_own() {
         let message = next_message(&reply).expect("whole").expect("complete");
         let event = client.on_message(message).expect("an answer");
         assert!(matches!(event, client::Event::Incompatible(v) if v.server_version == own));
+        assert!(robot.connect(), "its place is free");
         assert!(robot.tick().is_none(), "no state before a handshake");
     }
 }

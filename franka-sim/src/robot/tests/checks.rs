@@ -21,26 +21,6 @@ fn cartesian(generator: MoveGeneratorMode) -> (Pair, CommandId) {
 }
 
 #[test]
-fn a_jump_in_position_breaks_every_derivative_at_once() {
-    let mut pair = Pair::fr3();
-    let id = pair.start_joints();
-    pair.tick(Some(positions(&READY)));
-    let mut q_c = READY;
-    q_c[4] += 0.02;
-    pair.tick(Some(positions(&q_c)));
-    pair.assert_reflex(
-        id,
-        &[
-            E::JointMotionGeneratorVelocityLimitsViolation,
-            E::JointMotionGeneratorVelocityDiscontinuity,
-            E::JointMotionGeneratorAccelerationDiscontinuity,
-        ],
-    );
-    // Nothing of the command has been taken over.
-    assert!((pair.q_d() - READY).amax() < 1e-6);
-}
-
-#[test]
 fn a_small_kink_breaks_the_jerk_only() {
     let mut pair = Pair::fr3();
     let id = pair.start_joints();

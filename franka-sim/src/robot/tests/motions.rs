@@ -210,37 +210,6 @@ fn the_cartesian_stiffness_acts_at_the_stiffness_frame() {
 }
 
 #[test]
-fn the_robot_itself_goes_to_an_asynchronous_target() {
-    let mut pair = Pair::fr3();
-    let id = pair.begin(MoveRequest {
-        asynchronous: Some([0.655, 0.655, 0.655, 0.655, 1.315, 1.315, 1.315]),
-        ..MoveRequest::new(
-            MoveControllerMode::JointImpedance,
-            MoveGeneratorMode::JointPosition,
-        )
-    });
-    let target = READY.add_scalar(0.2);
-    pair.tick(Some(positions(&target)));
-    let mut fastest = 0.0_f64;
-    for _ in 0..2000 {
-        pair.tick(None);
-        fastest = fastest.max(pair.state.dq_d[0]);
-    }
-    assert_eq!(pair.state.robot_mode, RobotMode::Move);
-    assert!(fastest > 0.3 && fastest <= 0.656, "{fastest}");
-    assert!((pair.q_d() - target).amax() < 1e-6);
-    // libfranka ends it with zeros for a position, and late.
-    pair.datagram(&RobotCommand {
-        message_id: pair.state.message_id - 3,
-        motion_generation_finished: true,
-        ..RobotCommand::default()
-    });
-    pair.tick(None);
-    assert_eq!(pair.outcome(id), MoveStatus::Success);
-    assert!((pair.q_d() - target).amax() < 1e-6);
-}
-
-#[test]
 fn a_motion_follows_a_motion_on_one_connection() {
     let mut pair = Pair::fr3();
     for _ in 0..3 {

@@ -2,7 +2,7 @@
 
 use franka_model::READY;
 use franka_proto::framing::Header;
-use franka_proto::{RecoveryStatus, SetterStatus, StopStatus, Version};
+use franka_proto::{RecoveryStatus, SetterStatus, StopStatus};
 
 use super::super::SessionError;
 use super::*;
@@ -35,31 +35,6 @@ fn only_one_client_at_a_time() {
     assert!(!robot.connect());
     robot.disconnect();
     assert!(robot.connect());
-}
-
-#[test]
-fn a_client_of_another_version_learns_the_robots() {
-    for (kind, version, other) in [
-        (RobotKind::Fr3, 10, Version::V5),
-        (RobotKind::Fer, 5, Version::V10),
-    ] {
-        let mut robot = Robot::new(Config {
-            kind,
-            ..Config::default()
-        });
-        robot.connect();
-        let mut client = client::Session::new(other);
-        let result = robot.receive(client.connect(PORT).as_bytes());
-        let announced = other.number();
-        assert_eq!(result, Err(SessionError::Incompatible { announced }));
-        let reply = robot.take_reply().expect("an answer");
-        let message = next_message(&reply).expect("whole").expect("complete");
-        let event = client.on_message(message).expect("an answer");
-        assert!(matches!(event, client::Event::Incompatible(v) if v.server_version == version));
-        // Its place is free.
-        assert!(robot.connect());
-        assert!(robot.tick().is_none());
-    }
 }
 
 #[test]
