@@ -5,8 +5,9 @@ use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 
 use crate::law::hybrid::Reference;
 use crate::otg::{AxisLimits, Generator, Limits, PlanError, State};
+use crate::session::guard::leash;
 use crate::session::pose::{PoseGenerator, PoseState};
-use crate::session::{Budget, Goal, Target, approach, budget, kinematics, leash, rigid};
+use crate::session::{Budget, Goal, Target, approach, budget, kinematics, rigid};
 
 /// What moves the reference.
 #[derive(Debug)]

@@ -12,14 +12,13 @@
 //! goal takes the session back under way from any of them but the last.
 
 mod approach;
-mod binding;
 mod budget;
 mod check;
 mod course;
 mod goal;
+mod guard;
 mod kinematics;
 mod landing;
-mod leash;
 mod pose;
 
 use core::time::Duration;
@@ -36,14 +35,15 @@ use crate::law::{Gains, shaping};
 use crate::slot::{Read, SlotReader};
 use crate::together::StartFault;
 
-pub use binding::{Bindings, Guard};
 pub use budget::Budget;
 pub use check::GoalError;
 pub use goal::{Goal, GoalId, Target, Then, Tolerance};
+pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
+pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT};
-pub use leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
 
 use course::Course;
+use guard::leash;
 use landing::{Landing, Release, Verdict};
 
 /// Cycles over which the gains go from those of one goal to those of the next.

@@ -28,7 +28,7 @@ const ROTATION_TETHER: f64 = 5e-3;
 /// Holds course and reference within the leash of the measured arm; tells whether that moved them.
 ///
 /// The course keeps its velocity and plans on from where it is held, so the arm follows smoothly once it is free.
-pub(super) fn hold(
+pub(crate) fn hold(
     course: &mut Course,
     reference: &mut Reference,
     q: &JointVector,
@@ -68,7 +68,7 @@ pub(super) fn hold(
 ///
 /// Without it the pose would go on to its target, and the joints would chase it off the line, all of them at their
 /// bounds.
-pub(super) fn tether(generator: &mut PoseGenerator, reached: &Isometry3<f64>) -> bool {
+pub(crate) fn tether(generator: &mut PoseGenerator, reached: &Isometry3<f64>) -> bool {
     let Some(pose) = within(
         &generator.pose(),
         reached,
@@ -83,7 +83,7 @@ pub(super) fn tether(generator: &mut PoseGenerator, reached: &Isometry3<f64>) ->
 }
 
 /// The pose nearest to `pose` within a leash of `anchor`, metres and radians long, if that is another one.
-pub(super) fn within(
+pub(crate) fn within(
     pose: &Isometry3<f64>,
     anchor: &Isometry3<f64>,
     translation: f64,

@@ -4,6 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
+#[non_exhaustive]
 pub enum Guard {
     /// The reference ran ahead of the measured arm by the length of the leash and was held there.
     Leash,
@@ -17,7 +18,7 @@ pub enum Guard {
 
 /// A set of guards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Bindings(u8);
+pub struct Bindings(u16);
 
 impl Guard {
     const ALL: [Self; 4] = [
@@ -31,12 +32,12 @@ impl Guard {
 impl Bindings {
     /// Adds `guard` where `binds`.
     pub(crate) fn set(&mut self, guard: Guard, binds: bool) {
-        self.0 |= u8::from(binds) << guard as u8;
+        self.0 |= u16::from(binds) << guard as u16;
     }
 
     /// Whether `guard` bound the command.
     pub fn contains(self, guard: Guard) -> bool {
-        self.0 & (1 << guard as u8) != 0
+        self.0 & (1 << guard as u16) != 0
     }
 
     /// The guards that did.

@@ -1,0 +1,6 @@
+//! Guards: what holds a command back, one file each.
+
+mod binding;
+pub(super) mod leash;
+
+pub use binding::{Bindings, Guard};
