@@ -11,10 +11,12 @@
 //! A goal that is to finish passes through the stages of `Stage`: under way, landing, releasing, finished. A newer
 //! goal takes the session back under way from any of them but the last.
 
+mod active;
 mod approach;
 mod budget;
 mod check;
 mod course;
+mod fade;
 mod goal;
 mod guard;
 mod kinematics;
@@ -24,14 +26,12 @@ mod pose;
 use core::time::Duration;
 use std::sync::Arc;
 
-use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model, transform};
+use franka_model::{EndEffector, Load, Model, transform};
 use franka_proto::RobotState;
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
 use crate::control::Torques;
 use crate::driver::Record;
-use crate::law::hybrid::{self, Reference};
-use crate::law::{Gains, shaping};
 use crate::slot::{Read, SlotReader};
 use crate::together::StartFault;
 
@@ -42,12 +42,7 @@ pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
 pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT};
 
-use course::Course;
-use guard::leash;
-use landing::{Landing, Release, Verdict};
-
-/// Cycles over which the gains go from those of one goal to those of the next.
-const CROSS_FADE: u32 = 300;
+use active::Active;
 
 /// Time for which something may hold the course back: an obstacle by the leash, or the joints' bounds. A goal that is to
 /// finish and has not got on by then is braked, and lands where it is.
@@ -102,65 +97,6 @@ pub struct TargetSession {
     held: Option<Goal>,
     /// A goal whose common start has failed, and why.
     unstarted: Option<(GoalId, StartFault)>,
-}
-
-/// What exists once the first state has been seen.
-#[derive(Debug)]
-struct Active {
-    ee: EndEffector,
-    load: Load,
-    posture: JointVector,
-    goal: Goal,
-    /// When the goal was first seen, `message_id` of the state.
-    since: u64,
-    course: Course,
-    reference: Reference,
-    gains: Fade,
-    stage: Stage,
-    /// Cycles in which the course was held back, less those since in which it was not.
-    held_back: u64,
-}
-
-/// What the session does about its goal.
-#[derive(Debug)]
-enum Stage {
-    /// The reference moves, or holds a goal that is to be held.
-    UnderWay,
-    /// The reference has arrived; the arm settles.
-    Landing(Landing),
-    /// The spring is being let go, so that the torques end at zero.
-    Releasing(Release),
-    /// The last command is out.
-    Finished,
-}
-
-/// Gains on their way from one goal's to the next.
-#[derive(Debug)]
-struct Fade {
-    from: Gains,
-    to: Gains,
-    cycle: u32,
-}
-
-impl Fade {
-    fn towards(&mut self, to: Gains) {
-        if to != self.to {
-            *self = Self {
-                from: self.now(),
-                to,
-                cycle: 0,
-            };
-        }
-    }
-
-    fn now(&self) -> Gains {
-        if self.cycle >= CROSS_FADE {
-            self.to
-        } else {
-            self.from
-                .blend(&self.to, f64::from(self.cycle) / f64::from(CROSS_FADE))
-        }
-    }
 }
 
 impl TargetSession {
@@ -278,158 +214,6 @@ impl TargetSession {
             *settlement = Settlement::Unstarted(fault);
         }
         step
-    }
-}
-
-impl Active {
-    fn begin(model: &Model, goal: Goal, state: &RobotState) -> Option<Self> {
-        let q = JointVector::from(state.q);
-        let reference = Reference::at_rest(q);
-        let ee = end_effector_of(state)?;
-        let load = load_of(state)?;
-        let mut this = Self {
-            course: Course::Rest,
-            gains: Fade {
-                from: goal.gains,
-                to: goal.gains,
-                cycle: CROSS_FADE,
-            },
-            stage: Stage::UnderWay,
-            held_back: 0,
-            since: state.message_id,
-            posture: q,
-            reference,
-            goal,
-            load,
-            ee,
-        };
-        this.take_up(model, goal, state.message_id);
-        Some(this)
-    }
-
-    fn take_up(&mut self, model: &Model, goal: Goal, now: u64) {
-        if matches!(self.stage, Stage::Finished) {
-            return;
-        }
-        if goal.id != self.goal.id {
-            self.since = now;
-        }
-        self.goal = goal;
-        self.gains.towards(goal.gains);
-        self.stage = Stage::UnderWay;
-        self.held_back = 0;
-        self.course
-            .head_for(model, &self.ee, &self.reference, &goal);
-    }
-
-    fn step(&mut self, model: &Model, state: &RobotState, record: &mut Record) -> Step {
-        let q = JointVector::from(state.q);
-        let dq = JointVector::from(state.dq);
-        let dynamics = model.dynamics(&q, &dq, &self.ee, &self.load, &GRAVITY_EARTH);
-        let measured = rigid(&dynamics.pose);
-        let mut bindings = Bindings::default();
-
-        let course::Step {
-            reference,
-            bounded,
-            held,
-        } = self
-            .course
-            .step(model, &self.ee, &self.posture, &self.reference);
-        self.reference = reference;
-        bindings.set(Guard::InverseKinematics, bounded);
-        let at_rest = dq.amax() < landing::REST_VELOCITY;
-        let event = self.advance_stage(model, &q, &measured, at_rest, state.message_id);
-        let leashed = leash::hold(&mut self.course, &mut self.reference, &q, &measured);
-        bindings.set(Guard::Leash, leashed);
-        self.held_back = if leashed || held {
-            self.held_back + 1
-        } else {
-            self.held_back.saturating_sub(1)
-        };
-
-        self.gains.cycle = self.gains.cycle.saturating_add(1);
-        let last = JointVector::from(state.tau_J_d);
-        let (tau, clamped) =
-            hybrid::torques(&self.gains.now(), &self.reference, &q, &dq, &dynamics);
-        // The Coriolis torques come on top of the clamped ones, which leave them little room.
-        let (tau, full) = shaping::clamp(&tau, &model.joint_limits().torque);
-        let (tau, slowed) = shaping::limit_rate(
-            &shaping::low_pass(&tau, &last),
-            &last,
-            &model.joint_limits().torque_rate,
-        );
-        bindings.set(Guard::TorqueClamp, clamped || full);
-        bindings.set(Guard::TorqueRate, slowed);
-
-        record.goal = self.goal.id.0;
-        record.q_ref = self.reference.q.into();
-        record.dq_ref = self.reference.dq.into();
-        record.ddq_ref = self.reference.ddq.into();
-        record.bindings = bindings;
-        Step {
-            torques: Torques(tau.into()),
-            finished: matches!(self.stage, Stage::Finished),
-            event,
-        }
-    }
-
-    /// Moves through the stages of a goal that is to finish. The only place where the stage advances.
-    fn advance_stage(
-        &mut self,
-        model: &Model,
-        q: &JointVector,
-        measured: &Isometry3<f64>,
-        at_rest: bool,
-        now: u64,
-    ) -> Option<SessionEvent> {
-        match &mut self.stage {
-            Stage::UnderWay => {
-                let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                if self.goal.then == Then::Finish && (self.course.is_done() || stalled) {
-                    if stalled && self.goal.target != Target::Rest {
-                        let rest = Goal {
-                            target: Target::Rest,
-                            ..self.goal
-                        };
-                        self.course
-                            .head_for(model, &self.ee, &self.reference, &rest);
-                    }
-                    let target = match self.goal.target {
-                        Target::Rest => None,
-                        Target::Pose(pose) => Some(pose),
-                        Target::Joints(q) => {
-                            Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
-                        }
-                    };
-                    self.stage = Stage::Landing(Landing::new(target, self.goal.tolerance));
-                }
-                None
-            }
-            Stage::Landing(landing) => {
-                let verdict = landing.judge(measured, at_rest);
-                let (settlement, held) = match verdict {
-                    Verdict::Settling => return None,
-                    Verdict::Settled(settlement, held) => (settlement, held),
-                };
-                self.stage = Stage::Releasing(Release::new(self.reference.q - q));
-                self.course = Course::Rest;
-                Some(SessionEvent::Settled {
-                    goal: self.goal.id,
-                    settlement,
-                    duration_ms: (now - self.since).saturating_sub(held),
-                })
-            }
-            Stage::Releasing(release) => {
-                self.reference = Reference::at_rest(q + release.offset());
-                self.course = Course::Rest;
-                if release.is_over(at_rest) {
-                    self.stage = Stage::Finished;
-                }
-                None
-            }
-            Stage::Finished => None,
-        }
     }
 }
 
