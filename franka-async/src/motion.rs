@@ -87,18 +87,8 @@ impl Clone for Motion {
 
 impl Motion {
     pub(crate) fn new(robot: Robot, target: Target) -> Self {
-        let gains = match target {
-            Target::Joints(_) => Gains::joint(),
-            Target::Pose(_) | Target::Rest => Gains::cartesian(),
-        };
-        let goal = Goal {
-            id: robot.next_goal(),
-            target,
-            then: Then::Finish,
-            budget: Budget::of(robot.model().joint_limits()),
-            gains,
-            tolerance: Tolerance::default(),
-        };
+        let limits = robot.model().joint_limits();
+        let goal = Goal::new(robot.next_goal(), target, Then::Finish, limits);
         let ticket = Held::default();
         Self {
             robot,

@@ -4,9 +4,8 @@ use franka_model::READY;
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus, Version};
 use franka_rt::control::{ActiveControl, Callback, Finish, JointVelocities};
 use franka_rt::driver::{Activity, Program};
-use franka_rt::law::Gains;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Budget, Goal, Target, Then, Tolerance};
+use franka_rt::session::{Goal, Target, Then};
 
 use crate::for_each_version;
 use crate::pair::{self, Pair};
@@ -60,14 +59,8 @@ fn standing(version: Version, cycles: u32) -> (Program, MoveRequest) {
 /// A motion under target control.
 fn to_ready(pair: &mut Pair) -> Goal {
     let limits = pair::model(pair.client.version()).joint_limits();
-    Goal {
-        id: pair.client.next_goal(),
-        target: Target::Joints(READY.into()),
-        then: Then::Finish,
-        budget: Budget::of(limits),
-        gains: Gains::joint(),
-        tolerance: Tolerance::default(),
-    }
+    let target = Target::Joints(READY.into());
+    Goal::new(pair.client.next_goal(), target, Then::Finish, limits)
 }
 
 /// A second start is refused before anything is sent, as of a motion that another caller runs. libfranka 0.21 has the words

@@ -8,7 +8,7 @@ use franka_proto::{ControllerMode, MotionGeneratorMode, RobotMode, RobotState, V
 use super::*;
 use crate::control::{ActiveControl, Callback, Torques};
 use crate::law::Gains;
-use crate::session::{Budget, Goal, GoalId, Target, TargetSession, Then, Tolerance};
+use crate::session::{Goal, GoalId, Target, TargetSession, Then};
 use crate::shaping::{InvalidCommand, Shaper};
 use crate::slot;
 use crate::stats::{Arrival, CycleTimes};
@@ -31,13 +31,10 @@ fn moving(time: u64) -> RobotState {
 
 fn armed(target: Target) -> Driver {
     let (mut goals, reader) = slot::slot();
+    let limits = Model::fr3().joint_limits();
     goals.write(&Goal {
-        id: GoalId(1),
-        target,
-        then: Then::Finish,
-        budget: Budget::of(Model::fr3().joint_limits()),
         gains: Gains::joint(),
-        tolerance: Tolerance::default(),
+        ..Goal::new(GoalId(1), target, Then::Finish, limits)
     });
     let mut driver = Driver::new(Version::V10);
     driver.on_order(Order::Arm {

@@ -30,6 +30,9 @@ pub struct GainError {
 }
 
 impl Gains {
+    /// How many numbers there are in all.
+    pub(crate) const NUMBERS: usize = 26;
+
     /// Compliant at the end effector: 750 N/m and 15 N m/rad, with light joint springs that keep the elbow.
     pub const fn cartesian() -> Self {
         Self {
@@ -110,8 +113,8 @@ impl Gains {
     }
 
     /// All gains in the order of the fields.
-    pub(crate) fn to_array(self) -> [f64; 26] {
-        let mut all = [0.0; 26];
+    pub(crate) fn to_array(self) -> [f64; Self::NUMBERS] {
+        let mut all = [0.0; Self::NUMBERS];
         all[..6].copy_from_slice(&self.cartesian_stiffness);
         all[6..12].copy_from_slice(&self.cartesian_damping);
         all[12..19].copy_from_slice(&self.joint_stiffness);
@@ -119,7 +122,7 @@ impl Gains {
         all
     }
 
-    pub(crate) fn from_array(all: [f64; 26]) -> Self {
+    pub(crate) fn from_array(all: [f64; Self::NUMBERS]) -> Self {
         Self {
             cartesian_stiffness: core::array::from_fn(|i| all[i]),
             cartesian_damping: core::array::from_fn(|i| all[6 + i]),

@@ -1,5 +1,6 @@
 //! What target control is asked for, and its form in the slot that crosses into the thread.
 
+use franka_model::limits::JointLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use crate::law::Gains;
@@ -69,12 +70,27 @@ pub struct Goal {
     pub tolerance: Tolerance,
 }
 
-/// Numbers of a goal behind its first three words: 7 of target, 27 of budget, 26 of gains, 2 of tolerance.
-const NUMBERS: usize = 7 + 27 + 26 + 2;
+impl Goal {
+    /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on the way to joint
+    /// positions and the end effector compliant otherwise, the default tolerance.
+    pub fn new(id: GoalId, target: Target, then: Then, limits: &JointLimits) -> Self {
+        Self {
+            id,
+            target,
+            then,
+            budget: Budget::of(limits),
+            gains: match target {
+                Target::Joints(_) => Gains::joint(),
+                Target::Pose(_) | Target::Rest => Gains::cartesian(),
+            },
+            tolerance: Tolerance::default(),
+        }
+    }
+}
 
-/// Name, kind of target and what follows, then the numbers.
+/// Name, kind of target, what follows; 7 numbers of target, 27 of budget, the gains, 2 of tolerance.
 impl Words for Goal {
-    const WORDS: usize = 3 + NUMBERS;
+    const WORDS: usize = 3 + 7 + 27 + Gains::NUMBERS + 2;
 
     fn store(&self, words: &mut [u64]) {
         let (kind, target) = match self.target {
@@ -85,35 +101,45 @@ impl Words for Goal {
                 (2, [p.x, p.y, p.z, r.x, r.y, r.z, r.w])
             }
         };
-        words[0] = self.id.0;
-        words[1] = kind;
-        words[2] = u64::from(self.then == Then::Finish);
-        let axes = self
-            .budget
-            .joints
-            .into_iter()
-            .chain([self.budget.translation, self.budget.rotation]);
+        let then = u64::from(self.then == Then::Finish);
+        let Budget {
+            joints,
+            translation,
+            rotation,
+        } = self.budget;
+        let axes = joints.into_iter().chain([translation, rotation]);
         let numbers = target
             .into_iter()
             .chain(axes.flat_map(|l| [l.velocity, l.acceleration, l.jerk]))
             .chain(self.gains.to_array())
             .chain([self.tolerance.translation, self.tolerance.rotation]);
-        for (word, number) in words[3..].iter_mut().zip(numbers) {
-            *word = number.to_bits();
+        let all = [self.id.0, kind, then]
+            .into_iter()
+            .chain(numbers.map(f64::to_bits));
+        for (word, value) in words.iter_mut().zip(all) {
+            *word = value;
         }
     }
 
     fn load(words: &[u64]) -> Self {
-        let number = |i: usize| f64::from_bits(words[3 + i]);
-        let target = core::array::from_fn(number);
-        let axis = |i: usize| AxisLimits {
-            velocity: number(7 + 3 * i),
-            acceleration: number(8 + 3 * i),
-            jerk: number(9 + 3 * i),
+        let mut words = words.iter().copied();
+        let mut next = || words.next().unwrap_or_default();
+        let (id, kind, then) = (next(), next(), next());
+        let mut number = || f64::from_bits(next());
+        let target = core::array::from_fn(|_| number());
+        let mut axis = || AxisLimits {
+            velocity: number(),
+            acceleration: number(),
+            jerk: number(),
+        };
+        let budget = Budget {
+            joints: core::array::from_fn(|_| axis()),
+            translation: axis(),
+            rotation: axis(),
         };
         Self {
-            id: GoalId(words[0]),
-            target: match words[1] {
+            id: GoalId(id),
+            target: match kind {
                 1 => Target::Joints(target),
                 2 => {
                     let [x, y, z, i, j, k, w] = target;
@@ -124,20 +150,12 @@ impl Words for Goal {
                 }
                 _ => Target::Rest,
             },
-            then: if words[2] == 0 {
-                Then::Hold
-            } else {
-                Then::Finish
-            },
-            budget: Budget {
-                joints: core::array::from_fn(axis),
-                translation: axis(7),
-                rotation: axis(8),
-            },
-            gains: Gains::from_array(core::array::from_fn(|i| number(34 + i))),
+            then: if then == 0 { Then::Hold } else { Then::Finish },
+            budget,
+            gains: Gains::from_array(core::array::from_fn(|_| number())),
             tolerance: Tolerance {
-                translation: number(60),
-                rotation: number(61),
+                translation: number(),
+                rotation: number(),
             },
         }
     }

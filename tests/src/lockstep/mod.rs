@@ -25,9 +25,8 @@ use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform}
 use franka_proto::{MoveRequest, Request, RobotCommand, RobotState};
 use franka_rt::control::{Callback, Command, WriteError};
 use franka_rt::driver::Program;
-use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport};
-use franka_rt::session::{Budget, Goal, GoalError, GoalId, Target, Then, Tolerance};
+use franka_rt::session::{Goal, GoalError, GoalId, Target, Then};
 use franka_rt::together::StartTicket;
 use franka_sim::{Config, Robot, Unpublished};
 use nalgebra::Isometry3;
@@ -288,17 +287,8 @@ impl Lockstep {
 
     /// A goal with the defaults of the async face: see `franka_async::Motion`.
     pub fn goal(&mut self, target: Target, then: Then) -> Goal {
-        Goal {
-            id: self.client.next_goal(),
-            target,
-            then,
-            budget: Budget::of(self.model.joint_limits()),
-            gains: match target {
-                Target::Joints(_) => Gains::joint(),
-                Target::Pose(_) | Target::Rest => Gains::cartesian(),
-            },
-            tolerance: Tolerance::default(),
-        }
+        let limits = self.model.joint_limits();
+        Goal::new(self.client.next_goal(), target, then, limits)
     }
 
     /// Submits a goal.
