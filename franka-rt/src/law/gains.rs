@@ -1,5 +1,7 @@
 //! Stiffness and damping of the hybrid impedance law.
 
+use crate::session::Free;
+
 /// Diagonal gains of the hybrid impedance law: a spring and damper at the end effector, along the axes of the base
 /// frame, and one at each joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +52,20 @@ impl Gains {
             cartesian_damping: [0.0; 6],
             joint_stiffness: [600.0, 600.0, 600.0, 600.0, 250.0, 150.0, 50.0],
             joint_damping: [50.0, 50.0, 50.0, 50.0, 30.0, 25.0, 15.0],
+        }
+    }
+
+    /// For hand guiding: springs at the end effector as by [`Self::cartesian`] on the axes that are not free, and a light
+    /// damping of the joints.
+    pub fn guiding(free: Free) -> Self {
+        let preset = Self::cartesian();
+        let locked =
+            |gains: [f64; 6]| core::array::from_fn(|i| if free.axes[i] { 0.0 } else { gains[i] });
+        Self {
+            cartesian_stiffness: locked(preset.cartesian_stiffness),
+            cartesian_damping: locked(preset.cartesian_damping),
+            joint_stiffness: preset.joint_stiffness,
+            joint_damping: [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5],
         }
     }
 

@@ -56,6 +56,19 @@ pub(super) struct Goals {
     pub(super) current: Waiting,
     pub(super) settled: Option<Settled>,
     pub(super) bad_tool: bool,
+    /// The session that the goals belong to, if it goes on from goal to goal.
+    pub(super) engaged: Option<Engaged>,
+    /// Goals that came for that session when it had ended, and nobody knew yet how.
+    pub(super) late: Vec<GoalId>,
+}
+
+/// A session that goes on from goal to goal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Engaged {
+    /// Names whoever awaits its end. Between goals it is the name of the goal that the arm holds, too.
+    pub(super) id: GoalId,
+    /// Whether its end is what was asked for.
+    pub(super) disengaged: bool,
 }
 
 /// A motion under a program of the user's.
@@ -154,6 +167,12 @@ impl Active {
         }))
     }
 
+    /// Whether one of its sides has ended.
+    pub(super) fn is_ending(&self) -> bool {
+        matches!(self.thread, ThreadSide::Ended(_))
+            || matches!(self.command, CommandSide::Ended(_) | CommandSide::Cancelled)
+    }
+
     /// Until when a motion under way may go on: without end, unless a stop was asked for.
     pub(super) fn running_deadline(&self) -> Option<Duration> {
         self.work.stopped_since().map(|since| since + END_TIMEOUT)
@@ -204,6 +223,47 @@ impl Goals {
             then: Then::Finish,
             ..self.current.goal
         });
+    }
+
+    /// Whether goals are still taken.
+    pub(super) fn goes_on(&self) -> bool {
+        self.current.goal.then != Then::Finish
+    }
+
+    /// Takes note that a goal of the session `engaged` has come to its end, and is held from now on. Returns how it turned
+    /// out, unless somebody has been told of its end before.
+    pub(super) fn reach(
+        &mut self,
+        engaged: GoalId,
+        settled: &Settled,
+    ) -> Option<Result<MotionReport, MotionError>> {
+        let Waiting { goal, cancelled } = self.current;
+        if settled.goal != goal.id || goal.id == engaged {
+            return None;
+        }
+        self.current = Waiting {
+            goal: Goal {
+                id: engaged,
+                then: Then::Hold,
+                watchdog: None,
+                ..goal
+            },
+            cancelled: false,
+        };
+        Some(settled.result(&settled.counted, cancelled))
+    }
+
+    /// How the session turned out whose last goal turned out like this.
+    pub(super) fn end_of_engagement(
+        &self,
+        result: &Result<MotionReport, MotionError>,
+    ) -> Option<(GoalId, Result<MotionReport, MotionError>)> {
+        let engaged = self.engaged?;
+        let result = match result {
+            Ok(_) if !engaged.disengaged => Err(MotionError::Stopped),
+            result => result.clone(),
+        };
+        Some((engaged.id, result))
     }
 
     /// Whether the motion ended well with an older goal than the current one.
@@ -301,6 +361,8 @@ impl Settled {
             Settlement::AtRest if cancelled => return Err(MotionError::Stopped),
             Settlement::AtRest => None,
             Settlement::Short(error) => return Err(MotionError::Short(error)),
+            Settlement::Held(lapse) => return Err(MotionError::Held(lapse)),
+            Settlement::Braked(lapse) => return Err(MotionError::Braked(lapse)),
             Settlement::Unstarted(fault) => return Err(fault.into()),
         };
         Ok(MotionReport::new(counted, self.duration_ms, final_error))

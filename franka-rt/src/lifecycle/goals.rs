@@ -4,7 +4,8 @@ use core::time::Duration;
 
 use franka_proto::{MoveControllerMode, MoveRequest, RobotState};
 
-use super::active::{CommandSide, Goals, Settled, ThreadSide, Waiting, Work};
+use super::active::{Engaged, Goals, Settled, Waiting, Work};
+use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{Lifecycle, MotionError, MotionReport, Phase};
 use crate::driver::{MotionId, MotionStatistics, Program};
@@ -18,7 +19,8 @@ impl Lifecycle {
     ///
     /// # Errors
     /// [`MotionError::Goal`] for a goal that is not accepted, which leaves everything as it was; [`MotionError::Busy`]
-    /// while a program of the user's controls the arm; [`MotionError::ConnectionClosed`] after the connection was lost.
+    /// while a program of the user's, or a session that goes from goal to goal, controls the arm;
+    /// [`MotionError::ConnectionClosed`] after the connection was lost.
     /// Nothing is resolved in any of these cases.
     pub fn submit(
         &mut self,
@@ -27,7 +29,7 @@ impl Lifecycle {
         now: Duration,
     ) -> Result<(), MotionError> {
         self.check_open()?;
-        if self.runs_program() {
+        if self.runs_program() || self.is_engaged() {
             return Err(MotionError::Busy);
         }
         goal.check(&self.model, state)?;
@@ -61,7 +63,7 @@ impl Lifecycle {
             goal,
             cancelled: false,
         };
-        self.start_goal(waiting, Some(ticket), now);
+        self.start_goal(waiting, Some(ticket), None, now);
         Ok(())
     }
 
@@ -79,16 +81,11 @@ impl Lifecycle {
         self.amend(id, |goal| Goal { target, ..*goal }, Some(state))
     }
 
-    /// Lets a goal that is held come to its end: the motion settles at the newest target and finishes.
+    /// Lets a goal that is held come to its end: the motion settles at the newest target and finishes, unless its session
+    /// goes on from goal to goal.
     pub fn close(&mut self, id: GoalId) {
-        let amended = self.amend(
-            id,
-            |goal| Goal {
-                then: Then::Finish,
-                ..*goal
-            },
-            None,
-        );
+        let then = self.end_of_goals();
+        let amended = self.amend(id, |goal| Goal { then, ..*goal }, None);
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
 
@@ -99,14 +96,15 @@ impl Lifecycle {
         if let Some(next) = self.next.take_if(|next| next.goal.id == id) {
             return self.resolve(next.goal.id, Err(MotionError::Stopped));
         }
-        if self.cancel_program(id, now) {
+        if self.cancel_program(id, now) || self.release(id, now) {
             return;
         }
+        let then = self.end_of_goals();
         let amended = self.amend(
             id,
             |goal| Goal {
                 target: Target::Rest,
-                then: Then::Finish,
+                then,
                 ..*goal
             },
             None,
@@ -163,7 +161,7 @@ impl Lifecycle {
                 settlement,
                 duration_ms,
             } => {
-                goals.settled = Some(Settled {
+                let settled = Settled {
                     goal,
                     settlement,
                     duration_ms,
@@ -171,7 +169,16 @@ impl Lifecycle {
                         statistics,
                         times: active.times.clone(),
                     },
-                });
+                };
+                match goals.engaged {
+                    Some(engaged) if goals.goes_on() => {
+                        let settled = goals.reach(engaged.id, &settled);
+                        if let Some(result) = settled {
+                            self.resolve(goal, result);
+                        }
+                    }
+                    _ => goals.settled = Some(settled),
+                }
             }
             SessionEvent::BadTool => goals.bad_tool = true,
         }
@@ -187,7 +194,7 @@ impl Lifecycle {
         now: Duration,
     ) {
         if waiting.goal.target != Target::Rest || waiting.goal.then != Then::Finish {
-            return self.start_goal(waiting, None, now);
+            return self.start_goal(waiting, None, None, now);
         }
         let result = match before {
             // Nobody knows, or the robot sees to it, whether the arm rests.
@@ -203,7 +210,7 @@ impl Lifecycle {
     }
 
     /// The goals of the motion under way, if target control runs it.
-    fn goals(&mut self) -> Option<&mut Goals> {
+    pub(super) fn goals(&mut self) -> Option<&mut Goals> {
         match &mut self.phase {
             Phase::Active(active) => match &mut active.work {
                 Work::Goals(goals) => Some(goals),
@@ -214,18 +221,14 @@ impl Lifecycle {
     }
 
     /// Puts a goal in the place of all others, which resolve with `reason`. No program may be running.
-    fn replace(&mut self, waiting: Waiting, reason: MotionError, now: Duration) {
+    pub(super) fn replace(&mut self, waiting: Waiting, reason: MotionError, now: Duration) {
         if let Some(next) = self.next.take() {
             self.resolve(next.goal.id, Err(reason.clone()));
         }
         let Phase::Active(active) = &mut self.phase else {
-            return self.start_goal(waiting, None, now);
+            return self.start_goal(waiting, None, None, now);
         };
-        let ending = matches!(active.thread, ThreadSide::Ended(_))
-            || matches!(
-                active.command,
-                CommandSide::Ended(_) | CommandSide::Cancelled
-            );
+        let ending = active.is_ending();
         match &mut active.work {
             Work::Goals(goals) if !ending => {
                 goals.slot.write(&waiting.goal);
@@ -238,14 +241,19 @@ impl Lifecycle {
                     }
                     _ => Err(reason),
                 };
-                self.resolve(previous.goal.id, result);
+                if goals
+                    .engaged
+                    .is_none_or(|engaged| engaged.id != previous.goal.id)
+                {
+                    self.resolve(previous.goal.id, result);
+                }
             }
             Work::Goals(_) | Work::Program(_) => self.next = Some(waiting),
         }
     }
 
     /// Changes a goal that has not been superseded. Returns whether there was one of that name.
-    fn amend(
+    pub(super) fn amend(
         &mut self,
         id: GoalId,
         change: impl FnOnce(&Goal) -> Goal,
@@ -275,10 +283,25 @@ impl Lifecycle {
         Ok(true)
     }
 
-    fn start_goal(&mut self, waiting: Waiting, ticket: Option<StartTicket>, now: Duration) {
+    /// Starts a motion towards a goal; of a session that goes on from goal to goal if `engagement` tells of one.
+    pub(super) fn start_goal(
+        &mut self,
+        waiting: Waiting,
+        ticket: Option<StartTicket>,
+        engagement: Option<Engagement>,
+        now: Duration,
+    ) {
         let (mut slot, reader) = slot::slot();
         slot.write(&waiting.goal);
-        let program = Program::Target(Box::new(TargetSession::new(self.model.clone(), reader)));
+        let mut session = TargetSession::new(self.model.clone(), reader);
+        let engaged = engagement.is_some().then_some(Engaged {
+            id: waiting.goal.id,
+            disengaged: false,
+        });
+        if let Some(deadman) = engagement.and_then(|engagement| engagement.deadman) {
+            session = session.bound_to(deadman);
+        }
+        let program = Program::Target(Box::new(session));
         let request = MoveRequest::new(
             MoveControllerMode::ExternalController,
             self.version.torque_generator(),
@@ -288,6 +311,8 @@ impl Lifecycle {
             current: waiting,
             settled: None,
             bad_tool: false,
+            engaged,
+            late: Vec::new(),
         });
         self.start(work, program, request, ticket, now);
     }

@@ -17,6 +17,7 @@
 //! `now` is an argument, counted from any fixed moment.
 
 mod active;
+mod engagement;
 mod goals;
 mod outcome;
 mod programs;
@@ -33,6 +34,7 @@ use crate::session::GoalId;
 use crate::together::StartTicket;
 
 use active::{Active, CommandSide, NEVER_SHOWN, ThreadSide, Waiting, Work};
+pub use engagement::{Engagement, Tuning};
 use outcome::Counted;
 pub use outcome::{ControlError, MotionError, MotionReport, Party, Stage};
 
@@ -55,9 +57,9 @@ pub enum Output {
         /// The request.
         request: Request,
     },
-    /// Tell whoever began this program, if they want to know, that it runs now.
+    /// Tell whoever began this program or session, if they want to know, that it runs now.
     Began {
-        /// The name of the program.
+        /// Its name.
         id: GoalId,
     },
     /// Tell whoever awaits this goal. Each goal that was taken is told exactly once.
@@ -77,6 +79,8 @@ pub struct Lifecycle {
     phase: Phase,
     /// A goal that waits for the running motion to end.
     next: Option<Waiting>,
+    /// The last session that goes from goal to goal, if it did not end as asked, and how it ended.
+    ended: Option<(GoalId, MotionError)>,
     motions: u64,
     /// Cycles that the log of a motion holds.
     log_size: usize,
@@ -99,6 +103,7 @@ impl Lifecycle {
             version,
             phase: Phase::Idle,
             next: None,
+            ended: None,
             motions: 0,
             log_size: ControlLog::DEFAULT_CAPACITY,
             outputs: VecDeque::new(),
@@ -162,10 +167,11 @@ impl Lifecycle {
                 if active.command == CommandSide::Started {
                     active.deadline = active.running_deadline();
                 }
-                if let Work::Program(program) = &active.work {
-                    let id = program.id;
-                    self.outputs.push_back(Output::Began { id });
-                }
+                let begun = match &active.work {
+                    Work::Program(program) => Some(program.id),
+                    Work::Goals(goals) => goals.engaged.map(|engaged| engaged.id),
+                };
+                self.outputs.extend(begun.map(|id| Output::Began { id }));
             }
             Event::Program {
                 motion,
@@ -296,7 +302,26 @@ impl Lifecycle {
         rest: &Result<MotionReport, MotionError>,
     ) {
         match work {
-            Work::Goals(goals) => self.resolve(goals.current.goal.id, result.clone()),
+            Work::Goals(goals) => {
+                let end = goals.end_of_engagement(result);
+                let current = goals.current.goal.id;
+                if end.as_ref().is_none_or(|(engaged, _)| *engaged != current) {
+                    self.resolve(current, result.clone());
+                }
+                let late = match &end {
+                    Some((_, Err(error))) => error.clone(),
+                    _ => MotionError::Disengaged,
+                };
+                for goal in goals.late {
+                    self.resolve(goal, Err(late.clone()));
+                }
+                if let Some((engaged, result)) = end {
+                    if let Err(error) = &result {
+                        self.ended = Some((engaged, error.clone()));
+                    }
+                    self.resolve(engaged, result);
+                }
+            }
             Work::Program(program) => {
                 self.resolve(program.id, result.clone());
                 for stop in program.stops {

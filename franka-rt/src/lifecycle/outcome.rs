@@ -6,7 +6,7 @@ use std::sync::Arc;
 use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
 
 use crate::driver::{ControlLog, Ended, MotionStatistics, MotionTimes};
-use crate::session::{GoalError, PoseError};
+use crate::session::{GoalError, Lapse, PoseError};
 use crate::shaping::InvalidCommand;
 use crate::stats::{CycleTimes, Quantiles, Slack};
 use crate::together::StartFault;
@@ -92,6 +92,15 @@ pub enum MotionError {
     /// Caller: a stop was asked for; the arm was braked and rests.
     #[error("stopped on request")]
     Stopped,
+    /// Caller: the goal was given up, and the arm holds: at the last target, or where it came to rest.
+    #[error("held: {0}")]
+    Held(Lapse),
+    /// Caller: the goal was given up and the arm braked, as its watchdog was told to. It holds where it came to rest.
+    #[error("braked: {0}")]
+    Braked(Lapse),
+    /// Caller: the session that the goal is for has ended, or is about to. Nothing was sent.
+    #[error("the arm is not engaged any more")]
+    Disengaged,
     /// Caller: something else controls the arm, and does not give way.
     #[error(
         "libfranka robot: Cannot perform this operation while another control or read operation is running."
@@ -160,6 +169,9 @@ impl MotionError {
             Self::Goal(_)
                 | Self::Superseded
                 | Self::Stopped
+                | Self::Held(_)
+                | Self::Braked(_)
+                | Self::Disengaged
                 | Self::Busy
                 | Self::Start(_)
                 | Self::Unsupported(_)
@@ -181,6 +193,9 @@ impl MotionError {
             Self::Goal(_)
             | Self::Superseded
             | Self::Stopped
+            | Self::Held(_)
+            | Self::Braked(_)
+            | Self::Disengaged
             | Self::Busy
             | Self::Start(_)
             | Self::Unsupported(_)

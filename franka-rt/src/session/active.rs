@@ -1,6 +1,8 @@
 //! A session under way: the reference, what moves it, and the torques that follow it.
 
-use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
+use core::time::Duration;
+
+use franka_model::{EndEffector, Frame, GRAVITY_EARTH, Jacobian, JointVector, Load, Model};
 use franka_proto::RobotState;
 use nalgebra::Isometry3;
 
@@ -11,10 +13,12 @@ use crate::law::shaping;
 
 use super::course::{self, Course};
 use super::fade::Fade;
-use super::goal::{Goal, Target, Then};
+use super::goal::{Goal, Stale, Target, Then, Watchdog};
 use super::guard::{Bindings, Guard, leash};
 use super::landing::{self, Landing, Release, Verdict};
-use super::{STALL_TIMEOUT, SessionEvent, Step, end_effector_of, load_of, rigid};
+use super::{
+    Lapse, STALL_TIMEOUT, SessionEvent, Settlement, Step, end_effector_of, load_of, rigid,
+};
 
 /// What exists once the first state has been seen.
 #[derive(Debug)]
@@ -29,8 +33,22 @@ pub(super) struct Active {
     reference: Reference,
     gains: Fade,
     stage: Stage,
+    /// When the session last heard of its goal, `message_id` of the state.
+    heard: u64,
+    /// Why the goal was given up, and what the arm does since.
+    lapse: Option<(Stale, Lapse)>,
     /// Cycles in which the course was held back, less those since in which it was not.
     held_back: u64,
+}
+
+/// The arm as it was measured.
+#[derive(Debug)]
+pub(super) struct Measured {
+    pub(super) q: JointVector,
+    /// `O_T_EE`.
+    pub(super) pose: Isometry3<f64>,
+    /// Of the end effector in the base frame.
+    pub(super) jacobian: Jacobian,
 }
 
 /// What the session does about its goal.
@@ -40,6 +58,8 @@ enum Stage {
     UnderWay,
     /// The reference has arrived; the arm settles.
     Landing(Landing),
+    /// The goal has come to its end, and is held.
+    Staying,
     /// The spring is being let go, so that the torques end at zero.
     Releasing(Release),
     /// The last command is out.
@@ -58,13 +78,15 @@ impl Active {
             stage: Stage::UnderWay,
             held_back: 0,
             since: state.message_id,
+            heard: state.message_id,
+            lapse: None,
             posture: q,
             reference,
             goal,
             load,
             ee,
         };
-        this.take_up(model, goal, state.message_id);
+        this.set_out(model);
         Some(this)
     }
 
@@ -72,23 +94,91 @@ impl Active {
         if matches!(self.stage, Stage::Finished) {
             return;
         }
+        self.heard = now;
+        self.gains.towards(goal.gains);
+        let same = goal.id == self.goal.id
+            && goal.target == self.goal.target
+            && goal.then == self.goal.then
+            && goal.budget == self.goal.budget;
         if goal.id != self.goal.id {
             self.since = now;
         }
         self.goal = goal;
-        self.gains.towards(goal.gains);
+        if same && self.lapse.is_none() && !matches!(self.stage, Stage::Releasing(_)) {
+            return; // Tuned, or a sign of life.
+        }
+        self.lapse = None;
+        self.set_out(model);
+    }
+
+    fn set_out(&mut self, model: &Model) {
         self.stage = Stage::UnderWay;
         self.held_back = 0;
+        self.turn_to(model, self.goal.target);
+    }
+
+    fn turn_to(&mut self, model: &Model, target: Target) {
+        let goal = Goal {
+            target,
+            ..self.goal
+        };
         self.course
             .head_for(model, &self.ee, &self.reference, &goal);
     }
 
-    pub(super) fn step(&mut self, model: &Model, state: &RobotState, record: &mut Record) -> Step {
+    /// Gives the goal up: its updates stay away, or its deadman is silent.
+    fn watch(&mut self, model: &Model, alive: bool, now: u64) {
+        let given_up = matches!(self.lapse, Some((Stale::Brake, _)));
+        if given_up || matches!(self.stage, Stage::Releasing(_) | Stage::Finished) {
+            return;
+        }
+        let silence = Duration::from_millis(now.saturating_sub(self.heard));
+        let lapse = match self.goal.watchdog {
+            _ if !alive => (Stale::Brake, Lapse::Deadman),
+            Some(Watchdog {
+                silence: most,
+                stale,
+                then,
+            }) if self.goal.then == Then::Hold && silence >= most => {
+                self.goal.then = then;
+                (stale, Lapse::Silent { silence })
+            }
+            _ => return,
+        };
+        if lapse.0 == Stale::Brake {
+            self.goal.target = Target::Rest;
+            self.set_out(model);
+        }
+        if self.goal.then == Then::Hold {
+            self.goal.then = Then::Stay;
+        }
+        self.lapse = Some(lapse);
+    }
+
+    /// Answers one state; `alive` is whether nobody has let go of the deadman that it is bound to.
+    pub(super) fn step(
+        &mut self,
+        model: &Model,
+        alive: bool,
+        state: &RobotState,
+        record: &mut Record,
+    ) -> Step {
         let q = JointVector::from(state.q);
         let dq = JointVector::from(state.dq);
         let dynamics = model.dynamics(&q, &dq, &self.ee, &self.load, &GRAVITY_EARTH);
-        let measured = rigid(&dynamics.pose);
+        let arm = Measured {
+            q,
+            pose: rigid(&dynamics.pose),
+            jacobian: dynamics.jacobian,
+        };
         let mut bindings = Bindings::default();
+
+        self.watch(model, alive, state.message_id);
+        bindings.set(Guard::Deadman, !alive);
+        bindings.set(
+            Guard::Watchdog,
+            matches!(self.lapse, Some((_, Lapse::Silent { .. }))),
+        );
 
         let course::Step {
             reference,
@@ -96,12 +186,12 @@ impl Active {
             held,
         } = self
             .course
-            .step(model, &self.ee, &self.posture, &self.reference);
+            .step(model, &self.ee, &self.posture, &self.reference, &arm);
         self.reference = reference;
         bindings.set(Guard::InverseKinematics, bounded);
         let at_rest = dq.amax() < landing::REST_VELOCITY;
-        let event = self.advance_stage(model, &q, &measured, at_rest, state.message_id);
-        let leashed = leash::hold(&mut self.course, &mut self.reference, &q, &measured);
+        let event = self.advance_stage(model, &arm, at_rest, state.message_id);
+        let leashed = leash::hold(&mut self.course, &mut self.reference, &q, &arm.pose);
         bindings.set(Guard::Leash, leashed);
         self.held_back = if leashed || held {
             self.held_back + 1
@@ -134,29 +224,25 @@ impl Active {
         }
     }
 
-    /// Moves through the stages of a goal that is to finish. The only place where the stage advances.
+    /// Moves through the stages of a goal that is to come to an end. The only place where the stage advances.
     fn advance_stage(
         &mut self,
         model: &Model,
-        q: &JointVector,
-        measured: &Isometry3<f64>,
+        arm: &Measured,
         at_rest: bool,
         now: u64,
     ) -> Option<SessionEvent> {
         match &mut self.stage {
             Stage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                if self.goal.then == Then::Finish && (self.course.is_done() || stalled) {
+                if self.goal.then != Then::Hold && (self.course.is_done() || stalled) {
                     if stalled && self.goal.target != Target::Rest {
-                        let rest = Goal {
-                            target: Target::Rest,
-                            ..self.goal
-                        };
-                        self.course
-                            .head_for(model, &self.ee, &self.reference, &rest);
+                        self.turn_to(model, Target::Rest);
                     }
                     let target = match self.goal.target {
-                        Target::Rest => None,
+                        // Wherever it stands, it counts as held.
+                        _ if self.lapse.is_some() => None,
+                        Target::Rest | Target::Guide(_) => None,
                         Target::Pose(pose) => Some(pose),
                         Target::Joints(q) => {
                             Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
@@ -167,28 +253,36 @@ impl Active {
                 None
             }
             Stage::Landing(landing) => {
-                let verdict = landing.judge(measured, at_rest);
-                let (settlement, held) = match verdict {
+                let (settlement, held) = match landing.judge(&arm.pose, at_rest) {
                     Verdict::Settling => return None,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
-                self.stage = Stage::Releasing(Release::new(self.reference.q - q));
-                self.course = Course::Rest;
+                if self.goal.then == Then::Finish {
+                    self.stage = Stage::Releasing(Release::new(self.reference.q - arm.q));
+                    self.course = Course::Rest;
+                } else {
+                    self.stage = Stage::Staying;
+                }
                 Some(SessionEvent::Settled {
                     goal: self.goal.id,
-                    settlement,
+                    settlement: match self.lapse {
+                        Some((Stale::Hold, lapse)) => Settlement::Held(lapse),
+                        Some((Stale::Brake, Lapse::Deadman)) => Settlement::Held(Lapse::Deadman),
+                        Some((Stale::Brake, lapse)) => Settlement::Braked(lapse),
+                        None => settlement,
+                    },
                     duration_ms: (now - self.since).saturating_sub(held),
                 })
             }
             Stage::Releasing(release) => {
-                self.reference = Reference::at_rest(q + release.offset());
+                self.reference = Reference::at_rest(arm.q + release.offset());
                 self.course = Course::Rest;
                 if release.is_over(at_rest) {
                     self.stage = Stage::Finished;
                 }
                 None
             }
-            Stage::Finished => None,
+            Stage::Staying | Stage::Finished => None,
         }
     }
 }

@@ -1,11 +1,13 @@
 //! Checks of a goal where it is accepted, outside the thread: what passes here cannot fail in the cycle.
 
+use core::time::Duration;
+
 use franka_model::{EndEffector, JointVector, Model, inverse_kinematics};
 use franka_proto::RobotState;
 
 use crate::law::GainError;
 use crate::otg::AxisLimits;
-use crate::session::{Budget, Goal, Target, approach};
+use crate::session::{Budget, Goal, Target, Watchdog, approach};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -57,6 +59,12 @@ pub enum GoalError {
         /// The value given.
         got: f64,
     },
+    /// A silence of a watchdog or a deadman is shorter than a lossy network may bring by itself.
+    #[error("silence of {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
+    Silence {
+        /// The time given.
+        got: Duration,
+    },
     /// The robot's state names an end effector that is not a rigid transformation, or a load that is not finite.
     #[error("the robot's state names an end effector or a load that cannot be")]
     Tool,
@@ -75,10 +83,13 @@ impl Goal {
                 return Err(GoalError::Tolerance { got });
             }
         }
+        if let Some(Watchdog { silence, .. }) = self.watchdog {
+            check_silence(silence)?;
+        }
         let ee = super::end_effector_of(state).ok_or(GoalError::Tool)?;
         super::load_of(state).ok_or(GoalError::Tool)?;
         match self.target {
-            Target::Rest => Ok(()),
+            Target::Rest | Target::Guide(_) => Ok(()),
             Target::Joints(q) => check_joints(&q, model, state),
             Target::Pose(pose) => {
                 let p = pose.translation.vector;
@@ -99,6 +110,14 @@ impl Goal {
             }
         }
     }
+}
+
+/// Checks the silence that a watchdog or a deadman bears.
+pub(crate) fn check_silence(got: Duration) -> Result<(), GoalError> {
+    if got < Goal::SILENCE_MIN {
+        return Err(GoalError::Silence { got });
+    }
+    Ok(())
 }
 
 fn check_joints(q: &[f64; 7], model: &Model, state: &RobotState) -> Result<(), GoalError> {

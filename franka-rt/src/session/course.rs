@@ -5,21 +5,20 @@ use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 
 use crate::law::hybrid::Reference;
 use crate::otg::{AxisLimits, Generator, Limits, PlanError, State};
+use crate::session::active::Measured;
 use crate::session::guard::leash;
+use crate::session::guide::Guide;
 use crate::session::pose::{PoseGenerator, PoseState};
 use crate::session::{Budget, Goal, Target, approach, budget, kinematics, rigid};
 
 /// What moves the reference.
 #[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "one per session, inside its box; a box in here would allocate"
-)]
 pub(super) enum Course {
     /// The reference rests where it is.
     Rest,
     Joints(Generator<7>),
     Pose(PoseGenerator),
+    Guide(Guide),
 }
 
 /// What a course does in one cycle.
@@ -50,13 +49,20 @@ impl Course {
                 debug_assert!(retargeted.is_ok(), "{retargeted:?}");
                 return;
             }
-            (Target::Pose(pose), Self::Rest | Self::Joints(_)) => {
+            (Target::Pose(pose), Self::Rest | Self::Joints(_) | Self::Guide(_)) => {
                 let start = end_effector(model, ee, reference);
                 PoseGenerator::new(&start, pose, goal.budget, model.cartesian_limits())
                     .map(Self::Pose)
             }
-            (Target::Joints(target), _) => joints(model, reference, Some(target), &goal.budget),
-            (Target::Rest, _) => joints(model, reference, None, &goal.budget),
+            (Target::Joints(target), _) => {
+                joints(model, reference, Some(target), &goal.budget).map(Self::Joints)
+            }
+            (Target::Rest, _) => joints(model, reference, None, &goal.budget).map(Self::Joints),
+            (Target::Guide(free), Self::Guide(guide)) => return guide.free(free),
+            (Target::Guide(free), Self::Rest | Self::Joints(_) | Self::Pose(_)) => {
+                joints(model, reference, None, &goal.budget)
+                    .map(|brake| Self::Guide(Guide::new(free, brake)))
+            }
         };
         match planned {
             Ok(course) => *self = course,
@@ -71,6 +77,7 @@ impl Course {
         ee: &EndEffector,
         posture: &JointVector,
         reference: &Reference,
+        arm: &Measured,
     ) -> Step {
         let free = |reference| Step {
             reference,
@@ -91,6 +98,7 @@ impl Course {
                     ddq: acceleration.into(),
                 })
             }
+            Self::Guide(guide) => free(guide.step(reference, arm)),
             Self::Pose(generator) => {
                 let next = generator.step();
                 let (reference, bounded) =
@@ -114,17 +122,18 @@ impl Course {
             Self::Rest => true,
             Self::Joints(generator) => generator.is_done(),
             Self::Pose(generator) => generator.is_done(),
+            Self::Guide(_) => false,
         }
     }
 }
 
-/// A course over the joints from the reference to `target`, or to rest.
+/// A plan for the joints from the reference to `target`, or to rest.
 fn joints(
     model: &Model,
     reference: &Reference,
     target: Option<[f64; 7]>,
     budget: &Budget,
-) -> Result<Course, PlanError> {
+) -> Result<Generator<7>, PlanError> {
     let state = State {
         position: reference.q.into(),
         velocity: reference.dq.into(),
@@ -143,7 +152,7 @@ fn joints(
     if let Some(target) = target {
         generator.set_target(&target)?;
     }
-    Ok(Course::Joints(generator))
+    Ok(generator)
 }
 
 /// The limits of one joint's plan: those of the budget, unless the joint moves and is only to stop, keeps another budget

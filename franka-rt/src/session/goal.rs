@@ -1,5 +1,7 @@
 //! What target control is asked for, and its form in the slot that crosses into the thread.
 
+use core::time::Duration;
+
 use franka_model::limits::JointLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
@@ -23,13 +25,46 @@ pub enum Target {
     Joints([f64; 7]),
     /// To a pose of the end effector in the base frame, `O_T_EE`, metres.
     Pose(Isometry3<f64>),
+    /// Wherever a hand takes it: the reference goes with the arm along the free axes, and stays on the others.
+    Guide(Free),
+}
+
+/// What of the arm a hand may move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Free {
+    /// Axes of the base frame at the end effector: x y z, about x y z.
+    pub axes: [bool; 6],
+    /// The elbow, while the end effector stays.
+    pub elbow: bool,
+}
+
+impl Free {
+    /// Everything.
+    pub const ALL: Self = Self {
+        axes: [true; 6],
+        elbow: true,
+    };
+
+    fn to_word(self) -> u64 {
+        let all = self.axes.into_iter().chain([self.elbow]);
+        all.fold(0, |word, free| word << 1 | u64::from(free))
+    }
+
+    fn from_word(word: u64) -> Self {
+        Self {
+            axes: core::array::from_fn(|i| word >> (6 - i) & 1 == 1),
+            elbow: word & 1 == 1,
+        }
+    }
 }
 
 /// What follows the arrival.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Then {
-    /// Hold the target until a newer goal comes.
+    /// Hold the target until a newer goal comes, and report nothing.
     Hold,
+    /// Settle, report, and hold the target until a newer goal comes.
+    Stay,
     /// Settle, report and end the motion.
     Finish,
 }
@@ -53,6 +88,26 @@ impl Default for Tolerance {
     }
 }
 
+/// What becomes of a goal whose targets stop coming.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Watchdog {
+    /// How long nothing may come, by the robot's clock in whole milliseconds.
+    pub silence: Duration,
+    /// What the arm does then.
+    pub stale: Stale,
+    /// Whether the motion ends once the arm rests.
+    pub then: Then,
+}
+
+/// What an arm does whose targets have stopped coming.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stale {
+    /// Goes on to the last target and holds it.
+    Hold,
+    /// Brakes at once, and holds where it comes to rest.
+    Brake,
+}
+
 /// One goal, complete: a newer one replaces all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
@@ -68,9 +123,14 @@ pub struct Goal {
     pub gains: Gains,
     /// How near counts as arrived.
     pub tolerance: Tolerance,
+    /// What happens if its updates stay away; of goals that are held.
+    pub watchdog: Option<Watchdog>,
 }
 
 impl Goal {
+    /// Shortest silence that a watchdog or a deadman may be set to.
+    pub const SILENCE_MIN: Duration = Duration::from_millis(10);
+
     /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on the way to joint
     /// positions and the end effector compliant otherwise, the default tolerance.
     pub fn new(id: GoalId, target: Target, then: Then, limits: &JointLimits) -> Self {
@@ -82,15 +142,18 @@ impl Goal {
             gains: match target {
                 Target::Joints(_) => Gains::joint(),
                 Target::Pose(_) | Target::Rest => Gains::cartesian(),
+                Target::Guide(free) => Gains::guiding(free),
             },
             tolerance: Tolerance::default(),
+            watchdog: None,
         }
     }
 }
 
-/// Name, kind of target, what follows; 7 numbers of target, 27 of budget, the gains, 2 of tolerance.
+/// Name, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of budget, the gains, 2 of
+/// tolerance.
 impl Words for Goal {
-    const WORDS: usize = 3 + 7 + 27 + Gains::NUMBERS + 2;
+    const WORDS: usize = 5 + 7 + 27 + Gains::NUMBERS + 2;
 
     fn store(&self, words: &mut [u64]) {
         let (kind, target) = match self.target {
@@ -100,8 +163,20 @@ impl Words for Goal {
                 let (p, r) = (pose.translation.vector, pose.rotation.coords);
                 (2, [p.x, p.y, p.z, r.x, r.y, r.z, r.w])
             }
+            Target::Guide(free) => (3 | free.to_word() << 2, [0.0; 7]),
         };
-        let then = u64::from(self.then == Then::Finish);
+        let (watched, silence) = match self.watchdog {
+            None => (0, 0),
+            Some(Watchdog {
+                silence,
+                stale,
+                then,
+            }) => {
+                let stale = u64::from(stale == Stale::Brake);
+                let silence = u64::try_from(silence.as_millis()).unwrap_or(u64::MAX);
+                (1 | stale << 1 | then.to_word() << 2, silence)
+            }
+        };
         let Budget {
             joints,
             translation,
@@ -113,7 +188,7 @@ impl Words for Goal {
             .chain(axes.flat_map(|l| [l.velocity, l.acceleration, l.jerk]))
             .chain(self.gains.to_array())
             .chain([self.tolerance.translation, self.tolerance.rotation]);
-        let all = [self.id.0, kind, then]
+        let all = [self.id.0, kind, self.then.to_word(), watched, silence]
             .into_iter()
             .chain(numbers.map(f64::to_bits));
         for (word, value) in words.iter_mut().zip(all) {
@@ -124,7 +199,7 @@ impl Words for Goal {
     fn load(words: &[u64]) -> Self {
         let mut words = words.iter().copied();
         let mut next = || words.next().unwrap_or_default();
-        let (id, kind, then) = (next(), next(), next());
+        let [id, kind, then, watched, silence] = core::array::from_fn(|_| next());
         let mut number = || f64::from_bits(next());
         let target = core::array::from_fn(|_| number());
         let mut axis = || AxisLimits {
@@ -139,7 +214,7 @@ impl Words for Goal {
         };
         Self {
             id: GoalId(id),
-            target: match kind {
+            target: match kind & 3 {
                 1 => Target::Joints(target),
                 2 => {
                     let [x, y, z, i, j, k, w] = target;
@@ -148,15 +223,43 @@ impl Words for Goal {
                         UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
                     ))
                 }
+                3 => Target::Guide(Free::from_word(kind >> 2)),
                 _ => Target::Rest,
             },
-            then: if then == 0 { Then::Hold } else { Then::Finish },
+            then: Then::from_word(then),
+            watchdog: (watched & 1 == 1).then(|| Watchdog {
+                silence: Duration::from_millis(silence),
+                stale: if watched >> 1 & 1 == 1 {
+                    Stale::Brake
+                } else {
+                    Stale::Hold
+                },
+                then: Then::from_word(watched >> 2),
+            }),
             budget,
             gains: Gains::from_array(core::array::from_fn(|_| number())),
             tolerance: Tolerance {
                 translation: number(),
                 rotation: number(),
             },
+        }
+    }
+}
+
+impl Then {
+    fn to_word(self) -> u64 {
+        match self {
+            Self::Hold => 0,
+            Self::Stay => 1,
+            Self::Finish => 2,
+        }
+    }
+
+    fn from_word(word: u64) -> Self {
+        match word {
+            0 => Self::Hold,
+            1 => Self::Stay,
+            _ => Self::Finish,
         }
     }
 }
@@ -172,13 +275,24 @@ mod tests {
             Translation3::new(0.4, -0.1, 0.3),
             UnitQuaternion::from_euler_angles(3.0, 0.2, -0.7),
         );
-        for (target, then) in [
-            (Target::Rest, Then::Finish),
+        let free = Free {
+            axes: [true, false, false, true, true, false],
+            elbow: true,
+        };
+        let watchdog = Watchdog {
+            silence: Duration::from_millis(250),
+            stale: Stale::Brake,
+            then: Then::Stay,
+        };
+        for (target, then, watchdog) in [
+            (Target::Rest, Then::Finish, None),
             (
                 Target::Joints([0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7]),
                 Then::Hold,
+                Some(watchdog),
             ),
-            (Target::Pose(pose), Then::Finish),
+            (Target::Pose(pose), Then::Stay, None),
+            (Target::Guide(free), Then::Hold, Some(watchdog)),
         ] {
             let goal = Goal {
                 id: GoalId(77),
@@ -190,6 +304,7 @@ mod tests {
                     translation: 2e-3,
                     rotation: 3e-3,
                 },
+                watchdog,
             };
             let mut words = [u64::MAX; Goal::WORDS];
             goal.store(&mut words);

@@ -14,11 +14,13 @@
 mod active;
 mod approach;
 mod budget;
-mod check;
+pub(crate) mod check;
 mod course;
+mod deadman;
 mod fade;
 mod goal;
 mod guard;
+mod guide;
 mod kinematics;
 mod landing;
 mod pose;
@@ -37,7 +39,8 @@ use crate::together::StartFault;
 
 pub use budget::Budget;
 pub use check::GoalError;
-pub use goal::{Goal, GoalId, Target, Then, Tolerance};
+pub use deadman::{Deadman, Grip};
+pub use goal::{Free, Goal, GoalId, Stale, Target, Then, Tolerance, Watchdog};
 pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
 pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT};
@@ -74,8 +77,35 @@ pub enum Settlement {
     AtRest,
     /// The reference reached the target, the arm did not: something holds it, or its load is not what was declared.
     Short(PoseError),
+    /// Given up, and held: at the last target, or where it came to rest without its deadman.
+    Held(Lapse),
+    /// Given up, and braked: it is held where it came to rest.
+    Braked(Lapse),
     /// At rest where it was held: those were missing that it was to begin with.
     Unstarted(StartFault),
+}
+
+/// Why a goal was given up that might have gone on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Lapse {
+    /// Its targets stopped coming: see [`Watchdog`].
+    Silent {
+        /// For how long none had come, by the robot's clock.
+        silence: Duration,
+    },
+    /// The [`Deadman`] that the session is bound to fell silent, or was dropped.
+    Deadman,
+}
+
+impl core::fmt::Display for Lapse {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Silent { silence } => write!(f, "no target came for {} ms", silence.as_millis()),
+            Self::Deadman => write!(f, "its deadman is silent"),
+        }
+    }
 }
 
 /// What a session answers a state with.
@@ -97,6 +127,8 @@ pub struct TargetSession {
     held: Option<Goal>,
     /// A goal whose common start has failed, and why.
     unstarted: Option<(GoalId, StartFault)>,
+    /// The deadman that it is bound to.
+    deadman: Option<Grip>,
 }
 
 impl TargetSession {
@@ -108,7 +140,15 @@ impl TargetSession {
             active: None,
             held: None,
             unstarted: None,
+            deadman: None,
         }
+    }
+
+    /// Binds the session to a deadman.
+    #[must_use]
+    pub fn bound_to(mut self, deadman: Grip) -> Self {
+        self.deadman = Some(deadman);
+        self
     }
 
     /// The newest goal that the session has taken up, for telling goals that came too late.
@@ -204,7 +244,9 @@ impl TargetSession {
                 };
             }
         };
-        let mut step = active.step(&self.model, state, record);
+        let alive = |grip: &mut Grip| grip.is_alive(state.message_id);
+        let alive = self.deadman.as_mut().is_none_or(alive);
+        let mut step = active.step(&self.model, alive, state, record);
         if let Some(SessionEvent::Settled {
             goal, settlement, ..
         }) = &mut step.event

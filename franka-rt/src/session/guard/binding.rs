@@ -14,6 +14,10 @@ pub enum Guard {
     TorqueClamp,
     /// The torque changed faster than the robot accepts and was slowed.
     TorqueRate,
+    /// The targets stopped coming; the arm goes to rest, or rests, for that.
+    Watchdog,
+    /// The deadman is silent; as above.
+    Deadman,
 }
 
 /// A set of guards.
@@ -21,11 +25,13 @@ pub enum Guard {
 pub struct Bindings(u16);
 
 impl Guard {
-    const ALL: [Self; 4] = [
+    const ALL: [Self; 6] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
         Self::TorqueRate,
+        Self::Watchdog,
+        Self::Deadman,
     ];
 }
 

@@ -56,7 +56,7 @@ pub(crate) fn hold(
             }
             None => Ok(()),
         },
-        Course::Rest | Course::Joints(_) => Ok(()),
+        Course::Rest | Course::Joints(_) | Course::Guide(_) => Ok(()),
     };
     // A measured state that is not finite; the robot will not send one, and the course then goes on as planned.
     debug_assert!(planned.is_ok(), "{planned:?}");

@@ -1,0 +1,189 @@
+//! A session that goes on from goal to goal.
+
+use core::time::Duration;
+
+use franka_proto::RobotState;
+
+use super::active::Waiting;
+use super::{Lifecycle, MotionError, Phase};
+use crate::law::Gains;
+use crate::session::check::check_silence;
+use crate::session::{Budget, Goal, GoalId, Grip, Target, Then};
+
+/// What a session that goes from goal to goal has beside its goals.
+#[derive(Debug, Default)]
+pub struct Engagement {
+    /// The deadman that it is bound to.
+    pub deadman: Option<Grip>,
+}
+
+/// Changes to the goal under way, and nothing to where it goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tuning {
+    /// How stiff; the gains fade over 0.3 s.
+    pub gains: Option<Gains>,
+    /// How fast.
+    pub budget: Option<Budget>,
+}
+
+impl Lifecycle {
+    /// Starts a session that holds the arm where it is and then goes from goal to goal, with the gains and the budget of
+    /// `goal`, whose `id` becomes the name of the session. It resolves when the session has ended.
+    ///
+    /// # Errors
+    /// [`MotionError::Goal`] for gains or a budget that are not accepted, [`MotionError::Busy`] while anything controls the
+    /// arm, [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved then.
+    pub fn engage(
+        &mut self,
+        goal: Goal,
+        engagement: Engagement,
+        state: &RobotState,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        self.check_free(None)?;
+        let goal = Goal {
+            target: Target::Rest,
+            then: Then::Hold,
+            watchdog: None,
+            ..goal
+        };
+        goal.check(&self.model, state)?;
+        if let Some(deadman) = &engagement.deadman {
+            check_silence(deadman.silence())?;
+        }
+        let waiting = Waiting {
+            goal,
+            cancelled: false,
+        };
+        self.start_goal(waiting, None, Some(engagement), now);
+        Ok(())
+    }
+
+    /// Takes a goal for the session `engaged`. It supersedes the goal before it.
+    ///
+    /// # Errors
+    /// [`MotionError::Goal`] for a goal that is not accepted; what ended the session, if that was not its owner's wish, and
+    /// [`MotionError::Disengaged`] otherwise. Nothing is resolved in any of these cases, and a goal under way goes on.
+    pub fn submit_within(
+        &mut self,
+        engaged: GoalId,
+        goal: Goal,
+        state: &RobotState,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        self.check_engaged(engaged)?;
+        goal.check(&self.model, state)?;
+        if self.is_ending() {
+            if let Some(goals) = self.goals() {
+                goals.late.push(goal.id);
+            }
+            return Ok(());
+        }
+        let waiting = Waiting {
+            goal,
+            cancelled: false,
+        };
+        self.replace(waiting, MotionError::Superseded, now);
+        Ok(())
+    }
+
+    /// Changes how the session `engaged` goes about the goal that it has, without a step in torque.
+    ///
+    /// # Errors
+    /// As [`Self::submit_within`]; everything stays as it was then.
+    pub fn tune(
+        &mut self,
+        engaged: GoalId,
+        tuning: Tuning,
+        state: &RobotState,
+    ) -> Result<(), MotionError> {
+        self.check_engaged(engaged)?;
+        let Some(goals) = self.goals() else {
+            return Err(MotionError::Disengaged);
+        };
+        let id = goals.current.goal.id;
+        let change = |goal: &Goal| Goal {
+            gains: tuning.gains.unwrap_or(goal.gains),
+            budget: tuning.budget.unwrap_or(goal.budget),
+            ..*goal
+        };
+        let amended = self.amend(id, change, Some(state))?;
+        debug_assert!(amended, "the newest goal is the one that is followed");
+        Ok(())
+    }
+
+    /// Ends the session `engaged` as asked: brakes, lets the arm go, ends the motion. Its goal resolves as
+    /// [`MotionError::Stopped`], the session itself well. Without effect on one that is ending or has ended.
+    pub fn disengage(&mut self, engaged: GoalId, now: Duration) {
+        if self.check_engaged(engaged).is_ok() {
+            self.release(engaged, now);
+        }
+    }
+
+    /// What follows the end of a goal under way.
+    pub(super) fn end_of_goals(&mut self) -> Then {
+        if self.is_engaged() {
+            Then::Stay
+        } else {
+            Then::Finish
+        }
+    }
+
+    /// Whether the motion under way has ended on one side.
+    fn is_ending(&self) -> bool {
+        matches!(&self.phase, Phase::Active(active) if active.is_ending())
+    }
+
+    /// Whether a session that goes from goal to goal has the arm.
+    pub(super) fn is_engaged(&mut self) -> bool {
+        self.goals().is_some_and(|goals| goals.engaged.is_some())
+    }
+
+    /// Ends the session of that name. Returns whether it has the arm.
+    pub(super) fn release(&mut self, engaged: GoalId, now: Duration) -> bool {
+        let ending = self.is_ending();
+        let Some(goals) = self.goals() else {
+            return false;
+        };
+        let goes_on = goals.goes_on() && !ending;
+        let Some(session) = goals
+            .engaged
+            .as_mut()
+            .filter(|session| session.id == engaged)
+        else {
+            return false;
+        };
+        if goes_on {
+            session.disengaged = true;
+            let goal = Goal {
+                id: engaged,
+                target: Target::Rest,
+                then: Then::Finish,
+                watchdog: None,
+                ..goals.current.goal
+            };
+            let waiting = Waiting {
+                goal,
+                cancelled: false,
+            };
+            self.replace(waiting, MotionError::Stopped, now);
+        }
+        true
+    }
+
+    fn check_engaged(&mut self, engaged: GoalId) -> Result<(), MotionError> {
+        self.check_open()?;
+        match self.goals() {
+            Some(goals)
+                if goals.goes_on()
+                    && goals.engaged.is_some_and(|session| session.id == engaged) =>
+            {
+                Ok(())
+            }
+            _ => Err(match &self.ended {
+                Some((ended, error)) if *ended == engaged => error.clone(),
+                _ => MotionError::Disengaged,
+            }),
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Hand guiding: the reference goes with the arm, except along the axes that are to stay.
+
+use franka_model::{JointVector, Twist, rotation};
+use nalgebra::{Isometry3, Matrix6, Vector3};
+
+use super::active::Measured;
+use super::goal::Free;
+use super::guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
+use crate::law::hybrid::Reference;
+use crate::otg::{Generator, State};
+
+/// Cycles over which the spring of the goal before is let go.
+const LET_GO: u32 = 300;
+
+/// Square of the damping in the inverse of the Jacobian. It bounds the offset of a joint near a singular posture to some
+/// fifty times that of the end effector.
+const SQUARED_DAMPING: f64 = 1e-4;
+
+/// Brings the reference to rest, then lets it go.
+#[derive(Debug)]
+pub(super) struct Guide {
+    free: Free,
+    stage: Stage,
+}
+
+#[derive(Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one per session, inside its box; a box in here would allocate"
+)]
+enum Stage {
+    Braking(Generator<7>),
+    Floating(Floating),
+}
+
+#[derive(Debug)]
+struct Floating {
+    /// Where the axes stay that are not free.
+    pose: Isometry3<f64>,
+    /// Where the joints stay, as far as the end effector lets them.
+    q: JointVector,
+    /// How the reference stood from the arm when it was let go, and that at the end effector.
+    offset: JointVector,
+    offset_at_ee: Twist,
+    cycle: u32,
+}
+
+impl Guide {
+    /// Begins by braking over `brake`.
+    pub(super) fn new(free: Free, brake: Generator<7>) -> Self {
+        Self {
+            free,
+            stage: Stage::Braking(brake),
+        }
+    }
+
+    /// Lets other axes go, from where the arm is. Those that stay, stay where they are now.
+    pub(super) fn free(&mut self, free: Free) {
+        if free != self.free {
+            self.free = free;
+            if let Stage::Floating(floating) = &mut self.stage {
+                floating.cycle = u32::MAX;
+            }
+        }
+    }
+
+    pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> Reference {
+        let begun = match &mut self.stage {
+            Stage::Braking(generator) if !generator.is_done() => {
+                let State {
+                    position,
+                    velocity,
+                    acceleration,
+                } = *generator.step();
+                return Reference {
+                    q: position.into(),
+                    dq: velocity.into(),
+                    ddq: acceleration.into(),
+                };
+            }
+            Stage::Floating(floating) if floating.cycle < u32::MAX => floating,
+            Stage::Braking(_) | Stage::Floating(_) => {
+                self.stage = Stage::Floating(Floating::begin(reference, arm));
+                match &mut self.stage {
+                    Stage::Floating(floating) => floating,
+                    Stage::Braking(_) => unreachable!("it floats"),
+                }
+            }
+        };
+        Reference::at_rest(arm.q + begun.step(self.free, arm))
+    }
+}
+
+impl Floating {
+    fn begin(reference: &Reference, arm: &Measured) -> Self {
+        let offset = reference.q - arm.q;
+        let offset_at_ee = arm.jacobian * offset;
+        let ahead = Vector3::new(offset_at_ee[0], offset_at_ee[1], offset_at_ee[2]);
+        let turn = Vector3::new(offset_at_ee[3], offset_at_ee[4], offset_at_ee[5]);
+        Self {
+            pose: Isometry3::from_parts(
+                (arm.pose.translation.vector + ahead).into(),
+                rotation::exp(&turn) * arm.pose.rotation,
+            ),
+            q: reference.q,
+            offset,
+            offset_at_ee,
+            cycle: 0,
+        }
+    }
+
+    /// The distance of the reference from the arm.
+    fn step(&mut self, free: Free, arm: &Measured) -> JointVector {
+        let left = 1.0 - f64::from(self.cycle.min(LET_GO)) / f64::from(LET_GO);
+        self.cycle = (self.cycle + 1).min(LET_GO);
+        let at_ee = self.at_end_effector(free, arm, left);
+        let inverse = Inverse::of(arm);
+        let along = inverse.solve(arm, &at_ee);
+        let elbow = if free.elbow {
+            self.offset * left
+        } else {
+            let away = self.q - arm.q;
+            let held = away.map(|away| away.clamp(-JOINT_LEASH, JOINT_LEASH));
+            // Like the leash: pushed further, the elbow stays where it has been pushed.
+            self.q = arm.q + held;
+            held
+        };
+        along + elbow - inverse.solve(arm, &(arm.jacobian * elbow))
+    }
+
+    /// The same at the end effector. Axes that stay are held as by the leash.
+    fn at_end_effector(&mut self, free: Free, arm: &Measured, left: f64) -> Twist {
+        let away = self.pose.translation.vector - arm.pose.translation.vector;
+        let turned = rotation::error(&self.pose.rotation, &arm.pose.rotation);
+        let mut offset = Twist::zeros();
+        for axis in 0..6 {
+            offset[axis] = match (free.axes[axis], axis) {
+                (true, _) => self.offset_at_ee[axis] * left,
+                (false, 0..3) => away[axis],
+                (false, _) => turned[axis - 3],
+            };
+        }
+        for (part, most) in [(0, TRANSLATION_LEASH), (3, ROTATION_LEASH)] {
+            let length = offset.fixed_rows::<3>(part).norm();
+            if length > most {
+                offset.fixed_rows_mut::<3>(part).scale_mut(most / length);
+            }
+        }
+        let (ahead, turn) = (offset.fixed_rows::<3>(0), offset.fixed_rows::<3>(3));
+        self.pose = Isometry3::from_parts(
+            (arm.pose.translation.vector + ahead).into(),
+            rotation::exp(&turn.into_owned()) * arm.pose.rotation,
+        );
+        offset
+    }
+}
+
+/// The damped inverse of the Jacobian: the smallest change of the joints for one of the end effector.
+struct Inverse(Option<nalgebra::Cholesky<f64, nalgebra::U6>>);
+
+impl Inverse {
+    fn of(arm: &Measured) -> Self {
+        let square = arm.jacobian * arm.jacobian.transpose();
+        Self((square + Matrix6::identity() * SQUARED_DAMPING).cholesky())
+    }
+
+    /// Zero for numbers that are not finite, which have no inverse.
+    fn solve(&self, arm: &Measured, change: &Twist) -> JointVector {
+        let solved = self.0.as_ref().map(|square| square.solve(change));
+        solved.map_or_else(JointVector::zeros, |solved| arm.jacobian.tr_mul(&solved))
+    }
+}
