@@ -182,13 +182,15 @@ impl Active {
 
         let course::Step {
             reference,
-            bounded,
+            bounds,
             held,
         } = self
             .course
             .step(model, &self.ee, &self.posture, &self.reference, &arm);
         self.reference = reference;
-        bindings.set(Guard::InverseKinematics, bounded);
+        bindings.set(Guard::InverseKinematics, bounds.acceleration);
+        bindings.set(Guard::JointVelocity, bounds.velocity);
+        bindings.set(Guard::PositionEnvelope, bounds.position);
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         let event = self.advance_stage(model, &arm, at_rest, state.message_id);
         let leashed = leash::hold(&mut self.course, &mut self.reference, &q, &arm.pose);

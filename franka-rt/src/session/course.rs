@@ -8,8 +8,9 @@ use crate::otg::{AxisLimits, Generator, Limits, PlanError, State};
 use crate::session::active::Measured;
 use crate::session::guard::leash;
 use crate::session::guide::Guide;
+use crate::session::kinematics::{self, Drift, Held};
 use crate::session::pose::{PoseGenerator, PoseState};
-use crate::session::{Budget, Goal, Target, approach, budget, kinematics, rigid};
+use crate::session::{Budget, Goal, Target, approach, budget, rigid};
 
 /// What moves the reference.
 #[derive(Debug)]
@@ -17,7 +18,7 @@ pub(super) enum Course {
     /// The reference rests where it is.
     Rest,
     Joints(Generator<7>),
-    Pose(PoseGenerator),
+    Pose(PoseGenerator, Drift),
     Guide(Guide),
 }
 
@@ -25,8 +26,8 @@ pub(super) enum Course {
 #[derive(Debug)]
 pub(super) struct Step {
     pub(super) reference: Reference,
-    /// Whether inverse kinematics held a joint back.
-    pub(super) bounded: bool,
+    /// What held joints back that follow a pose.
+    pub(super) bounds: Held,
     /// Whether the pose had to wait for joints that were held back.
     pub(super) held: bool,
 }
@@ -44,7 +45,7 @@ impl Course {
         goal: &Goal,
     ) {
         let planned = match (goal.target, &mut *self) {
-            (Target::Pose(pose), Self::Pose(generator)) => {
+            (Target::Pose(pose), Self::Pose(generator, _)) => {
                 let retargeted = generator.retarget(pose, goal.budget);
                 debug_assert!(retargeted.is_ok(), "{retargeted:?}");
                 return;
@@ -52,14 +53,14 @@ impl Course {
             (Target::Pose(pose), Self::Rest | Self::Joints(_) | Self::Guide(_)) => {
                 let start = end_effector(model, ee, reference);
                 PoseGenerator::new(&start, pose, goal.budget, model.cartesian_limits())
-                    .map(Self::Pose)
+                    .map(|generator| Self::Pose(generator, Drift::of(reference.dq)))
             }
             (Target::Joints(target), _) => {
                 joints(model, reference, Some(target), &goal.budget).map(Self::Joints)
             }
             (Target::Rest, _) => joints(model, reference, None, &goal.budget).map(Self::Joints),
             (Target::Guide(free), Self::Guide(guide)) => return guide.free(free),
-            (Target::Guide(free), Self::Rest | Self::Joints(_) | Self::Pose(_)) => {
+            (Target::Guide(free), Self::Rest | Self::Joints(_) | Self::Pose(..)) => {
                 joints(model, reference, None, &goal.budget)
                     .map(|brake| Self::Guide(Guide::new(free, brake)))
             }
@@ -81,7 +82,7 @@ impl Course {
     ) -> Step {
         let free = |reference| Step {
             reference,
-            bounded: false,
+            bounds: Held::default(),
             held: false,
         };
         match self {
@@ -99,17 +100,18 @@ impl Course {
                 })
             }
             Self::Guide(guide) => free(guide.step(reference, arm)),
-            Self::Pose(generator) => {
+            Self::Pose(generator, drift) => {
                 let next = generator.step();
-                let (reference, bounded) =
-                    kinematics::follow(model, ee, posture, reference, &next, generator.budget());
-                let held = bounded && {
+                let budget = generator.budget();
+                let (reference, bounds) =
+                    kinematics::follow(model, ee, posture, drift, reference, &next, budget);
+                let held = bounds.any() && {
                     let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
                     leash::tether(generator, &reached)
                 };
                 Step {
                     reference,
-                    bounded,
+                    bounds,
                     held,
                 }
             }
@@ -121,7 +123,7 @@ impl Course {
         match self {
             Self::Rest => true,
             Self::Joints(generator) => generator.is_done(),
-            Self::Pose(generator) => generator.is_done(),
+            Self::Pose(generator, _) => generator.is_done(),
             Self::Guide(_) => false,
         }
     }

@@ -32,18 +32,11 @@ impl CommandGuard {
         Self { limits, last: None }
     }
 
-    /// Checks a command, and the reference behind it. `over_joints` tells that a generator over the joints moves the
-    /// reference, so that its jerk is bounded too; inverse kinematics bounds only its acceleration.
+    /// Checks a command, and the reference behind it.
     ///
     /// # Panics
     /// If the command violates a limit of the robot, or the reference is not continuous.
-    pub(super) fn check(
-        &mut self,
-        command: &RobotCommand,
-        state: &RobotState,
-        record: &Record,
-        over_joints: bool,
-    ) {
+    pub(super) fn check(&mut self, command: &RobotCommand, state: &RobotState, record: &Record) {
         let leashed = record.bindings.contains(Guard::Leash);
         assert_eq!(
             command.message_id, state.message_id,
@@ -109,14 +102,12 @@ impl CommandGuard {
                         "{at}: reference of joint {joint} steps by {step} rad"
                     );
                 }
-                if over_joints {
-                    let jerk = (record.ddq_ref[i] - last.ddq_ref[i]).abs() / CYCLE;
-                    let most = limits.jerk[i] * 1.001;
-                    assert!(
-                        jerk <= most,
-                        "{at}: reference of joint {joint} at {jerk} rad/s^3"
-                    );
-                }
+                let jerk = (record.ddq_ref[i] - last.ddq_ref[i]).abs() / CYCLE;
+                let most = limits.jerk[i] * 1.001;
+                assert!(
+                    jerk <= most,
+                    "{at}: reference of joint {joint} at {jerk} rad/s^3"
+                );
             }
         }
         let Record {

@@ -18,7 +18,6 @@ mod guard;
 mod link;
 mod wander;
 
-use std::collections::HashSet;
 use std::time::Duration;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
@@ -60,8 +59,6 @@ pub struct Lockstep {
     model: &'static Model,
     /// Absent once a program of a test's own has run, which may command what it likes.
     guard: Option<CommandGuard>,
-    /// Goals whose way is planned over the joints.
-    joint_goals: HashSet<GoalId>,
     milliseconds: u64,
     heard: u64,
 }
@@ -88,7 +85,6 @@ impl Lockstep {
             client: Client::new(model, version),
             model,
             guard: Some(CommandGuard::new(model.joint_limits())),
-            joint_goals: HashSet::new(),
             milliseconds: 0,
             heard: 0,
         };
@@ -270,8 +266,7 @@ impl Lockstep {
         let version = self.client.version();
         let decoded = RobotCommand::decode(version, command).expect("a command of this version");
         if let Some(guard) = &mut self.guard {
-            let over_joints = self.joint_goals.contains(&GoalId(record.goal));
-            guard.check(&decoded, state, record, over_joints);
+            guard.check(&decoded, state, record);
         }
         let finishing = decoded.motion_generation_finished || decoded.torque_command_finished;
         let sent = self.client.now + self.client.turnaround;
@@ -318,9 +313,6 @@ impl Lockstep {
         goal: Goal,
         submit: impl FnOnce(&mut Lifecycle, Goal, &RobotState, Duration) -> Result<(), MotionError>,
     ) -> Result<GoalId, MotionError> {
-        if !matches!(goal.target, Target::Pose(_)) {
-            self.joint_goals.insert(goal.id);
-        }
         let client = &mut self.client;
         let submitted = submit(&mut client.lifecycle, goal, &client.state, client.now);
         self.client.carry_out();
@@ -370,14 +362,11 @@ impl Lockstep {
 
     /// Brakes; `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
-        let id = self.client.stop();
-        self.joint_goals.extend(id);
-        id
+        self.client.stop()
     }
 
     /// Takes a goal back, as dropping its future does.
     pub fn cancel(&mut self, goal: GoalId) {
-        self.joint_goals.insert(goal);
         self.client.cancel(goal);
     }
 
@@ -386,9 +375,6 @@ impl Lockstep {
     /// # Errors
     /// As the lifecycle.
     pub fn update(&mut self, goal: GoalId, target: Target) -> Result<bool, GoalError> {
-        if matches!(target, Target::Pose(_)) {
-            self.joint_goals.remove(&goal);
-        }
         let Client {
             lifecycle, state, ..
         } = &mut self.client;

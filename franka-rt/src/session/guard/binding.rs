@@ -8,7 +8,7 @@
 pub enum Guard {
     /// The reference ran ahead of the measured arm by the length of the leash and was held there.
     Leash,
-    /// A joint reached the velocity or acceleration bound of the inverse kinematics.
+    /// On the way to a pose a joint reached the bound of its acceleration or jerk.
     InverseKinematics,
     /// A spring and damper torque reached its clamp.
     TorqueClamp,
@@ -18,6 +18,10 @@ pub enum Guard {
     Watchdog,
     /// The deadman is silent; as above.
     Deadman,
+    /// On the way to a pose a joint reached the cap of its velocity.
+    JointVelocity,
+    /// On the way to a pose a joint came to the end of its range, or had to be able to stop before it.
+    PositionEnvelope,
 }
 
 /// A set of guards.
@@ -25,13 +29,15 @@ pub enum Guard {
 pub struct Bindings(u16);
 
 impl Guard {
-    const ALL: [Self; 6] = [
+    const ALL: [Self; 8] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
         Self::TorqueRate,
         Self::Watchdog,
         Self::Deadman,
+        Self::JointVelocity,
+        Self::PositionEnvelope,
     ];
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn hold(
             position: held.into(),
             ..*generator.state()
         }),
-        Course::Pose(generator) => match within(
+        Course::Pose(generator, _) => match within(
             &generator.pose(),
             measured,
             TRANSLATION_LEASH,
