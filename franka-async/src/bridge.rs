@@ -10,8 +10,8 @@ use std::time::Duration;
 
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order, Program};
-use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output};
-use franka_rt::session::{GoalError, GoalId, Target};
+use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output, Tuning};
+use franka_rt::session::{Goal, GoalError, GoalId, Target};
 use franka_rt::thread::{Handle, Notice, Thread};
 use franka_rt::wake::Wake;
 use tokio::io::Interest;
@@ -44,6 +44,20 @@ pub(crate) enum Input {
         target: Target,
         taken: oneshot::Sender<Result<bool, GoalError>>,
     },
+    /// A goal that nobody awaits, for the session `id`; `taken` hears whether it is accepted. So does that of the next.
+    Set {
+        id: GoalId,
+        goal: Box<Goal>,
+        taken: oneshot::Sender<Result<(), MotionError>>,
+    },
+    Tune {
+        id: GoalId,
+        tuning: Box<Tuning>,
+        taken: oneshot::Sender<Result<(), MotionError>>,
+    },
+    Disengage {
+        id: GoalId,
+    },
     Close {
         goal: GoalId,
     },
@@ -63,10 +77,29 @@ pub(crate) enum Input {
 /// Whoever awaits something that was begun.
 #[derive(Debug)]
 pub(crate) struct Waiting {
-    /// Hears that a program runs.
+    /// Hears that a program or a session runs.
     pub(crate) began: Option<oneshot::Sender<()>>,
     /// Hears how it ended.
-    pub(crate) done: oneshot::Sender<Outcome>,
+    pub(crate) done: Done,
+}
+
+/// Who hears how something ended.
+#[derive(Debug)]
+pub(crate) enum Done {
+    /// Whoever began it.
+    One(oneshot::Sender<Outcome>),
+    /// Everybody who cares.
+    All(watch::Sender<Option<Outcome>>),
+}
+
+impl Done {
+    /// Nobody listens to what was dropped or detached.
+    fn tell(self, outcome: Outcome) {
+        match self {
+            Self::One(done) => drop(done.send(outcome)),
+            Self::All(done) => drop(done.send_replace(Some(outcome))),
+        }
+    }
 }
 
 /// The ways into the bridge, and the one way out of it that others subscribe to.
@@ -241,8 +274,7 @@ impl Bridge {
                         tracing::info!(goal = goal.0, %error, "motion ended");
                     }
                     if let Some(waiting) = self.waiting.remove(&goal) {
-                        // Nobody listens to a motion that was dropped or detached.
-                        let _ = waiting.done.send(result);
+                        waiting.done.tell(result);
                     }
                 }
             }
@@ -288,14 +320,24 @@ impl Bridge {
             Input::Begin { work, waiting } => {
                 let id = work.id();
                 let begun = match work {
-                    Work::Goal { goal, ticket } => {
+                    Work::Goal {
+                        goal,
+                        ticket,
+                        within,
+                    } => {
                         let state = &self.publisher.state();
-                        match ticket {
-                            None => self.lifecycle.submit(*goal, state, now),
-                            Some(ticket) => {
-                                self.lifecycle.submit_together(*goal, ticket, state, now)
+                        let lifecycle = &mut self.lifecycle;
+                        match (ticket, within) {
+                            (Some(ticket), _) => {
+                                lifecycle.submit_together(*goal, ticket, state, now)
                             }
+                            (None, Some(id)) => lifecycle.submit_within(id, *goal, state, now),
+                            (None, None) => lifecycle.submit(*goal, state, now),
                         }
+                    }
+                    Work::Engage { goal, engagement } => {
+                        let state = &self.publisher.state();
+                        self.lifecycle.engage(*goal, engagement, state, now)
                     }
                     Work::Control {
                         id,
@@ -324,7 +366,7 @@ impl Bridge {
                         self.waiting.insert(id, waiting);
                     }
                     Err(error) => {
-                        let _ = waiting.done.send(Err(error));
+                        waiting.done.tell(Err(error));
                     }
                 }
             }
@@ -336,10 +378,20 @@ impl Bridge {
                 let updated = self.lifecycle.update(goal, target, &self.publisher.state());
                 let _ = taken.send(updated);
             }
+            Input::Set { id, goal, taken } => {
+                let state = &self.publisher.state();
+                let _ = taken.send(self.lifecycle.submit_within(id, *goal, state, now));
+            }
+            Input::Tune { id, tuning, taken } => {
+                let state = &self.publisher.state();
+                let _ = taken.send(self.lifecycle.tune(id, *tuning, state));
+            }
+            Input::Disengage { id } => self.lifecycle.disengage(id, now),
             Input::Close { goal } => self.lifecycle.close(goal),
             Input::Cancel { goal } => self.lifecycle.cancel(goal, now),
             Input::Stop { goal, done } => {
                 if self.lifecycle.stop(goal, now) {
+                    let done = Done::One(done);
                     let waiting = Waiting { began: None, done };
                     self.waiting.insert(goal, waiting);
                 }

@@ -171,6 +171,6 @@ impl IntoFuture for Control {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        Moving::new(self.robot.clone(), self.work())
+        Moving::new(self.robot.clone(), None, self.work())
     }
 }

@@ -1,113 +1,145 @@
 //! Following a stream of targets.
 
+use std::fmt;
 use std::future::{Future, IntoFuture};
 use std::pin::Pin;
+use std::task::{Context, Poll};
+use std::time::Duration;
 
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
-use franka_rt::session::{Budget, Goal, Target, Then, Tolerance};
+use franka_rt::session::{Budget, Goal, Stale, Target, Then, Tolerance, Watchdog};
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
+use tokio_stream::wrappers::WatchStream;
+use tokio_stream::{Stream, StreamExt};
 
 use crate::bridge::Input;
-use crate::motion::{Held, Moving, Work};
-use crate::{Pose, Robot};
+use crate::motion::{Moving, Work};
+use crate::{Arm, Robot};
 
-/// A motion that follows the newest target of a `watch`; see [`Robot::follow`]. Nothing moves before it is awaited. A clone
-/// is without the [`start_with`](Self::start_with) of the original.
-#[derive(Clone, Debug)]
+type Targets = Pin<Box<dyn Stream<Item = Target> + Send>>;
+
+/// A motion that follows the newest of a stream of targets; see [`Robot::follow`] and [`Arm::follow`]. Nothing moves before
+/// it is awaited.
 #[must_use = "a motion does nothing until it is awaited"]
 pub struct Follow {
     robot: Robot,
-    targets: watch::Receiver<Pose>,
-    budget: Budget,
-    gains: Gains,
-    tolerance: Tolerance,
-    ticket: Held,
+    arm: Option<Arm>,
+    goal: Goal,
+    gains: Option<Gains>,
+    targets: Targets,
+    ticket: Option<StartTicket>,
 }
 
 impl Follow {
-    pub(crate) fn new(robot: Robot, targets: watch::Receiver<Pose>) -> Self {
-        let budget = Budget::of(robot.model().joint_limits());
+    pub(crate) fn new(robot: Robot, arm: Option<Arm>, goal: Goal, targets: Targets) -> Self {
         Self {
             robot,
+            arm,
+            goal,
+            gains: None,
             targets,
-            budget,
-            gains: Gains::cartesian(),
-            tolerance: Tolerance::default(),
-            ticket: Held::default(),
+            ticket: None,
         }
+    }
+
+    pub(crate) fn watch<T: Into<Target> + Clone + Send + Sync + 'static>(
+        robot: Robot,
+        arm: Option<Arm>,
+        goal: Goal,
+        targets: watch::Receiver<T>,
+    ) -> Self {
+        let targets = WatchStream::new(targets).map(Into::into).fuse();
+        Self::new(robot, arm, goal, Box::pin(targets))
     }
 
     /// See [`Motion::speed`](crate::Motion::speed).
     pub fn speed(mut self, factor: f64) -> Self {
-        self.budget = self.budget.scaled(factor);
+        self.goal.budget = self.goal.budget.scaled(factor);
         self
     }
 
     /// See [`Motion::limits`](crate::Motion::limits).
     pub fn limits(mut self, budget: Budget) -> Self {
-        self.budget = budget;
+        self.goal.budget = budget;
         self
     }
 
     /// See [`Motion::stiffness`](crate::Motion::stiffness).
     pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
-        self.gains = self.gains.with_cartesian_stiffness(stiffness);
+        let gains = self.gains.unwrap_or(self.goal.gains);
+        self.gains = Some(gains.with_cartesian_stiffness(stiffness));
         self
     }
 
-    /// See [`Motion::gains`](crate::Motion::gains).
+    /// See [`Motion::gains`](crate::Motion::gains). Without it, the kind of the first target decides.
     pub fn gains(mut self, gains: Gains) -> Self {
-        self.gains = gains;
+        self.gains = Some(gains);
         self
     }
 
     /// How near to the last target counts as arrived.
     pub fn tolerance(mut self, tolerance: Tolerance) -> Self {
-        self.tolerance = tolerance;
+        self.goal.tolerance = tolerance;
+        self
+    }
+
+    /// Gives up when no target has come for `silence`, whole milliseconds from 10 on: the arm goes on to the last one
+    /// ([`Stale::Hold`]) or brakes at once ([`Stale::Brake`]), and the future resolves as [`MotionError::Held`] or
+    /// [`MotionError::Braked`] when it rests, unless targets come again before that. A target counts even if it equals the
+    /// one before. The control thread watches this by itself. Without it, the last target is held for ever.
+    pub fn watchdog(mut self, silence: Duration, stale: Stale) -> Self {
+        let then = match self.arm {
+            Some(_) => Then::Stay,
+            None => Then::Finish,
+        };
+        self.goal.watchdog = Some(Watchdog {
+            silence,
+            stale,
+            then,
+        });
         self
     }
 
     /// See [`Motion::start_with`](crate::Motion::start_with). Targets that come before the start replace the first one.
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
-        self.ticket = Held(Some(ticket));
+        self.ticket = Some(ticket);
         self
     }
 
     async fn run(self) -> Result<MotionReport, MotionError> {
         let Self {
             robot,
-            mut targets,
-            budget,
+            arm,
+            goal,
             gains,
-            tolerance,
+            mut targets,
             ticket,
         } = self;
-        let first = Target::Pose(*targets.borrow_and_update());
-        let id = robot.next_goal();
-        let goal = Goal {
-            id,
-            target: first,
-            then: Then::Hold,
-            budget,
-            gains,
-            tolerance,
+        let Some(first) = newest(&mut targets).await else {
+            // Nothing to follow: the arm stays where it is.
+            return Err(MotionError::Stopped);
         };
-        let mut moving = Moving::new(robot.clone(), Work::goal(goal, ticket.0));
+        let of_kind = Goal::new(goal.id, first, goal.then, robot.model().joint_limits()).gains;
+        let goal = Goal {
+            target: first,
+            gains: gains.unwrap_or(of_kind),
+            ..goal
+        };
+        let work = Work::goal(goal, ticket, arm.as_ref());
+        let mut moving = Moving::new(robot.clone(), arm, work);
         loop {
-            tokio::select! {
+            let next = tokio::select! {
                 biased;
                 outcome = &mut moving => return outcome,
-                changed = targets.changed() => {
-                    if changed.is_err() {
-                        // The last target may have been sent just before the sender went.
-                        robot.send(Input::Close { goal: moving.id() });
-                        return moving.await;
-                    }
-                }
-            }
-            let target = Target::Pose(*targets.borrow_and_update());
+                next = newest(&mut targets) => next,
+            };
+            let Some(target) = next else {
+                // The last target may have come just before the end.
+                robot.send(Input::Close { goal: moving.id() });
+                return moving.await;
+            };
             let (taken, answer) = oneshot::channel();
             robot.send(Input::Update {
                 goal: moving.id(),
@@ -127,16 +159,40 @@ impl Follow {
     }
 }
 
+/// The newest of the targets that are there, once there is one; `None` at the end.
+async fn newest(targets: &mut Targets) -> Option<Target> {
+    let mut newest = targets.next().await?;
+    while let Poll::Ready(Some(newer)) = poll_once(targets) {
+        newest = newer;
+    }
+    Some(newest)
+}
+
+/// What a stream has at once. Whoever waits for more polls it again.
+fn poll_once(targets: &mut Targets) -> Poll<Option<Target>> {
+    let mut context = Context::from_waker(std::task::Waker::noop());
+    targets.as_mut().poll_next(&mut context)
+}
+
 impl IntoFuture for Follow {
     type Output = Result<MotionReport, MotionError>;
     type IntoFuture = Pin<Box<dyn Future<Output = Self::Output> + Send>>;
 
-    /// Resolves when the sender is dropped and the arm rests at the last target, or with the reason why not. A target
-    /// that is not accepted brakes the arm and ends the motion with [`MotionError::Goal`].
+    /// Resolves when the targets have ended and the arm rests at the last one, or with the reason why not. A target that is
+    /// not accepted brakes the arm and ends the motion with [`MotionError::Goal`].
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, in the background.
     fn into_future(self) -> Self::IntoFuture {
         Box::pin(self.run())
+    }
+}
+
+impl fmt::Debug for Follow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Follow")
+            .field("robot", &self.robot)
+            .field("goal", &self.goal)
+            .finish_non_exhaustive()
     }
 }

@@ -44,6 +44,7 @@
 //! delays new goals and nothing else. It does not reconnect by itself. It has not been run against a real arm yet.
 
 mod active;
+mod arm;
 mod asynchronous;
 mod bridge;
 mod builder;
@@ -67,6 +68,7 @@ mod telemetry;
 mod vacuum;
 
 pub use active::{Active, ActiveError};
+pub use arm::{Arm, Engage};
 pub use asynchronous::{AsynchronousControl, AsynchronousOptions};
 pub use builder::{Builder, VersionPolicy};
 pub use control::Control;
@@ -102,10 +104,12 @@ pub use franka_rt::control::{
 };
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::law::Gains;
-pub use franka_rt::lifecycle::{MotionReport, Stage};
+pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
-pub use franka_rt::session::{Budget, GoalError, PoseError, Tolerance};
+pub use franka_rt::session::{
+    Budget, Deadman, Free, GoalError, Grip, Lapse, PoseError, Stale, Target, Tolerance,
+};
 pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
 pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};
 
@@ -124,7 +128,9 @@ const _: () = {
     shared::<VacuumGripper>();
     shared::<Canceller>();
     shared::<Motion>();
-    shared::<Follow>();
+    shared::<Arm>();
+    spawned::<Follow>();
+    spawned::<Deadman>();
     shared::<std::sync::Arc<AsynchronousControl>>();
     spawned::<Active<Torques>>();
     spawned::<Control>();
@@ -143,6 +149,7 @@ mod tests {
         let _: fn(&Robot, Builder) = |robot, builder| {
             sent(builder.connect());
             sent(robot.stop());
+            sent(robot.engage(Engage::default()));
             sent(robot.read(|_| std::ops::ControlFlow::Break(())));
             sent(robot.recover());
             sent(robot.set_joint_impedance([0.0; 7]));

@@ -8,13 +8,13 @@ use franka_proto::MoveRequest;
 use franka_rt::control::Callback;
 use franka_rt::driver::Program;
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{MotionError, MotionReport};
-use franka_rt::session::{Budget, Goal, GoalId, Target, Then, Tolerance};
+use franka_rt::lifecycle::{Engagement, MotionError, MotionReport};
+use franka_rt::session::{Budget, Goal, GoalId, Tolerance};
 use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
-use crate::Robot;
 use crate::bridge::Outcome;
+use crate::{Arm, Robot};
 
 /// What a motion does, on its way to the bridge.
 #[derive(Debug)]
@@ -22,6 +22,12 @@ pub(crate) enum Work {
     Goal {
         goal: Box<Goal>,
         ticket: Option<StartTicket>,
+        /// The session that it is for, if it is not to begin a motion of its own.
+        within: Option<GoalId>,
+    },
+    Engage {
+        goal: Box<Goal>,
+        engagement: Engagement,
     },
     Control {
         id: GoalId,
@@ -40,14 +46,17 @@ impl Work {
     /// Names it, and whoever awaits it.
     pub(crate) fn id(&self) -> GoalId {
         match self {
-            Self::Goal { goal, .. } => goal.id,
+            Self::Goal { goal, .. } | Self::Engage { goal, .. } => goal.id,
             Self::Control { id, .. } | Self::Program { id, .. } => *id,
         }
     }
 
-    pub(crate) fn goal(goal: Goal, ticket: Option<StartTicket>) -> Self {
-        let goal = Box::new(goal);
-        Self::Goal { goal, ticket }
+    pub(crate) fn goal(goal: Goal, ticket: Option<StartTicket>, arm: Option<&Arm>) -> Self {
+        Self::Goal {
+            goal: Box::new(goal),
+            ticket,
+            within: arm.map(Arm::id),
+        }
     }
 }
 
@@ -67,6 +76,7 @@ impl Clone for Held {
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Motion {
     robot: Robot,
+    arm: Option<Arm>,
     goal: Goal,
     ticket: Held,
 }
@@ -79,6 +89,7 @@ impl Clone for Motion {
         };
         Self {
             robot: self.robot.clone(),
+            arm: self.arm.clone(),
             goal,
             ticket: self.ticket.clone(),
         }
@@ -86,12 +97,11 @@ impl Clone for Motion {
 }
 
 impl Motion {
-    pub(crate) fn new(robot: Robot, target: Target) -> Self {
-        let limits = robot.model().joint_limits();
-        let goal = Goal::new(robot.next_goal(), target, Then::Finish, limits);
+    pub(crate) fn new(robot: Robot, arm: Option<Arm>, goal: Goal) -> Self {
         let ticket = Held::default();
         Self {
             robot,
+            arm,
             goal,
             ticket,
         }
@@ -143,7 +153,8 @@ impl Motion {
 
     /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log.
     pub fn detach(self) {
-        self.robot.begin(Work::goal(self.goal, self.ticket.0));
+        let work = Work::goal(self.goal, self.ticket.0, self.arm.as_ref());
+        self.robot.begin(work);
     }
 
     /// A way to brake the motion from elsewhere.
@@ -157,7 +168,8 @@ impl IntoFuture for Motion {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        Moving::new(self.robot, Work::goal(self.goal, self.ticket.0))
+        let work = Work::goal(self.goal, self.ticket.0, self.arm.as_ref());
+        Moving::new(self.robot, self.arm, work)
     }
 }
 
@@ -192,6 +204,8 @@ impl Canceller {
 #[must_use = "futures do nothing unless polled"]
 pub struct Moving {
     robot: Robot,
+    /// Keeps the session of the goal.
+    _arm: Option<Arm>,
     stage: Stage,
     goal: GoalId,
 }
@@ -204,9 +218,10 @@ enum Stage {
 }
 
 impl Moving {
-    pub(crate) fn new(robot: Robot, work: Work) -> Self {
+    pub(crate) fn new(robot: Robot, arm: Option<Arm>, work: Work) -> Self {
         Self {
             robot,
+            _arm: arm,
             goal: work.id(),
             stage: Stage::Ready(work),
         }

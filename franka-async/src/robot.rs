@@ -9,12 +9,12 @@ use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{MoveRequest, RobotState, Version};
 use franka_rt::driver::{Program, Record};
 use franka_rt::sched::Granted;
-use franka_rt::session::{GoalId, Target};
+use franka_rt::session::{Goal, GoalId, Target, Then};
 use franka_rt::stats::Stats;
 use franka_rt::thread::Lender;
 use tokio::sync::{broadcast, oneshot, watch};
 
-use crate::bridge::{Input, Inputs, Outcome, Waiting};
+use crate::bridge::{Done, Input, Inputs, Outcome, Waiting};
 use crate::builder::Builder;
 use crate::channel::Channel;
 use crate::endpoint::Endpoint;
@@ -152,18 +152,30 @@ impl Robot {
     /// A motion of the end effector to `pose` in the base frame: a straight line and a rotation about one axis if it
     /// begins at rest. The arm is compliant on the way, see [`Motion::stiffness`].
     pub fn move_to(&self, pose: Pose) -> Motion {
-        Motion::new(self.clone(), Target::Pose(pose))
+        self.motion(Target::Pose(pose))
     }
 
     /// A motion of the joints to `q`, `[rad]`; all joints arrive together.
     pub fn move_joints(&self, q: [f64; 7]) -> Motion {
-        Motion::new(self.clone(), Target::Joints(q))
+        self.motion(Target::Joints(q))
     }
 
-    /// Follows the newest of a stream of poses until the sender is dropped, and then comes to rest at the last one. The
-    /// sender sets its own pace, and may step as far as it likes: the arm moves within its budget.
-    pub fn follow(&self, targets: watch::Receiver<Pose>) -> Follow {
-        Follow::new(self.clone(), targets)
+    fn motion(&self, target: Target) -> Motion {
+        let limits = self.model().joint_limits();
+        let goal = Goal::new(self.next_goal(), target, Then::Finish, limits);
+        Motion::new(self.clone(), None, goal)
+    }
+
+    /// Follows the newest of the targets that `targets` shows, poses or joint positions `[rad]`, until the sender is dropped,
+    /// and then comes to rest at the last one. The sender sets its own pace, and may step as far as it likes: the arm moves
+    /// within its budget.
+    pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
+        &self,
+        targets: watch::Receiver<T>,
+    ) -> Follow {
+        let limits = self.model().joint_limits();
+        let goal = Goal::new(self.next_goal(), Target::Rest, Then::Hold, limits);
+        Follow::watch(self.clone(), None, goal, targets)
     }
 
     /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if nothing moves. The
@@ -219,7 +231,10 @@ impl Robot {
     /// Has the bridge begin something. Whoever waits for the answer hears nothing if the bridge has ended.
     pub(crate) fn begin(&self, work: Work) -> oneshot::Receiver<Outcome> {
         let (done, outcome) = oneshot::channel();
-        let waiting = Waiting { began: None, done };
+        let waiting = Waiting {
+            began: None,
+            done: Done::One(done),
+        };
         self.send(Input::Begin { work, waiting });
         outcome
     }
@@ -245,7 +260,7 @@ impl Robot {
         };
         let waiting = Waiting {
             began: Some(begin),
-            done,
+            done: Done::One(done),
         };
         self.send(Input::Begin { work, waiting });
         let mut stop = StopOnDrop(Some((self, id)));

@@ -29,6 +29,18 @@ pub enum Target {
     Guide(Free),
 }
 
+impl From<Isometry3<f64>> for Target {
+    fn from(pose: Isometry3<f64>) -> Self {
+        Self::Pose(pose)
+    }
+}
+
+impl From<[f64; 7]> for Target {
+    fn from(q: [f64; 7]) -> Self {
+        Self::Joints(q)
+    }
+}
+
 /// What of the arm a hand may move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Free {

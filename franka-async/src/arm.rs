@@ -1,0 +1,326 @@
+//! An engaged arm: one session, many goals.
+
+use std::fmt;
+use std::future::Future;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use franka_rt::law::Gains;
+use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, Tuning};
+use franka_rt::session::{Budget, Free, Goal, GoalId, Grip, Target, Then};
+use tokio::sync::{oneshot, watch};
+use tokio_stream::{Stream, StreamExt};
+
+use crate::bridge::{Done, Input, Outcome, Waiting};
+use crate::motion::Work;
+use crate::{Follow, Motion, Pose, Robot};
+
+/// Options of a session of target control; see [`Robot::engage`]. The default holds with the gains of each kind of goal
+/// and the default budget.
+#[derive(Debug, Default)]
+#[must_use = "options do nothing until `Robot::engage` takes them"]
+pub struct Engage {
+    tuning: Tuning,
+    speed: Option<f64>,
+    engagement: Engagement,
+}
+
+impl Engage {
+    /// Limits of every goal of the session; by default those of [`Budget::of`].
+    pub fn limits(mut self, budget: Budget) -> Self {
+        self.tuning.budget = Some(budget);
+        self
+    }
+
+    /// The pace of every goal, as by [`Motion::speed`]; of the default limits or of those given.
+    pub fn speed(mut self, factor: f64) -> Self {
+        self.speed = Some(factor);
+        self
+    }
+
+    /// Gains of every goal; by default those of its kind, see [`Motion::gains`].
+    pub fn gains(mut self, gains: Gains) -> Self {
+        self.tuning.gains = Some(gains);
+        self
+    }
+
+    /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes and holds, and every goal
+    /// resolves as [`MotionError::Held`]. See [`Deadman::new`](crate::Deadman::new).
+    pub fn deadman(mut self, grip: Grip) -> Self {
+        self.engagement.deadman = Some(grip);
+        self
+    }
+}
+
+/// A session of target control: the arm is held, and goes from goal to goal without a stop in between, whatever their
+/// kinds. Made by [`Robot::engage`].
+///
+/// A cheap handle: clones share the session, motions in progress are handles too. Dropping the last one brakes the arm and
+/// ends the session, in the background; [`Self::disengage`] does the same and can be awaited. [`Robot::stop`] ends it from
+/// outside, as does the robot by a reflex: whatever is asked of the session afterwards is answered with the reason.
+///
+/// While a session has the arm, motions of the [`Robot`] itself are refused as [`MotionError::Busy`].
+#[derive(Clone)]
+pub struct Arm {
+    session: Arc<Session>,
+}
+
+struct Session {
+    robot: Robot,
+    id: GoalId,
+    tuning: Mutex<Tuning>,
+    ended: watch::Receiver<Option<Outcome>>,
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.robot.cancel(self.id);
+    }
+}
+
+impl Robot {
+    /// Begins a session that holds the arm where it is and then goes from goal to goal; resolves when it has begun.
+    ///
+    /// # Errors
+    /// [`MotionError`]: [`MotionError::Busy`] while anything else controls the arm, [`MotionError::Goal`] for gains or
+    /// limits that are not accepted, or what the robot has against it.
+    ///
+    /// # Cancel safety
+    /// Dropping the future ends the session, in the background.
+    pub async fn engage(&self, engage: Engage) -> Result<Arm, MotionError> {
+        let Engage {
+            mut tuning,
+            speed,
+            engagement,
+        } = engage;
+        let mut goal = Goal::new(
+            self.next_goal(),
+            Target::Rest,
+            Then::Hold,
+            self.model().joint_limits(),
+        );
+        goal.budget = tuning.budget.unwrap_or(goal.budget);
+        if let Some(factor) = speed {
+            goal.budget = goal.budget.scaled(factor);
+            tuning.budget = Some(goal.budget);
+        }
+        goal.gains = tuning.gains.unwrap_or(goal.gains);
+        let (begin, began) = oneshot::channel();
+        let (done, ended) = watch::channel(None);
+        let arm = Arm {
+            session: Arc::new(Session {
+                robot: self.clone(),
+                id: goal.id,
+                tuning: Mutex::new(tuning),
+                ended,
+            }),
+        };
+        self.send(Input::Begin {
+            work: Work::Engage {
+                goal: Box::new(goal),
+                engagement,
+            },
+            waiting: Waiting {
+                began: Some(begin),
+                done: Done::All(done),
+            },
+        });
+        match began.await {
+            Ok(()) => Ok(arm),
+            Err(_) => Err(arm.ended().await.err().unwrap_or(MotionError::Stopped)),
+        }
+    }
+}
+
+impl Arm {
+    /// The robot that it belongs to.
+    pub fn robot(&self) -> &Robot {
+        &self.session.robot
+    }
+
+    /// A motion of the end effector to `pose`; see [`Robot::move_to`]. It resolves when the arm has arrived and rests, which
+    /// is then held. Dropping it brakes the arm and holds it.
+    pub fn move_to(&self, pose: Pose) -> Motion {
+        self.motion(Target::Pose(pose), Then::Stay)
+    }
+
+    /// A motion of the joints to `q`, `[rad]`; otherwise like [`Self::move_to`].
+    pub fn move_joints(&self, q: [f64; 7]) -> Motion {
+        self.motion(Target::Joints(q), Then::Stay)
+    }
+
+    /// Brakes, whatever the arm is doing, and resolves when it rests; it is then held there.
+    pub fn hold(&self) -> Motion {
+        self.motion(Target::Rest, Then::Stay)
+    }
+
+    /// Heads for `pose` from now on, in the place of whatever came before, and holds it. Returns as soon as the goal is
+    /// taken: for programs that set goals at a rate of their own and look at the state for the rest.
+    ///
+    /// # Errors
+    /// [`MotionError::Goal`] for a pose that is not accepted, and what ended the session.
+    ///
+    /// # Cancel safety
+    /// Once polled the goal is taken all the same.
+    pub async fn set(&self, pose: Pose) -> Result<(), MotionError> {
+        self.take(Target::Pose(pose)).await
+    }
+
+    /// Heads for the joint positions `q`, `[rad]`, and holds them; otherwise like [`Self::set`].
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    ///
+    /// # Cancel safety
+    /// As [`Self::set`].
+    pub async fn set_joints(&self, q: [f64; 7]) -> Result<(), MotionError> {
+        self.take(Target::Joints(q)).await
+    }
+
+    /// Lets a hand guide the arm, from when it rests: along the axes that are `free` there is no spring, and none holds the
+    /// elbow if that is free; the others stay where they are. Until the next goal; [`Self::hold`] ends it. Returns as soon as
+    /// it is taken. The load has to be declared, or it pulls the arm down.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    ///
+    /// # Cancel safety
+    /// As [`Self::set`].
+    pub async fn guide(&self, free: Free) -> Result<(), MotionError> {
+        self.take(Target::Guide(free)).await
+    }
+
+    /// Follows the newest of the targets that `targets` shows, poses or joint positions, until the sender is dropped, and
+    /// then comes to rest at the last one. See [`Robot::follow`].
+    pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
+        &self,
+        targets: watch::Receiver<T>,
+    ) -> Follow {
+        let goal = self.goal(Target::Rest, Then::Hold);
+        Follow::watch(self.robot().clone(), Some(self.clone()), goal, targets)
+    }
+
+    /// Follows the newest of the targets that a stream yields, poses or joint positions, until it ends, and then comes to
+    /// rest at the last one. Targets that came while another one was taken are skipped.
+    pub fn follow_stream<T: Into<Target> + 'static>(
+        &self,
+        targets: impl Stream<Item = T> + Send + 'static,
+    ) -> Follow {
+        let goal = self.goal(Target::Rest, Then::Hold);
+        let targets = Box::pin(targets.map(Into::into).fuse());
+        Follow::new(self.robot().clone(), Some(self.clone()), goal, targets)
+    }
+
+    /// Changes gains and limits, of the goal under way and of those to come. Gains fade over 0.3 s: the torques do not step.
+    ///
+    /// # Errors
+    /// [`MotionError::Goal`] for values out of their bounds, which change nothing; what ended the session.
+    ///
+    /// # Cancel safety
+    /// Once polled it is done all the same for the goal under way.
+    pub async fn tune(&self, tuning: Tuning) -> Result<(), MotionError> {
+        let id = self.session.id;
+        let change = Box::new(tuning);
+        self.ask(|taken| Input::Tune {
+            id,
+            tuning: change,
+            taken,
+        })
+        .await?;
+        let mut kept = self.tuning();
+        kept.gains = tuning.gains.or(kept.gains);
+        kept.budget = tuning.budget.or(kept.budget);
+        Ok(())
+    }
+
+    /// Brakes, lets the arm go and ends the session; resolves when it has ended. A goal under way resolves as
+    /// [`MotionError::Stopped`]. Every other handle is then disengaged.
+    ///
+    /// # Errors
+    /// [`MotionError`] if the session ended otherwise: by a reflex, or [`MotionError::Stopped`] by [`Robot::stop`].
+    ///
+    /// # Cancel safety
+    /// Once polled the session ends all the same.
+    pub async fn disengage(self) -> Result<MotionReport, MotionError> {
+        let id = self.session.id;
+        self.robot().send(Input::Disengage { id });
+        self.ended().await
+    }
+
+    /// Resolves when the session has ended, with how it did.
+    ///
+    /// # Errors
+    /// As [`Self::disengage`].
+    ///
+    /// # Cancel safety
+    /// Nothing happens if it is dropped.
+    pub fn ended(
+        &self,
+    ) -> impl Future<Output = Result<MotionReport, MotionError>> + Send + 'static {
+        let (mut ended, robot) = (self.session.ended.clone(), self.robot().clone());
+        async move {
+            match ended.wait_for(Option::is_some).await {
+                Ok(outcome) => outcome.clone().unwrap_or_else(|| robot.closed()),
+                Err(_) => robot.closed(),
+            }
+        }
+    }
+
+    pub(crate) fn id(&self) -> GoalId {
+        self.session.id
+    }
+
+    fn tuning(&self) -> std::sync::MutexGuard<'_, Tuning> {
+        // Nothing can panic while it is held.
+        let tuning = self.session.tuning.lock();
+        tuning.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn goal(&self, target: Target, then: Then) -> Goal {
+        let robot = self.robot();
+        let goal = Goal::new(
+            robot.next_goal(),
+            target,
+            then,
+            robot.model().joint_limits(),
+        );
+        let tuning = *self.tuning();
+        Goal {
+            budget: tuning.budget.unwrap_or(goal.budget),
+            gains: match target {
+                // The axes that are free are free of springs, whatever the others have.
+                Target::Guide(_) => goal.gains,
+                _ => tuning.gains.unwrap_or(goal.gains),
+            },
+            ..goal
+        }
+    }
+
+    fn motion(&self, target: Target, then: Then) -> Motion {
+        let goal = self.goal(target, then);
+        Motion::new(self.robot().clone(), Some(self.clone()), goal)
+    }
+
+    async fn take(&self, target: Target) -> Result<(), MotionError> {
+        let id = self.session.id;
+        let goal = Box::new(self.goal(target, Then::Hold));
+        self.ask(|taken| Input::Set { id, goal, taken }).await
+    }
+
+    async fn ask(
+        &self,
+        input: impl FnOnce(oneshot::Sender<Result<(), MotionError>>) -> Input,
+    ) -> Result<(), MotionError> {
+        let (taken, answer) = oneshot::channel();
+        self.robot().send(input(taken));
+        let closed = || self.robot().closed().map(drop);
+        answer.await.unwrap_or_else(|_| closed())
+    }
+}
+
+impl fmt::Debug for Arm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Arm")
+            .field("robot", self.robot())
+            .finish_non_exhaustive()
+    }
+}
