@@ -79,6 +79,12 @@ impl Follow {
         self
     }
 
+    /// See [`Motion::force_cap`](crate::Motion::force_cap).
+    pub fn force_cap(mut self, newtons: f64) -> Self {
+        self.goal.force_cap = Some(newtons);
+        self
+    }
+
     /// How near to the last target counts as arrived.
     pub fn tolerance(mut self, tolerance: Tolerance) -> Self {
         self.goal.tolerance = tolerance;

@@ -103,7 +103,7 @@ pub use franka_rt::control::{
     TargetStatus, Torques,
 };
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
-pub use franka_rt::law::Gains;
+pub use franka_rt::law::{Gains, Law};
 pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};

@@ -133,6 +133,13 @@ impl Motion {
         self
     }
 
+    /// Bounds the force with which springs and dampers press at the end effector, `[N]`, between 5 and 200; by default there is
+    /// no such bound, only the reach of the springs.
+    pub fn force_cap(mut self, newtons: f64) -> Self {
+        self.goal.force_cap = Some(newtons);
+        self
+    }
+
     /// How near to the target counts as arrived; 1 mm and 1 mrad by default.
     pub fn tolerance(mut self, tolerance: Tolerance) -> Self {
         self.goal.tolerance = tolerance;

@@ -1,11 +1,29 @@
-//! Stiffness and damping of the hybrid impedance law.
+//! Which law the arm runs, and its stiffness and damping.
 
 use crate::session::Free;
+use crate::shaping::MAX_CUTOFF_FREQUENCY;
 
-/// Diagonal gains of the hybrid impedance law: a spring and damper at the end effector, along the axes of the base
-/// frame, and one at each joint.
+/// How the springs and dampers of [`Gains`] become torques.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Law {
+    /// Springs along the base axes and at the joints, summed in joint space: see [`hybrid`](crate::law::hybrid).
+    #[default]
+    Hybrid,
+    /// Springs along the base axes, coupled by the inertia at the end effector; the joints' springs in its null space:
+    /// see [`operational`](crate::law::operational).
+    OperationalSpace,
+}
+
+/// Law and diagonal gains: a spring and damper at the end effector, along the axes of the base frame, and one at each
+/// joint.
+///
+/// A goal brings all of them. On the way from one goal's to the next every number cross-fades, also the choices, so that
+/// no change steps the torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
+    /// Which law they are of.
+    pub law: Law,
     /// End-effector stiffness, x y z `[N/m]` and about x y z `[N m/rad]`.
     pub cartesian_stiffness: [f64; 6],
     /// End-effector damping, `[N s/m]` and `[N m s/rad]`.
@@ -14,11 +32,20 @@ pub struct Gains {
     pub joint_stiffness: [f64; 7],
     /// Joint damping, `[N m s/rad]`.
     pub joint_damping: [f64; 7],
+    /// Weight of the reference velocity in the dampers, between 0 and 1. At 1 they oppose only the velocity error, so
+    /// the arm does not lag behind a moving reference by its damping; at 0 they oppose all motion.
+    pub feedforward: f64,
+    /// Cutoff frequency of the first-order low-pass on that reference velocity, `[Hz]`; at 1000 it is off, as a filter of
+    /// libfranka is.
+    pub feedforward_cutoff: f64,
+    /// Whether the joints' springs and dampers act only in the null space of the end effector, where they move the elbow
+    /// but do not push at the hand. [`Law::OperationalSpace`] always does this.
+    pub project_joint_gains: bool,
 }
 
 /// A gain that no law should run with.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{what} of axis {axis} is {got}, expected between 0 and {most}")]
+#[error("{what} of axis {axis} is {got}, expected between {least} and {most}")]
 #[non_exhaustive]
 pub struct GainError {
     /// The group of gains.
@@ -27,31 +54,78 @@ pub struct GainError {
     pub axis: usize,
     /// The value given.
     pub got: f64,
+    /// The lowest value accepted.
+    pub least: f64,
     /// The highest value accepted.
     pub most: f64,
 }
 
 impl Gains {
-    /// How many numbers there are in all.
-    pub(crate) const NUMBERS: usize = 26;
+    /// The least of each number that [`check`](Self::check) accepts.
+    pub const LEAST: Self = Self {
+        law: Law::Hybrid,
+        cartesian_stiffness: [0.0; 6],
+        cartesian_damping: [0.0; 6],
+        joint_stiffness: [0.0; 7],
+        joint_damping: [0.0; 7],
+        feedforward: 0.0,
+        feedforward_cutoff: 1.0,
+        project_joint_gains: false,
+    };
+
+    /// The most of each number that [`check`](Self::check) accepts.
+    ///
+    /// Stiffness at the end effector: the bounds of the robot's own impedance commands, 3000 N/m and 300 N m/rad. Joints
+    /// and damping: ten times the stiff preset. All of it on every axis at once has not been tried on hardware.
+    pub const MOST: Self = Self {
+        law: Law::OperationalSpace,
+        cartesian_stiffness: [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0],
+        cartesian_damping: [500.0, 500.0, 500.0, 50.0, 50.0, 50.0],
+        joint_stiffness: [6000.0; 7],
+        joint_damping: [500.0; 7],
+        feedforward: 1.0,
+        feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
+        project_joint_gains: true,
+    };
+
+    /// How many numbers [`to_array`](Self::to_array) gives.
+    pub(crate) const NUMBERS: usize = 30;
 
     /// Compliant at the end effector: 750 N/m and 15 N m/rad, with light joint springs that keep the elbow.
     pub const fn cartesian() -> Self {
         Self {
+            law: Law::Hybrid,
             cartesian_stiffness: [750.0, 750.0, 750.0, 15.0, 15.0, 15.0],
             cartesian_damping: [50.0, 50.0, 90.0, 2.0, 2.0, 2.0],
             joint_stiffness: [40.0, 30.0, 50.0, 25.0, 35.0, 25.0, 10.0],
             joint_damping: [4.0, 6.0, 5.0, 5.0, 3.0, 2.0, 1.0],
+            feedforward: 1.0,
+            feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
+            project_joint_gains: false,
+        }
+    }
+
+    /// As compliant, with the lighter damping of the DROID platform and without feedforward: for a policy that was
+    /// trained on its data.
+    pub const fn droid() -> Self {
+        Self {
+            cartesian_damping: [37.0, 37.0, 37.0, 2.0, 2.0, 2.0],
+            feedforward: 0.0,
+            ..Self::cartesian()
         }
     }
 
     /// Stiff joints, no spring at the end effector.
     pub const fn joint() -> Self {
         Self {
+            law: Law::Hybrid,
             cartesian_stiffness: [0.0; 6],
             cartesian_damping: [0.0; 6],
             joint_stiffness: [600.0, 600.0, 600.0, 600.0, 250.0, 150.0, 50.0],
             joint_damping: [50.0, 50.0, 50.0, 50.0, 30.0, 25.0, 15.0],
+            feedforward: 1.0,
+            feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
+            project_joint_gains: false,
         }
     }
 
@@ -64,8 +138,8 @@ impl Gains {
         Self {
             cartesian_stiffness: locked(preset.cartesian_stiffness),
             cartesian_damping: locked(preset.cartesian_damping),
-            joint_stiffness: preset.joint_stiffness,
             joint_damping: [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5],
+            ..preset
         }
     }
 
@@ -89,52 +163,45 @@ impl Gains {
         }
     }
 
-    /// Checks that every gain is finite, not negative and within what a 1 kHz torque loop holds stable on this arm.
-    ///
-    /// The upper bounds are those of the robot's own impedance commands (3000 N/m, 300 N m/rad) for the end effector,
-    /// and ten times the stiff preset for joints and damping.
+    /// Checks that every number is between that of [`LEAST`](Self::LEAST) and that of [`MOST`](Self::MOST).
     ///
     /// # Errors
-    /// [`GainError`] names the first gain that is not.
+    /// [`GainError`] names the first one that is not.
     pub fn check(&self) -> Result<(), GainError> {
-        let end_effector = |axis: usize, linear, angular| if axis < 3 { linear } else { angular };
-        let most_of = |i: usize| match i {
-            0..6 => ("end-effector stiffness", i, end_effector(i, 3000.0, 300.0)),
-            6..12 => (
-                "end-effector damping",
-                i - 6,
-                end_effector(i - 6, 500.0, 50.0),
-            ),
-            12..19 => ("joint stiffness", i - 12, 6000.0),
-            _ => ("joint damping", i - 19, 500.0),
-        };
+        let (least, most) = (Self::LEAST.to_array(), Self::MOST.to_array());
         for (i, got) in self.to_array().into_iter().enumerate() {
-            let (what, axis, most) = most_of(i);
-            if !(0.0..=most).contains(&got) {
+            if !(least[i]..=most[i]).contains(&got) {
+                let (what, axis) = match i {
+                    0..6 => ("end-effector stiffness", i),
+                    6..12 => ("end-effector damping", i - 6),
+                    12..19 => ("joint stiffness", i - 12),
+                    19..26 => ("joint damping", i - 19),
+                    26 => ("feedforward weight", 0),
+                    _ => ("feedforward cutoff frequency", 0),
+                };
                 return Err(GainError {
                     what,
                     axis,
                     got,
-                    most,
+                    least: least[i],
+                    most: most[i],
                 });
             }
         }
         Ok(())
     }
 
-    /// The gains at `share` of the way to `other`, linearly: each stays between its two ends.
-    pub(crate) fn blend(&self, other: &Self, share: f64) -> Self {
-        let (a, b) = (self.to_array(), other.to_array());
-        Self::from_array(core::array::from_fn(|i| a[i] + share * (b[i] - a[i])))
-    }
-
-    /// All gains in the order of the fields.
+    /// Everything as numbers, springs and dampers first, choices last.
     pub(crate) fn to_array(self) -> [f64; Self::NUMBERS] {
         let mut all = [0.0; Self::NUMBERS];
         all[..6].copy_from_slice(&self.cartesian_stiffness);
         all[6..12].copy_from_slice(&self.cartesian_damping);
         all[12..19].copy_from_slice(&self.joint_stiffness);
-        all[19..].copy_from_slice(&self.joint_damping);
+        all[19..26].copy_from_slice(&self.joint_damping);
+        all[26] = self.feedforward;
+        all[27] = self.feedforward_cutoff;
+        all[28] = f64::from(u8::from(self.project_joint_gains));
+        all[29] = f64::from(u8::from(self.law == Law::OperationalSpace));
         all
     }
 
@@ -144,6 +211,14 @@ impl Gains {
             cartesian_damping: core::array::from_fn(|i| all[6 + i]),
             joint_stiffness: core::array::from_fn(|i| all[12 + i]),
             joint_damping: core::array::from_fn(|i| all[19 + i]),
+            feedforward: all[26],
+            feedforward_cutoff: all[27],
+            project_joint_gains: all[28] != 0.0,
+            law: if all[29] == 0.0 {
+                Law::Hybrid
+            } else {
+                Law::OperationalSpace
+            },
         }
     }
 }
@@ -164,6 +239,7 @@ mod tests {
     #[test]
     fn presets_pass_their_own_check_and_bad_gains_are_named() {
         Gains::cartesian().check().unwrap();
+        Gains::droid().check().unwrap();
         Gains::joint().check().unwrap();
         let mut gains = Gains::cartesian();
         gains.cartesian_stiffness[4] = 301.0;
@@ -175,5 +251,22 @@ mod tests {
         gains = Gains::joint();
         gains.joint_damping[6] = f64::NAN;
         assert_eq!(gains.check().unwrap_err().axis, 6);
+        gains = Gains::droid();
+        gains.feedforward = -0.1;
+        assert_eq!(gains.check().unwrap_err().what, "feedforward weight");
+        gains = Gains::droid();
+        gains.feedforward_cutoff = 0.0;
+        assert_eq!(
+            gains.check().unwrap_err().to_string(),
+            "feedforward cutoff frequency of axis 0 is 0, expected between 1 and 1000"
+        );
+    }
+
+    #[test]
+    fn the_bounds_themselves_are_within_bounds_and_survive_their_numbers() {
+        for gains in [Gains::LEAST, Gains::MOST, Gains::droid()] {
+            gains.check().unwrap();
+            assert_eq!(Gains::from_array(gains.to_array()), gains);
+        }
     }
 }

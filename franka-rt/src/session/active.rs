@@ -8,11 +8,10 @@ use nalgebra::Isometry3;
 
 use crate::control::Torques;
 use crate::driver::Record;
-use crate::law::hybrid::{self, Reference};
-use crate::law::shaping;
+use crate::law::hybrid::Reference;
 
 use super::course::{self, Course};
-use super::fade::Fade;
+use super::effort::Effort;
 use super::goal::{Goal, Stale, Target, Then, Watchdog};
 use super::guard::{Bindings, Guard, leash};
 use super::landing::{self, Landing, Release, Verdict};
@@ -31,7 +30,7 @@ pub(super) struct Active {
     since: u64,
     course: Course,
     reference: Reference,
-    gains: Fade,
+    effort: Effort,
     stage: Stage,
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
@@ -74,7 +73,7 @@ impl Active {
         let load = load_of(state)?;
         let mut this = Self {
             course: Course::Rest,
-            gains: Fade::at(goal.gains),
+            effort: Effort::new(&goal),
             stage: Stage::UnderWay,
             held_back: 0,
             since: state.message_id,
@@ -95,7 +94,7 @@ impl Active {
             return;
         }
         self.heard = now;
-        self.gains.towards(goal.gains);
+        self.effort.take_up(&goal);
         let same = goal.id == self.goal.id
             && goal.target == self.goal.target
             && goal.then == self.goal.then
@@ -201,18 +200,13 @@ impl Active {
             self.held_back.saturating_sub(1)
         };
 
-        let gains = self.gains.step();
-        let last = JointVector::from(state.tau_J_d);
-        let (tau, clamped) = hybrid::torques(&gains, &self.reference, &q, &dq, &dynamics);
-        // The Coriolis torques come on top of the clamped ones, which leave them little room.
-        let (tau, full) = shaping::clamp(&tau, &model.joint_limits().torque);
-        let (tau, slowed) = shaping::limit_rate(
-            &shaping::low_pass(&tau, &last),
-            &last,
-            &model.joint_limits().torque_rate,
+        let tau = self.effort.step(
+            &self.reference,
+            state,
+            &dynamics,
+            model.joint_limits(),
+            &mut bindings,
         );
-        bindings.set(Guard::TorqueClamp, clamped || full);
-        bindings.set(Guard::TorqueRate, slowed);
 
         record.goal = self.goal.id.0;
         record.q_ref = self.reference.q.into();

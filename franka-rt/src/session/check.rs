@@ -7,7 +7,7 @@ use franka_proto::RobotState;
 
 use crate::law::GainError;
 use crate::otg::AxisLimits;
-use crate::session::{Budget, Goal, Target, Watchdog, approach};
+use crate::session::{Budget, FORCE_CAP, Goal, Target, Watchdog, approach};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -65,6 +65,12 @@ pub enum GoalError {
         /// The time given.
         got: Duration,
     },
+    /// The force cap is out of bounds.
+    #[error("force cap {got} N, expected between 5 and 200")]
+    ForceCap {
+        /// The value given, `[N]`.
+        got: f64,
+    },
     /// The robot's state names an end effector that is not a rigid transformation, or a load that is not finite.
     #[error("the robot's state names an end effector or a load that cannot be")]
     Tool,
@@ -85,6 +91,11 @@ impl Goal {
         }
         if let Some(Watchdog { silence, .. }) = self.watchdog {
             check_silence(silence)?;
+        }
+        if let Some(got) = self.force_cap
+            && !FORCE_CAP.contains(&got)
+        {
+            return Err(GoalError::ForceCap { got });
         }
         let ee = super::end_effector_of(state).ok_or(GoalError::Tool)?;
         super::load_of(state).ok_or(GoalError::Tool)?;

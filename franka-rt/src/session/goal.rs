@@ -137,6 +137,9 @@ pub struct Goal {
     pub tolerance: Tolerance,
     /// What happens if its updates stay away; of goals that are held.
     pub watchdog: Option<Watchdog>,
+    /// With how much force springs and dampers may press at the end effector, `[N]`, in
+    /// [`FORCE_CAP`](crate::session::FORCE_CAP); `None` for as much as they come to.
+    pub force_cap: Option<f64>,
 }
 
 impl Goal {
@@ -144,7 +147,7 @@ impl Goal {
     pub const SILENCE_MIN: Duration = Duration::from_millis(10);
 
     /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on the way to joint
-    /// positions and the end effector compliant otherwise, the default tolerance.
+    /// positions and the end effector compliant otherwise, the default tolerance, no force cap.
     pub fn new(id: GoalId, target: Target, then: Then, limits: &JointLimits) -> Self {
         Self {
             id,
@@ -158,14 +161,15 @@ impl Goal {
             },
             tolerance: Tolerance::default(),
             watchdog: None,
+            force_cap: None,
         }
     }
 }
 
 /// Name, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of budget, the gains, 2 of
-/// tolerance.
+/// tolerance, the force cap (none is no number).
 impl Words for Goal {
-    const WORDS: usize = 5 + 7 + 27 + Gains::NUMBERS + 2;
+    const WORDS: usize = 5 + 7 + 27 + Gains::NUMBERS + 2 + 1;
 
     fn store(&self, words: &mut [u64]) {
         let (kind, target) = match self.target {
@@ -199,7 +203,8 @@ impl Words for Goal {
             .into_iter()
             .chain(axes.flat_map(|l| [l.velocity, l.acceleration, l.jerk]))
             .chain(self.gains.to_array())
-            .chain([self.tolerance.translation, self.tolerance.rotation]);
+            .chain([self.tolerance.translation, self.tolerance.rotation])
+            .chain([self.force_cap.unwrap_or(f64::NAN)]);
         let all = [self.id.0, kind, self.then.to_word(), watched, silence]
             .into_iter()
             .chain(numbers.map(f64::to_bits));
@@ -254,6 +259,7 @@ impl Words for Goal {
                 translation: number(),
                 rotation: number(),
             },
+            force_cap: Some(number()).filter(|cap| !cap.is_nan()),
         }
     }
 }
@@ -296,27 +302,29 @@ mod tests {
             stale: Stale::Brake,
             then: Then::Stay,
         };
-        for (target, then, watchdog) in [
-            (Target::Rest, Then::Finish, None),
+        for (target, then, watchdog, force_cap) in [
+            (Target::Rest, Then::Finish, None, None),
             (
                 Target::Joints([0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7]),
                 Then::Hold,
                 Some(watchdog),
+                Some(25.0),
             ),
-            (Target::Pose(pose), Then::Stay, None),
-            (Target::Guide(free), Then::Hold, Some(watchdog)),
+            (Target::Pose(pose), Then::Stay, None, Some(5.0)),
+            (Target::Guide(free), Then::Hold, Some(watchdog), None),
         ] {
             let goal = Goal {
                 id: GoalId(77),
                 target,
                 then,
                 budget: Budget::of(Model::fr3().joint_limits()).scaled(0.37),
-                gains: Gains::joint(),
+                gains: Gains::MOST,
                 tolerance: Tolerance {
                     translation: 2e-3,
                     rotation: 3e-3,
                 },
                 watchdog,
+                force_cap,
             };
             let mut words = [u64::MAX; Goal::WORDS];
             goal.store(&mut words);

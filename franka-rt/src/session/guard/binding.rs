@@ -12,6 +12,8 @@ pub enum Guard {
     InverseKinematics,
     /// A spring and damper torque reached its clamp.
     TorqueClamp,
+    /// Spring and damper would have pressed with more force than the goal allows, and were scaled down.
+    ForceCap,
     /// The torque changed faster than the robot accepts and was slowed.
     TorqueRate,
     /// The targets stopped coming; the arm goes to rest, or rests, for that.
@@ -29,10 +31,11 @@ pub enum Guard {
 pub struct Bindings(u16);
 
 impl Guard {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
+        Self::ForceCap,
         Self::TorqueRate,
         Self::Watchdog,
         Self::Deadman,

@@ -1,0 +1,182 @@
+//! Gains as the cycle uses them: numbers only, on their way from one goal's to the next.
+
+use crate::law::{Gains, Law};
+use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY, filter};
+
+/// Cycles over which everything goes from one goal's to the next.
+const CROSS_FADE: u32 = 300;
+
+/// Gains and force cap in numbers: a choice is a weight between 0 and 1, so that all of it may stand between two goals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tuning {
+    pub(crate) cartesian_stiffness: [f64; 6],
+    pub(crate) cartesian_damping: [f64; 6],
+    pub(crate) joint_stiffness: [f64; 7],
+    pub(crate) joint_damping: [f64; 7],
+    pub(crate) feedforward: f64,
+    /// Share of the newest reference velocity in the filtered one; 1 where the filter is off.
+    pub(crate) feedforward_share: f64,
+    /// How much of the null-space projection applies to the joints' springs.
+    pub(crate) projection: f64,
+    /// Weight of the operational-space law against the hybrid one.
+    pub(crate) operational: f64,
+    /// One over the force cap, `[1/N]`: 0 without one, which no other number continues to.
+    pub(crate) inverse_force_cap: f64,
+}
+
+impl Tuning {
+    pub(crate) fn new(gains: &Gains, force_cap: Option<f64>) -> Self {
+        let operational = gains.law == Law::OperationalSpace;
+        let filtered = gains.feedforward_cutoff < MAX_CUTOFF_FREQUENCY;
+        Self {
+            cartesian_stiffness: gains.cartesian_stiffness,
+            cartesian_damping: gains.cartesian_damping,
+            joint_stiffness: gains.joint_stiffness,
+            joint_damping: gains.joint_damping,
+            feedforward: gains.feedforward,
+            feedforward_share: if filtered {
+                filter::gain(CYCLE, gains.feedforward_cutoff)
+            } else {
+                1.0
+            },
+            projection: f64::from(u8::from(operational || gains.project_joint_gains)),
+            operational: f64::from(u8::from(operational)),
+            inverse_force_cap: force_cap.map_or(0.0, f64::recip),
+        }
+    }
+
+    /// Whether the inertia at the end effector is needed.
+    pub(crate) fn needs_task_space(&self) -> bool {
+        self.projection > 0.0 || self.operational > 0.0 || self.inverse_force_cap > 0.0
+    }
+
+    /// The force cap, `[N]`, if there is one.
+    pub(crate) fn force_cap(&self) -> Option<f64> {
+        (self.inverse_force_cap > 0.0).then(|| self.inverse_force_cap.recip())
+    }
+
+    /// At `share` of the way to `other`, linearly: each number stays between its two ends.
+    fn blend(&self, other: &Self, share: f64) -> Self {
+        let mix = |from: f64, to: f64| from + share * (to - from);
+        macro_rules! each {
+            ($array:ident) => {
+                core::array::from_fn(|i| mix(self.$array[i], other.$array[i]))
+            };
+        }
+        Self {
+            cartesian_stiffness: each!(cartesian_stiffness),
+            cartesian_damping: each!(cartesian_damping),
+            joint_stiffness: each!(joint_stiffness),
+            joint_damping: each!(joint_damping),
+            feedforward: mix(self.feedforward, other.feedforward),
+            feedforward_share: mix(self.feedforward_share, other.feedforward_share),
+            projection: mix(self.projection, other.projection),
+            operational: mix(self.operational, other.operational),
+            inverse_force_cap: mix(self.inverse_force_cap, other.inverse_force_cap),
+        }
+    }
+}
+
+/// A tuning on its way from one goal's to the next.
+#[derive(Debug)]
+pub(crate) struct Fade {
+    from: Tuning,
+    to: Tuning,
+    cycle: u32,
+}
+
+impl Fade {
+    /// At its end from the start.
+    pub(crate) fn at(tuning: Tuning) -> Self {
+        Self {
+            from: tuning,
+            to: tuning,
+            cycle: CROSS_FADE,
+        }
+    }
+
+    /// Heads for `to` from where it stands.
+    pub(crate) fn towards(&mut self, to: Tuning) {
+        if to != self.to {
+            *self = Self {
+                from: self.now(),
+                to,
+                cycle: 0,
+            };
+        }
+    }
+
+    /// Goes one cycle on.
+    pub(crate) fn step(&mut self) -> Tuning {
+        self.cycle = self.cycle.saturating_add(1);
+        self.now()
+    }
+
+    fn now(&self) -> Tuning {
+        if self.cycle >= CROSS_FADE {
+            self.to
+        } else {
+            self.from
+                .blend(&self.to, f64::from(self.cycle) / f64::from(CROSS_FADE))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn soft() -> Tuning {
+        Tuning::new(&Gains::cartesian(), None)
+    }
+
+    fn other() -> Tuning {
+        let gains = Gains {
+            law: Law::OperationalSpace,
+            feedforward_cutoff: 20.0,
+            ..Gains::droid()
+        };
+        Tuning::new(&gains, Some(10.0))
+    }
+
+    #[test]
+    fn every_number_goes_evenly_from_one_goal_to_the_next() {
+        let mut fade = Fade::at(soft());
+        assert_eq!(fade.step(), soft());
+        fade.towards(other());
+        let mut last = soft();
+        for cycle in 1..=CROSS_FADE {
+            let now = fade.step();
+            let step = 1.0 / f64::from(CROSS_FADE);
+            let moved = now.operational - last.operational;
+            assert!((moved - step).abs() < 1e-12, "cycle {cycle}");
+            let moved = now.inverse_force_cap - last.inverse_force_cap;
+            assert!((moved - 0.1 * step).abs() < 1e-12, "cycle {cycle}");
+            let moved = last.cartesian_damping[2] - now.cartesian_damping[2];
+            assert!((moved - 53.0 * step).abs() < 1e-9, "cycle {cycle}");
+            last = now;
+        }
+        assert_eq!(last, other());
+        assert_eq!(fade.step(), other());
+    }
+
+    #[test]
+    fn a_fade_that_is_turned_round_goes_on_from_where_it_stands() {
+        let mut fade = Fade::at(soft());
+        fade.towards(other());
+        let half = (0..CROSS_FADE / 2).map(|_| fade.step()).last().unwrap();
+        assert_eq!(half.projection, 0.5);
+        fade.towards(soft());
+        let next = fade.step();
+        assert!((next.projection - 0.5).abs() < 2e-3);
+        assert!((next.inverse_force_cap - half.inverse_force_cap).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_filter_at_the_greatest_cutoff_is_off() {
+        assert_eq!(soft().feedforward_share, 1.0);
+        assert_eq!(other().feedforward_share, filter::gain(CYCLE, 20.0));
+        assert_eq!(soft().force_cap(), None);
+        assert_eq!(other().force_cap(), Some(10.0));
+    }
+}
