@@ -1,7 +1,7 @@
 //! From a reference to torques: the law, then the guards of the torques, then what the robot accepts.
 //!
 //! ```text
-//! springs and dampers -> clamp -> force cap -> + coriolis -> robot's range -> low-pass -> rate
+//! springs and dampers -> clamp -> force cap -> + coriolis -> velocity barrier -> robot's range -> low-pass -> rate
 //! ```
 
 use franka_model::limits::JointLimits;
@@ -13,7 +13,7 @@ use crate::law::interaction::{Errors, Interaction};
 use crate::law::shaping;
 use crate::law::task_space::TaskSpace;
 use crate::law::tuning::{Fade, Tuning};
-use crate::session::guard::force_cap;
+use crate::session::guard::{force_cap, velocity_barrier};
 use crate::session::{Bindings, Goal, Guard};
 use crate::shaping::filter;
 
@@ -69,12 +69,14 @@ impl Effort {
         };
         // Coriolis torques stay outside the clamp and the cap: they belong to the motion, not to the interaction.
         let tau = tau + dynamics.coriolis;
+        let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &most);
         let (tau, full) = shaping::clamp(&tau, &limits.torque);
         let filtered = shaping::low_pass(&tau, &last);
         let (tau, slowed) = shaping::limit_rate(&filtered, &last, &limits.torque_rate);
 
         bindings.set(Guard::TorqueClamp, clamped || full);
         bindings.set(Guard::ForceCap, capped);
+        bindings.set(Guard::VelocityBarrier, braked);
         bindings.set(Guard::TorqueRate, slowed);
         tau
     }

@@ -43,6 +43,7 @@ pub use deadman::{Deadman, Grip};
 pub use goal::{Free, Goal, GoalId, Stale, Target, Then, Tolerance, Watchdog};
 pub use guard::force_cap::FORCE_CAP;
 pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
+pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT};
 

@@ -14,6 +14,8 @@ pub enum Guard {
     TorqueClamp,
     /// Spring and damper would have pressed with more force than the goal allows, and were scaled down.
     ForceCap,
+    /// A joint came near the robot's velocity limit and was braked.
+    VelocityBarrier,
     /// The torque changed faster than the robot accepts and was slowed.
     TorqueRate,
     /// The targets stopped coming; the arm goes to rest, or rests, for that.
@@ -31,11 +33,12 @@ pub enum Guard {
 pub struct Bindings(u16);
 
 impl Guard {
-    const ALL: [Self; 9] = [
+    const ALL: [Self; 10] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
         Self::ForceCap,
+        Self::VelocityBarrier,
         Self::TorqueRate,
         Self::Watchdog,
         Self::Deadman,

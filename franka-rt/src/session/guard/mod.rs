@@ -3,5 +3,6 @@
 mod binding;
 pub(super) mod force_cap;
 pub(super) mod leash;
+pub(super) mod velocity_barrier;
 
 pub use binding::{Bindings, Guard};

@@ -1,0 +1,126 @@
+//! The velocity barrier: a joint that comes near the robot's velocity limit is braked, whoever drives it.
+//!
+//! The generators keep the reference inside the limits; the arm itself may be faster, thrown by a hand or by a spring
+//! that was stretched. The robot stops with a reflex then. From [`ONSET`] of the limit on, the torque of a joint goes over
+//! from what the law wants to full braking, which it reaches at the limit:
+//!
+//! ```text
+//! tau' = (1 - s) tau - s sign(dq) clamp        s = smoothstep((|dq| / limit - 0.85) / 0.15)
+//! ```
+//!
+//! So a law that drives the joint with all its torque is balanced half way. `s` and its slope are continuous.
+//!
+//! What the barrier can hold is bounded by the rate of the torque: the robot takes 1 N m per millisecond, and a torque
+//! `tau` on an inertia `I` gains `tau^2 / (2 I 1000 N m/s)` of speed while it is taken back. With the 0.39 rad/s above the
+//! onset at the shoulder that is at most 28 N m on 1 kg m^2, and 12 N m on 0.1 kg m^2 with the 0.79 rad/s at the wrist;
+//! the barrier begins gently, so that it holds a little less.
+
+use franka_model::JointVector;
+
+/// Share of the velocity limit from which on a joint is braked.
+pub const ONSET: f64 = 0.85;
+
+/// Brakes the joints that are too fast; tells whether there were any. `dq` is measured and `limit` the robot's, `[rad/s]`;
+/// `most` is the torque of full braking, `[N m]`.
+pub(crate) fn brake(
+    tau: &JointVector,
+    dq: &JointVector,
+    limit: &JointVector,
+    most: &JointVector,
+) -> (JointVector, bool) {
+    let mut binds = false;
+    let braked = JointVector::from_fn(|i, _| {
+        let beyond = (dq[i].abs() / limit[i] - ONSET) / (1.0 - ONSET);
+        if beyond <= 0.0 {
+            return tau[i];
+        }
+        binds = true;
+        let x = beyond.min(1.0);
+        let share = x * x * (3.0 - 2.0 * x);
+        tau[i] + share * (-most[i].copysign(dq[i]) - tau[i])
+    });
+    (braked, binds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::shaping::{self, TORQUE_CLAMP};
+    use franka_model::Model;
+    use proptest::prelude::*;
+
+    fn of(tau: f64, dq: f64) -> (f64, bool) {
+        let limit = JointVector::repeat(2.0);
+        let most = JointVector::repeat(50.0);
+        let (tau, dq) = (JointVector::repeat(tau), JointVector::repeat(dq));
+        let (braked, binds) = brake(&tau, &dq, &limit, &most);
+        (braked[3], binds)
+    }
+
+    #[test]
+    fn leaves_slow_joints_alone_and_brakes_fully_from_the_limit_on() {
+        assert_eq!(of(30.0, 1.7), (30.0, false));
+        assert_eq!(of(30.0, -1.7), (30.0, false));
+        assert_eq!(of(30.0, 2.0), (-50.0, true));
+        assert_eq!(of(30.0, -9.0), (50.0, true));
+        assert!(of(50.0, 1.85).0.abs() < 1e-9, "balanced half way");
+    }
+
+    #[test]
+    fn value_and_slope_are_continuous() {
+        let step = 1e-4;
+        let at = |i: i32| of(20.0, 1.6 + step * f64::from(i)).0;
+        for i in 1..5000 {
+            let slope = (at(i) - at(i - 1)) / step;
+            let next = (at(i + 1) - at(i)) / step;
+            // Greatest curvature: 6 / 0.3^2 of 70 N m.
+            assert!(
+                (next - slope).abs() < 5000.0 * step,
+                "at {i}: {slope}, {next}"
+            );
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn only_ever_opposes_the_motion_and_stays_within_the_clamp(
+            tau in -50.0..50.0f64,
+            dq in -4.0..4.0f64,
+        ) {
+            let (braked, _) = of(tau, dq);
+            prop_assert!((braked - tau) * dq <= 0.0);
+            prop_assert!(braked.abs() <= 50.0 * (1.0 + 1e-15));
+        }
+    }
+
+    /// Links and rotors as they are about the ready pose, with what they can take of torque at the rate that the robot
+    /// accepts, through the filter and the rate limit of the cycle.
+    #[test]
+    fn a_joint_that_is_driven_on_and_on_stays_under_the_limit() {
+        const STEP: f64 = 1e-3;
+        let limits = Model::fr3().joint_limits();
+        let most = JointVector::from(TORQUE_CLAMP);
+        let inertia = [1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.1];
+        let driving = JointVector::from([25.0, 25.0, 25.0, 25.0, 8.0, 8.0, 8.0]);
+        for side in [1.0, -1.0] {
+            let (mut dq, mut last) = (JointVector::zeros(), JointVector::zeros());
+            let mut fastest = JointVector::zeros();
+            for _ in 0..5000 {
+                let (tau, _) = brake(&(driving * side), &dq, &limits.velocity, &most);
+                let filtered = shaping::low_pass(&tau, &last);
+                let (tau, _) = shaping::limit_rate(&filtered, &last, &limits.torque_rate);
+                for i in 0..7 {
+                    dq[i] += last[i] / inertia[i] * STEP;
+                    fastest[i] = fastest[i].max(dq[i].abs());
+                }
+                last = tau;
+            }
+            for i in 0..7 {
+                let share = fastest[i] / limits.velocity[i];
+                assert!((ONSET..1.0).contains(&share), "joint {i} at {share}");
+                let kept = dq[i].abs() / limits.velocity[i];
+                assert!((ONSET..0.95).contains(&kept), "joint {i} goes on at {kept}");
+            }
+        }
+    }
+}
