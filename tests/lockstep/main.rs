@@ -2,6 +2,7 @@
 
 mod awkward_poses;
 mod endings;
+mod engaged;
 mod faults;
 mod goals;
 mod random_targets;

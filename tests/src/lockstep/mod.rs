@@ -14,6 +14,7 @@
 //! the driver is held against the robot's limits. The [`Client`] half also runs beside robots that follow a script.
 
 mod client;
+mod engaged;
 mod guard;
 mod link;
 mod wander;
@@ -308,7 +309,7 @@ impl Lockstep {
         })
     }
 
-    fn submit_by(
+    pub(super) fn submit_by(
         &mut self,
         goal: Goal,
         submit: impl FnOnce(&mut Lifecycle, Goal, &RobotState, Duration) -> Result<(), MotionError>,

@@ -1,0 +1,315 @@
+//! Sessions that go from goal to goal.
+
+use std::time::Duration;
+
+use franka_model::{READY, Wrench};
+use franka_rt::law::Gains;
+use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
+use franka_rt::session::{
+    Deadman, Free, Goal, GoalError, GoalId, Guard, Lapse, PoseError, Stale, Target, Then, Watchdog,
+};
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+use nalgebra::{Isometry3, Translation3};
+
+fn up(lockstep: &Lockstep, metres: f64) -> Isometry3<f64> {
+    Translation3::new(0.0, 0.0, metres) * lockstep.true_pose()
+}
+
+fn turned(by: f64) -> Target {
+    let mut q = READY;
+    q[0] += by;
+    Target::Joints(q.into())
+}
+
+fn assert_stays(lockstep: &mut Lockstep, engaged: GoalId) {
+    let before = lockstep.true_pose();
+    lockstep.run(500);
+    let moved = PoseError::between(&lockstep.true_pose(), &before);
+    assert!(moved.translation < 1e-3, "{moved:?}");
+    assert_eq!(lockstep.client.outcome(engaged), None, "it goes on");
+}
+
+#[test]
+fn goals_come_to_their_ends_and_the_session_goes_on_until_it_is_ended() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let pose = up(&lockstep, 0.05);
+        for target in [Target::Pose(pose), turned(0.1), Target::Rest] {
+            let goal = lockstep.within(engaged, target, Then::Stay).unwrap();
+            let report = lockstep.until_resolved(goal, 6000).unwrap();
+            assert_eq!(report.final_error.is_none(), target == Target::Rest);
+            assert_stays(&mut lockstep, engaged);
+        }
+        lockstep.disengage(engaged);
+        lockstep.until_resolved(engaged, 1000).unwrap();
+        assert!(lockstep.client.lifecycle.is_idle());
+        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        assert_eq!(late, Err(MotionError::Disengaged));
+    });
+}
+
+#[test]
+fn a_goal_of_another_kind_takes_over_in_mid_motion() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let pose = up(&lockstep, 0.1);
+        let mut before = None;
+        for target in [
+            Target::Pose(pose),
+            turned(0.3),
+            Target::Pose(pose),
+            turned(0.0),
+        ] {
+            let goal = lockstep.within(engaged, target, Then::Stay).unwrap();
+            if let Some(before) = before.replace(goal) {
+                let superseded = lockstep.until_resolved(before, 1);
+                assert_eq!(superseded, Err(MotionError::Superseded));
+            }
+            lockstep.run(400);
+        }
+        let last = before.expect("there were goals");
+        lockstep.until_resolved(last, 6000).unwrap();
+        assert_stays(&mut lockstep, engaged);
+    });
+}
+
+#[test]
+fn nobody_else_gets_the_arm_meanwhile_but_anybody_can_stop_it() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = lockstep.goal(turned(0.1), Then::Finish);
+        assert_eq!(lockstep.submit(goal), Err(MotionError::Busy));
+        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        lockstep.run(300);
+        let stop = lockstep.stop().expect("it moves");
+        lockstep.until_resolved(stop, 2000).unwrap();
+        for ended in [goal, engaged] {
+            let outcome = lockstep.until_resolved(ended, 1);
+            assert_eq!(outcome, Err(MotionError::Stopped));
+        }
+        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        assert_eq!(late, Err(MotionError::Stopped));
+    });
+}
+
+#[test]
+fn a_goal_that_is_taken_back_leaves_the_arm_held() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        lockstep.run(300);
+        lockstep.cancel(goal);
+        let outcome = lockstep.until_resolved(goal, 2000);
+        assert_eq!(outcome, Err(MotionError::Stopped));
+        assert_stays(&mut lockstep, engaged);
+        // Dropping the session itself lets the arm go.
+        lockstep.cancel(engaged);
+        lockstep.until_resolved(engaged, 1000).unwrap();
+    });
+}
+
+#[test]
+fn a_reflex_is_what_every_goal_hears_that_comes_after_it() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        lockstep.run(300);
+        lockstep.robot.press_user_stop(true);
+        let outcome = lockstep.until_resolved(goal, 2000);
+        let Err(MotionError::Control(error)) = &outcome else {
+            panic!("{outcome:?}");
+        };
+        assert_eq!(lockstep.until_resolved(engaged, 1), outcome);
+        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        assert_eq!(late, Err(MotionError::Control(error.clone())));
+    });
+}
+
+#[test]
+fn a_goal_that_comes_while_the_session_is_ending_hears_how_it_ended() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        lockstep.robot.press_user_stop(true);
+        let mut late = Vec::new();
+        while lockstep.client.outcome(engaged).is_none() {
+            lockstep.tick();
+            late.extend(lockstep.within(engaged, turned(0.1), Then::Stay));
+        }
+        let outcome = lockstep.until_resolved(engaged, 1);
+        assert!(matches!(outcome, Err(MotionError::Control(_))));
+        for (i, goal) in late.iter().enumerate() {
+            let heard = lockstep.until_resolved(*goal, 1);
+            let superseded = heard == Err(MotionError::Superseded);
+            assert!(superseded || heard == outcome, "{i}: {heard:?}");
+        }
+    });
+}
+
+/// A session that follows a stream which falls silent, and how that ends.
+fn silent_stream(ready: &dyn Fn() -> Lockstep, stale: Stale) -> (Lockstep, GoalId, MotionError) {
+    let mut lockstep = ready();
+    let engaged = lockstep.engage();
+    let goal = Goal {
+        watchdog: Some(Watchdog {
+            silence: Duration::from_millis(100),
+            stale,
+            then: Then::Stay,
+        }),
+        ..lockstep.goal(turned(0.01), Then::Hold)
+    };
+    let goal = lockstep.submit_within(engaged, goal).unwrap();
+    for step in 2..12 {
+        lockstep.run(90);
+        assert_eq!(lockstep.client.outcome(goal), None);
+        let taken = lockstep.update(goal, turned(0.06 * f64::from(step)));
+        assert_eq!(taken, Ok(true));
+    }
+    let error = lockstep.until_resolved(goal, 5000).unwrap_err();
+    assert!(lockstep.client.record.bindings.contains(Guard::Watchdog));
+    assert_eq!(lockstep.update(goal, turned(0.0)), Ok(false));
+    (lockstep, engaged, error)
+}
+
+#[test]
+fn a_stream_that_falls_silent_is_held_or_braked_and_the_outcome_says_which() {
+    for_each_robot(|ready| {
+        let silence = Duration::from_millis(100);
+        let lapse = Lapse::Silent { silence };
+        let last = READY[0] + 0.66;
+
+        let (mut lockstep, engaged, error) = silent_stream(ready, Stale::Hold);
+        assert_eq!(error, MotionError::Held(lapse));
+        assert!(
+            (lockstep.robot.q()[0] - last).abs() < 2e-3,
+            "at the last target"
+        );
+        assert_stays(&mut lockstep, engaged);
+
+        let (mut lockstep, engaged, error) = silent_stream(ready, Stale::Brake);
+        assert_eq!(error, MotionError::Braked(lapse));
+        assert!((lockstep.robot.q()[0] - last).abs() > 0.02, "short of it");
+        assert_stays(&mut lockstep, engaged);
+        // The session is as good as before.
+        let goal = lockstep.within(engaged, turned(0.0), Then::Stay).unwrap();
+        lockstep.until_resolved(goal, 5000).unwrap();
+    });
+}
+
+#[test]
+fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
+    for_each_robot(|ready| {
+        let (token, grip) = Deadman::new(Duration::from_millis(50));
+        let mut lockstep = ready();
+        let deadman = Some(grip);
+        let engaged = lockstep.engage_with(Engagement { deadman });
+        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        for _ in 0..10 {
+            lockstep.run(40);
+            token.keep_alive();
+        }
+        let held = Err(MotionError::Held(Lapse::Deadman));
+        assert_eq!(lockstep.until_resolved(goal, 1000), held);
+        assert!(lockstep.client.record.bindings.contains(Guard::Deadman));
+        assert!(lockstep.robot.q()[0] < READY[0] + 0.25, "short of the goal");
+        let another = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        assert_eq!(lockstep.until_resolved(another, 1000), held);
+        assert_stays(&mut lockstep, engaged);
+
+        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        for _ in 0..200 {
+            token.keep_alive();
+            lockstep.run(20);
+        }
+        lockstep.until_resolved(goal, 1).unwrap();
+
+        drop(token);
+        let goal = lockstep.within(engaged, turned(0.0), Then::Stay).unwrap();
+        assert_eq!(lockstep.until_resolved(goal, 1000), held);
+    });
+}
+
+#[test]
+fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let free = Free {
+            axes: [false, true, false, false, false, false],
+            elbow: false,
+        };
+        lockstep
+            .within(engaged, Target::Guide(free), Then::Hold)
+            .unwrap();
+        lockstep.run(400);
+        let start = lockstep.true_pose();
+        let push = Wrench::new(4.0, 4.0, 4.0, 0.0, 0.0, 0.0);
+        lockstep.robot.push_end_effector(push, 1500);
+        lockstep.run(1500);
+        let moved = lockstep.true_pose().translation.vector - start.translation.vector;
+        assert!(moved.y > 0.05, "{moved}");
+        assert!(moved.x.abs() < 0.01 && moved.z.abs() < 0.01, "{moved}");
+        let turned = PoseError::between(&lockstep.true_pose(), &start).rotation;
+        assert!(turned < 0.05, "{turned} rad");
+        // Taken over while the hand still moves it.
+        let hold = lockstep.within(engaged, Target::Rest, Then::Stay).unwrap();
+        lockstep.until_resolved(hold, 5000).unwrap();
+        assert_stays(&mut lockstep, engaged);
+    });
+}
+
+#[test]
+fn gains_are_tuned_without_a_step_and_only_within_their_bounds() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let push = Wrench::new(0.0, 0.0, -6.0, 0.0, 0.0, 0.0);
+        lockstep.robot.push_end_effector(push, 100_000);
+        lockstep.run(1500);
+        let before = lockstep.true_pose();
+        let soft =
+            Gains::cartesian().with_cartesian_stiffness([300.0, 300.0, 300.0, 15.0, 15.0, 15.0]);
+        let gains = Some(soft);
+        lockstep
+            .tune(
+                engaged,
+                Tuning {
+                    gains,
+                    budget: None,
+                },
+            )
+            .unwrap();
+        let mut last = lockstep.client.record.tau_c;
+        let mut step: f64 = 0.0;
+        for _ in 0..1500 {
+            lockstep.tick();
+            let tau = lockstep.client.record.tau_c;
+            for (now, last) in tau.iter().zip(last) {
+                step = step.max((now - last).abs());
+            }
+            last = tau;
+        }
+        assert!(step < 0.1, "a step of {step} N m");
+        let sunk = before.translation.z - lockstep.true_pose().translation.z;
+        assert!(sunk > 0.004, "{sunk} m");
+        let mut hard = soft;
+        hard.cartesian_stiffness[0] = 1e5;
+        let gains = Some(hard);
+        let refused = lockstep.tune(
+            engaged,
+            Tuning {
+                gains,
+                budget: None,
+            },
+        );
+        assert!(matches!(
+            refused,
+            Err(MotionError::Goal(GoalError::Gains(_)))
+        ));
+    });
+}

@@ -1,0 +1,78 @@
+//! Sessions that go from goal to goal.
+
+use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
+use franka_rt::session::{Goal, GoalId, Target, Then};
+
+use super::Lockstep;
+
+impl Lockstep {
+    /// Begins a session with the defaults, and runs until it holds the arm.
+    ///
+    /// # Panics
+    /// If it is refused, or does not begin within a second.
+    pub fn engage(&mut self) -> GoalId {
+        self.engage_with(Engagement::default())
+    }
+
+    /// The same, bound to a deadman or the like.
+    ///
+    /// # Panics
+    /// As [`Self::engage`].
+    pub fn engage_with(&mut self, engagement: Engagement) -> GoalId {
+        let goal = self.goal(Target::Rest, Then::Hold);
+        let id = goal.id;
+        let client = &mut self.client;
+        client
+            .lifecycle
+            .engage(goal, engagement, &client.state, client.now)
+            .expect("nothing else moves");
+        self.client.carry_out();
+        for _ in 0..1000 {
+            self.tick();
+            if self.client.record.goal == id.0 {
+                return id;
+            }
+        }
+        panic!("no session after a second: {:?}", self.client.lifecycle);
+    }
+
+    /// Hands a goal to the session `engaged`: one that is awaited, or one that is held until the next.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn within(
+        &mut self,
+        engaged: GoalId,
+        target: Target,
+        then: Then,
+    ) -> Result<GoalId, MotionError> {
+        let goal = self.goal(target, then);
+        self.submit_within(engaged, goal)
+    }
+
+    /// The same with a goal of the test's own.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn submit_within(&mut self, engaged: GoalId, goal: Goal) -> Result<GoalId, MotionError> {
+        self.submit_by(goal, |lifecycle, goal, state, now| {
+            lifecycle.submit_within(engaged, goal, state, now)
+        })
+    }
+
+    /// Changes how the session goes about its goal.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn tune(&mut self, engaged: GoalId, tuning: Tuning) -> Result<(), MotionError> {
+        let client = &mut self.client;
+        client.lifecycle.tune(engaged, tuning, &client.state)
+    }
+
+    /// Ends the session as asked.
+    pub fn disengage(&mut self, engaged: GoalId) {
+        let client = &mut self.client;
+        client.lifecycle.disengage(engaged, client.now);
+        self.client.carry_out();
+    }
+}
