@@ -97,28 +97,31 @@ impl Goal {
         {
             return Err(GoalError::ForceCap { got });
         }
-        let ee = super::end_effector_of(state).ok_or(GoalError::Tool)?;
         super::load_of(state).ok_or(GoalError::Tool)?;
-        match self.target {
-            Target::Rest | Target::Guide(_) => Ok(()),
-            Target::Joints(q) => check_joints(&q, model, state),
-            Target::Pose(pose) => {
-                let p = pose.translation.vector;
-                if !(p
-                    .iter()
-                    .chain(pose.rotation.coords.iter())
-                    .all(|x| x.is_finite()))
-                {
-                    return Err(GoalError::NotFinite);
-                }
-                check_reach(&pose, &ee, model, &state.q.into()).map_err(|()| {
-                    GoalError::Unreachable {
-                        x: p.x,
-                        y: p.y,
-                        z: p.z,
-                    }
-                })
+        target(&self.target, model, state)
+    }
+}
+
+/// Checks that a robot in `state` can get to `target`.
+pub(super) fn target(target: &Target, model: &Model, state: &RobotState) -> Result<(), GoalError> {
+    let ee = super::end_effector_of(state).ok_or(GoalError::Tool)?;
+    match target {
+        Target::Rest | Target::Guide(_) => Ok(()),
+        Target::Joints(q) => check_joints(q, model, state),
+        Target::Pose(pose) => {
+            let p = pose.translation.vector;
+            if !(p
+                .iter()
+                .chain(pose.rotation.coords.iter())
+                .all(|x| x.is_finite()))
+            {
+                return Err(GoalError::NotFinite);
             }
+            check_reach(pose, &ee, model, &state.q.into()).map_err(|()| GoalError::Unreachable {
+                x: p.x,
+                y: p.y,
+                z: p.z,
+            })
         }
     }
 }

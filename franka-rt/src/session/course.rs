@@ -159,7 +159,7 @@ fn joints(
 
 /// The limits of one joint's plan: those of the budget, unless the joint moves and is only to stop, keeps another budget
 /// than this one, or would stop too late for the end of its range.
-fn limits_of_joint(
+pub(super) fn limits_of_joint(
     i: usize,
     robot: &JointLimits,
     reference: &Reference,

@@ -15,6 +15,8 @@ mod active;
 mod approach;
 mod budget;
 pub(crate) mod check;
+#[expect(dead_code, reason = "sessions do not take up chunks yet")]
+mod chunk;
 mod course;
 mod deadman;
 mod effort;
@@ -39,6 +41,10 @@ use crate::together::StartFault;
 
 pub use budget::Budget;
 pub use check::GoalError;
+pub use chunk::{
+    BLEND, CHUNKS_MAX, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, OFFSET_MAX,
+    POINTS_MAX, Returned, chunk_ring,
+};
 pub use deadman::{Deadman, Grip};
 pub use goal::{Free, Goal, GoalId, Stale, Target, Then, Tolerance, Watchdog};
 pub use guard::force_cap::FORCE_CAP;

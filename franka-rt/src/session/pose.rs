@@ -15,7 +15,7 @@ use crate::session::Budget;
 use crate::session::budget::Leg;
 
 /// A moving pose of the end effector in the base frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PoseState {
     /// `O_T_EE`, `[m]`.
     pub(crate) pose: Isometry3<f64>,

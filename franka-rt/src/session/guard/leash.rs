@@ -69,17 +69,17 @@ pub(crate) fn hold(
 /// Without it the pose would go on to its target, and the joints would chase it off the line, all of them at their
 /// bounds.
 pub(crate) fn tether(generator: &mut PoseGenerator, reached: &Isometry3<f64>) -> bool {
-    let Some(pose) = within(
-        &generator.pose(),
-        reached,
-        TRANSLATION_TETHER,
-        ROTATION_TETHER,
-    ) else {
+    let Some(pose) = tethered(&generator.pose(), reached) else {
         return false;
     };
     let planned = generator.reanchor(pose);
     debug_assert!(planned.is_ok(), "{planned:?}");
     true
+}
+
+/// The pose nearest to `pose` that does not run ahead of the joints at `reached`, if that is another one.
+pub(crate) fn tethered(pose: &Isometry3<f64>, reached: &Isometry3<f64>) -> Option<Isometry3<f64>> {
+    within(pose, reached, TRANSLATION_TETHER, ROTATION_TETHER)
 }
 
 /// The pose nearest to `pose` within a leash of `anchor`, metres and radians long, if that is another one.

@@ -1,0 +1,246 @@
+//! The course of a reference that follows chunks.
+
+use franka_model::limits::JointLimits;
+use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
+use nalgebra::{Isometry3, Translation3, vector};
+
+use super::motion::stacked;
+use super::player::Player;
+use super::quintic::Phase;
+use super::ring::{ChunkReader, Fate};
+use super::servo;
+use super::value::{Chunk, Points};
+use crate::law::hybrid::Reference;
+use crate::otg::AxisLimits;
+use crate::session::course::{Step, limits_of_joint};
+use crate::session::guard::leash;
+use crate::session::kinematics::{self, Drift, Held};
+use crate::session::pose::PoseState;
+use crate::session::{Budget, GoalId, Target, approach, rigid};
+
+/// Deceleration, `[rad/s^2]`, with which a joint can stop before the end of its range: as for poses, well below what the
+/// robot's velocity envelope reckons with.
+const BRAKING: f64 = 1.2;
+
+/// Follows the chunk in force, within a budget.
+#[derive(Debug)]
+pub(in crate::session) struct ChunkCourse {
+    goal: GoalId,
+    budget: Budget,
+    play: Play,
+}
+
+#[derive(Debug)]
+enum Play {
+    Joints {
+        player: Player<Reference>,
+        limits: [AxisLimits; 7],
+    },
+    Poses {
+        player: Player<PoseState>,
+        state: PoseState,
+        drift: Drift,
+        translation: AxisLimits,
+        rotation: AxisLimits,
+    },
+}
+
+impl ChunkCourse {
+    /// Takes up `chunk` in the answer to the state `now`, from a reference that was at `reference` in the answer before,
+    /// with the end effector at `pose`.
+    pub(in crate::session) fn new(
+        model: &Model,
+        goal: GoalId,
+        budget: Budget,
+        chunk: Chunk,
+        reference: &Reference,
+        pose: PoseState,
+        now: u64,
+    ) -> Self {
+        let Chunk {
+            points,
+            origin,
+            blend,
+        } = chunk;
+        let play = match points {
+            Points::Joints(curve) => Play::Joints {
+                limits: joint_limits(model.joint_limits(), curve.states(), reference, &budget),
+                player: Player::new(curve, origin, blend, reference, now),
+            },
+            Points::Poses(curve) => {
+                let limits =
+                    budget.able_to_stop(&pose.twist, &pose.acceleration, model.cartesian_limits());
+                Play::Poses {
+                    player: Player::new(curve, origin, blend, &pose, now),
+                    state: pose,
+                    drift: Drift::of(reference.dq),
+                    translation: limits.translation,
+                    rotation: limits.rotation,
+                }
+            }
+        };
+        Self { goal, budget, play }
+    }
+
+    /// One cycle on, in the answer to the state `now`, from `reference`.
+    pub(in crate::session) fn step(
+        &mut self,
+        model: &Model,
+        ee: &EndEffector,
+        posture: &JointVector,
+        reference: &Reference,
+        now: u64,
+    ) -> Step {
+        match &mut self.play {
+            Play::Joints { player, limits } => Step {
+                reference: follow_joints(model.joint_limits(), limits, reference, &player.at(now)),
+                bounds: Held::default(),
+                held: false,
+            },
+            Play::Poses {
+                player,
+                state,
+                drift,
+                translation,
+                rotation,
+            } => {
+                *state = follow_pose(translation, rotation, state, &player.at(now));
+                let (reference, bounds) =
+                    kinematics::follow(model, ee, posture, drift, reference, state, &self.budget);
+                let mut held = false;
+                if bounds.any() {
+                    let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
+                    if let Some(pose) = leash::tethered(&state.pose, &reached) {
+                        state.pose = pose;
+                        held = true;
+                    }
+                }
+                Step {
+                    reference,
+                    bounds,
+                    held,
+                }
+            }
+        }
+    }
+
+    /// The pose that the reference of the joints follows, if that is what the chunk moves.
+    pub(in crate::session) fn pose(&self) -> Option<PoseState> {
+        match &self.play {
+            Play::Joints { .. } => None,
+            Play::Poses { state, .. } => Some(*state),
+        }
+    }
+
+    /// Moves that pose to `pose` with its velocity kept. What this leaves it behind by, it makes up for.
+    pub(in crate::session) fn reanchor(&mut self, pose: Isometry3<f64>) {
+        if let Play::Poses { state, .. } = &mut self.play {
+            state.pose = pose;
+        }
+    }
+
+    /// Whether the chunk has come to its end by `now`.
+    pub(in crate::session) fn is_over(&self, now: u64) -> bool {
+        match &self.play {
+            Play::Joints { player, .. } => player.is_over(now),
+            Play::Poses { player, .. } => player.is_over(now),
+        }
+    }
+
+    /// Where the chunk comes to rest.
+    pub(in crate::session) fn target(&self) -> Target {
+        match &self.play {
+            Play::Joints { player, .. } => Target::Joints(player.curve().last().q.into()),
+            Play::Poses { player, .. } => Target::Pose(player.curve().last().pose),
+        }
+    }
+
+    /// Gives the chunk back, as the course ends.
+    pub(in crate::session) fn end(self, chunks: &mut ChunkReader, fate: Fate) {
+        let chunk = match self.play {
+            Play::Joints { player, .. } => player.into_chunk(),
+            Play::Poses { player, .. } => player.into_chunk(),
+        };
+        chunks.give_back(self.goal, chunk, fate);
+    }
+}
+
+/// What each joint may do on the way through `points`: its budget, unless it moves and does not keep that, made gentle
+/// enough for the points nearest to the ends of its range.
+fn joint_limits(
+    robot: &JointLimits,
+    points: &[Reference],
+    reference: &Reference,
+    budget: &Budget,
+) -> [AxisLimits; 7] {
+    core::array::from_fn(|i| {
+        let q = reference.q[i];
+        let positions = || points.iter().map(|point| point.q[i]);
+        let least = positions().fold(q, f64::min);
+        let most = positions().fold(q, f64::max);
+        let limits = limits_of_joint(i, robot, reference, budget.joints[i], false);
+        let limits = approach::limits(i, robot, q, most, limits);
+        if least < q {
+            approach::limits(i, robot, q, least, limits)
+        } else {
+            limits
+        }
+    })
+}
+
+/// Each joint on its own. Where the motion between points leads out of a joint's range, the joint waits at the end of it.
+fn follow_joints(
+    robot: &JointLimits,
+    limits: &[AxisLimits; 7],
+    now: &Reference,
+    target: &Reference,
+) -> Reference {
+    let mut next = *now;
+    for (i, limits) in limits.iter().enumerate() {
+        let (lower, upper) = approach::range(i, robot);
+        let here = Phase {
+            p: vector![now.q[i]],
+            v: vector![now.dq[i]],
+            a: vector![now.ddq[i]],
+        };
+        let there = Phase {
+            p: vector![target.q[i].clamp(lower, upper)],
+            v: vector![target.dq[i]],
+            a: vector![target.ddq[i]],
+        };
+        let stoppable = |room: f64| (2.0 * BRAKING * room.max(0.0)).sqrt();
+        let (back, on) = (stoppable(now.q[i] - lower), stoppable(upper - now.q[i]));
+        let moved = servo::follow(&here, &there, limits, |v| v.map(|v| v.clamp(-back, on)));
+        (next.q[i], next.dq[i], next.ddq[i]) = (moved.p[0], moved.v[0], moved.a[0]);
+    }
+    next
+}
+
+/// Translation and rotation, each by its norm. Angular velocity and acceleration are those in base axes, so that they keep
+/// the budget there; what a cycle's rotation vector lacks against them is of the third order.
+fn follow_pose(
+    translation: &AxisLimits,
+    turning: &AxisLimits,
+    now: &PoseState,
+    target: &PoseState,
+) -> PoseState {
+    let way = servo::follow(
+        &now.translation(),
+        &target.translation(),
+        translation,
+        |v| v,
+    );
+    let there = Phase {
+        p: rotation::error(&target.pose.rotation, &now.pose.rotation),
+        ..target.rotation()
+    };
+    let turn = servo::follow(&now.rotation(), &there, turning, |v| v);
+    PoseState {
+        pose: Isometry3::from_parts(
+            Translation3::from(way.p),
+            rotation::exp(&turn.p) * now.pose.rotation,
+        ),
+        twist: stacked(&way.v, &turn.v),
+        acceleration: stacked(&way.a, &turn.a),
+    }
+}

@@ -1,0 +1,32 @@
+//! Chunks: points with times that a policy predicts, and a reference that follows them.
+//!
+//! ```text
+//! Chunk -> ChunkWriter -> ring -> ChunkReader -> player -> servo -> reference
+//!          (outside the thread)   |              where the chunk is at the robot's time, blended with what was before
+//!                                 |                         follows that within the limits of the budget
+//!          <- ring of what is done with, to be freed outside
+//! ```
+//!
+//! * `value`, `error`: the chunk and what it may hold; `derivatives`, `curve`, `quintic`, `motion`: the motion through its
+//!   points, made outside the thread.
+//! * `ring`: across threads and back.
+//! * `player`: what is wanted at a time of the robot. Lost states need no more: the time jumps, and the servo makes up for
+//!   the distance.
+//! * `servo`: what the limits allow of it. `course`: both, for joints and for poses.
+
+mod course;
+mod curve;
+mod derivatives;
+mod error;
+mod motion;
+mod player;
+mod quintic;
+mod ring;
+mod servo;
+#[cfg(test)]
+mod tests;
+mod value;
+
+pub use error::ChunkError;
+pub use ring::{CHUNKS_MAX, ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
+pub use value::{BLEND, Chunk, OFFSET_MAX, POINTS_MAX};

@@ -1,0 +1,280 @@
+//! What moves along a chunk: joints, or a pose; how to go from one of their states to another, and how the distance
+//! between two is let go.
+
+use franka_model::{Twist, rotation};
+use nalgebra::{Isometry3, Translation3, Vector3};
+
+use super::curve::Curve;
+use super::quintic::{self, Phase};
+use super::value::Points;
+use crate::law::hybrid::Reference;
+use crate::session::pose::PoseState;
+
+/// A state with its first two derivatives that chunks can be made of.
+pub(super) trait Motion: Copy {
+    /// How far one state is from another, with derivatives.
+    type Gap: Copy + core::fmt::Debug;
+
+    /// The state at `t` on the way from `from` at 0 to `to` at `duration`, seconds.
+    fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self;
+
+    /// What lies between this state and `base`.
+    fn gap_from(&self, base: &Self) -> Self::Gap;
+
+    /// This state, as far off as `gap` still is at `t` if it closes within `duration`.
+    fn displaced(&self, gap: &Self::Gap, duration: f64, t: f64) -> Self;
+
+    /// At rest in the same place.
+    fn resting(&self) -> Self;
+
+    /// A curve of such states as the points of a chunk.
+    fn points(curve: Curve<Self>) -> Points;
+}
+
+impl Motion for Reference {
+    type Gap = Phase<7>;
+
+    fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self {
+        quintic::between(&from.phase(), &to.phase(), duration, t).into()
+    }
+
+    fn gap_from(&self, base: &Self) -> Phase<7> {
+        Phase {
+            p: self.q - base.q,
+            v: self.dq - base.dq,
+            a: self.ddq - base.ddq,
+        }
+    }
+
+    fn displaced(&self, gap: &Phase<7>, duration: f64, t: f64) -> Self {
+        let gap = quintic::between(gap, &Phase::zero(), duration, t);
+        Self {
+            q: self.q + gap.p,
+            dq: self.dq + gap.v,
+            ddq: self.ddq + gap.a,
+        }
+    }
+
+    fn resting(&self) -> Self {
+        Self::at_rest(self.q)
+    }
+
+    fn points(curve: Curve<Self>) -> Points {
+        Points::Joints(curve)
+    }
+}
+
+impl Reference {
+    fn phase(&self) -> Phase<7> {
+        Phase {
+            p: self.q,
+            v: self.dq,
+            a: self.ddq,
+        }
+    }
+}
+
+impl From<Phase<7>> for Reference {
+    fn from(phase: Phase<7>) -> Self {
+        Self {
+            q: phase.p,
+            dq: phase.v,
+            ddq: phase.a,
+        }
+    }
+}
+
+/// Translation and rotation of one pose against another: the rotation vector turns the other one into this one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PoseGap {
+    translation: Phase<3>,
+    rotation: Phase<3>,
+}
+
+impl Motion for PoseState {
+    type Gap = PoseGap;
+
+    /// The rotation goes in the chart around the orientation of `from`, which the one of `to` has to be less than half a
+    /// turn away from.
+    fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self {
+        let start = Phase {
+            p: Vector3::zeros(),
+            ..from.rotation()
+        };
+        let end = in_chart(to, from);
+        let turn = quintic::between(&start, &end, duration, t);
+        let way = quintic::between(&from.translation(), &to.translation(), duration, t);
+        from.turned(&turn, &way)
+    }
+
+    fn gap_from(&self, base: &Self) -> PoseGap {
+        let (ours, theirs) = (self.translation(), base.translation());
+        let phi = rotation::error(&self.pose.rotation, &base.pose.rotation);
+        let (omega, alpha) = carried(base, &phi);
+        let turning = self.rotation();
+        let more = turning.v - omega;
+        let (rate, second) =
+            rotation::derivatives(&phi, &more, &(turning.a - alpha - more.cross(&omega)));
+        PoseGap {
+            translation: Phase {
+                p: ours.p - theirs.p,
+                v: ours.v - theirs.v,
+                a: ours.a - theirs.a,
+            },
+            rotation: Phase {
+                p: phi,
+                v: rate,
+                a: second,
+            },
+        }
+    }
+
+    fn displaced(&self, gap: &PoseGap, duration: f64, t: f64) -> Self {
+        let none = Phase::zero();
+        let off = quintic::between(&gap.translation, &none, duration, t);
+        let turn = quintic::between(&gap.rotation, &none, duration, t);
+        let here = self.translation();
+        let (omega, alpha) = carried(self, &turn.p);
+        let more = rotation::angular_velocity(&turn.p, &turn.v);
+        let (w, dw) = (
+            omega + more,
+            alpha + rotation::angular_acceleration(&turn.p, &turn.v, &turn.a) + more.cross(&omega),
+        );
+        Self {
+            pose: Isometry3::from_parts(
+                Translation3::from(here.p + off.p),
+                rotation::exp(&turn.p) * self.pose.rotation,
+            ),
+            twist: stacked(&(here.v + off.v), &w),
+            acceleration: stacked(&(here.a + off.a), &dw),
+        }
+    }
+
+    fn resting(&self) -> Self {
+        Self {
+            pose: self.pose,
+            twist: Twist::zeros(),
+            acceleration: Twist::zeros(),
+        }
+    }
+
+    fn points(curve: Curve<Self>) -> Points {
+        Points::Poses(curve)
+    }
+}
+
+impl PoseState {
+    /// Position, velocity and acceleration of the frame's origin.
+    pub(super) fn translation(&self) -> Phase<3> {
+        Phase {
+            p: self.pose.translation.vector,
+            v: self.twist.fixed_rows::<3>(0).into_owned(),
+            a: self.acceleration.fixed_rows::<3>(0).into_owned(),
+        }
+    }
+
+    /// Angular velocity and acceleration, which are those of the rotation vector in the chart around this orientation.
+    pub(super) fn rotation(&self) -> Phase<3> {
+        Phase {
+            p: Vector3::zeros(),
+            v: self.twist.fixed_rows::<3>(3).into_owned(),
+            a: self.acceleration.fixed_rows::<3>(3).into_owned(),
+        }
+    }
+
+    /// The state that is at `turn` in the chart around this orientation, and at `way`.
+    fn turned(&self, turn: &Phase<3>, way: &Phase<3>) -> Self {
+        let omega = rotation::angular_velocity(&turn.p, &turn.v);
+        let alpha = rotation::angular_acceleration(&turn.p, &turn.v, &turn.a);
+        Self {
+            pose: Isometry3::from_parts(
+                Translation3::from(way.p),
+                rotation::exp(&turn.p) * self.pose.rotation,
+            ),
+            twist: stacked(&way.v, &omega),
+            acceleration: stacked(&way.a, &alpha),
+        }
+    }
+}
+
+/// The rotation of `state` in the chart around the orientation of `anchor`.
+fn in_chart(state: &PoseState, anchor: &PoseState) -> Phase<3> {
+    let phi = rotation::error(&state.pose.rotation, &anchor.pose.rotation);
+    let turning = state.rotation();
+    let (rate, second) = rotation::derivatives(&phi, &turning.v, &turning.a);
+    Phase {
+        p: phi,
+        v: rate,
+        a: second,
+    }
+}
+
+/// Angular velocity and acceleration of `base`, turned by `phi`.
+fn carried(base: &PoseState, phi: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    let (turn, turning) = (rotation::exp(phi), base.rotation());
+    (turn * turning.v, turn * turning.a)
+}
+
+pub(super) fn stacked(linear: &Vector3<f64>, angular: &Vector3<f64>) -> Twist {
+    Twist::new(
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::UnitQuaternion;
+
+    fn state(turn: [f64; 3], spin: f64) -> PoseState {
+        PoseState {
+            pose: Isometry3::from_parts(
+                Translation3::new(0.4, 0.1 * spin, 0.5),
+                UnitQuaternion::from_euler_angles(turn[0], turn[1], turn[2]),
+            ),
+            twist: Twist::new(0.1, -0.2, 0.3, spin, -0.5 * spin, 0.7),
+            acceleration: Twist::new(1.0, 0.2, -0.3, 2.0, spin, -1.0),
+        }
+    }
+
+    fn close(a: &PoseState, b: &PoseState, tolerance: f64) -> bool {
+        let turn = rotation::error(&a.pose.rotation, &b.pose.rotation).norm();
+        let way = (a.pose.translation.vector - b.pose.translation.vector).norm();
+        turn.max(way) < tolerance
+            && (a.twist - b.twist).norm() < tolerance
+            && (a.acceleration - b.acceleration).norm() < tolerance
+    }
+
+    /// Velocity and acceleration against differences of pose and velocity.
+    fn check_derivatives(at: impl Fn(f64) -> PoseState, t: f64) {
+        let h = 1e-5;
+        let (before, now, after) = (at(t - h), at(t), at(t + h));
+        let turn = rotation::error(&after.pose.rotation, &before.pose.rotation) / (2.0 * h);
+        assert!((now.rotation().v - turn).norm() < 1e-6, "{turn}");
+        let growth = (after.twist - before.twist) / (2.0 * h);
+        assert!((now.acceleration - growth).norm() < 1e-4, "{growth}");
+    }
+
+    #[test]
+    fn a_pose_goes_from_one_state_to_another_with_true_derivatives() {
+        let (from, to) = (state([3.0, 0.1, 0.2], 0.4), state([2.6, -0.3, 0.6], -0.8));
+        let at = |t| PoseState::between(&from, &to, 0.2, t);
+        assert!(close(&at(0.0), &from, 1e-12));
+        assert!(close(&at(0.2), &to, 1e-9));
+        check_derivatives(at, 0.07);
+    }
+
+    #[test]
+    fn a_gap_is_whole_at_first_and_gone_at_the_end_with_true_derivatives_between() {
+        let (from, base) = (state([3.0, 0.1, 0.2], 0.4), state([2.6, -0.3, 0.6], -0.8));
+        let gap = from.gap_from(&base);
+        assert!(close(&base.displaced(&gap, 0.1, 0.0), &from, 1e-12));
+        assert!(close(&base.displaced(&gap, 0.1, 0.1), &base, 1e-9));
+        let goal = state([2.7, -0.2, 0.5], -0.6);
+        let moving = |t| {
+            let base = PoseState::between(&base, &goal, 0.3, t);
+            base.displaced(&gap, 0.1, t)
+        };
+        check_derivatives(moving, 0.04);
+    }
+}

@@ -1,0 +1,250 @@
+//! How chunks cross into the thread and back: by one ring each way, because the heap memory of their points may be
+//! neither made nor freed there.
+//!
+//! ```text
+//! ChunkWriter -> ring of chunks  -> ChunkReader: drained in each cycle, the newest counts
+//!             <- ring of returns <-              what is done with, and what became of it
+//! ```
+//!
+//! Every chunk that went in comes back, so the writer knows how many are out. It lets no more out than the way back
+//! holds, and the thread's end of it is never full.
+
+use super::value::Chunk;
+use crate::session::GoalId;
+
+/// Chunks that may be on their way, in use, or on their way back at a time.
+pub const CHUNKS_MAX: usize = 8;
+
+/// A chunk and the goal that it belongs to.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Sent {
+    pub(super) goal: GoalId,
+    pub(super) chunk: Chunk,
+}
+
+/// What became of a chunk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fate {
+    /// The arm followed it until a newer one took its place, or another goal did.
+    Replaced,
+    /// The arm followed it to its end.
+    Ended,
+    /// A newer one came before it was taken up.
+    Superseded,
+    /// All of its points had passed when it was to be taken up.
+    Late,
+    /// It belongs to a goal that another one has taken the place of.
+    Stale,
+}
+
+/// A chunk that the thread is done with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Returned {
+    /// The goal that it belonged to.
+    pub goal: GoalId,
+    /// What became of it.
+    pub fate: Fate,
+    /// The chunk.
+    pub chunk: Chunk,
+}
+
+/// There is no room for another chunk: the thread has not taken up or given back those sent before.
+#[derive(Debug, thiserror::Error)]
+#[error("{CHUNKS_MAX} chunks are under way already")]
+pub struct Full(
+    /// The chunk that was to be sent.
+    pub Chunk,
+);
+
+/// The end that sends chunks, outside the thread.
+#[derive(Debug)]
+pub struct ChunkWriter {
+    chunks: rtrb::Producer<Sent>,
+    returns: rtrb::Consumer<Returned>,
+    under_way: usize,
+}
+
+/// The end in the session.
+#[derive(Debug)]
+pub struct ChunkReader {
+    chunks: rtrb::Consumer<Sent>,
+    returns: rtrb::Producer<Returned>,
+    /// The newest chunk, until it is taken up.
+    newest: Option<Sent>,
+}
+
+/// The two ends of a way for chunks.
+pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
+    let (sender, receiver) = rtrb::RingBuffer::new(CHUNKS_MAX);
+    let (back, collector) = rtrb::RingBuffer::new(CHUNKS_MAX);
+    let writer = ChunkWriter {
+        chunks: sender,
+        returns: collector,
+        under_way: 0,
+    };
+    let reader = ChunkReader {
+        chunks: receiver,
+        returns: back,
+        newest: None,
+    };
+    (writer, reader)
+}
+
+impl ChunkWriter {
+    /// Sends `chunk` for `goal`. A newer chunk of a goal takes the place of those before it.
+    ///
+    /// A chunk may be sent before its goal is seen, but not before it is written to the goals' slot: chunks of older
+    /// goals are returned as [`Fate::Stale`].
+    ///
+    /// # Errors
+    /// [`Full`] with the chunk if [`CHUNKS_MAX`] of them have not been [collected](Self::collect).
+    pub fn send(&mut self, goal: GoalId, chunk: Chunk) -> Result<(), Full> {
+        if self.under_way >= CHUNKS_MAX {
+            return Err(Full(chunk));
+        }
+        match self.chunks.push(Sent { goal, chunk }) {
+            Ok(()) => {
+                self.under_way += 1;
+                Ok(())
+            }
+            Err(rtrb::PushError::Full(sent)) => Err(Full(sent.chunk)),
+        }
+    }
+
+    /// The next chunk that the thread is done with, if there is one.
+    pub fn collect(&mut self) -> Option<Returned> {
+        let returned = self.returns.pop().ok()?;
+        self.under_way -= 1;
+        Some(returned)
+    }
+
+    /// Whether the session is gone, so that no chunk will be taken up any more.
+    pub fn is_abandoned(&self) -> bool {
+        self.chunks.is_abandoned()
+    }
+}
+
+impl ChunkReader {
+    /// The newest chunk for `goal`, the one in force at the robot's time `now`, if it is new and may begin: that is, if
+    /// its first point's time has come, or `idle`, as no other chunk runs.
+    ///
+    /// What that makes superfluous goes back. Chunks of goals to come are kept.
+    pub(super) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
+        // At most as many as are under way: the writer cannot add to them without collecting.
+        for _ in 0..CHUNKS_MAX {
+            let Ok(sent) = self.chunks.pop() else { break };
+            if let Some(before) = self.newest.replace(sent) {
+                self.give_back(before.goal, before.chunk, Fate::Superseded);
+            }
+        }
+        let newest = self.newest.take_if(|newest| newest.goal <= goal)?;
+        let Sent { goal: of, chunk } = newest;
+        if of != goal {
+            self.give_back(of, chunk, Fate::Stale);
+            return None;
+        }
+        let t = chunk.since_origin(now);
+        if t > chunk.end() {
+            self.give_back(goal, chunk, Fate::Late);
+            return None;
+        }
+        if idle || chunk.begins_at_take_up() || t >= chunk.begin() {
+            return Some(chunk);
+        }
+        self.newest = Some(Sent { goal, chunk });
+        None
+    }
+
+    /// Gives back a chunk that is done with.
+    pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
+        let returned = Returned { goal, fate, chunk };
+        let pushed = self.returns.push(returned);
+        debug_assert!(pushed.is_ok(), "the writer lets out as many as fit");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::time::Duration;
+
+    const GOAL: GoalId = GoalId(5);
+
+    /// Points at 10 and 60 ms after the origin.
+    fn chunk() -> Chunk {
+        let at = |ms| (Duration::from_millis(ms), [0.0; 7]);
+        Chunk::joints([at(10), at(60)]).unwrap()
+    }
+
+    fn fates(writer: &mut ChunkWriter) -> Vec<Fate> {
+        core::iter::from_fn(|| writer.collect())
+            .map(|returned| returned.fate)
+            .collect()
+    }
+
+    #[test]
+    fn the_newest_chunk_counts_and_the_others_come_back() {
+        let (mut writer, mut reader) = chunk_ring();
+        for origin in [100, 101, 102] {
+            writer.send(GOAL, chunk().observed_at(origin)).unwrap();
+        }
+        let taken = reader.poll(GOAL, 120, false);
+        assert_eq!(taken, Some(chunk().observed_at(102)));
+        assert_eq!(reader.poll(GOAL, 121, false), None);
+        assert_eq!(fates(&mut writer), [Fate::Superseded; 2]);
+    }
+
+    #[test]
+    fn a_chunk_whose_points_have_passed_is_late_and_one_whose_goal_has_is_stale() {
+        let (mut writer, mut reader) = chunk_ring();
+        writer.send(GOAL, chunk().observed_at(100)).unwrap();
+        assert_eq!(reader.poll(GOAL, 161, true), None);
+        writer.send(GoalId(4), chunk()).unwrap();
+        assert_eq!(reader.poll(GOAL, 162, true), None);
+        assert_eq!(fates(&mut writer), [Fate::Late, Fate::Stale]);
+        writer.send(GOAL, chunk().observed_at(100)).unwrap();
+        assert!(
+            reader.poll(GOAL, 160, true).is_some(),
+            "the last millisecond"
+        );
+    }
+
+    #[test]
+    fn a_chunk_that_is_there_before_its_goal_is_kept_for_it() {
+        let (mut writer, mut reader) = chunk_ring();
+        writer.send(GOAL, chunk()).unwrap();
+        assert_eq!(reader.poll(GoalId(4), 1, true), None);
+        assert_eq!(reader.poll(GOAL, 2, true), Some(chunk()));
+    }
+
+    #[test]
+    fn a_chunk_of_the_future_waits_for_its_first_point_while_another_runs() {
+        let (mut writer, mut reader) = chunk_ring();
+        writer.send(GOAL, chunk().observed_at(100)).unwrap();
+        assert_eq!(reader.poll(GOAL, 109, false), None);
+        assert!(reader.poll(GOAL, 110, false).is_some());
+        writer.send(GOAL, chunk().observed_at(200)).unwrap();
+        assert!(reader.poll(GOAL, 111, true).is_some(), "nothing else runs");
+        writer.send(GOAL, chunk()).unwrap();
+        assert!(reader.poll(GOAL, 112, false).is_some(), "its origin is now");
+    }
+
+    #[test]
+    fn no_more_chunks_go_in_than_may_come_back() {
+        let (mut writer, mut reader) = chunk_ring();
+        for _ in 0..3 * CHUNKS_MAX {
+            if writer.send(GOAL, chunk()).is_err() {
+                break;
+            }
+            // Superseded ones wait for the writer: they count.
+            reader.poll(GoalId(0), 0, false);
+        }
+        let Full(refused) = writer.send(GOAL, chunk().observed_at(7)).unwrap_err();
+        assert_eq!(refused, chunk().observed_at(7));
+        assert_eq!(fates(&mut writer).len(), CHUNKS_MAX - 1);
+        writer.send(GOAL, refused).unwrap();
+        drop(reader);
+        assert!(writer.is_abandoned());
+    }
+}

@@ -1,0 +1,246 @@
+//! How a reference follows a target that moves, and keeps the limits whatever the target does.
+//!
+//! ```text
+//! wanted velocity      = target's velocity + approach(distance)          within the velocity limit
+//! wanted acceleration  = its derivative    + rate * (velocity missing)   within the acceleration limit
+//! jerk                 = what makes the acceleration the wanted one      within the jerk limit, and able to stop
+//! ```
+//!
+//! On the target, a target that keeps the limits is followed exactly: all of its motion is fed forward. Off it, the
+//! distance dies out, evenly decelerated from afar and exponentially in the end.
+//!
+//! A generator that plans anew in each cycle to be at the target of the next one does not do this: a micrometre off, it
+//! cannot be there in one millisecond, and passes through where the target was later, or all axes wait for the last one
+//! and come again. A plan to a later point of the chunk would arrive early where the chunk is slow.
+//!
+//! **Limits.** A state is admissible if acceleration and velocity keep their limits and still do if the acceleration is
+//! taken back as fast as the jerk allows, in whole cycles. Taking it back leads from an admissible state to an admissible
+//! one, so that there is always a jerk that does. The wanted jerk is used as far towards that one as it takes. All limits
+//! bind norms, which keeps this true for any number of axes: while the acceleration is taken back along its line, the
+//! velocity runs on a straight line between two admissible ones.
+
+use nalgebra::SVector;
+
+use super::quintic::Phase;
+use crate::otg::AxisLimits;
+
+/// One cycle, `[s]`.
+const CYCLE: f64 = 1e-3;
+
+/// Largest rate, `[1/s]`, at which a missing velocity is made up for.
+const RATE_MAX: f64 = 100.0;
+
+/// Share of the quotient of jerk and acceleration that the rate takes: what the acceleration can change at.
+const RATE_SHARE: f64 = 0.5;
+
+/// How much slower the distance dies out than the velocity that is missing. At 3 nothing swings.
+const SLOWER: f64 = 3.0;
+
+/// Share of the acceleration that an approach from afar brakes with. The rest is for the target's own acceleration.
+const BRAKING_SHARE: f64 = 0.35;
+
+/// Halvings of the interval between the wanted jerk and the one that takes the acceleration back.
+const HALVINGS: usize = 12;
+
+/// One cycle on from `now`, towards `target`, where the target is to be in that cycle. `bound` takes a velocity to the
+/// nearest one that the place allows.
+pub(super) fn follow<const D: usize>(
+    now: &Phase<D>,
+    target: &Phase<D>,
+    limits: &AxisLimits,
+    bound: impl Fn(SVector<f64, D>) -> SVector<f64, D>,
+) -> Phase<D> {
+    let rate = (RATE_SHARE * limits.jerk / limits.acceleration).min(RATE_MAX);
+    // Against where the motion leads without a jerk: then what is on the target stays on it.
+    let ahead = now.after(&SVector::zeros(), CYCLE);
+    let distance = target.p - ahead.p;
+    let (approach, growth) = approach(
+        &distance,
+        &(target.v - ahead.v),
+        rate / SLOWER,
+        BRAKING_SHARE * limits.acceleration,
+    );
+    let asked = target.v + approach;
+    let wanted = bound(shortened(asked, limits.velocity));
+    let fed_forward = if wanted == asked {
+        target.a + growth
+    } else {
+        SVector::zeros() // no motion of the target's, but one along the limit
+    };
+    let acceleration = shortened(fed_forward + (wanted - ahead.v) * rate, limits.acceleration);
+    let jerk = shortened((acceleration - now.a) / CYCLE, limits.jerk);
+    admissible(now, jerk, limits)
+}
+
+/// Velocity at which the distance to the target is made up for, and its derivative while the distance changes at
+/// `change`: `rate` times the distance, and from afar what `braking` can stop.
+fn approach<const D: usize>(
+    distance: &SVector<f64, D>,
+    change: &SVector<f64, D>,
+    rate: f64,
+    braking: f64,
+) -> (SVector<f64, D>, SVector<f64, D>) {
+    let length = distance.norm();
+    let near = braking / (rate * rate);
+    if length <= near {
+        return (distance * rate, change * rate);
+    }
+    let direction = distance / length;
+    let speed = (braking * (2.0 * length - near)).sqrt();
+    let along = direction * direction.dot(change);
+    (
+        direction * speed,
+        along * (braking / speed) + (change - along) * (speed / length),
+    )
+}
+
+/// The state after one cycle of `jerk`, or of the one nearest to it on the way to taking the acceleration back that
+/// leads to an admissible state.
+fn admissible<const D: usize>(
+    now: &Phase<D>,
+    jerk: SVector<f64, D>,
+    limits: &AxisLimits,
+) -> Phase<D> {
+    // From outside the limits the way leads back, never further out.
+    let velocity = limits
+        .velocity
+        .max(now.v.norm())
+        .max(coasting(now, limits.jerk).norm());
+    let acceleration = limits.acceleration.max(now.a.norm());
+    let keeps = |next: &Phase<D>| {
+        next.a.norm() <= acceleration
+            && next.v.norm() <= velocity
+            && coasting(next, limits.jerk).norm() <= velocity
+    };
+    let wanted = now.after(&jerk, CYCLE);
+    if keeps(&wanted) {
+        return wanted;
+    }
+    let cycles = cycles(now, limits.jerk);
+    let back = if cycles > 0.0 {
+        -now.a / (cycles * CYCLE)
+    } else {
+        SVector::zeros()
+    };
+    let (mut kept, mut lost) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let part = 0.5 * (kept + lost);
+        if keeps(&now.after(&(back + (jerk - back) * part), CYCLE)) {
+            kept = part;
+        } else {
+            lost = part;
+        }
+    }
+    now.after(&(back + (jerk - back) * kept), CYCLE)
+}
+
+/// The velocity left when the acceleration has been taken back.
+fn coasting<const D: usize>(state: &Phase<D>, jerk: f64) -> SVector<f64, D> {
+    state.v + state.a * (0.5 * CYCLE * cycles(state, jerk))
+}
+
+/// Whole cycles that it takes to take the acceleration back.
+fn cycles<const D: usize>(state: &Phase<D>, jerk: f64) -> f64 {
+    // What rounding leaves behind the last cycle is none of its own.
+    (state.a.norm() / (jerk * CYCLE) - 1e-9).ceil().max(0.0)
+}
+
+/// `vector`, no longer than `length`.
+fn shortened<const D: usize>(vector: SVector<f64, D>, length: f64) -> SVector<f64, D> {
+    let norm = vector.norm();
+    if norm > length {
+        vector * (length / norm)
+    } else {
+        vector
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Vector3, vector};
+
+    /// Joint 1 and the translation of the default budget.
+    const LIMITS: [AxisLimits; 2] = [
+        AxisLimits {
+            velocity: 0.524,
+            acceleration: 2.0,
+            jerk: 1000.0,
+        },
+        AxisLimits {
+            velocity: 0.3,
+            acceleration: 0.5,
+            jerk: 20.0,
+        },
+    ];
+
+    fn still<const D: usize>(p: SVector<f64, D>) -> Phase<D> {
+        Phase { p, ..Phase::zero() }
+    }
+
+    #[test]
+    fn a_step_is_walked_within_the_limits_and_hardly_overshot() {
+        for limits in LIMITS {
+            for step in [1e-4, 0.01, 0.1, 0.5] {
+                let goal = still(vector![step]);
+                let (mut now, mut highest, mut cycles) = (still(vector![0.0]), 0.0_f64, 0);
+                while (now.p - goal.p).norm() > 1e-3 * step || now.v.norm() > 1e-3 {
+                    now = follow(&now, &goal, &limits, |v| v);
+                    highest = highest.max(now.p[0]);
+                    cycles += 1;
+                    assert!(cycles < 5000, "{limits:?} {step}: {now:?}");
+                }
+                assert!(highest <= 1.01 * step, "{limits:?} {step}: {highest}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_motion_within_the_limits_is_followed_exactly() {
+        let (radius, pace) = (0.05, 2.0);
+        let on_circle = |t: f64| {
+            let (sin, cos) = (pace * t).sin_cos();
+            Phase {
+                p: vector![radius * cos, radius * sin, 0.3],
+                v: vector![-sin, cos, 0.0] * (radius * pace),
+                a: vector![-cos, -sin, 0.0] * (radius * pace * pace),
+            }
+        };
+        let mut now = on_circle(0.0);
+        for cycle in 1..5000 {
+            let target = on_circle(f64::from(cycle) * CYCLE);
+            now = follow(&now, &target, &LIMITS[1], |v| v);
+            let off = (now.p - target.p).norm();
+            assert!(off < 1e-7, "{off} in cycle {cycle}");
+        }
+    }
+
+    #[test]
+    fn a_state_outside_the_limits_comes_back_and_never_goes_further_out() {
+        let limits = LIMITS[1];
+        let mut now = Phase {
+            p: Vector3::zeros(),
+            v: vector![0.4, 0.3, 0.0],
+            a: vector![0.0, 0.6, 0.5],
+        };
+        let (mut velocity, mut acceleration) = (
+            now.v.norm().max(coasting(&now, limits.jerk).norm()),
+            now.a.norm(),
+        );
+        for _ in 0..3000 {
+            let before = now;
+            now = follow(&now, &still(vector![9.0, 0.0, 0.0]), &limits, |v| v);
+            let jerk = (now.a - before.a).norm() / CYCLE;
+            assert!(jerk <= limits.jerk * (1.0 + 1e-9), "{jerk}");
+            assert!(now.v.norm() <= velocity * (1.0 + 1e-12));
+            assert!(now.a.norm() <= acceleration.max(limits.acceleration) * (1.0 + 1e-12));
+            velocity = now
+                .v
+                .norm()
+                .max(limits.velocity)
+                .max(coasting(&now, limits.jerk).norm());
+            acceleration = now.a.norm();
+        }
+        assert!(now.v.norm() <= limits.velocity * (1.0 + 1e-12));
+    }
+}

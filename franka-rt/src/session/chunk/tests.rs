@@ -1,0 +1,338 @@
+//! Chunks through the ring, the player and the servo, as a session takes them up.
+
+use core::time::Duration;
+
+use franka_model::{EndEffector, Frame, JointVector, Model, READY, rotation};
+use nalgebra::{Isometry3, Translation3, Vector3};
+use proptest::prelude::*;
+
+use super::course::ChunkCourse;
+use super::motion::stacked;
+use super::{Chunk, ChunkReader, ChunkWriter, Fate, chunk_ring};
+use crate::law::hybrid::Reference;
+use crate::otg::{CYCLE, Generator, Limits, State};
+use crate::session::pose::PoseState;
+use crate::session::{Budget, GoalId, rigid};
+
+const GOAL: GoalId = GoalId(1);
+
+/// One arm that does what its reference says, and the session's part in following chunks.
+struct Arm {
+    model: &'static Model,
+    budget: Budget,
+    writer: ChunkWriter,
+    reader: ChunkReader,
+    course: Option<ChunkCourse>,
+    reference: Reference,
+    now: u64,
+}
+
+impl Arm {
+    fn new(budget: Budget) -> Self {
+        let (writer, reader) = chunk_ring();
+        Self {
+            model: Model::fr3(),
+            budget,
+            writer,
+            reader,
+            course: None,
+            reference: Reference::at_rest(READY),
+            now: 10_000,
+        }
+    }
+
+    fn default_budget() -> Self {
+        Self::new(Budget::of(Model::fr3().joint_limits()))
+    }
+
+    /// The state `later` milliseconds on, and what answers it.
+    fn cycle(&mut self, later: u64) {
+        self.now += later;
+        let idle = self
+            .course
+            .as_ref()
+            .is_none_or(|course| course.is_over(self.now));
+        if let Some(chunk) = self.reader.poll(GOAL, self.now, idle) {
+            let pose = self.pose();
+            let next = ChunkCourse::new(
+                self.model,
+                GOAL,
+                self.budget,
+                chunk,
+                &self.reference,
+                pose,
+                self.now,
+            );
+            if let Some(before) = self.course.replace(next) {
+                let fate = if idle { Fate::Ended } else { Fate::Replaced };
+                before.end(&mut self.reader, fate);
+            }
+        }
+        if let Some(course) = &mut self.course {
+            let ee = EndEffector::default();
+            let step = course.step(self.model, &ee, &READY, &self.reference, self.now);
+            self.reference = step.reference;
+        }
+        while self.writer.collect().is_some() {}
+    }
+
+    fn pose(&self) -> PoseState {
+        let course = self.course.as_ref().and_then(ChunkCourse::pose);
+        course.unwrap_or_else(|| PoseState {
+            pose: start(self.model),
+            twist: stacked(&Vector3::zeros(), &Vector3::zeros()),
+            acceleration: stacked(&Vector3::zeros(), &Vector3::zeros()),
+        })
+    }
+}
+
+fn start(model: &Model) -> Isometry3<f64> {
+    rigid(&model.pose(Frame::EndEffector, &READY, &EndEffector::default()))
+}
+
+fn ms(ms: u64) -> Duration {
+    Duration::from_millis(ms)
+}
+
+/// A chunk that nobody should send: wherever points may be, however far apart.
+#[derive(Clone, Debug)]
+struct Wild {
+    /// Milliseconds after the point before, and seven numbers in -1..1.
+    points: Vec<(u64, [f64; 7])>,
+    latency: u64,
+    blend: u64,
+    /// Cycles until the next chunk, each with the milliseconds since the state before.
+    cycles: Vec<u64>,
+    size: f64,
+}
+
+fn wild() -> impl Strategy<Value = Wild> {
+    let point = (1_u64..120, prop::array::uniform7(-1.0..1.0));
+    let later = prop_oneof![12 => Just(1_u64), 1 => 2_u64..20];
+    (
+        prop::collection::vec(point, 1..24),
+        0_u64..300,
+        prop_oneof![Just(0_u64), 1_u64..300],
+        prop::collection::vec(later, 1..400),
+        prop_oneof![Just(1.0), Just(0.05), Just(0.005)],
+    )
+        .prop_map(|(points, latency, blend, cycles, size)| Wild {
+            points,
+            latency,
+            blend,
+            cycles,
+            size,
+        })
+}
+
+impl Wild {
+    fn timed<T>(&self, value: impl Fn(&[f64; 7]) -> T) -> Vec<(Duration, T)> {
+        let mut time = 0;
+        let place = |(later, numbers): &(u64, [f64; 7])| {
+            time += later;
+            (ms(time), value(&numbers.map(|x| self.size * x)))
+        };
+        self.points.iter().map(place).collect()
+    }
+
+    fn sent(&self, chunk: Chunk, now: u64) -> Chunk {
+        chunk.observed_at(now - self.latency).blend(ms(self.blend))
+    }
+
+    fn joints(&self) -> Chunk {
+        Chunk::joints(self.timed(|x| (READY + JointVector::from(*x) * 0.7).into())).unwrap()
+    }
+
+    fn poses(&self, from: &Isometry3<f64>) -> Chunk {
+        let pose = |x: &[f64; 7]| {
+            Isometry3::from_parts(
+                Translation3::from(from.translation.vector + Vector3::new(x[0], x[1], x[2]) * 0.3),
+                rotation::exp(&Vector3::new(x[3], x[4], x[5])) * from.rotation,
+            )
+        };
+        Chunk::poses(self.timed(pose)).unwrap()
+    }
+}
+
+/// A little more than 1: what rounding makes of a limit.
+const ROUNDING: f64 = 1.0 + 1e-9;
+
+fn cases(count: u32) -> ProptestConfig {
+    ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(count)
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(60))]
+
+    #[test]
+    fn joints_keep_the_budget_and_their_range_whatever_chunks_ask_for(
+        chunks in prop::collection::vec(wild(), 1..5),
+    ) {
+        let mut arm = Arm::default_budget();
+        let robot = *arm.model.joint_limits();
+        for wild in &chunks {
+            arm.writer.send(GOAL, wild.sent(wild.joints(), arm.now)).unwrap();
+            for &later in &wild.cycles {
+                let before = arm.reference;
+                arm.cycle(later);
+                let now = arm.reference;
+                for i in 0..7 {
+                    let limits = arm.budget.joints[i];
+                    let jerk = (now.ddq[i] - before.ddq[i]) / CYCLE;
+                    prop_assert!(now.dq[i].abs() <= limits.velocity * ROUNDING);
+                    prop_assert!(now.ddq[i].abs() <= limits.acceleration * ROUNDING);
+                    prop_assert!(jerk.abs() <= limits.jerk * ROUNDING, "{}", jerk);
+                    prop_assert!((robot.lower[i]..=robot.upper[i]).contains(&now.q[i]), "{}", now.q);
+                    let moved = CYCLE * (before.dq[i] + CYCLE * (before.ddq[i] / 2.0 + CYCLE * jerk / 6.0));
+                    prop_assert!((now.q[i] - before.q[i] - moved).abs() < 1e-14);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn poses_keep_the_budget_of_the_norms_whatever_chunks_ask_for(
+        chunks in prop::collection::vec(wild(), 1..5),
+    ) {
+        let mut arm = Arm::default_budget();
+        let from = start(arm.model);
+        for wild in &chunks {
+            arm.writer.send(GOAL, wild.sent(wild.poses(&from), arm.now)).unwrap();
+            for &later in &wild.cycles {
+                let before = arm.pose();
+                arm.cycle(later);
+                let now = arm.pose();
+                let jerk = (now.acceleration - before.acceleration) / CYCLE;
+                for (part, limits) in [(0, arm.budget.translation), (3, arm.budget.rotation)] {
+                    let norm = |twist: &franka_model::Twist| twist.fixed_rows::<3>(part).norm();
+                    prop_assert!(norm(&now.twist) <= limits.velocity * ROUNDING);
+                    prop_assert!(norm(&now.acceleration) <= limits.acceleration * ROUNDING);
+                    prop_assert!(norm(&jerk) <= limits.jerk * ROUNDING, "{}", norm(&jerk));
+                }
+            }
+        }
+    }
+}
+
+/// Joint positions that a policy has in mind for the robot's time `now`: all joints on sines of 0.1 rad and 2 s.
+fn sine(now: u64) -> [f64; 7] {
+    let phase = core::f64::consts::PI * (now as f64 * 1e-3);
+    (READY + JointVector::repeat(0.1 * phase.sin())).into()
+}
+
+/// What a policy predicts at `observed`: 16 points, 50 ms apart.
+fn prediction(observed: u64) -> Vec<(Duration, [f64; 7])> {
+    let point = |k: u64| (ms(50 * k), sine(observed + 50 * k));
+    (0..16).map(point).collect()
+}
+
+const LATENCY: u64 = 150;
+
+#[test]
+fn a_policy_of_10_hz_and_150_ms_latency_follows_a_sine_to_a_tenth_of_a_milliradian() {
+    let mut arm = Arm::default_budget();
+    let mut worst = 0.0_f64;
+    for cycle in 0..6000 {
+        if arm.now.is_multiple_of(100) {
+            let observed = arm.now - LATENCY;
+            let chunk = Chunk::joints(prediction(observed))
+                .unwrap()
+                .observed_at(observed);
+            arm.writer.send(GOAL, chunk).unwrap();
+        }
+        arm.cycle(1);
+        if cycle > 1000 {
+            let wanted = JointVector::from(sine(arm.now));
+            worst = worst.max((arm.reference.q - wanted).amax());
+        }
+    }
+    assert!(worst < 1e-4, "{worst}");
+    let naive = naive_error();
+    assert!(naive > 300.0 * worst, "{worst} against {naive}");
+}
+
+/// The same policy, whose points are set one by one as targets, each for its 50 ms, from the time of their arrival on.
+fn naive_error() -> f64 {
+    let budget = Budget::of(Model::fr3().joint_limits());
+    let limits = Limits::per_axis(budget.joints).unwrap();
+    let mut generator = Generator::new(State::at_rest(READY.into()), limits).unwrap();
+    let mut worst = 0.0_f64;
+    for now in 10_000..16_000_u64 {
+        let arrived = now - now % 100;
+        let point = (now - arrived) / 50;
+        generator
+            .set_target(&sine(arrived - LATENCY + 50 * point))
+            .unwrap();
+        let q = JointVector::from(generator.step().position);
+        if now > 11_000 {
+            worst = worst.max((q - JointVector::from(sine(now))).amax());
+        }
+    }
+    worst
+}
+
+#[test]
+fn lost_states_are_made_up_for() {
+    let mut arm = Arm::default_budget();
+    let observed = arm.now;
+    let points = (0..100).map(|k| (ms(50 * k), sine(observed + 50 * k)));
+    let chunk = Chunk::joints(points).unwrap().observed_at(observed);
+    arm.writer.send(GOAL, chunk).unwrap();
+    let error = |arm: &Arm| (arm.reference.q - JointVector::from(sine(arm.now))).amax();
+    for _ in 0..2000 {
+        arm.cycle(1);
+    }
+    assert!(error(&arm) < 1e-4, "{}", error(&arm));
+    arm.cycle(15);
+    assert!(error(&arm) > 2e-3, "14 ms of motion are missing");
+    for _ in 0..300 {
+        arm.cycle(1);
+    }
+    assert!(error(&arm) < 1e-4, "{}", error(&arm));
+}
+
+#[test]
+fn a_chunk_of_poses_is_walked_to_its_end_and_rests_there() {
+    let mut arm = Arm::default_budget();
+    let from = start(arm.model);
+    let pose = |k: u64| {
+        let s = k as f64 / 20.0;
+        let s = s * s * s * (10.0 - s * (15.0 - 6.0 * s));
+        Isometry3::from_parts(
+            Translation3::from(from.translation.vector + Vector3::new(0.05, -0.1, 0.05) * s),
+            rotation::exp(&(Vector3::new(0.2, -0.1, 0.3) * s)) * from.rotation,
+        )
+    };
+    let points = (0..=20).map(|k| (ms(100 * k), pose(k)));
+    let chunk = Chunk::poses(points).unwrap().observed_at(arm.now);
+    arm.writer.send(GOAL, chunk).unwrap();
+    let mut passed = 0;
+    for cycle in 1..=2000 {
+        arm.cycle(1);
+        if cycle % 100 == 0 {
+            let off = arm.pose().pose.translation.vector - pose(cycle / 100).translation.vector;
+            let turned = rotation::error(&arm.pose().pose.rotation, &pose(cycle / 100).rotation);
+            assert!(
+                off.norm() < 1e-4 && turned.norm() < 1e-3,
+                "{cycle}: {off} {turned}"
+            );
+            passed += 1;
+        }
+    }
+    assert_eq!(passed, 20);
+    assert!(
+        arm.course
+            .as_ref()
+            .is_some_and(|course| course.is_over(arm.now))
+    );
+    let reached = rigid(&arm.model.pose(
+        Frame::EndEffector,
+        &arm.reference.q,
+        &EndEffector::default(),
+    ));
+    assert!((reached.translation.vector - pose(20).translation.vector).norm() < 2e-4);
+    assert!(arm.reference.dq.amax() < 5e-3, "{}", arm.reference.dq);
+}

@@ -1,0 +1,417 @@
+//! The chunk: points with times, as a policy gives them.
+
+use core::time::Duration;
+
+use franka_model::{JointVector, Model, Twist, rotation};
+use franka_proto::RobotState;
+use nalgebra::{Isometry3, Vector3};
+
+use super::curve::Curve;
+use super::derivatives;
+use super::error::ChunkError;
+use super::motion::stacked;
+use crate::law::hybrid::Reference;
+use crate::session::pose::PoseState;
+use crate::session::{GoalError, Target, check};
+
+/// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.
+pub const POINTS_MAX: usize = 1024;
+
+/// The latest that a point may lie after its chunk's origin. What is later is no prediction but a mistake of units.
+pub const OFFSET_MAX: Duration = Duration::from_secs(60);
+
+/// How long a chunk is blended with what the arm does unless said otherwise: as long as one inference of a policy at
+/// 10 Hz.
+pub const BLEND: Duration = Duration::from_millis(100);
+
+/// The least time between two points, `[s]`: one cycle, less the rounding of a conversion.
+const SPACING_MIN: f64 = 1e-3 - 1e-9;
+
+/// The largest angle between two points, `[rad]`.
+const TURN_MAX: f64 = 170.0 * core::f64::consts::PI / 180.0;
+
+/// Where the times of a chunk count from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Origin {
+    /// The cycle that takes the chunk up.
+    TakeUp,
+    /// A time of the robot, `message_id`.
+    Robot(u64),
+}
+
+/// Points with times, joints or poses, that an arm is to move through: what a policy predicts from one observation.
+///
+/// The points are joined by a motion that is twice continuously differentiable and rests at the last one. The arm follows
+/// it within the budget of the goal that the chunk belongs to, whatever the points ask for: where they ask for more, it
+/// lags, and makes up for that within the budget too. A chunk that ends faster than the budget can brake is overshot by
+/// what braking takes; send the next chunk before the last one ends, and it never comes to that.
+///
+/// - **Latency.** [`observed_at`](Self::observed_at) names the state that the policy saw. Points whose time has passed
+///   when the chunk is taken up are skipped, and the motion is entered at the instant that the robot is at.
+/// - **Receding horizon.** A newer chunk takes the place of the one before it as soon as its first point's time has come,
+///   or at once if none is running. It is blended in over [`BLEND`]; see [`blend`](Self::blend) and
+///   [`replace`](Self::replace).
+///
+/// ```
+/// use core::time::Duration;
+/// use franka_rt::session::Chunk;
+///
+/// let action = |k: u32| {
+///     let mut q = [0.0, -0.78, 0.0, -2.36, 0.0, 1.57, 0.78];
+///     q[0] = 0.01 * f64::from(k);
+///     (Duration::from_millis(50) * k, q)
+/// };
+/// let observed = 4711; // `message_id` of the state that the policy saw
+/// let chunk = Chunk::joints((0..16).map(action))?.observed_at(observed);
+/// assert_eq!(chunk.end_after(observed), Duration::from_millis(750));
+/// # Ok::<(), franka_rt::session::ChunkError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chunk {
+    pub(super) points: Points,
+    pub(super) origin: Origin,
+    pub(super) blend: Duration,
+}
+
+/// What the points are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Points {
+    Joints(Curve<Reference>),
+    Poses(Curve<PoseState>),
+}
+
+impl Chunk {
+    /// Through joint positions, `[rad]`, each at its time after the chunk's origin. Their velocities are estimated from
+    /// their neighbours.
+    ///
+    /// # Errors
+    /// [`ChunkError`] names the first point that is wrong.
+    pub fn joints(
+        points: impl IntoIterator<Item = (Duration, [f64; 7])>,
+    ) -> Result<Self, ChunkError> {
+        let (times, q) = collect(points, |q| q.iter().all(|x| x.is_finite()))?;
+        let state = |i| {
+            let [dq, ddq] = derivatives::at(&times, i, |k| JointVector::from(q[k]));
+            Reference {
+                q: q[i].into(),
+                dq,
+                ddq,
+            }
+        };
+        Ok(Self::through_joints(
+            (0..q.len()).map(state).collect(),
+            times,
+        ))
+    }
+
+    /// The same with the joints' velocities, `[rad/s]`, given too. The arm rests at the last point nevertheless.
+    ///
+    /// # Errors
+    /// As for [`joints`](Self::joints).
+    pub fn joints_with_velocities(
+        points: impl IntoIterator<Item = (Duration, [f64; 7], [f64; 7])>,
+    ) -> Result<Self, ChunkError> {
+        let points = points.into_iter().map(|(time, q, dq)| (time, (q, dq)));
+        let (times, points) = collect(points, |(q, dq)| q.iter().chain(dq).all(|x| x.is_finite()))?;
+        let state = |i: usize| {
+            let [ddq, _] = derivatives::at(&times, i, |k| JointVector::from(points[k].1));
+            Reference {
+                q: points[i].0.into(),
+                dq: points[i].1.into(),
+                ddq,
+            }
+        };
+        Ok(Self::through_joints(
+            (0..points.len()).map(state).collect(),
+            times,
+        ))
+    }
+
+    /// Through poses of the end effector in the base frame, `O_T_EE`, metres, each at its time after the chunk's origin.
+    /// Their velocities are estimated from their neighbours.
+    ///
+    /// # Errors
+    /// As for [`joints`](Self::joints), and [`ChunkError::Turn`].
+    pub fn poses(
+        points: impl IntoIterator<Item = (Duration, Isometry3<f64>)>,
+    ) -> Result<Self, ChunkError> {
+        let (times, poses) = collect(points, is_pose)?;
+        check_turns(poses.iter())?;
+        let state = |i: usize| {
+            let way = |k: usize| poses[k].translation.vector;
+            let turn = |k: usize| rotation::error(&poses[k].rotation, &poses[i].rotation);
+            let ([v, a], [omega, alpha]) = (
+                derivatives::at(&times, i, way),
+                derivatives::at::<3>(&times, i, turn),
+            );
+            PoseState {
+                pose: poses[i],
+                twist: stacked(&v, &omega),
+                acceleration: stacked(&a, &alpha),
+            }
+        };
+        Ok(Self::through_poses(
+            (0..poses.len()).map(state).collect(),
+            times,
+        ))
+    }
+
+    /// The same with the twists of the end effector given too: velocity of the frame's origin, `[m/s]`, and angular
+    /// velocity, `[rad/s]`, both in base axes. The arm rests at the last point nevertheless.
+    ///
+    /// # Errors
+    /// As for [`poses`](Self::poses).
+    pub fn poses_with_twists(
+        points: impl IntoIterator<Item = (Duration, Isometry3<f64>, [f64; 6])>,
+    ) -> Result<Self, ChunkError> {
+        let points = points
+            .into_iter()
+            .map(|(time, pose, twist)| (time, (pose, twist)));
+        let (times, points) = collect(points, |(pose, twist)| {
+            is_pose(pose) && twist.iter().all(|x| x.is_finite())
+        })?;
+        check_turns(points.iter().map(|(pose, _)| pose))?;
+        let state = |i: usize| {
+            let [acceleration, _] = derivatives::at(&times, i, |k| Twist::from(points[k].1));
+            PoseState {
+                pose: points[i].0,
+                twist: points[i].1.into(),
+                acceleration,
+            }
+        };
+        Ok(Self::through_poses(
+            (0..points.len()).map(state).collect(),
+            times,
+        ))
+    }
+
+    /// Counts the points' times from the robot's state `message_id`, `[ms]`: the one that the policy saw. Without it they
+    /// count from the cycle that takes the chunk up.
+    #[must_use]
+    pub fn observed_at(mut self, message_id: u64) -> Self {
+        self.origin = Origin::Robot(message_id);
+        self
+    }
+
+    /// Replaces [`BLEND`]: the time over which the chunk is blended with what the arm does when it is taken up. What the
+    /// arm does goes on with its velocity and acceleration at first, and the difference to the chunk is then let go.
+    #[must_use]
+    pub fn blend(mut self, over: Duration) -> Self {
+        self.blend = over.min(OFFSET_MAX);
+        self
+    }
+
+    /// Does not blend: the arm turns to the chunk as fast as the budget allows. For chunks that correct the one before.
+    #[must_use]
+    pub fn replace(self) -> Self {
+        self.blend(Duration::ZERO)
+    }
+
+    /// Time from the robot's state `now`, `message_id`, to the last point: zero if that has passed.
+    pub fn end_after(&self, now: u64) -> Duration {
+        Duration::try_from_secs_f64(self.end() - self.since_origin(now)).unwrap_or(Duration::ZERO)
+    }
+
+    /// Where the arm rests after the last point.
+    pub fn target(&self) -> Target {
+        match &self.points {
+            Points::Joints(curve) => Target::Joints(curve.last().q.into()),
+            Points::Poses(curve) => Target::Pose(curve.last().pose),
+        }
+    }
+
+    /// Checks the chunk for a robot in `state`: every point for joints. For poses the last one, where the arm is to
+    /// rest; on the way to it inverse kinematics holds the arm inside its bounds, whatever it is asked for.
+    ///
+    /// # Errors
+    /// [`GoalError`] of the first point that cannot be reached.
+    pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
+        match &self.points {
+            Points::Joints(curve) => curve
+                .states()
+                .iter()
+                .try_for_each(|point| check::target(&Target::Joints(point.q.into()), model, state)),
+            Points::Poses(_) => check::target(&self.target(), model, state),
+        }
+    }
+
+    /// Seconds from the origin to the robot's time `now`; a chunk without an origin begins then.
+    pub(super) fn since_origin(&self, now: u64) -> f64 {
+        match self.origin {
+            Origin::TakeUp => 0.0,
+            Origin::Robot(origin) => milliseconds(now, origin),
+        }
+    }
+
+    /// Whether its times count from the cycle that takes it up, whenever that is.
+    pub(super) fn begins_at_take_up(&self) -> bool {
+        self.origin == Origin::TakeUp
+    }
+
+    /// When the first point is due, seconds from the origin.
+    pub(super) fn begin(&self) -> f64 {
+        match &self.points {
+            Points::Joints(curve) => curve.begin(),
+            Points::Poses(curve) => curve.begin(),
+        }
+    }
+
+    /// When the last point is due, seconds from the origin.
+    pub(super) fn end(&self) -> f64 {
+        match &self.points {
+            Points::Joints(curve) => curve.end(),
+            Points::Poses(curve) => curve.end(),
+        }
+    }
+
+    fn through_joints(states: Vec<Reference>, times: Vec<f64>) -> Self {
+        Self::of(Points::Joints(Curve::new(times, states)))
+    }
+
+    fn through_poses(states: Vec<PoseState>, times: Vec<f64>) -> Self {
+        Self::of(Points::Poses(Curve::new(times, states)))
+    }
+
+    fn of(points: Points) -> Self {
+        Self {
+            points,
+            origin: Origin::TakeUp,
+            blend: BLEND,
+        }
+    }
+}
+
+/// Time from `origin` to `now`, `message_id` both, in seconds; negative if `now` is earlier.
+pub(super) fn milliseconds(now: u64, origin: u64) -> f64 {
+    let distance = now.abs_diff(origin) as f64 * 1e-3;
+    if now < origin { -distance } else { distance }
+}
+
+/// Times and values of the points, checked.
+fn collect<T>(
+    points: impl IntoIterator<Item = (Duration, T)>,
+    is_valid: impl Fn(&T) -> bool,
+) -> Result<(Vec<f64>, Vec<T>), ChunkError> {
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    for (point, (time, value)) in points.into_iter().enumerate() {
+        if point == POINTS_MAX {
+            return Err(ChunkError::TooMany { most: POINTS_MAX });
+        }
+        if time > OFFSET_MAX {
+            return Err(ChunkError::TooLate { point });
+        }
+        let time = time.as_secs_f64();
+        if times
+            .last()
+            .is_some_and(|before| time - before < SPACING_MIN)
+        {
+            return Err(ChunkError::TooClose { point });
+        }
+        if !is_valid(&value) {
+            return Err(ChunkError::NotFinite { point });
+        }
+        times.push(time);
+        values.push(value);
+    }
+    if times.is_empty() {
+        return Err(ChunkError::Empty);
+    }
+    Ok((times, values))
+}
+
+/// Whether all numbers are finite and the rotation is one.
+fn is_pose(pose: &Isometry3<f64>) -> bool {
+    let position: &Vector3<f64> = &pose.translation.vector;
+    // A quaternion of finite length 1 has no other numbers than finite ones.
+    position.iter().all(|x| x.is_finite()) && (pose.rotation.coords.norm() - 1.0).abs() < 1e-6
+}
+
+fn check_turns<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Result<(), ChunkError> {
+    let mut before: Option<&Isometry3<f64>> = None;
+    for (point, pose) in poses.enumerate() {
+        if let Some(before) = before {
+            let angle = rotation::error(&pose.rotation, &before.rotation).norm();
+            if angle >= TURN_MAX {
+                let degrees = angle.to_degrees().round() as u16;
+                return Err(ChunkError::Turn { point, degrees });
+            }
+        }
+        before = Some(pose);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Translation3, UnitQuaternion};
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn at(ms: u32, x: f64) -> (Duration, [f64; 7]) {
+        (MS * ms, [x; 7])
+    }
+
+    #[test]
+    fn points_that_make_no_chunk_are_refused_by_number() {
+        let refused = |points: Vec<_>| Chunk::joints(points).unwrap_err();
+        assert_eq!(refused(vec![]), ChunkError::Empty);
+        assert_eq!(
+            refused(vec![at(0, 0.0), at(10, 0.0), at(10, 0.1)]),
+            ChunkError::TooClose { point: 2 }
+        );
+        assert_eq!(
+            refused(vec![at(10, 0.0), at(5, 0.0)]),
+            ChunkError::TooClose { point: 1 }
+        );
+        assert_eq!(
+            refused(vec![at(0, 0.0), at(1, f64::NAN)]),
+            ChunkError::NotFinite { point: 1 }
+        );
+        assert_eq!(
+            refused(vec![at(0, 0.0), at(60_001, 0.0)]),
+            ChunkError::TooLate { point: 1 }
+        );
+        assert_eq!(
+            refused((0..1025).map(|k| at(k, 0.0)).collect()),
+            ChunkError::TooMany { most: 1024 }
+        );
+        assert!(Chunk::joints((0..1024).map(|k| at(k, 0.0))).is_ok());
+    }
+
+    #[test]
+    fn poses_that_are_none_or_turn_too_far_are_refused() {
+        let pose = |angle: f64| {
+            Isometry3::from_parts(
+                Translation3::new(0.4, 0.0, 0.5),
+                UnitQuaternion::from_euler_angles(angle, 0.0, 0.0),
+            )
+        };
+        let far = Chunk::poses([(MS, pose(0.0)), (MS * 2, pose(3.0))]).unwrap_err();
+        assert_eq!(
+            far.to_string(),
+            "172 degrees from point 0 to point 1: expected less than 170"
+        );
+        let mut long = pose(0.0);
+        long.rotation =
+            UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(2.0, 0.0, 0.0, 0.0));
+        assert_eq!(
+            Chunk::poses([(MS, long)]),
+            Err(ChunkError::NotFinite { point: 0 })
+        );
+    }
+
+    #[test]
+    fn a_point_outside_a_joints_range_is_refused_for_the_robot() {
+        let (model, state) = (Model::fr3(), RobotState::default());
+        let ready: [f64; 7] = franka_model::READY.into();
+        let mut beyond = ready;
+        beyond[3] = 0.5;
+        let chunk = Chunk::joints([(MS, ready), (MS * 50, beyond), (MS * 100, ready)]).unwrap();
+        let refused = chunk.check(model, &state).unwrap_err();
+        assert!(
+            matches!(refused, GoalError::OutOfRange { joint: 4, .. }),
+            "{refused}"
+        );
+    }
+}
