@@ -4,9 +4,11 @@ use std::fmt;
 use std::future::Future;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use franka_proto::RobotState;
+use franka_rt::driver::{Observer, Record};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, Tuning};
-use franka_rt::session::{Budget, Free, Goal, GoalId, Grip, Target, Then};
+use franka_rt::session::{Backend, Budget, Free, Goal, GoalId, Grip, Target, Then};
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
@@ -47,6 +49,20 @@ impl Engage {
     /// resolves as [`MotionError::Held`]. See [`Deadman::new`](crate::Deadman::new).
     pub fn deadman(mut self, grip: Grip) -> Self {
         self.engagement.deadman = Some(grip);
+        self
+    }
+
+    /// Has somebody else turn setpoints into torques; by default the session's own law does.
+    pub fn backend(mut self, backend: Backend) -> Self {
+        self.engagement.backend = backend;
+        self
+    }
+
+    /// Shows every cycle to `function`, on the real-time thread, once its command has left: the record of the cycle and its
+    /// state. It must not lock, allocate, print or wait; if it panics it is not called again, and the session goes on. For
+    /// records outside the thread see [`Robot::records`].
+    pub fn observer(mut self, function: impl FnMut(&Record, &RobotState) + Send + 'static) -> Self {
+        self.engagement.observer = Some(Observer::new(function));
         self
     }
 }

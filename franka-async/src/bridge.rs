@@ -290,6 +290,12 @@ impl Bridge {
                 Notice::Core(event) => {
                     match &event {
                         Event::Ended(ended) => telemetry::sum_up(ended),
+                        Event::Unobserved { motion } => {
+                            tracing::error!(
+                                motion = motion.0,
+                                "the observer panicked and is not called again"
+                            );
+                        }
                         Event::LinkLost { silence } => self.publisher.tell_silence(*silence),
                         _ => {}
                     }

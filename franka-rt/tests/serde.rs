@@ -116,6 +116,7 @@ fn a_log_is_its_cycles_oldest_first() {
         log: ControlLog::with_capacity(3),
         ticket: None,
         times: Arc::default(),
+        observer: None,
     });
     let mut state = RobotState {
         robot_mode: RobotMode::Move,

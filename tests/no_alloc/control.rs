@@ -95,6 +95,7 @@ fn calls_of(
         log: ControlLog::with_capacity(50),
         ticket: None,
         times: Arc::default(),
+        observer: None,
     });
     let mut state = RobotState {
         robot_mode: RobotMode::Move,

@@ -84,6 +84,7 @@ fn programs(end: End) -> [Program; 3] {
         Program::Callback(Box::new(callback)),
         Program::Target(Box::new(TargetSession::new(
             Model::fr3().clone().into(),
+            VERSION,
             reader,
         ))),
         Program::Active(ActiveControl),
@@ -128,6 +129,7 @@ impl Counted {
             log: ControlLog::with_capacity(50),
             ticket: self.ticket.take(),
             times: Arc::default(),
+            observer: None,
         };
         self.order(order);
     }

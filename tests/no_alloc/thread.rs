@@ -199,6 +199,7 @@ fn turns_and_writes_in_the_hands_of_another_thread_neither_allocate_nor_free() {
         log: ControlLog::with_capacity(50),
         ticket: None,
         times: Arc::default(),
+        observer: None,
     };
     handle.orders.push(order).expect("the queue is empty");
     let robot = peer(1, port);

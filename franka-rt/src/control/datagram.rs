@@ -40,6 +40,14 @@ impl Command {
         }
     }
 
+    /// A setpoint for the robot's own controller.
+    pub(crate) fn setpoint(setpoint: MotionCommand) -> Self {
+        Self {
+            motion: Some(setpoint),
+            torques: None,
+        }
+    }
+
     /// Whether a motion in `modes` takes it.
     ///
     /// # Errors

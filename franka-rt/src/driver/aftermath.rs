@@ -2,7 +2,7 @@
 
 use franka_proto::RobotState;
 
-use super::{Driver, MotionStatistics, Phase};
+use super::{Driver, Event, MotionStatistics, Phase};
 use crate::stats::{Arrival, CycleTimes};
 
 impl Driver {
@@ -21,6 +21,12 @@ impl Driver {
             motion.log.note_command(&motion.sent);
             if let Some(interval) = arrival.interval {
                 motion.times.interval.note(interval);
+            }
+            if let Some(observer) = &mut motion.observer
+                && observer.see(&self.record, state)
+            {
+                let motion = motion.id;
+                self.events.push(Event::Unobserved { motion });
             }
         }
     }

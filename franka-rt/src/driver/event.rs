@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use franka_proto::{Errors, RobotMode};
 
-use crate::driver::{ControlLog, Failure, MotionId, MotionStatistics, MotionTimes, Program};
+use crate::driver::{
+    ControlLog, Failure, MotionId, MotionStatistics, MotionTimes, Observer, Program,
+};
 use crate::session::SessionEvent;
 use crate::together::{StartFault, StartTicket};
 
@@ -40,6 +42,11 @@ pub enum Event {
         /// What went wrong.
         failure: Failure,
     },
+    /// The motion's observer has panicked, and sees no more of it.
+    Unobserved {
+        /// The motion.
+        motion: MotionId,
+    },
     /// The motion is over for the thread. Its program comes along to be freed.
     Ended(Ended),
     /// No state has come for so long that the link counts as lost. A later state revives it.
@@ -72,6 +79,8 @@ pub struct Ended {
     pub log: ControlLog,
     /// Its ticket, if it was to begin together with others.
     pub ticket: Option<StartTicket>,
+    /// Who saw its cycles.
+    pub observer: Option<Observer>,
 }
 
 impl Ended {

@@ -27,6 +27,7 @@ mod event;
 mod link_timeout;
 mod log;
 mod motion;
+mod observer;
 mod order;
 mod program;
 mod record;
@@ -44,6 +45,7 @@ use crate::together::Gate;
 pub use event::{Ended, Ending, Event};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
 pub use log::{ControlLog, LogEntry};
+pub use observer::Observer;
 pub use order::{Modes, MotionId, Order};
 pub use program::{Failure, Program};
 pub use record::{Activity, Record};
@@ -124,6 +126,7 @@ impl Driver {
                 log,
                 ticket,
                 times,
+                observer,
             } => {
                 let armed = Motion {
                     id: motion,
@@ -132,6 +135,7 @@ impl Driver {
                     log,
                     ticket,
                     times,
+                    observer,
                     sent: RobotCommand::default(),
                 };
                 let unseen = MotionStatistics::default();
@@ -361,6 +365,7 @@ impl Driver {
             log,
             ticket,
             times,
+            observer,
             ..
         } = motion;
         self.events.push(Event::Ended(Ended {
@@ -374,6 +379,7 @@ impl Driver {
             program,
             log,
             ticket,
+            observer,
         }));
     }
 }

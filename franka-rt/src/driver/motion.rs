@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use franka_proto::{RobotCommand, RobotMode, RobotState};
 
-use super::{ControlLog, Modes, MotionId, MotionTimes, Program};
+use super::{ControlLog, Modes, MotionId, MotionTimes, Observer, Program};
 use crate::together::{Gate, StartTicket};
 
 /// What the driver is doing.
@@ -28,6 +28,7 @@ pub(super) struct Motion {
     pub(super) log: ControlLog,
     pub(super) ticket: Option<StartTicket>,
     pub(super) times: Arc<MotionTimes>,
+    pub(super) observer: Option<Observer>,
     /// The newest command that was sent; zeros before the first.
     pub(super) sent: RobotCommand,
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use franka_proto::{ControllerMode, MotionGeneratorMode, MoveRequest, RobotState};
 
-use crate::driver::{ControlLog, MotionTimes, Program};
+use crate::driver::{ControlLog, MotionTimes, Observer, Program};
 use crate::together::StartTicket;
 
 /// Names one motion for the life of a driver, from arming to its end.
@@ -29,6 +29,8 @@ pub enum Order {
         ticket: Option<StartTicket>,
         /// Where the times of its cycles are counted; empty.
         times: Arc<MotionTimes>,
+        /// Who sees its cycles.
+        observer: Option<Observer>,
     },
     /// Forget the armed motion: its `Move` was refused. Has no effect once the motion runs.
     Disarm {

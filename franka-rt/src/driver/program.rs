@@ -6,7 +6,7 @@ use franka_proto::{RobotState, Version};
 
 use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command};
 use crate::driver::Record;
-use crate::session::{SessionEvent, TargetSession};
+use crate::session::{self, SessionEvent, TargetSession};
 use crate::shaping::InvalidCommand;
 use crate::together::Gate;
 
@@ -77,7 +77,10 @@ impl Program {
                 };
                 return Step {
                     answer: Answer::Command {
-                        command: Command::torques(version, step.torques),
+                        command: match step.answer {
+                            session::Answer::Torques(torques) => Command::torques(version, torques),
+                            session::Answer::Setpoint(setpoint) => Command::setpoint(setpoint),
+                        },
                         finished: step.finished,
                     },
                     event: step.event,

@@ -42,11 +42,13 @@ fn armed(target: Target) -> Driver {
         modes: MODES,
         program: Program::Target(Box::new(TargetSession::new(
             Model::fr3().clone().into(),
+            Version::V10,
             reader,
         ))),
         log: ControlLog::with_capacity(5),
         ticket: None,
         times: Arc::default(),
+        observer: None,
     });
     driver
 }
@@ -116,6 +118,7 @@ fn armed_with(program: Program) -> Driver {
         log: ControlLog::with_capacity(5),
         ticket: None,
         times: Arc::default(),
+        observer: None,
     });
     driver
 }

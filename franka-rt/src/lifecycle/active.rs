@@ -9,7 +9,7 @@ use super::outcome::Counted;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
 use crate::driver::{Ended, Ending, Failure, MotionId, MotionTimes, Order, Program};
 use crate::panic;
-use crate::session::{Goal, GoalError, GoalId, Settlement, Target, Then};
+use crate::session::{Backend, Goal, GoalError, GoalId, Settlement, Target, Then};
 use crate::slot::SlotWriter;
 
 /// A goal, and whether its owner has taken it back.
@@ -58,6 +58,8 @@ pub(super) struct Goals {
     pub(super) bad_tool: bool,
     /// The session that the goals belong to, if it goes on from goal to goal.
     pub(super) engaged: Option<Engaged>,
+    /// Who turns setpoints into torques.
+    pub(super) backend: Backend,
     /// Goals that came for that session when it had ended, and nobody knew yet how.
     pub(super) late: Vec<GoalId>,
 }

@@ -6,15 +6,20 @@ use franka_proto::RobotState;
 
 use super::active::Waiting;
 use super::{Lifecycle, MotionError, Phase};
+use crate::driver::Observer;
 use crate::law::Gains;
 use crate::session::check::check_silence;
-use crate::session::{Budget, Goal, GoalId, Grip, Target, Then};
+use crate::session::{Backend, Budget, Goal, GoalId, Grip, Target, Then};
 
 /// What a session that goes from goal to goal has beside its goals.
 #[derive(Debug, Default)]
 pub struct Engagement {
     /// The deadman that it is bound to.
     pub deadman: Option<Grip>,
+    /// Who turns setpoints into torques.
+    pub backend: Backend,
+    /// Who sees its cycles.
+    pub observer: Option<Observer>,
 }
 
 /// Changes to the goal under way, and nothing to where it goes.
@@ -73,6 +78,9 @@ impl Lifecycle {
     ) -> Result<(), MotionError> {
         self.check_engaged(engaged)?;
         goal.check(&self.model, state)?;
+        if let Some(goals) = self.goals() {
+            goals.backend.check(&goal.target)?;
+        }
         if self.is_ending() {
             if let Some(goals) = self.goals() {
                 goals.late.push(goal.id);

@@ -2,14 +2,14 @@
 
 use core::time::Duration;
 
-use franka_proto::{MoveControllerMode, MoveRequest, RobotState};
+use franka_proto::RobotState;
 
 use super::active::{Engaged, Goals, Settled, Waiting, Work};
 use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{Lifecycle, MotionError, MotionReport, Phase};
 use crate::driver::{MotionId, MotionStatistics, Program};
-use crate::session::{Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then};
+use crate::session::{Backend, Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then};
 use crate::slot;
 use crate::together::StartTicket;
 
@@ -260,11 +260,11 @@ impl Lifecycle {
         state: Option<&RobotState>,
     ) -> Result<bool, GoalError> {
         let model = self.model.clone();
-        let (waiting, slot) = match &mut self.next {
-            Some(next) if next.goal.id == id => (next, None),
+        let (waiting, slot, backend) = match &mut self.next {
+            Some(next) if next.goal.id == id => (next, None, Backend::Torques),
             _ => match self.goals() {
                 Some(goals) if goals.current.goal.id == id => {
-                    (&mut goals.current, Some(&mut goals.slot))
+                    (&mut goals.current, Some(&mut goals.slot), goals.backend)
                 }
                 _ => return Ok(false),
             },
@@ -275,6 +275,7 @@ impl Lifecycle {
         let goal = change(&waiting.goal);
         if let Some(state) = state {
             goal.check(&model, state)?;
+            backend.check(&goal.target)?;
         }
         waiting.goal = goal;
         if let Some(slot) = slot {
@@ -293,27 +294,30 @@ impl Lifecycle {
     ) {
         let (mut slot, reader) = slot::slot();
         slot.write(&waiting.goal);
-        let mut session = TargetSession::new(self.model.clone(), reader);
+        let mut session = TargetSession::new(self.model.clone(), self.version, reader);
+        let (mut backend, mut observer) = (Backend::default(), None);
         let engaged = engagement.is_some().then_some(Engaged {
             id: waiting.goal.id,
             disengaged: false,
         });
-        if let Some(deadman) = engagement.and_then(|engagement| engagement.deadman) {
-            session = session.bound_to(deadman);
+        if let Some(engagement) = engagement {
+            (backend, observer) = (engagement.backend, engagement.observer);
+            session = session.with_backend(backend);
+            if let Some(deadman) = engagement.deadman {
+                session = session.bound_to(deadman);
+            }
         }
         let program = Program::Target(Box::new(session));
-        let request = MoveRequest::new(
-            MoveControllerMode::ExternalController,
-            self.version.torque_generator(),
-        );
+        let request = backend.request(self.version);
         let work = Work::Goals(Goals {
             slot,
             current: waiting,
             settled: None,
             bad_tool: false,
             engaged,
+            backend,
             late: Vec::new(),
         });
-        self.start(work, program, request, ticket, now);
+        self.start(work, program, request, (ticket, observer), now);
     }
 }

@@ -29,7 +29,9 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{MoveRequest, MoveStatus, Request, Version, Violation};
 
-use crate::driver::{ControlLog, Ending, Event, Modes, MotionId, MotionTimes, Order, Program};
+use crate::driver::{
+    ControlLog, Ending, Event, Modes, MotionId, MotionTimes, Observer, Order, Program,
+};
 use crate::session::GoalId;
 use crate::together::StartTicket;
 
@@ -194,8 +196,8 @@ impl Lifecycle {
                 active.deadline = Some(now + END_TIMEOUT);
                 self.conclude(now);
             }
-            // A motion that the silence ended has been told by its own event.
-            Event::LinkLost { .. } => {}
+            // A motion that the silence ended has been told by its own event; one that nobody observes goes on.
+            Event::LinkLost { .. } | Event::Unobserved { .. } => {}
         }
     }
 
@@ -340,7 +342,7 @@ impl Lifecycle {
         work: Work,
         program: Program,
         request: MoveRequest,
-        ticket: Option<StartTicket>,
+        (ticket, observer): (Option<StartTicket>, Option<Observer>),
         now: Duration,
     ) {
         self.motions += 1;
@@ -353,6 +355,7 @@ impl Lifecycle {
             log: ControlLog::with_capacity(self.log_size),
             ticket,
             times: times.clone(),
+            observer,
         }));
         self.send(motion, Request::Move(request));
         self.phase = Phase::Active(Box::new(Active {

@@ -56,7 +56,7 @@ impl Lifecycle {
     ) -> Result<(), MotionError> {
         self.check_free(ticket.as_ref())?;
         let work = Work::Program(Programmed::new(id));
-        self.start(work, program, request, ticket, now);
+        self.start(work, program, request, (ticket, None), now);
         Ok(())
     }
 

@@ -3,20 +3,21 @@
 use core::time::Duration;
 
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, Jacobian, JointVector, Load, Model};
-use franka_proto::RobotState;
+use franka_proto::{RobotState, Version};
 use nalgebra::Isometry3;
 
 use crate::control::Torques;
 use crate::driver::Record;
 use crate::law::hybrid::Reference;
 
+use super::backend::{Backend, Stream};
 use super::course::{self, Course};
 use super::effort::Effort;
 use super::goal::{Goal, Stale, Target, Then, Watchdog};
 use super::guard::{Bindings, Guard, leash};
 use super::landing::{self, Landing, Release, Verdict};
 use super::{
-    Lapse, STALL_TIMEOUT, SessionEvent, Settlement, Step, end_effector_of, load_of, rigid,
+    Answer, Lapse, STALL_TIMEOUT, SessionEvent, Settlement, Step, end_effector_of, load_of, rigid,
 };
 
 /// What exists once the first state has been seen.
@@ -30,7 +31,7 @@ pub(super) struct Active {
     since: u64,
     course: Course,
     reference: Reference,
-    effort: Effort,
+    drive: Drive,
     stage: Stage,
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
@@ -38,6 +39,17 @@ pub(super) struct Active {
     lapse: Option<(Stale, Lapse)>,
     /// Cycles in which the course was held back, less those since in which it was not.
     held_back: u64,
+}
+
+/// What follows the reference.
+#[derive(Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one per session, inside its box; a box in here would allocate"
+)]
+enum Drive {
+    Torques(Effort),
+    Setpoints(Stream),
 }
 
 /// The arm as it was measured.
@@ -66,14 +78,27 @@ enum Stage {
 }
 
 impl Active {
-    pub(super) fn begin(model: &Model, goal: Goal, state: &RobotState) -> Option<Self> {
-        let q = JointVector::from(state.q);
+    pub(super) fn begin(
+        model: &Model,
+        goal: Goal,
+        backend: Backend,
+        version: Version,
+        state: &RobotState,
+    ) -> Option<Self> {
+        let (q, drive) = match backend {
+            Backend::Torques => (state.q, Drive::Torques(Effort::new(&goal))),
+            Backend::RobotController(setpoints) => {
+                let stream = Stream::new(setpoints, version, model.joint_limits());
+                (state.q_d, Drive::Setpoints(stream))
+            }
+        };
+        let q = JointVector::from(q);
         let reference = Reference::at_rest(q);
         let ee = end_effector_of(state)?;
         let load = load_of(state)?;
         let mut this = Self {
             course: Course::Rest,
-            effort: Effort::new(&goal),
+            drive,
             stage: Stage::UnderWay,
             held_back: 0,
             since: state.message_id,
@@ -94,7 +119,9 @@ impl Active {
             return;
         }
         self.heard = now;
-        self.effort.take_up(&goal);
+        if let Drive::Torques(effort) = &mut self.drive {
+            effort.take_up(&goal);
+        }
         let same = goal.id == self.goal.id
             && goal.target == self.goal.target
             && goal.then == self.goal.then
@@ -179,6 +206,7 @@ impl Active {
             matches!(self.lapse, Some((_, Lapse::Silent { .. }))),
         );
 
+        self.reanchor(model, state);
         let course::Step {
             reference,
             bounds,
@@ -192,21 +220,29 @@ impl Active {
         bindings.set(Guard::PositionEnvelope, bounds.position);
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         let event = self.advance_stage(model, &arm, at_rest, state.message_id);
-        let leashed = leash::hold(&mut self.course, &mut self.reference, &q, &arm.pose);
+        let leashed = match self.drive {
+            Drive::Torques(_) => leash::hold(&mut self.course, &mut self.reference, &q, &arm.pose),
+            // What pulls is the robot's own controller, on whose setpoint the reference is anchored.
+            Drive::Setpoints(_) => false,
+        };
         bindings.set(Guard::Leash, leashed);
         self.held_back = if leashed || held {
             self.held_back + 1
         } else {
             self.held_back.saturating_sub(1)
         };
-
-        let tau = self.effort.step(
-            &self.reference,
-            state,
-            &dynamics,
-            model.joint_limits(),
-            &mut bindings,
-        );
+        let answer = match &mut self.drive {
+            Drive::Torques(effort) => {
+                let limits = model.joint_limits();
+                let tau = effort.step(&self.reference, state, &dynamics, limits, &mut bindings);
+                Answer::Torques(Torques(tau.into()))
+            }
+            Drive::Setpoints(stream) => {
+                let (command, changed) = stream.command(model, &self.ee, &self.reference, state);
+                bindings.set(Guard::Backstop, changed);
+                Answer::Setpoint(command)
+            }
+        };
 
         record.goal = self.goal.id.0;
         record.q_ref = self.reference.q.into();
@@ -214,9 +250,29 @@ impl Active {
         record.ddq_ref = self.reference.ddq.into();
         record.bindings = bindings;
         Step {
-            torques: Torques(tau.into()),
+            answer,
             finished: matches!(self.stage, Stage::Finished),
             event,
+        }
+    }
+
+    /// Puts the reference where the robot's controller takes its setpoint to be, and goes on from there.
+    fn reanchor(&mut self, model: &Model, state: &RobotState) {
+        let Drive::Setpoints(stream) = &self.drive else {
+            return;
+        };
+        if let Some(echo) = stream.echo(model, &self.ee, &self.reference, state) {
+            self.reference = echo;
+            if !self.course.is_done() {
+                self.course = Course::Rest;
+                let target = match self.stage {
+                    Stage::UnderWay => self.goal.target,
+                    Stage::Landing(_) | Stage::Staying | Stage::Releasing(_) | Stage::Finished => {
+                        Target::Rest
+                    }
+                };
+                self.turn_to(model, target);
+            }
         }
     }
 
@@ -253,12 +309,15 @@ impl Active {
                     Verdict::Settling => return None,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
-                if self.goal.then == Then::Finish {
-                    self.stage = Stage::Releasing(Release::new(self.reference.q - arm.q));
-                    self.course = Course::Rest;
-                } else {
-                    self.stage = Stage::Staying;
-                }
+                self.stage = match (self.goal.then, &self.drive) {
+                    (Then::Hold | Then::Stay, _) => Stage::Staying,
+                    (Then::Finish, Drive::Torques(_)) => {
+                        self.course = Course::Rest;
+                        Stage::Releasing(Release::new(self.reference.q - arm.q))
+                    }
+                    // The robot holds the arm at its setpoint as it is.
+                    (Then::Finish, Drive::Setpoints(_)) => Stage::Finished,
+                };
                 Some(SessionEvent::Settled {
                     goal: self.goal.id,
                     settlement: match self.lapse {

@@ -59,6 +59,12 @@ pub enum GoalError {
         /// The value given.
         got: f64,
     },
+    /// The robot's own controller cannot take the arm there.
+    #[error("the robot's controller, which this session commands, {why}")]
+    Backend {
+        /// Why not.
+        why: &'static str,
+    },
     /// A silence of a watchdog or a deadman is shorter than a lossy network may bring by itself.
     #[error("silence of {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
     Silence {

@@ -13,6 +13,7 @@
 
 mod active;
 mod approach;
+mod backend;
 mod budget;
 pub(crate) mod check;
 #[expect(dead_code, reason = "sessions do not take up chunks yet")]
@@ -31,14 +32,15 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use franka_model::{EndEffector, Load, Model, transform};
-use franka_proto::RobotState;
+use franka_proto::{RobotState, Version};
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
-use crate::control::Torques;
+use crate::control::{MotionCommand, Torques};
 use crate::driver::Record;
 use crate::slot::{Read, SlotReader};
 use crate::together::StartFault;
 
+pub use backend::{Backend, Setpoints};
 pub use budget::Budget;
 pub use check::GoalError;
 pub use chunk::{
@@ -119,13 +121,20 @@ impl core::fmt::Display for Lapse {
 /// What a session answers a state with.
 #[derive(Debug)]
 pub(crate) struct Step {
-    pub(crate) torques: Torques,
+    pub(crate) answer: Answer,
     /// The last command: the motion ends once the robot has taken it.
     pub(crate) finished: bool,
     pub(crate) event: Option<SessionEvent>,
 }
 
-/// One torque session. Created outside the thread, moved into it, handed back when it has ended.
+/// The command, whole or but for what goes beside torques.
+#[derive(Debug)]
+pub(crate) enum Answer {
+    Torques(Torques),
+    Setpoint(MotionCommand),
+}
+
+/// One session. Created outside the thread, moved into it, handed back when it has ended.
 #[derive(Debug)]
 pub struct TargetSession {
     model: Arc<Model>,
@@ -137,11 +146,14 @@ pub struct TargetSession {
     unstarted: Option<(GoalId, StartFault)>,
     /// The deadman that it is bound to.
     deadman: Option<Grip>,
+    backend: Backend,
+    version: Version,
 }
 
 impl TargetSession {
-    /// A session that follows the goals written to `goals`. The first goal has to be there before the session runs.
-    pub fn new(model: Arc<Model>, goals: SlotReader<Goal>) -> Self {
+    /// A session that follows the goals written to `goals`, for a robot that speaks `version`. The first goal has to be
+    /// there before the session runs.
+    pub fn new(model: Arc<Model>, version: Version, goals: SlotReader<Goal>) -> Self {
         Self {
             model,
             goals,
@@ -149,7 +161,16 @@ impl TargetSession {
             held: None,
             unstarted: None,
             deadman: None,
+            backend: Backend::default(),
+            version,
         }
+    }
+
+    /// Has somebody else than the session's own law turn setpoints into torques.
+    #[must_use]
+    pub fn with_backend(mut self, backend: Backend) -> Self {
+        self.backend = backend;
+        self
     }
 
     /// Binds the session to a deadman.
@@ -232,21 +253,23 @@ impl TargetSession {
                 }
                 active
             }
-            (none, Some(goal)) => match Active::begin(&self.model, goal, state) {
-                Some(active) => none.insert(active),
-                None => {
-                    let event = Some(SessionEvent::BadTool);
-                    return Step {
-                        torques: Torques([0.0; 7]),
-                        finished: true,
-                        event,
-                    };
+            (none, Some(goal)) => {
+                match Active::begin(&self.model, goal, self.backend, self.version, state) {
+                    Some(active) => none.insert(active),
+                    None => {
+                        let event = Some(SessionEvent::BadTool);
+                        return Step {
+                            answer: self.backend.holding(state),
+                            finished: true,
+                            event,
+                        };
+                    }
                 }
-            },
-            // The first goal is torn: without torques, gravity compensation holds the arm for this cycle.
+            }
+            // The first goal is torn: the arm is held for this cycle.
             (None, None) => {
                 return Step {
-                    torques: Torques([0.0; 7]),
+                    answer: self.backend.holding(state),
                     finished: false,
                     event: None,
                 };

@@ -82,6 +82,7 @@ impl Running {
             program: Program::Callback(Box::new(callback)),
             log: ControlLog::with_capacity(ControlLog::DEFAULT_CAPACITY),
             times: Arc::default(),
+            observer: None,
             ticket: None,
         });
         let running = RobotState {

@@ -121,6 +121,7 @@ impl Trace {
             log: ControlLog::default(),
             ticket: None,
             times: Arc::default(),
+            observer: None,
         });
         case.equal("cycles", states.len(), self.cycles.len());
         for (state, cycle) in states.iter().zip(&self.cycles) {

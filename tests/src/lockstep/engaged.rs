@@ -1,7 +1,7 @@
 //! Sessions that go from goal to goal.
 
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{Goal, GoalId, Target, Then};
+use franka_rt::session::{Backend, Goal, GoalId, Target, Then};
 
 use super::Lockstep;
 
@@ -19,6 +19,10 @@ impl Lockstep {
     /// # Panics
     /// As [`Self::engage`].
     pub fn engage_with(&mut self, engagement: Engagement) -> GoalId {
+        if engagement.backend != Backend::Torques {
+            // The robot is the judge of its setpoints.
+            self.guard = None;
+        }
         let goal = self.goal(Target::Rest, Then::Hold);
         let id = goal.id;
         let client = &mut self.client;

@@ -22,6 +22,8 @@ pub enum Guard {
     Watchdog,
     /// The deadman is silent; as above.
     Deadman,
+    /// The limiter before the robot's own controller changed a setpoint.
+    Backstop,
     /// On the way to a pose a joint reached the cap of its velocity.
     JointVelocity,
     /// On the way to a pose a joint came to the end of its range, or had to be able to stop before it.
@@ -33,7 +35,7 @@ pub enum Guard {
 pub struct Bindings(u16);
 
 impl Guard {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 11] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
@@ -42,6 +44,7 @@ impl Guard {
         Self::TorqueRate,
         Self::Watchdog,
         Self::Deadman,
+        Self::Backstop,
         Self::JointVelocity,
         Self::PositionEnvelope,
     ];
