@@ -6,6 +6,8 @@
 //! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature `mujoco`) has
 //! surroundings that it touches, and fingers. Away from contact they move alike.
 
+#[cfg(test)]
+mod energy;
 mod fingers;
 mod friction;
 #[cfg(feature = "mujoco")]

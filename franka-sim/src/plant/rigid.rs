@@ -15,7 +15,7 @@ use super::{ArmParameters, Plant};
 /// with `D` the slope of friction and stop damping and `K` the stops' stiffness, then advances
 /// velocity before position. That is the implicit Euler rule for what is stiff (friction at rest,
 /// end stops) and the symplectic one for the rest, so the step stays stable however stiff those
-/// are, and a free arm keeps its energy (see the test).
+/// are, and a free arm keeps its energy (see the tests in `plant::energy`).
 #[derive(Debug)]
 pub struct RigidArm {
     model: &'static Model,
@@ -116,33 +116,6 @@ mod tests {
             ..ArmParameters::fr3()
         };
         RigidArm::new(Model::fr3(), parameters, q, Load::NONE)
-    }
-
-    /// Kinetic energy, from the mass matrix and the rotors.
-    fn kinetic(arm: &RigidArm) -> f64 {
-        let mass = arm.model.mass(&arm.q, &arm.load);
-        let rotors = arm.dq.component_mul(&arm.dq).dot(&arm.parameters.armature);
-        0.5 * (arm.dq.dot(&(mass * arm.dq)) + rotors)
-    }
-
-    #[test]
-    fn a_free_arm_trades_potential_for_kinetic_energy_and_loses_none() {
-        let mut arm = ideal(READY);
-        let none = JointVector::zeros();
-        // Potential energy as the work done against gravity, by the midpoint rule.
-        let mut potential = 0.0;
-        let (mut largest, mut worst) = (0.0_f64, 0.0_f64);
-        for _ in 0..8000 {
-            let before = arm.q;
-            arm.step(&none, &none, STEP);
-            let middle = (before + arm.q) / 2.0;
-            let gravity = arm.model.gravity(&middle, &Load::NONE, &GRAVITY_EARTH);
-            potential += gravity.dot(&(arm.q - before));
-            largest = largest.max(kinetic(&arm));
-            worst = worst.max((kinetic(&arm) + potential).abs());
-        }
-        assert!(largest > 10.0, "the arm hardly moved: {largest} J");
-        assert!(worst < 0.02 * largest, "drift {worst} J of {largest} J");
     }
 
     #[test]

@@ -1,0 +1,186 @@
+//! What the motors put in and friction takes out is the arm's energy, on every plant.
+
+use franka_model::{GRAVITY_EARTH, JointVector, Load, Model, READY, RobotKind};
+
+use super::{ArmParameters, EndStops, Friction, Plant, RigidArm};
+use crate::Tool;
+
+/// The step that robots take, `[s]`.
+const STEP: f64 = 0.000_25;
+
+/// Nothing in the surroundings, and what hangs on it does.
+fn plants(kind: RobotKind, parameters: &ArmParameters, load: Load) -> Vec<Box<dyn Plant>> {
+    let model = Model::realisable(kind);
+    vec![
+        Box::new(RigidArm::new(model, parameters.clone(), READY, load)),
+        #[cfg(feature = "mujoco")]
+        Box::new({
+            let scene = super::Scene::empty();
+            let arm = super::MujocoArm::with_parameters(kind, parameters.clone(), scene);
+            let mut arm = arm.expect("an empty scene");
+            arm.attach(load);
+            arm
+        }),
+    ]
+}
+
+/// Every kind of arm on every plant, bare and with a Hand, and what it is.
+fn for_each(friction: Option<Friction>, test: impl Fn(&str, &mut Book)) {
+    for kind in RobotKind::ALL {
+        let arm = ArmParameters::of(kind);
+        let parameters = ArmParameters {
+            friction: friction.unwrap_or(arm.friction),
+            stops: EndStops::NONE,
+            ..arm
+        };
+        for (load, with) in [(Load::NONE, "bare"), (Tool::hand().load, "Hand")] {
+            for (plant, on) in plants(kind, &parameters, load)
+                .into_iter()
+                .zip(["rigid", "MuJoCo"])
+            {
+                let mut book = Book {
+                    model: Model::realisable(kind),
+                    load,
+                    plant,
+                    potential: 0.0,
+                    work: 0.0,
+                    turnover: 0.0,
+                };
+                test(&format!("{kind:?} {with}, {on}"), &mut book);
+            }
+        }
+    }
+}
+
+/// An arm, and the books of its energy, `[J]`.
+struct Book {
+    model: &'static Model,
+    load: Load,
+    plant: Box<dyn Plant>,
+    /// Since the beginning, which is at rest.
+    potential: f64,
+    /// Of the motors.
+    work: f64,
+    /// The largest kinetic energy so far.
+    turnover: f64,
+}
+
+impl Book {
+    fn step(&mut self, motor: &JointVector, dt: f64) {
+        let before = *self.plant.q();
+        self.plant.step(motor, &JointVector::zeros(), dt);
+        let way = self.plant.q() - before;
+        let middle = before + way / 2.0;
+        let gravity = self.model.gravity(&middle, &self.load, &GRAVITY_EARTH);
+        self.potential += gravity.dot(&way);
+        self.work += motor.dot(&way);
+        self.turnover = self.turnover.max(self.kinetic());
+    }
+
+    /// Of links and rotors.
+    fn kinetic(&self) -> f64 {
+        let (q, dq) = (self.plant.q(), self.plant.dq());
+        let links = dq.dot(&(self.model.mass(q, &self.load) * dq));
+        let rotors = dq.component_mul(dq).dot(self.plant.armature());
+        0.5 * (links + rotors)
+    }
+
+    /// What carries the arm where it is, `[N·m]`.
+    fn weight(&self) -> JointVector {
+        self.model
+            .gravity(self.plant.q(), &self.load, &GRAVITY_EARTH)
+    }
+
+    /// Whether the arm touches itself, which a rigid one cannot.
+    fn is_touching(&self) -> bool {
+        #[cfg(feature = "mujoco")]
+        {
+            let plant: &dyn std::any::Any = self.plant.as_ref();
+            if let Some(arm) = plant.downcast_ref::<super::MujocoArm>() {
+                return arm.contact_torque() != JointVector::zeros();
+            }
+        }
+        false
+    }
+
+    /// What the arm has more than it was given.
+    fn surplus(&self) -> f64 {
+        self.kinetic() + self.potential - self.work
+    }
+}
+
+/// Swings every joint, a little faster from joint to joint, on top of what carries the arm, and brings the motion back to the
+/// ready pose.
+fn swing(book: &Book, time: f64) -> JointVector {
+    let strength = JointVector::from([6.0, 6.0, 6.0, 6.0, 1.0, 1.0, 0.5]);
+    let phase = JointVector::from_fn(|i, _| (time * (2.0 + i as f64)).cos());
+    let (q, dq) = (book.plant.q(), book.plant.dq());
+    let back = (READY - q) * 5.0 - dq * 2.0;
+    book.weight() + strength.component_mul(&(phase + back))
+}
+
+#[test]
+fn a_fall_turns_potential_into_kinetic_energy_and_loses_none() {
+    for_each(Some(Friction::NONE), |name, book| {
+        let (mut worst, mut steps) = (0.0_f64, 0);
+        // For two seconds, or as long as it takes until the arm hits itself where it can.
+        while steps < 8000 && !book.is_touching() {
+            worst = worst.max(book.surplus().abs());
+            book.step(&JointVector::zeros(), STEP);
+            steps += 1;
+        }
+        let turnover = book.turnover;
+        println!("{name}: {worst} J of {turnover} J in {steps} steps");
+        assert!(turnover > 5.0, "{name}: hardly a fall, {turnover} J");
+        assert!(worst < 0.01 * turnover, "{name}: {worst} J of {turnover} J");
+    });
+}
+
+#[test]
+fn what_is_missing_or_left_over_is_the_steps_and_goes_with_them() {
+    for_each(Some(Friction::NONE), |name, book| {
+        let errors = [STEP, STEP / 2.0].map(|dt| {
+            book.plant.place(&READY);
+            (book.potential, book.work) = (0.0, 0.0);
+            let mut worst = 0.0_f64;
+            for step in 0..(5.0 / dt).round() as u32 {
+                let motor = swing(book, f64::from(step) * dt);
+                book.step(&motor, dt);
+                worst = worst.max(book.surplus().abs());
+                assert!(!book.is_touching(), "{name}: the arm has hit itself");
+            }
+            worst
+        });
+        let turnover = book.turnover;
+        println!("{name}: {errors:?} J of {turnover} J");
+        // In the five seconds the motors give and take several times this much.
+        assert!(turnover > 0.3, "{name}: {turnover} J");
+        assert!(errors[0] < 0.03 * turnover, "{name}: {errors:?} J");
+        // The rule is of first order.
+        let ratio = errors[0] / errors[1];
+        assert!((1.5..2.5).contains(&ratio), "{name}: {errors:?} J");
+    });
+}
+
+#[test]
+fn friction_takes_energy_and_gives_none() {
+    for_each(None, |name, book| {
+        for _ in 0..800 {
+            let motor = swing(book, 0.2);
+            book.step(&motor, STEP);
+        }
+        let mut least = book.surplus();
+        assert!(least < 0.0, "{name}: friction has given {least} J");
+        for _ in 0..2000 {
+            let weight = book.weight();
+            book.step(&weight, STEP);
+            let surplus = book.surplus();
+            // But for the error of a step.
+            assert!(
+                surplus < least + 1e-4 * book.turnover,
+                "{name}: {surplus} J after {least} J"
+            );
+            least = least.min(surplus);
+        }
+    });
+}
