@@ -26,8 +26,8 @@ pub(super) fn write_hand(text: &mut String) {
         add(
             text,
             format_args!(
-                "<body name='{name}' pos='0 0 {FINGER_HEIGHT}' quat='{turn}' gravcomp='1'>\
-                 <inertial pos='0 0.015 0.03' mass='{FINGER_MASS}' diaginertia='3.6e-6 3.6e-6 1e-6'/>\
+                "<body name='{name}' pos='0 0 {FINGER_HEIGHT}' quat='{turn}'>\
+                 <inertial pos='0 0 0' mass='{NEXT_TO_NOTHING}' diaginertia='{NEXT_TO_NOTHING} {NEXT_TO_NOTHING} {NEXT_TO_NOTHING}'/>\
                  <joint name='{name}' type='slide' axis='0 1 0' range='0 {stroke}' limited='true' \
                  armature='{FINGER_ARMATURE}'/>{BOXES}</body>"
             ),
@@ -121,9 +121,9 @@ const JOINTS: [&str; 2] = ["finger_left", "finger_right"];
 /// Where the fingers slide, above the origin of the Hand, `[m]`. Source: `franka_description` 1.0.1, `franka_hand.xacro`.
 const FINGER_HEIGHT: f64 = 0.0584;
 
-/// Of one finger, `[kg]`: half of the 0.0291 kg of `franka_description` 1.0.1. Their weight is in the load of
-/// [`Tool::hand`](crate::Tool::hand), which is why gravity does not act on them here.
-const FINGER_MASS: f64 = 0.015;
+/// Mass of one finger, `[kg]`, and its moments of inertia, `[kg·m²]`: as little as MuJoCo takes. What the fingers weigh is in
+/// the load of [`Tool::hand`](crate::Tool::hand), and what it takes to slide them is nearly all the motor's.
+const NEXT_TO_NOTHING: f64 = 1e-12;
 
 /// Inertia of the motor, felt at each finger, `[kg]`. A choice of this simulator: no source gives one.
 const FINGER_ARMATURE: f64 = 0.5;
