@@ -1,12 +1,11 @@
-use franka_model::{Frame, JointVector, Load, READY, Wrench};
+use franka_model::{JointVector, Load, READY, Wrench};
 use franka_proto::{
-    CollisionBehavior, MoveControllerMode, MoveGeneratorMode, Request, RobotCommand,
-    RobotError as E, RobotMode, RobotState,
+    CollisionBehavior, Request, RobotCommand, RobotError as E, RobotMode, RobotState,
 };
 use franka_sim::{Config, Touch};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::pair::{Pair, positions, ramp, stay};
+use crate::pair::{Pair, positions, ramp};
 
 const HIGH: f64 = 1e4;
 
@@ -34,116 +33,10 @@ fn declare(load: &Load) -> Request {
     })
 }
 
-/// Directions that a hand may push in.
-fn directions() -> impl Iterator<Item = Vector3<f64>> {
-    [
-        [1.0, 0.0, 0.0],
-        [0.0, -1.0, 0.0],
-        [0.0, 0.0, -1.0],
-        [0.6, 0.0, 0.8],
-        [-0.48, 0.64, 0.6],
-    ]
-    .into_iter()
-    .map(Vector3::from)
-}
-
 fn felt(state: &RobotState) -> Vector3<f64> {
     let [x, y, z, ..] = state.O_F_ext_hat_K;
     // The state has what the robot does to the hand.
     -Vector3::new(x, y, z)
-}
-
-#[test]
-fn a_push_of_5_newton_on_the_flange_reads_5_newton_within_100_milliseconds() {
-    for make in [Pair::fr3, Pair::fer] {
-        for direction in directions() {
-            let mut pair = make();
-            let push = Touch::force(direction * 5.0).at(Frame::Flange);
-            let push = pair.robot.touch(push);
-            pair.idle(100);
-            for _ in 0..400 {
-                pair.tick(None);
-                let seen = felt(&pair.state);
-                assert!((seen.norm() - 5.0).abs() < 0.3, "{direction}: {seen}");
-                assert!((seen - direction * 5.0).norm() < 0.3, "{direction}: {seen}");
-            }
-            assert!(pair.robot.release(push));
-            pair.idle(100);
-            assert!(felt(&pair.state).norm() < 0.3);
-        }
-    }
-}
-
-#[test]
-fn an_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness() {
-    for direction in directions() {
-        let mut pair = Pair::fr3();
-        pair.request(&Request::SetCartesianImpedance([
-            750.0, 750.0, 750.0, 200.0, 200.0, 200.0,
-        ]));
-        pair.start(
-            MoveControllerMode::CartesianImpedance,
-            MoveGeneratorMode::CartesianPosition,
-        );
-        let start = Vector3::from(pair.position());
-        let command = stay(&pair.state);
-        pair.robot
-            .touch(Touch::force(direction * 5.0).at(Frame::Flange));
-        let mut worst = 0.0_f64;
-        for cycle in 0..3000 {
-            pair.tick(Some(command));
-            if (100..500).contains(&cycle) {
-                worst = worst.max((felt(&pair.state).norm() - 5.0).abs());
-            }
-        }
-        // It reads right while the arm gives way, too.
-        assert!(worst < 0.3, "{direction}: {worst}");
-        let moved = Vector3::from(pair.position()) - start;
-        let expected = direction * (5.0 / 750.0);
-        assert!(
-            (moved - expected).norm() < 0.05 * expected.norm(),
-            "{direction}: {moved} instead of {expected}"
-        );
-    }
-}
-
-/// Lets the hand sink at 0.1 m/s onto a table, and tells how hard it gets.
-fn fall(collision: Option<f64>) -> (f64, RobotState) {
-    let mut pair = Pair::fr3();
-    pair.request(&thresholds(HIGH, collision.unwrap_or(HIGH)));
-    let height = pair.position()[2];
-    let point = Vector3::new(0.0, 0.0, height - 0.04);
-    pair.robot.touch(Touch::wall(point, Vector3::z()));
-    pair.start(
-        MoveControllerMode::CartesianImpedance,
-        MoveGeneratorMode::CartesianVelocity,
-    );
-    let mut hardest = 0.0_f64;
-    for cycle in 0..650 {
-        let t = f64::from(cycle) * 1e-3;
-        let mut command = RobotCommand::default();
-        command.O_dP_EE_c[2] = -0.1 * (ramp(t, 0.1) - ramp(t - 0.5, 0.1));
-        pair.tick(Some(command));
-        if pair.state.robot_mode != RobotMode::Move {
-            break;
-        }
-        hardest = hardest.max(pair.state.K_F_ext_hat_K[2].abs());
-    }
-    (hardest, pair.state)
-}
-
-#[test]
-fn a_fall_trips_the_threshold_that_was_set_and_not_one_30_percent_higher() {
-    let (hardest, state) = fall(None);
-    assert!(state.errors.is_empty(), "{}", state.errors);
-    assert!(hardest > 10.0, "it hardly touches: {hardest}");
-    let (_, state) = fall(Some(0.98 * hardest));
-    assert_eq!(state.errors, E::CartesianReflex.into());
-    assert_eq!(state.cartesian_collision[2], 1.0);
-    let (again, state) = fall(Some(1.3 * hardest));
-    assert_eq!(again, hardest);
-    assert!(state.errors.is_empty());
-    assert_eq!(state.cartesian_collision, [0.0; 6]);
 }
 
 #[test]

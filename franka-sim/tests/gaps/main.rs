@@ -12,6 +12,9 @@
 //! | `hand` | the Franka Hand and the vacuum gripper |
 //! | `fer` | the Franka Emika Robot |
 //! | `open` | what is not known of a robot: each an option, with the default that is documented |
+//!
+//! How large a push reads, how far it moves an impedance, and what a fall trips, on either plant, is in the library's own tests
+//! (`robot::tests::pushes`, `robot::tests::falling`).
 
 mod commands;
 mod contact;

@@ -2,8 +2,11 @@
 
 mod checks;
 mod contact;
+mod falling;
 mod fer;
 mod motions;
+mod plants;
+mod pushes;
 #[cfg(feature = "mujoco")]
 mod scene;
 mod session;

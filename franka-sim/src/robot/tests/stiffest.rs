@@ -1,38 +1,17 @@
 //! The stiffest gains that libfranka's users set, on every plant.
 
-use franka_model::{Load, Model, READY};
-
+use super::plants::robots;
 use super::*;
-use crate::plant::{ArmParameters, Plant, RigidArm};
 
-/// Every plant of this kind of robot by name, with nothing on the flange: where it is least stable.
-fn plants(kind: RobotKind) -> Vec<(&'static str, Box<dyn Plant>)> {
-    let model = Model::realisable(kind);
-    let rigid = RigidArm::new(model, ArmParameters::of(kind), READY, Load::NONE);
-    vec![
-        ("rigid", Box::new(rigid)),
-        #[cfg(feature = "mujoco")]
-        (
-            "MuJoCo",
-            Box::new(
-                crate::plant::MujocoArm::new(kind, crate::plant::Scene::table()).expect("a scene"),
-            ),
-        ),
-    ]
-}
-
+/// Every robot, with nothing on the flange: where it is least stable.
 fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
-    for kind in RobotKind::ALL {
-        for (name, plant) in plants(kind) {
-            let config = Config {
-                kind,
-                // The gains are the matter here, not what the robot thinks of a blow.
-                enforce_limits: false,
-                ..Config::default()
-            };
-            let mut pair = Pair::with(Robot::with_plant(config, plant));
-            test(&mut pair, &format!("{kind:?}, {name}"));
-        }
+    let config = Config {
+        // The gains are the matter here, not what the robot thinks of a blow.
+        enforce_limits: false,
+        ..Config::default()
+    };
+    for (name, mut pair) in robots(&config) {
+        test(&mut pair, &name);
     }
 }
 

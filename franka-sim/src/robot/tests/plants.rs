@@ -1,0 +1,45 @@
+//! The robots that tests of physics run on: of every kind, on every plant.
+
+#[cfg(feature = "mujoco")]
+use crate::plant::{MujocoArm, Scene};
+
+use super::*;
+use crate::config::Tool;
+
+/// A robot of every kind on every plant, with its client, and what it is. Those in MuJoCo stand on the table, and have the
+/// Hand's body and fingers if that is the tool.
+pub(super) fn robots(config: &Config) -> Vec<(String, Pair)> {
+    let mut robots = Vec::new();
+    for kind in RobotKind::ALL {
+        let config = Config {
+            kind,
+            ..config.clone()
+        };
+        #[cfg(feature = "mujoco")]
+        {
+            let mut scene = Scene::table();
+            if config.tool == Tool::hand() {
+                scene = scene.with_hand();
+            }
+            let arm = MujocoArm::new(kind, scene).expect("a scene");
+            let robot = Robot::with_plant(config.clone(), Box::new(arm));
+            robots.push((format!("{kind:?}, MuJoCo"), Pair::with(robot)));
+        }
+        robots.push((format!("{kind:?}, rigid"), Pair::connected(config)));
+    }
+    robots
+}
+
+/// [`robots`] with a bare flange, and with a Hand.
+pub(super) fn robots_with_and_without_hand() -> Vec<(String, Pair)> {
+    let tools = [("bare", Tool::NONE), ("Hand", Tool::hand())];
+    let with = |(name, tool): (&str, Tool)| {
+        let named = |(robot, pair)| (format!("{robot}, {name}"), pair);
+        let config = Config {
+            tool,
+            ..Config::default()
+        };
+        robots(&config).into_iter().map(named).collect::<Vec<_>>()
+    };
+    tools.into_iter().flat_map(with).collect()
+}
