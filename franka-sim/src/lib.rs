@@ -35,6 +35,8 @@
 //! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
 //! ```
 //!
+//! Over sockets a robot keeps the wall's millisecond, or the client's: [`Sim::virtual_time`].
+//!
 //! # Features
 //!
 //! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. Needs Rust 1.95, and MuJoCo's library: in this workspace

@@ -4,6 +4,7 @@ use std::io::IsTerminal;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::{ArgAction, Parser, ValueEnum};
 use franka_model::{JointVector, Load, RobotKind};
@@ -115,7 +116,16 @@ struct Arguments {
     /// the right to one. Without the right, the simulator says so and goes on without.
     #[arg(long)]
     realtime: bool,
+
+    /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a motion the next
+    /// millisecond begins when the answer to the last state is there, within a second. For tests, and for
+    /// clients slower than a robot allows.
+    #[arg(long, conflicts_with = "realtime")]
+    virtual_time: bool,
 }
+
+/// How long an answer may take in virtual time.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 const EXAMPLES: &str = "\
 Examples:
@@ -125,6 +135,7 @@ Examples:
   franka-sim --payload 0.5 --noise --seed 7     half a kilogram that no client has declared, and sensors
                                                 that are not perfect, the same way every time
   franka-sim --robot fer --network fer-stalls   a Panda that sends its states as late as a Panda does
+  franka-sim --virtual-time                     seconds of motion in as little time as the client takes
   franka-sim --enforce-comm-constraints=false   for a client in a debugger
   franka-sim --port 0                           on free ports, which it prints";
 
@@ -217,6 +228,10 @@ impl Arguments {
         let sim = Sim::new(self.config())
             .bind(SocketAddr::new(self.bind, self.port))
             .realtime(self.realtime);
+        let sim = match self.virtual_time {
+            true => sim.virtual_time(PATIENCE),
+            false => sim,
+        };
         let sim = match self.network.network(self.seed) {
             Some(network) => sim.network(network),
             None => sim,
@@ -449,7 +464,9 @@ mod tests {
 
     #[test]
     fn what_makes_no_robot_is_refused() {
+        assert!(parse(&["--virtual-time"]).is_ok());
         for wrong in [
+            ["--virtual-time", "--realtime"],
             ["--q", "1,2"],
             ["--q", "nan,0,0,0,0,0,0"],
             ["--payload", "-1"],

@@ -48,6 +48,7 @@ use crate::settings::Settings;
 use crate::signal::JointSignal;
 use boards::Boards;
 use control::Measurement;
+pub(crate) use motion::Awaited;
 use motion::Motion;
 use operation::{Guidance, Lock};
 use recovery::Recovery;
@@ -199,6 +200,14 @@ impl Robot {
         };
         if self.command.is_none() && motion.accepts(command.message_id, self.clock) {
             self.command = Some(command);
+        }
+    }
+
+    /// The command that the newest state asks for and that has not come.
+    pub(crate) fn awaits(&self) -> Awaited {
+        match &self.activity {
+            Activity::Moving(motion) if self.command.is_none() => motion.awaits(),
+            _ => Awaited::Nothing,
         }
     }
 

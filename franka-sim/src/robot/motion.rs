@@ -30,6 +30,17 @@ pub(super) struct Motion {
     asynchronous: Option<PointToPoint>,
 }
 
+/// What the newest state asks of the client.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Awaited {
+    /// No command, or none that has not come yet.
+    Nothing,
+    /// The first one of a motion: a client may look at several states before, and none of them is lost.
+    First,
+    /// One more. Without it the cycle is lost.
+    Next,
+}
+
 /// Which violations end a motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rules {
@@ -118,6 +129,15 @@ impl Motion {
     pub(super) fn accepts(&self, answers: u64, newest: u64) -> bool {
         answers >= self.first_state
             && (answers == newest || (self.asynchronous.is_some() && answers < newest))
+    }
+
+    /// Which command the states of this motion ask for.
+    pub(super) fn awaits(&self) -> Awaited {
+        match &self.asynchronous {
+            Some(_) => Awaited::Nothing,
+            None if self.score.has_begun() => Awaited::Next,
+            None => Awaited::First,
+        }
     }
 
     /// Takes in what arrived for one cycle, and advances `desired`.

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::seat::Seat;
 use crate::end_effector::{Hand, VacuumGripper};
-use crate::robot::Robot;
+use crate::robot::{Awaited, Robot};
 
 /// How well a simulation has kept its millisecond.
 ///
@@ -12,6 +12,8 @@ use crate::robot::Robot;
 /// states that are due in a burst, as a robot's network does after a stall; when more than
 /// [`Pace::BURST`] are due, it lets the rest of the lost time go. `message_id` advances by one per
 /// state in any case, so robot time then runs behind the clock on the wall.
+///
+/// In [virtual time](super::Sim::virtual_time) there is no such clock, and nothing is late.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Pace {
     /// States due so far.
@@ -28,6 +30,9 @@ impl Pace {
 }
 
 const PERIOD: Duration = Duration::from_millis(1);
+
+/// Time on the wall between two states that take no answer, in virtual time: a client has to be able to read them.
+const HASTE: Duration = Duration::from_micros(100);
 
 /// The devices, which share one clock.
 pub(super) struct Cycle {
@@ -54,6 +59,38 @@ impl Cycle {
             }
             pace.skipped += u64::from(due.saturating_sub(Pace::BURST));
             deadline += PERIOD * due;
+        }
+    }
+
+    /// Runs on the client's time instead, until the same end: see [`Sim::virtual_time`](super::Sim::virtual_time).
+    pub(super) fn run_on_answers(mut self, patience: Duration) {
+        let mut pace = Pace::default();
+        let mut attempts = 0;
+        loop {
+            pace.cycles += 1;
+            if !self.cycle(pace) {
+                return;
+            }
+            let patience = match self.robot.awaits() {
+                Awaited::Nothing => {
+                    attempts = 0;
+                    let period = if self.robot.is_taken() { HASTE } else { PERIOD };
+                    self.wait(Instant::now() + period);
+                    continue;
+                }
+                // A client that looks at a state before it begins is soon shown the next one; one that is slow gets its time.
+                Awaited::First => {
+                    attempts += 1;
+                    patience.min(PERIOD * 2_u32.saturating_pow(attempts))
+                }
+                Awaited::Next => {
+                    attempts = 0;
+                    patience
+                }
+            };
+            if !self.robot.await_command(patience, pace) {
+                return;
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_
 use franka_proto::{Protocol, gripper};
 
 use crate::end_effector::{EndEffector, Mechanism};
-use crate::robot::{Datagram, Robot, SessionError};
+use crate::robot::{Awaited, Datagram, Robot, SessionError};
 
 /// A device as a value, with one client at a time. The methods are those of [`Robot`].
 pub(super) trait Device: Send + 'static {
@@ -23,6 +23,7 @@ pub(super) trait Device: Send + 'static {
     fn disconnect(&mut self);
     fn receive(&mut self, bytes: &[u8]) -> Result<(), Self::Error>;
     fn command(&mut self, datagram: &[u8]);
+    fn awaits(&self) -> Awaited;
     fn take_reply(&mut self) -> Option<Bytes>;
     fn tick(&mut self) -> Option<Datagram<'_>>;
 }
@@ -52,6 +53,10 @@ impl Device for Robot {
 
     fn command(&mut self, datagram: &[u8]) {
         self.command(datagram);
+    }
+
+    fn awaits(&self) -> Awaited {
+        self.awaits()
     }
 
     fn take_reply(&mut self) -> Option<Bytes> {
@@ -92,6 +97,10 @@ where
 
     /// Nothing goes this way in their protocols.
     fn command(&mut self, _: &[u8]) {}
+
+    fn awaits(&self) -> Awaited {
+        Awaited::Nothing
+    }
 
     fn take_reply(&mut self) -> Option<Bytes> {
         self.take_reply()

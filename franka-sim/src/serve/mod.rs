@@ -25,6 +25,7 @@ pub use service::{Service, Stopped};
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::time::Duration;
 
 use bytes::Bytes;
 use franka_model::{JointVector, Load, RobotKind};
@@ -58,6 +59,8 @@ pub struct Sim {
     hand: Option<(Fingers, u16)>,
     vacuum_gripper: Option<(Suction, u16)>,
     realtime: bool,
+    /// How long to wait for an answer, if the client's answers are the clock.
+    patience: Option<Duration>,
     /// The host's alone if there is none.
     network: Option<Network>,
 }
@@ -85,6 +88,7 @@ impl Sim {
             hand: None,
             vacuum_gripper: None,
             realtime: false,
+            patience: None,
             network: None,
         }
     }
@@ -183,6 +187,22 @@ impl Sim {
         self
     }
 
+    /// Lets robot time pass as fast as the client answers, instead of by the clock on the wall: for tests and for programs that
+    /// learn, which nobody watches.
+    ///
+    /// * In a motion whose every state takes an answer, the next millisecond begins as soon as the answer to the last state is
+    ///   there. However long the client takes for it, no command is late, up to `patience`: after that the cycle counts as
+    ///   lost, so a client that falls silent is noticed after 20 times that. A second is a good choice.
+    /// * Otherwise, at rest, braking, in a recovery, while a hand grasps, in an asynchronous motion, there are up to ten states
+    ///   per millisecond on the wall. A client that does not keep up misses some of them.
+    ///
+    /// The times of a [`network`](Self::network) remain those of the wall. Seconds that a client counts by a clock of its own, and not
+    /// by the states, are no seconds of the robot.
+    pub fn virtual_time(mut self, patience: Duration) -> Self {
+        self.patience = Some(patience);
+        self
+    }
+
     /// Lets states and commands pass this network, besides that between the sockets. Its time begins with the
     /// robot's start.
     ///
@@ -245,7 +265,7 @@ impl Sim {
             hand: hand_seat,
             vacuum: vacuum_seat,
         };
-        let realtime = self.realtime;
+        let (realtime, patience) = (self.realtime, self.patience);
         let (done, finished) = watch::channel(());
         std::thread::Builder::new()
             .name("franka-sim".into())
@@ -253,7 +273,10 @@ impl Sim {
                 if realtime && let Err(error) = priority::raise() {
                     tracing::warn!(%error, "no real-time priority");
                 }
-                cycle.run();
+                match patience {
+                    Some(patience) => cycle.run_on_answers(patience),
+                    None => cycle.run(),
+                }
                 drop(done);
             })?;
         Ok(Running {

@@ -1,7 +1,7 @@
 //! A device on its sockets, one client at a time.
 
 use std::net::{SocketAddr, UdpSocket};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use bytes::Bytes;
 use franka_proto::{RobotCommand, server};
@@ -11,6 +11,7 @@ use super::between::Between;
 use super::cycle::Pace;
 use super::device::Device;
 use crate::network::Network;
+use crate::robot::Awaited;
 
 /// Something to do with a device between two milliseconds.
 pub(super) type Hands<D> = Box<dyn FnOnce(&mut D, Pace) + Send>;
@@ -33,6 +34,9 @@ const DATAGRAMS: usize = 64;
 
 /// Orders taken per cycle, at most, for the same reason.
 const ORDERS: usize = 32;
+
+/// How long orders and hands wait for a command that is waited for, at most.
+const ATTENTION: Duration = Duration::from_millis(1);
 
 /// Replies that may wait for a client. One that has no room for the answers to what is open and to
 /// one request more is not heard until it has read some.
@@ -102,6 +106,47 @@ impl<D: Device> Seat<D> {
     /// Whether datagrams are to be [`relay`](Self::relay)ed, and how long not.
     pub(super) fn pause(&self) -> Option<Duration> {
         self.between.as_ref().map(Between::pause)
+    }
+
+    /// The command that the newest state asks for and that has not come.
+    pub(super) fn awaits(&self) -> Awaited {
+        self.device.awaits()
+    }
+
+    /// Waits for the command that the newest state asks for, if it does, and no longer than `patience`. Orders and hands
+    /// are taken meanwhile as they are between two milliseconds. False at the end.
+    pub(super) fn await_command(&mut self, patience: Duration, pace: Pace) -> bool {
+        let begun = Instant::now();
+        loop {
+            self.relay();
+            if self.awaits() == Awaited::Nothing || begun.elapsed() >= patience {
+                return true;
+            }
+            self.take_orders();
+            if !self.lend_hands(pace) {
+                return false;
+            }
+            self.send_replies();
+            self.wait_for_datagram(self.pause().unwrap_or(ATTENTION));
+        }
+    }
+
+    /// Returns when a datagram is there, or after about so long.
+    fn wait_for_datagram(&self, longest: Duration) {
+        let socket = &self.socket;
+        let wait = || {
+            socket.set_nonblocking(false)?;
+            socket.set_read_timeout(Some(longest))?;
+            socket.peek_from(&mut [0])
+        };
+        // Whatever comes of it is seen when the socket is read, as is an error of it.
+        let _ = wait();
+        let _ = socket.set_nonblocking(true);
+    }
+
+    /// Whether a client is there.
+    pub(super) fn is_taken(&self) -> bool {
+        self.client.is_some()
     }
 
     /// What the network does between two milliseconds.
