@@ -26,5 +26,8 @@ mod programs {
     struct Model;
 
     #[doc = include_str!("../../docs/src/simulated-robot.md")]
+    struct SimulatedRobot;
+
+    #[doc = include_str!("../../docs/src/simulator.md")]
     struct Simulator;
 }

@@ -252,6 +252,12 @@ impl Robot {
         self.plant.as_ref()
     }
 
+    /// The same, to reach into its surroundings: what it is made of is the plant's own business, and what is done to the arm behind
+    /// the robot's back is a blow to it.
+    pub fn plant_mut(&mut self) -> &mut dyn Plant {
+        self.plant.as_mut()
+    }
+
     /// The protocol version that the robot speaks.
     pub fn version(&self) -> Version {
         self.kind.version

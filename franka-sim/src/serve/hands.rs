@@ -110,6 +110,9 @@ impl Running {
     /// Drops an object of this width between the fingers of the hand, `[m]`. False if it does not fit,
     /// or if there is no hand. What it weighs is a matter of [`attach`](Self::attach).
     ///
+    /// False as well if the fingers are the plant's: between those goes a body of the scene (`MujocoArm::put_body`, by
+    /// [`with`](Self::with) and [`Robot::plant_mut`](crate::Robot::plant_mut)).
+    ///
     /// # Errors
     /// [`Stopped`]
     pub async fn drop_into_hand(&self, width: f64) -> Result<bool, Stopped> {

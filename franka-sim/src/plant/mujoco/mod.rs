@@ -90,6 +90,32 @@ impl MujocoArm {
         Some(Isometry3::from_parts(position.into(), rotation))
     }
 
+    /// Puts a body of the scene that has a free joint somewhere else, at rest: its pose in the base frame. False if there is
+    /// no such body. What is in its way there pushes it out.
+    ///
+    /// ```no_run
+    /// # use std::any::Any;
+    /// # use franka_sim::{Robot, plant::MujocoArm};
+    /// # fn example(robot: &mut Robot, between_the_fingers: nalgebra::Isometry3<f64>) {
+    /// let plant: &mut dyn Any = robot.plant_mut();
+    /// let arm: &mut MujocoArm = plant.downcast_mut().expect("made with one");
+    /// assert!(arm.put_body("block", &between_the_fingers));
+    /// # }
+    /// ```
+    pub fn put_body(&mut self, name: &str, pose: &Isometry3<f64>) -> bool {
+        let Some((qpos, dof)) = scene::free_body(self.data.model(), name) else {
+            return false;
+        };
+        let Vector3 { data, .. } = pose.translation.vector;
+        let [[x, y, z]] = data.0;
+        let turn = pose.rotation;
+        let place = [x, y, z, turn.w, turn.i, turn.j, turn.k];
+        self.data.qpos_mut()[qpos..qpos + 7].copy_from_slice(&place);
+        self.data.qvel_mut()[dof..dof + 6].fill(0.0);
+        self.data.forward();
+        true
+    }
+
     /// What contact exerted on the joints in the last step, `[N·m]`; positive torques push towards positive angles.
     pub fn contact_torque(&self) -> JointVector {
         let force = self.data.qfrc_constraint();

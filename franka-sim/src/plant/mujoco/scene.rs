@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use franka_model::{Load, RobotKind};
 use mujoco_rs::mujoco_c::{mjtCone, mjtDisableBit, mjtIntegrator};
-use mujoco_rs::prelude::{Attach as _, MjModel, MjSpec, MjtObjBase};
+use mujoco_rs::prelude::{Attach as _, MjModel, MjSpec, MjtJoint, MjtObjBase};
 
 use super::fingers::FingerJoints;
 use super::{joint_name, mjcf};
@@ -169,6 +169,15 @@ pub(super) fn joint(model: &MjModel, name: &str) -> Result<(usize, usize), Scene
     let id = find(model, MjtObjBase::mjOBJ_JOINT, name)?;
     let place = |addresses: &[i32]| addresses[id] as usize;
     Ok((place(model.jnt_qposadr()), place(model.jnt_dofadr())))
+}
+
+/// The places in `qpos` and `qvel` of a body that nothing holds.
+pub(super) fn free_body(model: &MjModel, name: &str) -> Option<(usize, usize)> {
+    let first = model.body_jntadr()[body(model, name)?];
+    let joint = usize::try_from(first).ok()?;
+    let place = |addresses: &[i32]| addresses[joint] as usize;
+    (model.jnt_type()[joint] == MjtJoint::mjJNT_FREE)
+        .then(|| (place(model.jnt_qposadr()), place(model.jnt_dofadr())))
 }
 
 /// The number of a body.

@@ -5,6 +5,7 @@ mod contact;
 mod falling;
 mod fer;
 mod motions;
+mod people;
 mod plants;
 mod pushes;
 #[cfg(feature = "mujoco")]

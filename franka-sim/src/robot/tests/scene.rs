@@ -215,6 +215,35 @@ fn a_slippery_box_is_lost_and_the_hand_says_so() {
 }
 
 #[test]
+fn a_box_that_is_dropped_into_the_hand_is_grasped() {
+    let mut cell = Cell::new(
+        "<mujoco><worldbody><geom type='plane' size='2 2 1'/>\
+         <body name='box' pos='0.6 0.3 0.02'><freejoint/>\
+         <geom type='box' size='0.02 0.02 0.02' mass='0.2' friction='1 0.005 0.0001'/>\
+         </body></worldbody></mujoco>",
+    );
+    assert_eq!(cell.ask(&HandRequest::Homing), HandStatus::Success);
+    let nearly = gripper::Move {
+        width: 0.042,
+        speed: 0.1,
+    };
+    assert_eq!(cell.ask(&HandRequest::Move(nearly)), HandStatus::Success);
+    let tips = Isometry3::translation(TCP.0, 0.0, TCP.1 + 0.005);
+    let plant: &mut dyn Any = cell.pair.robot.plant_mut();
+    let arm: &mut MujocoArm = plant.downcast_mut().expect("the arm in MuJoCo");
+    assert!(arm.put_body("box", &tips));
+    assert!(!arm.put_body("franka_hand", &tips), "the robot's own");
+    assert!(!arm.put_body("ball", &tips), "there is none");
+    let grasp = Grasp::new(0.04, 0.1, 40.0);
+    assert_eq!(cell.ask(&HandRequest::Grasp(grasp)), HandStatus::Success);
+    for _ in 0..1000 {
+        cell.tick(None);
+    }
+    assert!(cell.state.is_grasped);
+    assert!((cell.height("box") - TCP.1).abs() < 0.015);
+}
+
+#[test]
 fn nothing_is_grasped_where_nothing_is() {
     let mut cell = Cell::new("<mujoco/>");
     assert_eq!(cell.grasp(), HandStatus::Unsuccessful);
