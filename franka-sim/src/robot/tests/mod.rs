@@ -4,6 +4,7 @@ mod checks;
 mod contact;
 mod falling;
 mod fer;
+mod losing;
 mod motions;
 mod people;
 mod plants;

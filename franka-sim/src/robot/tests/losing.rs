@@ -1,0 +1,193 @@
+//! Commands that do not come: what the robot makes up for them, and what comes of it.
+
+use super::*;
+
+const CYCLE: f64 = 1e-3;
+
+/// The values that a kind of motion commands, as the state tells them, with their differences.
+struct Channel {
+    name: &'static str,
+    generator: MoveGeneratorMode,
+    /// A command that is `shift` away from the start, in the state of which the first argument is.
+    command: fn(&RobotState, f64) -> RobotCommand,
+    /// The commanded value, its velocity and its acceleration.
+    told: fn(&RobotState) -> [f64; 3],
+    /// How far it is from the start after 0.6 s, or how fast.
+    way: f64,
+    /// Whether the command is a velocity.
+    is_rate: bool,
+}
+
+const CHANNELS: [Channel; 5] = [
+    Channel {
+        name: "joint position",
+        generator: MoveGeneratorMode::JointPosition,
+        command: |start, shift| {
+            let mut command = RobotCommand {
+                q_c: start.q_d,
+                ..RobotCommand::default()
+            };
+            command.q_c[3] += shift;
+            command
+        },
+        told: |state| [state.q_d[3], state.dq_d[3], state.ddq_d[3]],
+        way: 0.1,
+        is_rate: false,
+    },
+    Channel {
+        name: "joint velocity",
+        generator: MoveGeneratorMode::JointVelocity,
+        command: |_, rate| {
+            let mut command = RobotCommand::default();
+            command.dq_c[3] = rate;
+            command
+        },
+        told: |state| [state.q_d[3], state.dq_d[3], state.ddq_d[3]],
+        way: 1.0,
+        is_rate: true,
+    },
+    Channel {
+        name: "pose",
+        generator: MoveGeneratorMode::CartesianPosition,
+        command: |start, shift| {
+            let mut command = RobotCommand {
+                O_T_EE_c: start.O_T_EE_c,
+                ..RobotCommand::default()
+            };
+            command.O_T_EE_c[14] += shift;
+            command
+        },
+        told: |state| [state.O_T_EE_c[14], state.O_dP_EE_c[2], state.O_ddP_EE_c[2]],
+        way: 0.03,
+        is_rate: false,
+    },
+    Channel {
+        name: "elbow",
+        generator: MoveGeneratorMode::CartesianPosition,
+        command: |start, shift| RobotCommand {
+            O_T_EE_c: start.O_T_EE_c,
+            elbow_c: Some([start.elbow_c[0] + shift, start.elbow_c[1]]),
+            ..RobotCommand::default()
+        },
+        told: |state| [state.elbow_c[0], state.delbow_c[0], state.ddelbow_c[0]],
+        way: 0.05,
+        is_rate: false,
+    },
+    Channel {
+        name: "twist",
+        generator: MoveGeneratorMode::CartesianVelocity,
+        command: |_, rate| {
+            let mut command = RobotCommand::default();
+            command.O_dP_EE_c[2] = rate;
+            command
+        },
+        told: |state| [state.O_T_EE_c[14], state.O_dP_EE_c[2], state.O_ddP_EE_c[2]],
+        way: 0.7,
+        is_rate: true,
+    },
+];
+
+/// Moves along a channel until commands are lost in the middle of its acceleration.
+fn underway(channel: &Channel, kind: RobotKind) -> (Pair, RobotState) {
+    let mut pair = Pair::of(kind);
+    pair.start(MoveControllerMode::JointImpedance, channel.generator);
+    let start = pair.state;
+    for cycle in 0..100 {
+        pair.tick(Some(nominal(channel, &start, cycle)));
+    }
+    (pair, start)
+}
+
+/// The command of a cycle, lost or not.
+fn nominal(channel: &Channel, start: &RobotState, cycle: u32) -> RobotCommand {
+    let shift = channel.way * ramp(f64::from(cycle) * CYCLE, 0.6);
+    (channel.command)(start, shift)
+}
+
+#[test]
+fn what_is_lost_goes_on_with_the_acceleration_that_it_had() {
+    for kind in RobotKind::ALL {
+        for channel in &CHANNELS {
+            let (mut pair, _) = underway(channel, kind);
+            let [mut value, mut rate, acceleration] = (channel.told)(&pair.state);
+            assert!(acceleration > 0.01, "{kind:?} {}", channel.name);
+            for lost in 1..=5 {
+                pair.tick(None);
+                rate += acceleration * CYCLE;
+                value += rate * CYCLE;
+                let [told, told_rate, told_acceleration] = (channel.told)(&pair.state);
+                let off = [
+                    // A pose that a velocity leads to is told as it is reached.
+                    if channel.is_rate { 0.0 } else { told - value },
+                    told_rate - rate,
+                    (told_acceleration - acceleration) * CYCLE,
+                ];
+                for (n, off) in off.into_iter().enumerate() {
+                    // States of protocol 10 carry single precision.
+                    assert!(
+                        off.abs() < 1e-6,
+                        "{kind:?} {}, {lost} lost, derivative {n}: {off} off",
+                        channel.name
+                    );
+                }
+            }
+            assert_eq!(pair.state.robot_mode, RobotMode::Move);
+        }
+    }
+}
+
+#[test]
+fn a_client_that_goes_on_as_the_robot_did_is_bridged_and_one_that_did_not_notice_is_a_discontinuity()
+ {
+    const LOST: u32 = 10;
+    for kind in RobotKind::ALL {
+        for channel in &CHANNELS {
+            let goes_on_with = |lost: u32, skipped: u32| {
+                let (mut pair, start) = underway(channel, kind);
+                pair.idle(lost as usize);
+                for cycle in 0..3 {
+                    pair.tick(Some(nominal(channel, &start, 100 + skipped + cycle)));
+                }
+                pair.state.errors
+            };
+            let name = format!("{kind:?} {}", channel.name);
+            for lost in [1, 2] {
+                let errors = goes_on_with(lost, lost);
+                assert!(errors.is_empty(), "{name}: {errors}");
+            }
+            let errors = goes_on_with(LOST, 0);
+            let jumps = |error: RobotError| {
+                let name = error.name();
+                name.ends_with("discontinuity") || name.ends_with("elbow_limit_violation")
+            };
+            assert!(errors.iter().any(jumps), "{name}: {errors}");
+        }
+    }
+}
+
+#[test]
+fn what_is_made_up_for_lost_commands_has_to_keep_the_limits() {
+    for kind in RobotKind::ALL {
+        let mut pair = Pair::of(kind);
+        let limits = franka_model::limits::JointLimits::of(kind);
+        let id = pair.start(
+            MoveControllerMode::JointImpedance,
+            MoveGeneratorMode::JointVelocity,
+        );
+        let mut command = RobotCommand::default();
+        // Up to 9 rad/s², within the jerk, until just below the limit.
+        let mut acceleration = 0.0_f64;
+        while command.dq_c[0] < limits.velocity[0] - 0.04 {
+            acceleration = (acceleration + 1.0).min(9.0);
+            command.dq_c[0] += acceleration * CYCLE;
+            pair.tick(Some(command));
+            let errors = pair.state.errors;
+            assert!(errors.is_empty(), "{kind:?}: {errors}");
+        }
+        pair.idle(18);
+        let violation = RobotError::JointMotionGeneratorVelocityLimitsViolation;
+        let errors = pair.state.errors;
+        assert!(errors.contains(violation), "{kind:?}: {errors}");
+        assert_eq!(pair.outcome(id), MoveStatus::ReflexAborted);
+    }
+}
