@@ -39,6 +39,9 @@ async fn main() -> anyhow::Result<()> {
         Ok(_) => bail!("the robot took a step in velocity"),
     };
     println!("{error}");
+    if let Some(diagnosis) = &error.diagnosis {
+        println!("{diagnosis}");
+    }
     let newest = error.log.iter().next_back();
     let entry = newest.context("an empty log")?;
     println!(

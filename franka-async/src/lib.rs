@@ -102,6 +102,7 @@ pub use franka_rt::control::{
     AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next,
     TargetStatus, Torques,
 };
+pub use franka_rt::diagnosis::{self, Diagnosis};
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::law::{Gains, Law};
 pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};

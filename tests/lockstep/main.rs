@@ -1,6 +1,7 @@
 //! Motions in lockstep: no sockets, no sleeps, every run the same.
 
 mod awkward_poses;
+mod diagnosis;
 mod endings;
 mod engaged;
 mod faults;

@@ -3,10 +3,12 @@
 use core::time::Duration;
 use std::sync::Arc;
 
+use franka_model::Model;
 use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 
 use super::outcome::Counted;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
+use crate::diagnosis::{Case, Diagnosis};
 use crate::driver::{Ended, Ending, Failure, MotionId, MotionTimes, Order, Program};
 use crate::panic;
 use crate::session::{Backend, Goal, GoalError, GoalId, Settlement, Target, Then};
@@ -120,8 +122,12 @@ pub(super) enum ThreadSide {
 }
 
 impl Active {
-    /// How it turned out, both sides having ended.
-    pub(super) fn verdict(&self, ended: &Ended) -> Result<MotionReport, MotionError> {
+    /// How it turned out with a robot of this model, both sides having ended.
+    pub(super) fn verdict(
+        &self,
+        ended: &Ended,
+        model: &Model,
+    ) -> Result<MotionReport, MotionError> {
         // What came after a failure is its consequence.
         if let Some(failure) = self.work.failure() {
             return Err(failure.clone());
@@ -153,7 +159,7 @@ impl Active {
                 return Err(match (status, self.given_up) {
                     // and any motion that was given up.
                     (MoveStatus::Preempted, Some(what)) => MotionError::Protocol { what },
-                    _ => ControlError::new(refusal, ended).into(),
+                    _ => ControlError::new(refusal, ended, model).into(),
                 });
             }
             None => {}
@@ -332,8 +338,15 @@ impl Programmed {
 }
 
 impl ControlError {
-    /// The robot ended a motion with `refusal`.
-    fn new(refusal: Refusal, ended: &Ended) -> Box<Self> {
+    /// A robot of this model ended a motion with `refusal`.
+    fn new(refusal: Refusal, ended: &Ended, model: &Model) -> Box<Self> {
+        let case = Case {
+            errors: ended.reflex_reason,
+            log: &ended.log,
+            model,
+            statistics: Some(&ended.statistics),
+        };
+        let is_reflex = refusal.status() == Status::Move(MoveStatus::ReflexAborted);
         Box::new(Self {
             failure: ControlFailure {
                 refusal,
@@ -347,6 +360,7 @@ impl ControlError {
                 Ending::Disarmed | Ending::Refused | Ending::LinkLost { .. } => Stage::Starting,
             },
             log: Arc::new(ended.log.clone()),
+            diagnosis: is_reflex.then(|| Diagnosis::of(&case)),
         })
     }
 }

@@ -418,7 +418,7 @@ impl Lifecycle {
                     );
                     return self.follow(goals.current, &Ok(()), &Counted::of(ended), now);
                 }
-                (active.verdict(ended), Counted::of(ended))
+                (active.verdict(ended, &self.model), Counted::of(ended))
             }
             (None, ThreadSide::Armed | ThreadSide::Running) => {
                 unreachable!("a motion concludes when its thread side has ended")

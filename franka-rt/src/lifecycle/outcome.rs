@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
 
+use crate::diagnosis::Diagnosis;
 use crate::driver::{ControlLog, Ended, MotionStatistics, MotionTimes};
 use crate::session::{GoalError, Lapse, PoseError};
 use crate::shaping::InvalidCommand;
@@ -187,6 +188,11 @@ impl MotionError {
         }
     }
 
+    /// Why the robot stopped itself, if that is what happened.
+    pub fn diagnosis(&self) -> Option<&Diagnosis> {
+        self.control()?.diagnosis.as_ref()
+    }
+
     /// Who can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -253,6 +259,8 @@ pub struct ControlError {
     pub stage: Stage,
     /// The last cycles of the motion, the newest of which shows its end. How many is an option of the connection.
     pub log: Arc<ControlLog>,
+    /// Why the robot stopped itself, as far as the log shows; `None` if it did not.
+    pub diagnosis: Option<Diagnosis>,
 }
 
 impl ControlError {

@@ -1,0 +1,373 @@
+//! What commands ask for, by the differences that the robot takes of them.
+//!
+//! Backward differences over one cycle, from what the state that a command answers publishes as commanded (FCI documentation,
+//! control parameters). Limits are the nominal ones.
+
+use franka_model::differential_ik::{DifferentialIk, JointBox};
+use franka_model::limits::MotionLimits;
+use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation, transform};
+use franka_proto::{MotionGeneratorMode as Generator, RobotState};
+use nalgebra::{Isometry3, SVector, Vector3};
+
+use super::evidence::{CYCLE, Evidence, Reading, Sample, positions, velocities};
+use super::finding::{Origin, Quantity, Subject};
+
+/// A command with its derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Derivatives<const N: usize> {
+    pub(super) velocity: SVector<f64, N>,
+    pub(super) acceleration: SVector<f64, N>,
+    pub(super) jerk: SVector<f64, N>,
+}
+
+impl<const N: usize> Derivatives<N> {
+    fn of(
+        velocity: SVector<f64, N>,
+        before: SVector<f64, N>,
+        acceleration_before: SVector<f64, N>,
+    ) -> Self {
+        let acceleration = (velocity - before) / CYCLE;
+        Self {
+            velocity,
+            acceleration,
+            jerk: (acceleration - acceleration_before) / CYCLE,
+        }
+    }
+
+    /// Standing still from one cycle to the next, as a finished command does.
+    fn at_rest_next(&self) -> Self {
+        Self::of(SVector::zeros(), self.velocity, self.acceleration)
+    }
+}
+
+/// Joint positions and their derivatives that a joint command asks for; `None` for other commands.
+pub(super) fn joints(sample: &Sample<'_>) -> Option<(JointVector, Derivatives<7>)> {
+    let Sample {
+        before, command, ..
+    } = sample;
+    let from = JointVector::from(before.q_d);
+    let (q, velocity) = match before.motion_generator_mode {
+        Generator::JointPosition => {
+            let q = JointVector::from(command.q_c);
+            (q, (q - from) / CYCLE)
+        }
+        Generator::JointVelocity => {
+            let dq = JointVector::from(command.dq_c);
+            (from + dq * CYCLE, dq)
+        }
+        _ => return None,
+    };
+    let (dq_d, ddq_d) = (
+        JointVector::from(before.dq_d),
+        JointVector::from(before.ddq_d),
+    );
+    Some((q, Derivatives::of(velocity, dq_d, ddq_d)))
+}
+
+/// Pose and derivatives that a Cartesian command asks for; `None` for other commands, and for what is no pose.
+pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivatives<6>)> {
+    let Sample {
+        before, command, ..
+    } = sample;
+    let from = transform::isometry_from_array(&before.O_T_EE_c)?;
+    let (pose, twist) = match before.motion_generator_mode {
+        Generator::CartesianPosition => {
+            let pose = transform::isometry_from_array(&command.O_T_EE_c)?;
+            (pose, difference(&pose, &from) / CYCLE)
+        }
+        Generator::CartesianVelocity => {
+            let twist = Twist::from(command.O_dP_EE_c);
+            let (linear, angular) = halves(&twist);
+            let turn = rotation::exp(&(angular * CYCLE)) * from.rotation;
+            let position = from.translation.vector + linear * CYCLE;
+            (Isometry3::from_parts(position.into(), turn), twist)
+        }
+        _ => return None,
+    };
+    let (before_twist, before_acceleration) = (
+        Twist::from(before.O_dP_EE_c),
+        Twist::from(before.O_ddP_EE_c),
+    );
+    Some((
+        pose,
+        Derivatives::of(twist, before_twist, before_acceleration),
+    ))
+}
+
+/// Likewise of a commanded elbow.
+pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
+    let [angle, _] = sample.command.elbow_c?;
+    let before = sample.before;
+    let velocity = (angle - before.elbow_c[0]) / CYCLE;
+    let one = SVector::<f64, 1>::repeat;
+    Some(Derivatives::of(
+        one(velocity),
+        one(before.delbow_c[0]),
+        one(before.ddelbow_c[0]),
+    ))
+}
+
+/// Likewise of the joints that a Cartesian command takes, by Newton's iteration from where they were told to be. The robot's
+/// own way to them is not published; the smallest step is what it is known to be near.
+pub(super) fn resulting(
+    model: &Model,
+    sample: &Sample<'_>,
+) -> Option<(JointVector, Derivatives<7>)> {
+    let before = sample.before;
+    let (pose, _) = cartesian(sample)?;
+    let ee = end_effector(before);
+    let from = JointVector::from(before.q_d);
+    let mut q = from;
+    for _ in 0..ITERATIONS {
+        let here = transform::isometry(&model.pose(Frame::EndEffector, &q, &ee))?;
+        let error = difference(&pose, &here);
+        let mut upper = JointVector::repeat(LEAP);
+        let mut lower = -upper;
+        if let Some([angle, _]) = sample.command.elbow_c {
+            upper[2] = (angle - q[2]).clamp(-LEAP, LEAP);
+            lower[2] = upper[2];
+        }
+        let jacobian = model.zero_jacobian(Frame::EndEffector, &q, &ee);
+        let bounds = JointBox::new(&lower, &upper);
+        let start = Default::default();
+        let step = DifferentialIk::smooth().solve(
+            &jacobian,
+            &error,
+            &JointVector::zeros(),
+            &bounds,
+            start,
+        );
+        q += step.velocity;
+    }
+    let (dq_d, ddq_d) = (
+        JointVector::from(before.dq_d),
+        JointVector::from(before.ddq_d),
+    );
+    Some((q, Derivatives::of((q - from) / CYCLE, dq_d, ddq_d)))
+}
+
+/// Change of the torques of a command against those that the state publishes, `[N·m]`; of the first one against none.
+pub(super) fn torque_step(sample: &Sample<'_>) -> Option<JointVector> {
+    if !sample.before.controller_running() {
+        return None;
+    }
+    let before = if sample.first {
+        JointVector::zeros()
+    } else {
+        sample.before.tau_J_d.into()
+    };
+    Some(JointVector::from(sample.command.tau_J_d) - before)
+}
+
+/// The frames that the client has set, as a state has them.
+pub(super) fn end_effector(state: &RobotState) -> EndEffector {
+    EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K)
+}
+
+/// Which of the differences of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Which {
+    Velocity,
+    Acceleration,
+    Jerk,
+}
+
+/// All commands of a log, each with what its `which` derivative may be.
+pub(super) fn joint_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
+    of_joints(evidence, Origin::Commanded, which, joints)
+}
+
+/// Likewise of the joints that Cartesian commands take.
+pub(super) fn resulting_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
+    of_joints(evidence, Origin::Desired, which, |sample| {
+        resulting(evidence.model, sample)
+    })
+}
+
+fn of_joints(
+    evidence: &Evidence<'_>,
+    origin: Origin,
+    which: Which,
+    derive: impl Fn(&Sample<'_>) -> Option<(JointVector, Derivatives<7>)>,
+) -> Vec<Reading> {
+    let limits = evidence.model.joint_limits();
+    let mut readings = Vec::new();
+    for sample in evidence.samples() {
+        let Some((_, asked)) = derive(&sample) else {
+            continue;
+        };
+        for motion in with_rest(asked, &sample) {
+            let cycle = sample.cycle();
+            let (quantity, values, limit) = match which {
+                Which::Velocity => {
+                    let q = JointVector::from(sample.before.q_d);
+                    readings.extend(velocities(
+                        evidence.model,
+                        origin,
+                        &q,
+                        &motion.velocity,
+                        cycle,
+                    ));
+                    continue;
+                }
+                Which::Acceleration => (
+                    Quantity::Acceleration,
+                    motion.acceleration,
+                    limits.acceleration,
+                ),
+                Which::Jerk => (Quantity::Jerk, motion.jerk, limits.jerk),
+            };
+            readings.extend((0..7).map(|i| {
+                let subject = Subject::joint(i);
+                Reading::magnitude(subject, quantity, origin, values[i], limit[i], cycle)
+            }));
+        }
+    }
+    readings
+}
+
+/// Commanded positions against the ranges of the joints.
+pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
+    let mut readings = Vec::new();
+    for sample in evidence.samples() {
+        // The robot ignores the position in the finishing command of an asynchronous motion.
+        if sample.is_finished() && sample.command.q_c == [0.0; 7] {
+            continue;
+        }
+        let commanded = joints(&sample).map(|(q, _)| (Origin::Commanded, q));
+        let asked = commanded
+            .or_else(|| resulting(evidence.model, &sample).map(|(q, _)| (Origin::Desired, q)));
+        if let Some((origin, q)) = asked {
+            readings.extend(positions(evidence.model, origin, &q, sample.cycle()));
+        }
+    }
+    readings
+}
+
+/// All Cartesian commands of a log.
+pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
+    evidence
+        .samples()
+        .flat_map(|sample| cartesian_readings_of(evidence.model, &sample, which))
+        .collect()
+}
+
+/// One of them: translation and rotation.
+pub(super) fn cartesian_readings_of(
+    model: &Model,
+    sample: &Sample<'_>,
+    which: Which,
+) -> Vec<Reading> {
+    let limits = model.cartesian_limits();
+    let Some((_, asked)) = cartesian(sample) else {
+        return Vec::new();
+    };
+    let mut readings = Vec::new();
+    for motion in with_rest(asked, sample) {
+        let (quantity, vector, limit) = select(which, &motion);
+        for (offset, limits) in [(0, &limits.translation), (3, &limits.rotation)] {
+            let half = vector.fixed_rows::<3>(offset);
+            let subject = Subject::component(offset + half.iamax());
+            let limit = limit(limits);
+            let (norm, cycle) = (half.norm(), sample.cycle());
+            readings.push(Reading::magnitude(
+                subject,
+                quantity,
+                Origin::Commanded,
+                norm,
+                limit,
+                cycle,
+            ));
+        }
+    }
+    readings
+}
+
+/// All commands of the elbow.
+pub(super) fn elbow_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
+    let limits = &evidence.model.cartesian_limits().elbow;
+    let mut readings = Vec::new();
+    for sample in evidence.samples() {
+        let Some(motion) = elbow(&sample) else {
+            continue;
+        };
+        for which in [Which::Velocity, Which::Acceleration, Which::Jerk] {
+            let (quantity, value, limit) = select(which, &motion);
+            readings.push(Reading::magnitude(
+                Subject::Elbow,
+                quantity,
+                Origin::Commanded,
+                value[0],
+                limit(limits),
+                sample.cycle(),
+            ));
+        }
+    }
+    readings
+}
+
+/// The torque rate of every joint and command.
+pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
+    let limit = &evidence.model.joint_limits().torque_rate;
+    let mut readings = Vec::new();
+    for sample in evidence.samples() {
+        let Some(step) = torque_step(&sample) else {
+            continue;
+        };
+        readings.extend((0..7).map(|i| {
+            Reading::magnitude(
+                Subject::joint(i),
+                Quantity::TorqueRate,
+                Origin::Commanded,
+                step[i] / CYCLE,
+                limit[i],
+                sample.cycle(),
+            )
+        }));
+    }
+    readings
+}
+
+/// A command, and what follows of one that is the last.
+fn with_rest<const N: usize>(
+    asked: Derivatives<N>,
+    sample: &Sample<'_>,
+) -> impl Iterator<Item = Derivatives<N>> {
+    let rest = sample.is_finished().then(|| asked.at_rest_next());
+    core::iter::once(asked).chain(rest)
+}
+
+fn select<const N: usize>(
+    which: Which,
+    motion: &Derivatives<N>,
+) -> (Quantity, SVector<f64, N>, fn(&MotionLimits) -> f64) {
+    match which {
+        Which::Velocity => (Quantity::Velocity, motion.velocity, |limits| {
+            limits.velocity
+        }),
+        Which::Acceleration => (Quantity::Acceleration, motion.acceleration, |limits| {
+            limits.acceleration
+        }),
+        Which::Jerk => (Quantity::Jerk, motion.jerk, |limits| limits.jerk),
+    }
+}
+
+/// Displacement and rotation vector from `from` to `to`, in base axes.
+pub(super) fn difference(to: &Isometry3<f64>, from: &Isometry3<f64>) -> Twist {
+    let shift = to.translation.vector - from.translation.vector;
+    let turn = rotation::error(&to.rotation, &from.rotation);
+    Twist::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z)
+}
+
+fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
+    (
+        twist.fixed_rows::<3>(0).into_owned(),
+        twist.fixed_rows::<3>(3).into_owned(),
+    )
+}
+
+/// Newton's steps for one cycle: two or three do away from singular poses.
+const ITERATIONS: usize = 4;
+
+/// Longest step of a joint in one of them, `[rad]`.
+const LEAP: f64 = 0.5;

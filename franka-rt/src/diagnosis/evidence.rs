@@ -1,0 +1,231 @@
+//! A log, laid out for questions.
+
+use franka_model::{JointVector, Model};
+use franka_proto::{MotionGeneratorMode, RobotCommand, RobotError, RobotState};
+
+use super::finding::{Bound, Finding, Origin, Quantity, Subject};
+use crate::driver::{LogEntry, MotionStatistics};
+
+/// Duration of a control cycle, `[s]`.
+pub(super) const CYCLE: f64 = 1e-3;
+
+/// What there is to judge by.
+pub(super) struct Evidence<'a> {
+    /// Oldest first.
+    pub(super) entries: Vec<&'a LogEntry>,
+    pub(super) model: &'a Model,
+    pub(super) statistics: Option<&'a MotionStatistics>,
+}
+
+/// A command, with the state that it answers.
+#[derive(Clone, Copy)]
+pub(super) struct Sample<'a> {
+    pub(super) before: &'a RobotState,
+    pub(super) command: &'a RobotCommand,
+    /// Whether it is the first of the motion.
+    pub(super) first: bool,
+}
+
+/// One number of one cycle, and what it must not exceed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reading {
+    pub(super) subject: Subject,
+    pub(super) quantity: Quantity,
+    pub(super) origin: Origin,
+    pub(super) value: f64,
+    pub(super) limit: f64,
+    /// Above 1 if the limit is exceeded.
+    pub(super) score: f64,
+    pub(super) cycle: u64,
+}
+
+impl<'a> Evidence<'a> {
+    /// The newest state of all: the one that shows the end.
+    pub(super) fn last(&self) -> Option<&'a RobotState> {
+        self.entries.last().map(|entry| &entry.state)
+    }
+
+    /// All states, oldest first.
+    pub(super) fn states(&self) -> impl DoubleEndedIterator<Item = &'a RobotState> {
+        self.entries.iter().map(|entry| &entry.state)
+    }
+
+    /// The newest state of the motion itself.
+    pub(super) fn last_running(&self) -> Option<&'a RobotState> {
+        self.states().rev().find(|state| state.motion_running())
+    }
+
+    /// What the motion was commanded in. In protocol 5 a motion in torques shows a generator too, whose commands rest.
+    pub(super) fn generator(&self) -> MotionGeneratorMode {
+        self.last_running()
+            .map_or(MotionGeneratorMode::Idle, |state| {
+                state.motion_generator_mode
+            })
+    }
+
+    /// Whether the motion was commanded in poses or twists.
+    pub(super) fn is_cartesian(&self) -> bool {
+        matches!(
+            self.generator(),
+            MotionGeneratorMode::CartesianPosition | MotionGeneratorMode::CartesianVelocity
+        )
+    }
+
+    /// The commands whose state is in the log as well. Differences are to be taken from what that state publishes as
+    /// commanded: it includes what the robot made up for cycles without a command.
+    pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = Sample<'a>> {
+        self.entries.windows(2).filter_map(|pair| {
+            let (before, command) = (&pair[0].state, &pair[1].command);
+            let answers = command.message_id == before.message_id && before.motion_running();
+            answers.then_some(Sample {
+                before,
+                command,
+                first: pair[0].command.message_id == 0,
+            })
+        })
+    }
+
+    /// The command that answers the state of this number.
+    pub(super) fn sample(&self, cycle: u64) -> Option<Sample<'a>> {
+        self.samples().find(|sample| sample.cycle() == cycle)
+    }
+
+    /// The command that began the motion, if the log reaches that far back.
+    pub(super) fn first(&self) -> Option<Sample<'a>> {
+        self.samples().find(|sample| sample.first)
+    }
+}
+
+impl Sample<'_> {
+    pub(super) fn cycle(&self) -> u64 {
+        self.before.message_id
+    }
+
+    pub(super) fn is_finished(&self) -> bool {
+        self.command.motion_generation_finished || self.command.torque_command_finished
+    }
+}
+
+impl Reading {
+    /// Of a number whose magnitude is bounded.
+    pub(super) fn magnitude(
+        subject: Subject,
+        quantity: Quantity,
+        origin: Origin,
+        value: f64,
+        limit: f64,
+        cycle: u64,
+    ) -> Self {
+        let ratio = value.abs() / limit.abs();
+        Self {
+            subject,
+            quantity,
+            origin,
+            value,
+            limit: limit.copysign(value),
+            // Where nothing is allowed, nothing is no violation.
+            score: if ratio.is_nan() { 0.0 } else { ratio },
+            cycle,
+        }
+    }
+
+    /// The finding that a reading of the end of the motion amounts to, without regard to how it came about.
+    pub(super) fn finding(&self, error: RobotError) -> Finding {
+        Finding {
+            error,
+            subject: self.subject,
+            quantity: self.quantity,
+            origin: self.origin,
+            value: self.value,
+            bound: Bound::Limit(self.limit),
+            since: self.cycle,
+        }
+    }
+}
+
+/// The velocity of every joint against what is allowed at `q`.
+pub(super) fn velocities(
+    model: &Model,
+    origin: Origin,
+    q: &JointVector,
+    dq: &JointVector,
+    cycle: u64,
+) -> Vec<Reading> {
+    let (lower, upper) = model.joint_limits().velocity_envelope(q, 0.0);
+    (0..7)
+        .map(|i| {
+            let limit = if dq[i] < 0.0 { lower[i] } else { upper[i] };
+            let subject = Subject::joint(i);
+            Reading::magnitude(subject, Quantity::Velocity, origin, dq[i], limit, cycle)
+        })
+        .collect()
+}
+
+/// The position of every joint against the nearer end of its range.
+pub(super) fn positions(
+    model: &Model,
+    origin: Origin,
+    q: &JointVector,
+    cycle: u64,
+) -> Vec<Reading> {
+    let limits = model.joint_limits();
+    (0..7)
+        .map(|i| {
+            let (below, above) = (limits.hard_lower[i] - q[i], q[i] - limits.hard_upper[i]);
+            let (beyond, limit) = if below > above {
+                (below, limits.hard_lower[i])
+            } else {
+                (above, limits.hard_upper[i])
+            };
+            Reading {
+                subject: Subject::joint(i),
+                quantity: Quantity::Position,
+                origin,
+                value: q[i],
+                limit,
+                score: 1.0 + beyond,
+                cycle,
+            }
+        })
+        .collect()
+}
+
+/// The worst of some readings, oldest first, as a finding: with the first of the cycles in a row in which its limit was
+/// exceeded. `None` if nothing comes near its limit.
+pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> {
+    let worst = readings
+        .iter()
+        .filter(|reading| reading.score >= VISIBLE)
+        .max_by(|a, b| a.score.total_cmp(&b.score))?;
+    let mut since = worst.cycle;
+    let earlier = |reading: &&Reading| {
+        reading.cycle < worst.cycle
+            && reading.quantity == worst.quantity
+            && reading.subject.is_like(worst.subject)
+    };
+    for reading in readings.iter().rev().filter(earlier) {
+        if reading.score <= 1.0 {
+            break;
+        }
+        since = reading.cycle;
+    }
+    Some(Finding {
+        since,
+        ..worst.finding(error)
+    })
+}
+
+impl Subject {
+    /// Whether both are the same, whichever component of a vector is its largest.
+    fn is_like(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Translation(_), Self::Translation(_))
+            | (Self::Rotation(_), Self::Rotation(_)) => true,
+            (a, b) => a == b,
+        }
+    }
+}
+
+/// The share of a limit from which on it counts as reached. States in single precision move a third difference by up to a
+/// twentieth of what it may be, and how the robot itself measures is not published.
+const VISIBLE: f64 = 0.95;

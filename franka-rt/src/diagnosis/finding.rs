@@ -1,0 +1,406 @@
+//! What was exceeded: where, which quantity, by how much, since when.
+
+use core::fmt;
+
+use franka_proto::RobotError;
+
+/// What a number is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Subject {
+    /// A joint, 1 to 7 from the base.
+    Joint(u8),
+    /// The translation of the end effector. Limits hold for the norm of the vector; this is its largest component.
+    Translation(Axis),
+    /// The rotation of the end effector, likewise.
+    Rotation(Axis),
+    /// The elbow: the angle of joint 3 in a Cartesian motion.
+    Elbow,
+    /// Two bodies of the arm: link 0 (the base) to 7, and 8 for what is mounted on the flange.
+    Bodies(u8, u8),
+    /// The arm as a whole.
+    Arm,
+}
+
+/// An axis of a frame: of the base frame, and for contacts of the stiffness frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+/// What was measured or commanded of a [`Subject`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Quantity {
+    /// `[rad]` or `[m]`.
+    Position,
+    /// `[rad/s]` or `[m/s]`.
+    Velocity,
+    /// `[rad/s²]` or `[m/s²]`.
+    Acceleration,
+    /// `[rad/s³]` or `[m/s³]`.
+    Jerk,
+    /// `[N·m]`.
+    Torque,
+    /// `[N·m/s]`.
+    TorqueRate,
+    /// What the environment does by the robot's estimate: `[N·m]` of a joint or a rotation, `[N]` of a translation.
+    ExternalLoad,
+    /// From what the state says is commanded to the first command: `[rad]` or `[m]`.
+    StartOffset,
+    /// Between measured and desired: `[m]`.
+    Deviation,
+    /// Between two bodies: `[m]`.
+    Distance,
+    /// Mechanical power of all joints: `[W]`.
+    Power,
+    /// Cycles in a row without a command.
+    LostCycles,
+    /// How often the velocity changed its sign within the log.
+    Reversals,
+}
+
+/// Where a number comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Origin {
+    /// From the commands: differences from what the state published before, over one cycle.
+    Commanded,
+    /// From the joint positions that a Cartesian command takes, by this driver's inverse kinematics.
+    Desired,
+    /// From the sensors.
+    Measured,
+    /// From the robot's estimate of what acts on it.
+    Estimated,
+}
+
+/// What a number must not exceed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Bound {
+    /// The nominal limit of the robot's model, with the sign of the value.
+    Limit(f64),
+    /// A threshold that no state shows: it lies between the magnitude that passed and the one that did not.
+    Between(f64, f64),
+    /// Neither published nor shown by a state.
+    Unknown,
+}
+
+/// A limit that was exceeded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Finding {
+    /// The error that it stands for.
+    pub error: RobotError,
+    /// Which joint, axis or part.
+    pub subject: Subject,
+    /// Of it, what.
+    pub quantity: Quantity,
+    /// Where the value comes from.
+    pub origin: Origin,
+    /// The largest value, in the unit of its [`Quantity`].
+    pub value: f64,
+    /// What it must not exceed, in the same unit.
+    pub bound: Bound,
+    /// The first of the cycles in a row in which it was exceeded: the `message_id` of the state that the command answers, or
+    /// that shows what was measured.
+    pub since: u64,
+}
+
+impl Finding {
+    /// By how much the limit is exceeded, in the unit of the quantity; `None` if the limit is not known.
+    pub fn excess(&self) -> Option<f64> {
+        match self.bound {
+            Bound::Limit(limit) => Some((self.value - limit) * limit_sign(self.value, limit)),
+            Bound::Between(..) | Bound::Unknown => None,
+        }
+    }
+
+    /// How many times the limit the value is; `None` if the limit is zero, a position, or not known.
+    pub fn times(&self) -> Option<f64> {
+        match self.bound {
+            Bound::Limit(limit) if limit != 0.0 && self.quantity != Quantity::Position => {
+                Some(self.value / limit)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The direction in which a limit bounds a value: outwards.
+fn limit_sign(value: f64, limit: f64) -> f64 {
+    // Positions may have both limits of one sign: whichever side the value is on, it is beyond.
+    if value < limit { -1.0 } else { 1.0 }
+}
+
+impl Subject {
+    /// A joint, counted from 0.
+    pub(super) fn joint(index: usize) -> Self {
+        Self::Joint(index as u8 + 1)
+    }
+
+    /// A component of a twist or wrench, counted from 0.
+    pub(super) fn component(index: usize) -> Self {
+        let axis = [Axis::X, Axis::Y, Axis::Z][index % 3];
+        if index < 3 {
+            Self::Translation(axis)
+        } else {
+            Self::Rotation(axis)
+        }
+    }
+
+    fn length(self) -> &'static str {
+        match self {
+            Self::Translation(_) => "m",
+            _ => "rad",
+        }
+    }
+}
+
+impl Quantity {
+    /// A value of it, with its unit.
+    pub(super) fn of(self, subject: Subject, value: f64) -> Measure {
+        Measure {
+            quantity: self,
+            subject,
+            value,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::Jerk => "jerk",
+            Self::Torque => "torque",
+            Self::TorqueRate => "torque rate",
+            Self::ExternalLoad => "external load",
+            Self::StartOffset => "offset of the first command",
+            Self::Deviation => "deviation from the desired pose",
+            Self::Distance => "distance",
+            Self::Power => "power",
+            Self::LostCycles => "cycles in a row without a command",
+            Self::Reversals => "reversals of the velocity",
+        }
+    }
+}
+
+/// A number with its unit.
+pub(super) struct Measure {
+    quantity: Quantity,
+    subject: Subject,
+    value: f64,
+}
+
+impl fmt::Display for Measure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = Digits(self.value);
+        let length = self.subject.length();
+        match self.quantity {
+            Quantity::Position | Quantity::StartOffset => write!(f, "{number} {length}"),
+            Quantity::Velocity => write!(f, "{number} {length}/s"),
+            Quantity::Acceleration => write!(f, "{number} {length}/s^2"),
+            Quantity::Jerk => write!(f, "{number} {length}/s^3"),
+            Quantity::ExternalLoad if length == "m" => write!(f, "{number} N"),
+            Quantity::Torque | Quantity::ExternalLoad => write!(f, "{number} N m"),
+            Quantity::TorqueRate => write!(f, "{number} N m/s"),
+            Quantity::Deviation | Quantity::Distance => write!(f, "{number} m"),
+            Quantity::Power => write!(f, "{number} W"),
+            Quantity::LostCycles | Quantity::Reversals => write!(f, "{number}"),
+        }
+    }
+}
+
+/// Four significant digits without an exponent, as far as six decimals show them.
+pub(super) struct Digits(pub(super) f64);
+
+impl fmt::Display for Digits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.0;
+        if value == 0.0 || !value.is_finite() {
+            return write!(f, "{value}");
+        }
+        let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+        let text = format!("{value:.decimals$}");
+        let short = if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.')
+        } else {
+            &text
+        };
+        f.write_str(short)
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let body = |number: u8| match number {
+            0 => "base".to_owned(),
+            8 => "tool".to_owned(),
+            link => format!("link {link}"),
+        };
+        match *self {
+            Self::Joint(number) => write!(f, "joint {number}"),
+            Self::Translation(axis) => write!(f, "translation along {axis}"),
+            Self::Rotation(axis) => write!(f, "rotation about {axis}"),
+            Self::Elbow => write!(f, "elbow"),
+            Self::Bodies(inner, outer) => write!(f, "{} and {}", body(inner), body(outer)),
+            Self::Arm => write!(f, "arm"),
+        }
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        })
+    }
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Commanded => "commanded",
+            Self::Desired => "resulting",
+            Self::Measured => "measured",
+            Self::Estimated => "estimated",
+        })
+    }
+}
+
+impl fmt::Display for Finding {
+    /// `joint 4: commanded acceleration 250 rad/s^2, limit 12.5 rad/s^2 (20 times)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            subject,
+            quantity,
+            origin,
+            ..
+        } = *self;
+        let value = quantity.of(subject, self.value);
+        match quantity {
+            // These name their origin.
+            Quantity::StartOffset
+            | Quantity::Distance
+            | Quantity::LostCycles
+            | Quantity::Deviation
+            | Quantity::Power
+            | Quantity::Reversals => write!(f, "{subject}: {} {value}", quantity.name())?,
+            _ => write!(f, "{subject}: {origin} {} {value}", quantity.name())?,
+        }
+        match self.bound {
+            Bound::Limit(limit) => {
+                write!(f, ", limit {}", quantity.of(subject, limit))?;
+                let beyond = self.excess().filter(|&excess| excess > 0.0);
+                match (self.times(), beyond) {
+                    (Some(times), _) => write!(f, " ({} times)", Digits(round(times))),
+                    (None, Some(beyond)) => {
+                        write!(f, " ({} beyond)", quantity.of(subject, beyond))
+                    }
+                    (None, None) => Ok(()),
+                }
+            }
+            Bound::Between(passed, stopped) => write!(
+                f,
+                ", threshold above {} and up to {}",
+                Digits(passed),
+                quantity.of(subject, stopped)
+            ),
+            Bound::Unknown => Ok(()),
+        }
+    }
+}
+
+/// Two decimals are enough for a ratio.
+fn round(times: f64) -> f64 {
+    (times * 100.0).round() / 100.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn finding(quantity: Quantity, value: f64, bound: Bound) -> Finding {
+        Finding {
+            error: RobotError::JointVelocityViolation,
+            subject: Subject::Joint(4),
+            quantity,
+            origin: Origin::Measured,
+            value,
+            bound,
+            since: 7,
+        }
+    }
+
+    #[test]
+    fn a_finding_says_what_and_by_how_much() {
+        for (finding, expected) in [
+            (
+                finding(Quantity::Velocity, -2.8, Bound::Limit(-2.62)),
+                "joint 4: measured velocity -2.8 rad/s, limit -2.62 rad/s (1.07 times)",
+            ),
+            (
+                finding(Quantity::Velocity, 0.2, Bound::Limit(0.0)),
+                "joint 4: measured velocity 0.2 rad/s, limit 0 rad/s (0.2 rad/s beyond)",
+            ),
+            (
+                finding(Quantity::Position, -3.1, Bound::Limit(-3.0481)),
+                "joint 4: measured position -3.1 rad, limit -3.048 rad (0.0519 rad beyond)",
+            ),
+            (
+                finding(Quantity::Position, -0.1, Bound::Limit(-0.1458)),
+                "joint 4: measured position -0.1 rad, limit -0.1458 rad (0.0458 rad beyond)",
+            ),
+            (
+                finding(
+                    Quantity::ExternalLoad,
+                    -12.345,
+                    Bound::Between(11.0, 12.345),
+                ),
+                "joint 4: measured external load -12.35 N m, threshold above 11 and up to 12.35 N m",
+            ),
+            (
+                finding(Quantity::Power, 612.0, Bound::Unknown),
+                "joint 4: power 612 W",
+            ),
+        ] {
+            assert_eq!(finding.to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn the_excess_counts_outwards() {
+        let excess = |value, limit| {
+            finding(Quantity::Velocity, value, Bound::Limit(limit))
+                .excess()
+                .unwrap()
+        };
+        assert!((excess(-2.8, -2.62) - 0.18).abs() < 1e-12);
+        assert!((excess(2.8, 2.62) - 0.18).abs() < 1e-12);
+    }
+
+    #[test]
+    fn digits_are_four() {
+        for (value, text) in [
+            (0.0, "0"),
+            (12_345.678, "12346"),
+            (0.000_123_456, "0.000123"),
+            (-2.5, "-2.5"),
+            (100.0, "100"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(Digits(value).to_string(), text);
+        }
+    }
+}

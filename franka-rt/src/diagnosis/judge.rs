@@ -1,0 +1,327 @@
+//! From errors to a finding, from a finding to its causes, from causes to advice.
+
+use franka_proto::{Errors, RobotError as E};
+
+use super::advice::Advice;
+use super::cause::Cause;
+use super::commanded::{self, Which};
+use super::evidence::{Evidence, Reading, worst};
+use super::finding::{Finding, Quantity};
+use super::touch::Sense;
+use super::{link, measured, pose, step, touch};
+
+/// What kind of thing an error is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Matter {
+    /// Commands that stay away.
+    Link,
+    /// The first command.
+    Start,
+    /// What the client commands.
+    Command,
+    /// The joints that a Cartesian command takes.
+    Inverse,
+    /// What touches the arm.
+    Contact,
+    /// What the arm does.
+    Arm,
+    /// What only Desk or the robot's own controllers know.
+    Desk,
+}
+
+/// Every error, the more explaining ones first: a missing command before the leap that it leads to, a command before what
+/// the arm makes of it, acceleration before jerk before velocity, a contact before the motion that it causes.
+const ORDER: [(E, Matter); 41] = [
+    (E::CommunicationConstraintsViolation, Matter::Link),
+    (
+        E::JointPositionMotionGeneratorStartPoseInvalid,
+        Matter::Start,
+    ),
+    (
+        E::CartesianPositionMotionGeneratorStartPoseInvalid,
+        Matter::Start,
+    ),
+    (E::CartesianMotionGeneratorStartElbowInvalid, Matter::Start),
+    (E::StartElbowSignInconsistent, Matter::Start),
+    (
+        E::CartesianPositionMotionGeneratorInvalidFrameFlag,
+        Matter::Command,
+    ),
+    (
+        E::CartesianMotionGeneratorElbowSignInconsistent,
+        Matter::Command,
+    ),
+    (E::ControllerTorqueDiscontinuity, Matter::Command),
+    (
+        E::CartesianMotionGeneratorVelocityDiscontinuity,
+        Matter::Command,
+    ),
+    (
+        E::CartesianMotionGeneratorAccelerationDiscontinuity,
+        Matter::Command,
+    ),
+    (
+        E::CartesianMotionGeneratorVelocityLimitsViolation,
+        Matter::Command,
+    ),
+    (
+        E::CartesianMotionGeneratorElbowLimitViolation,
+        Matter::Command,
+    ),
+    (
+        E::JointMotionGeneratorVelocityDiscontinuity,
+        Matter::Command,
+    ),
+    (
+        E::JointMotionGeneratorAccelerationDiscontinuity,
+        Matter::Command,
+    ),
+    (
+        E::JointMotionGeneratorPositionLimitsViolation,
+        Matter::Command,
+    ),
+    (
+        E::JointMotionGeneratorVelocityLimitsViolation,
+        Matter::Command,
+    ),
+    (
+        E::CartesianMotionGeneratorJointVelocityDiscontinuity,
+        Matter::Inverse,
+    ),
+    (
+        E::CartesianMotionGeneratorJointAccelerationDiscontinuity,
+        Matter::Inverse,
+    ),
+    (
+        E::CartesianMotionGeneratorJointPositionLimitsViolation,
+        Matter::Inverse,
+    ),
+    (
+        E::CartesianMotionGeneratorJointVelocityLimitsViolation,
+        Matter::Inverse,
+    ),
+    (E::JointReflex, Matter::Contact),
+    (E::CartesianReflex, Matter::Contact),
+    (E::SelfCollisionAvoidanceViolation, Matter::Arm),
+    (E::JointPositionLimitsViolation, Matter::Arm),
+    (E::InstabilityDetected, Matter::Arm),
+    (E::TauJRangeViolation, Matter::Arm),
+    (E::JointVelocityViolation, Matter::Arm),
+    (E::CartesianVelocityViolation, Matter::Arm),
+    (E::PowerLimitViolation, Matter::Arm),
+    (E::MaxPathPoseDeviationViolation, Matter::Arm),
+    (E::MaxGoalPoseDeviationViolation, Matter::Arm),
+    (E::CartesianPositionLimitsViolation, Matter::Desk),
+    (E::CartesianVelocityProfileSafetyViolation, Matter::Desk),
+    (E::ForceControlSafetyViolation, Matter::Desk),
+    (
+        E::ForceControllerDesiredForceToleranceViolation,
+        Matter::Desk,
+    ),
+    (E::JointMoveInWrongDirection, Matter::Desk),
+    (E::JointP2pInsufficientTorqueForPlanning, Matter::Desk),
+    (E::CartesianSplineMotionGeneratorViolation, Matter::Desk),
+    (
+        E::JointViaMotionGeneratorPlanningJointLimitViolation,
+        Matter::Desk,
+    ),
+    (E::BaseAccelerationInitializationTimeout, Matter::Desk),
+    (E::BaseAccelerationInvalidReading, Matter::Desk),
+];
+
+fn matter(error: E) -> Matter {
+    let known = ORDER.iter().find(|(other, _)| *other == error);
+    known.map_or(Matter::Desk, |&(_, matter)| matter)
+}
+
+/// The error that explains the others, with what the log shows of it: the first one of which it shows something, or else
+/// the first one.
+pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>, Option<Finding>) {
+    let named = || {
+        ORDER
+            .iter()
+            .map(|&(error, _)| error)
+            .filter(|&error| errors.contains(error))
+    };
+    let shown = named().find_map(|error| find(evidence, error));
+    (
+        shown
+            .map(|finding| finding.error)
+            .or_else(|| named().next()),
+        shown,
+    )
+}
+
+/// What the log shows of an error.
+fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
+    let first_of = |readings: &[&dyn Fn() -> Vec<Reading>]| {
+        readings
+            .iter()
+            .find_map(|readings| worst(error, &readings()))
+    };
+    let joints = |which| move || commanded::joint_readings(evidence, which);
+    let resulting = |which| move || commanded::resulting_readings(evidence, which);
+    let cartesian = |which| move || commanded::cartesian_readings(evidence, which);
+    use Which::{Acceleration, Jerk, Velocity};
+    match error {
+        E::CommunicationConstraintsViolation => link::starvation(evidence),
+        E::JointPositionMotionGeneratorStartPoseInvalid
+        | E::CartesianPositionMotionGeneratorStartPoseInvalid
+        | E::CartesianMotionGeneratorStartElbowInvalid
+        | E::StartElbowSignInconsistent => step::start_offset(evidence, error),
+        E::ControllerTorqueDiscontinuity => first_of(&[&|| commanded::torque_readings(evidence)]),
+        E::JointMotionGeneratorVelocityDiscontinuity => {
+            first_of(&[&joints(Acceleration), &joints(Jerk)])
+        }
+        // Of a velocity, the first difference is the acceleration.
+        E::JointMotionGeneratorAccelerationDiscontinuity => {
+            first_of(&[&joints(Acceleration), &joints(Jerk)])
+        }
+        E::JointMotionGeneratorVelocityLimitsViolation => first_of(&[&joints(Velocity)]),
+        E::JointMotionGeneratorPositionLimitsViolation
+        | E::CartesianMotionGeneratorJointPositionLimitsViolation => {
+            first_of(&[&|| commanded::position_readings(evidence)])
+        }
+        E::CartesianMotionGeneratorVelocityDiscontinuity
+        | E::CartesianMotionGeneratorAccelerationDiscontinuity => {
+            first_of(&[&cartesian(Acceleration), &cartesian(Jerk)])
+        }
+        E::CartesianMotionGeneratorVelocityLimitsViolation => first_of(&[&cartesian(Velocity)]),
+        E::CartesianMotionGeneratorElbowLimitViolation => {
+            first_of(&[&|| commanded::elbow_readings(evidence)])
+        }
+        E::CartesianMotionGeneratorJointVelocityDiscontinuity
+        | E::CartesianMotionGeneratorJointAccelerationDiscontinuity => {
+            first_of(&[&resulting(Acceleration), &resulting(Jerk)])
+        }
+        E::CartesianMotionGeneratorJointVelocityLimitsViolation => {
+            first_of(&[&resulting(Velocity)])
+        }
+        E::JointReflex => touch::collision(evidence, error, Sense::Joints),
+        E::CartesianReflex => touch::collision(evidence, error, Sense::Axes),
+        E::SelfCollisionAvoidanceViolation => measured::nearest_bodies(evidence),
+        // Newer systems of the FR3 say this of commands, too.
+        E::JointPositionLimitsViolation => {
+            beyond(worst(error, &commanded::position_readings(evidence)))
+                .or_else(|| worst(error, &measured::position_readings(evidence)))
+        }
+        E::InstabilityDetected => measured::shaking(evidence),
+        E::TauJRangeViolation => first_of(&[&|| measured::torque_readings(evidence)]),
+        E::JointVelocityViolation => first_of(&[&|| measured::velocity_readings(evidence)]),
+        E::CartesianVelocityViolation => first_of(&[&|| measured::speed_readings(evidence)]),
+        E::PowerLimitViolation => measured::power(evidence),
+        E::MaxPathPoseDeviationViolation | E::MaxGoalPoseDeviationViolation => {
+            measured::deviation(evidence, error)
+        }
+        _ => None,
+    }
+}
+
+/// Only what is beyond its limit, not what is just short of it.
+fn beyond(finding: Option<Finding>) -> Option<Finding> {
+    finding.filter(|finding| finding.excess().is_some_and(|excess| excess > 0.0))
+}
+
+/// What led up to an error, the most likely first.
+pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding>) -> Vec<Cause> {
+    let mut causes = Vec::new();
+    let subject = finding.map(|finding| finding.subject);
+    let limit = || {
+        let bounded = |finding: &&Finding| {
+            matches!(finding.quantity, Quantity::Velocity | Quantity::Position)
+        };
+        finding
+            .filter(bounded)
+            .and_then(|finding| pose::limit(evidence, finding))
+    };
+    match matter(error) {
+        Matter::Link => {
+            causes.extend(link::lost_packets(evidence, true));
+            causes.extend(link::late_commands(evidence));
+        }
+        Matter::Start | Matter::Command | Matter::Inverse => {
+            let lost = link::lost_packets(evidence, false);
+            causes.extend(lost);
+            if lost.is_some() {
+                causes.extend(link::late_commands(evidence));
+            }
+            causes.extend(finding.and_then(|finding| {
+                step::finished_moving(evidence, finding).or_else(|| step::leap(evidence, finding))
+            }));
+            causes.extend(pose::singularity(evidence));
+            causes.extend(limit());
+        }
+        Matter::Contact => {
+            causes.extend(touch::contact(evidence, subject));
+            causes.extend(step::torque_step(evidence));
+        }
+        Matter::Arm => {
+            causes.extend(touch::contact(evidence, None));
+            causes.extend(step::torque_step(evidence));
+            causes.extend(pose::singularity(evidence));
+            causes.extend(limit());
+        }
+        Matter::Desk => causes.extend(touch::contact(evidence, None)),
+    }
+    causes
+}
+
+/// What to change: by the causes, or else by the error itself. Two at most.
+pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> Vec<Advice> {
+    let by_cause = causes.iter().filter_map(|cause| match cause {
+        Cause::LostPackets {
+            states, commands, ..
+        } => Some(if states + commands > 0 {
+            Advice::Network
+        } else {
+            Advice::Host
+        }),
+        Cause::LateCommands { .. } => Some(Advice::Host),
+        Cause::WrongStart { .. } => Some(Advice::StartWhereItIs),
+        Cause::FinishedMoving { .. } => Some(Advice::FinishAtRest),
+        Cause::TargetStep { .. } => Some(Advice::Smooth),
+        Cause::Contact { .. } => Some(Advice::Thresholds),
+        Cause::Singularity { .. } => Some(Advice::AvoidSingularity),
+        Cause::Limit { .. } => Some(Advice::StayInRange),
+    });
+    let mut advice: Vec<Advice> = Vec::new();
+    for next in by_cause.chain(by_error(error, finding)) {
+        if advice.len() < 2 && !advice.contains(&next) {
+            advice.push(next);
+        }
+    }
+    advice
+}
+
+fn by_error(error: E, finding: Option<&Finding>) -> Option<Advice> {
+    let is_velocity = finding.is_some_and(|finding| finding.quantity == Quantity::Velocity);
+    Some(match matter(error) {
+        Matter::Link => Advice::Network,
+        Matter::Start => Advice::StartWhereItIs,
+        Matter::Command | Matter::Inverse if is_velocity => Advice::SlowDown,
+        Matter::Command => Advice::Smooth,
+        Matter::Inverse => Advice::SlowDown,
+        Matter::Contact => Advice::Thresholds,
+        Matter::Desk => Advice::Desk,
+        Matter::Arm => match error {
+            E::SelfCollisionAvoidanceViolation => Advice::StayClearOfItself,
+            E::JointPositionLimitsViolation => Advice::StayInRange,
+            E::InstabilityDetected => Advice::SofterGains,
+            E::TauJRangeViolation | E::PowerLimitViolation => Advice::LessEffort,
+            _ => Advice::SlowDown,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_error_has_its_place_once() {
+        for error in E::ALL {
+            let places = ORDER.iter().filter(|(other, _)| *other == error).count();
+            assert_eq!(places, 1, "{error}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Which cycles passed without a command.
+
+use franka_proto::RobotError;
+
+use super::cause::Cause;
+use super::evidence::Evidence;
+use super::finding::{Bound, Finding, Origin, Quantity, Subject};
+
+/// Cycles lost in a row that end a motion (FCI documentation, `communication_constraints_violation`).
+const LOST_LIMIT: f64 = 20.0;
+
+/// Cycles without a command, oldest first, named by the states whose answers are missing.
+struct Losses {
+    states: u64,
+    commands: u64,
+    unanswered: u64,
+    cycles: Vec<u64>,
+    success_rate: f64,
+}
+
+impl Losses {
+    fn of(evidence: &Evidence<'_>, starved: bool) -> Self {
+        let mut losses = Self {
+            states: 0,
+            commands: 0,
+            unanswered: 0,
+            cycles: Vec::new(),
+            success_rate: evidence
+                .last_running()
+                .map_or(0.0, |state| state.control_command_success_rate),
+        };
+        for pair in evidence.entries.windows(2) {
+            let (before, command, after) = (&pair[0].state, &pair[1].command, &pair[1].state);
+            let (id, next) = (before.message_id, after.message_id);
+            if next <= id || !before.motion_running() {
+                continue;
+            }
+            let missing = next - id - 1;
+            let (rate, rate_after) = (
+                before.control_command_success_rate,
+                after.control_command_success_rate,
+            );
+            let ends = !after.motion_running();
+            if command.message_id == 0 {
+                // The robot waits for the first command.
+            } else if command.message_id != id {
+                losses.unanswered += 1;
+                losses.cycles.push(id);
+            } else if missing == 0
+                && if ends {
+                    starved
+                } else {
+                    rate_after < rate - SAME
+                }
+            {
+                losses.commands += 1;
+                losses.cycles.push(id);
+            }
+            losses.states += missing;
+            losses.cycles.extend(id + 1..next);
+        }
+        losses
+    }
+
+    /// The longest run: how many, and which is the first of them.
+    fn longest(&self) -> Option<(u64, u64)> {
+        let mut longest = None;
+        let mut run = (0, 0);
+        for &cycle in &self.cycles {
+            run = match run {
+                (length, first) if length > 0 && first + length == cycle => (length + 1, first),
+                _ => (1, cycle),
+            };
+            if longest.is_none_or(|(length, _)| run.0 > length) {
+                longest = Some(run);
+            }
+        }
+        longest
+    }
+}
+
+/// The longest run of cycles without a command, for a robot that stopped because of one.
+pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
+    let (length, first) = Losses::of(evidence, true).longest()?;
+    Some(Finding {
+        error: RobotError::CommunicationConstraintsViolation,
+        subject: Subject::Arm,
+        quantity: Quantity::LostCycles,
+        origin: Origin::Measured,
+        value: length as f64,
+        bound: Bound::Limit(LOST_LIMIT),
+        since: first,
+    })
+}
+
+/// What got lost within the log. `starved`: the robot stopped for want of commands, so the last one did not reach it either.
+pub(super) fn lost_packets(evidence: &Evidence<'_>, starved: bool) -> Option<Cause> {
+    let losses = Losses::of(evidence, starved);
+    let (longest_run, _) = losses.longest()?;
+    let (first, last) = (*losses.cycles.first()?, *losses.cycles.last()?);
+    Some(Cause::LostPackets {
+        states: losses.states,
+        commands: losses.commands,
+        unanswered: losses.unanswered,
+        longest_run,
+        first,
+        last,
+        success_rate: losses.success_rate,
+    })
+}
+
+/// Commands of the whole motion that left too late.
+pub(super) fn late_commands(evidence: &Evidence<'_>) -> Option<Cause> {
+    let statistics = evidence.statistics?;
+    (statistics.overruns > 0).then_some(Cause::LateCommands {
+        count: statistics.overruns,
+        worst_turnaround: statistics.worst_turnaround,
+    })
+}
+
+/// Two success rates that differ by less are the same: one command in a hundred is a hundredth of a rate, and rates are at
+/// worst in single precision.
+const SAME: f64 = 1e-4;

@@ -1,0 +1,203 @@
+//! What the sensors show.
+
+use franka_model::collision::{Body, Shape};
+use franka_model::{Frame, JointVector};
+use franka_proto::RobotError;
+
+use super::commanded::end_effector;
+use super::evidence::{Evidence, Reading, positions, velocities};
+use super::finding::{Bound, Finding, Origin, Quantity, Subject};
+
+/// Joint velocities against their envelopes.
+pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
+    evidence
+        .states()
+        .flat_map(|state| {
+            let (q, dq) = (state.q.into(), state.dq.into());
+            velocities(evidence.model, Origin::Measured, &q, &dq, state.message_id)
+        })
+        .collect()
+}
+
+/// Joint positions against their ranges.
+pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
+    evidence
+        .states()
+        .flat_map(|state| {
+            positions(
+                evidence.model,
+                Origin::Measured,
+                &state.q.into(),
+                state.message_id,
+            )
+        })
+        .collect()
+}
+
+/// Speed of the end effector.
+pub(super) fn speed_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
+    let limit = evidence.model.cartesian_limits().translation.velocity;
+    evidence
+        .states()
+        .map(|state| {
+            let ee = end_effector(state);
+            let jacobian = evidence
+                .model
+                .zero_jacobian(Frame::EndEffector, &state.q.into(), &ee);
+            let twist = jacobian * JointVector::from(state.dq);
+            let linear = twist.fixed_rows::<3>(0);
+            let subject = Subject::component(linear.iamax());
+            let (speed, cycle) = (linear.norm(), state.message_id);
+            Reading::magnitude(
+                subject,
+                Quantity::Velocity,
+                Origin::Measured,
+                speed,
+                limit,
+                cycle,
+            )
+        })
+        .collect()
+}
+
+/// Joint torques against the nominal ones: the range of the sensors, a little larger, is not published.
+pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
+    let limit = &evidence.model.joint_limits().torque;
+    evidence
+        .states()
+        .flat_map(|state| {
+            (0..7).map(|i| {
+                let (subject, torque) = (Subject::joint(i), state.tau_J[i]);
+                let cycle = state.message_id;
+                Reading::magnitude(
+                    subject,
+                    Quantity::Torque,
+                    Origin::Measured,
+                    torque,
+                    limit[i],
+                    cycle,
+                )
+            })
+        })
+        .collect()
+}
+
+/// The greatest mechanical power of the joints.
+pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
+    let powers = evidence.states().map(|state| {
+        let power = JointVector::from(state.tau_J)
+            .dot(&JointVector::from(state.dq))
+            .abs();
+        (power, state.message_id)
+    });
+    let (value, since) = powers.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(unbounded(
+        RobotError::PowerLimitViolation,
+        Subject::Arm,
+        Quantity::Power,
+        value,
+        since,
+    ))
+}
+
+/// The two bodies of the arm that are nearest to each other at the end, three links or more apart, by the vendor's capsules.
+pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
+    let state = evidence.last()?;
+    let arm = Shape::vendor();
+    let shape = if state.m_ee > 0.0 {
+        arm.with_hand()
+    } else {
+        arm
+    };
+    let number = |body| match body {
+        Body::Link(link) => link,
+        Body::Tool => 8,
+    };
+    let placed = shape.at(&state.q.into());
+    let pair = placed
+        .pairs()
+        .filter(|pair| number(pair.bodies.1) - number(pair.bodies.0) >= 3)
+        .min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+    let (inner, outer) = pair.bodies;
+    (pair.distance < NEAR).then(|| {
+        unbounded(
+            RobotError::SelfCollisionAvoidanceViolation,
+            Subject::Bodies(number(inner), number(outer)),
+            Quantity::Distance,
+            pair.distance,
+            state.message_id,
+        )
+    })
+}
+
+/// The largest distance of the measured from the desired end effector.
+pub(super) fn deviation(evidence: &Evidence<'_>, error: RobotError) -> Option<Finding> {
+    let deviations = evidence.states().map(|state| {
+        let shift = |i: usize| state.O_T_EE[12 + i] - state.O_T_EE_d[12 + i];
+        let shift = nalgebra::Vector3::from_fn(|i, _| shift(i));
+        (shift, state.message_id)
+    });
+    let (shift, since) = deviations.max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()))?;
+    let subject = Subject::component(shift.iamax());
+    Some(unbounded(
+        error,
+        subject,
+        Quantity::Deviation,
+        shift.norm(),
+        since,
+    ))
+}
+
+/// The joint whose velocity changes its sign most often, if any does more than once.
+pub(super) fn shaking(evidence: &Evidence<'_>) -> Option<Finding> {
+    let reversals = |i: usize| {
+        let mut side = 0.0;
+        let mut count = 0_u32;
+        for state in evidence.states() {
+            let velocity = state.dq[i];
+            if velocity.abs() > STILL {
+                count += u32::from(side * velocity < 0.0);
+                side = velocity;
+            }
+        }
+        count
+    };
+    let (joint, count) = (0..7)
+        .map(|i| (i, reversals(i)))
+        .max_by_key(|&(_, count)| count)?;
+    let first = evidence.states().next()?.message_id;
+    (count > 1).then(|| {
+        unbounded(
+            RobotError::InstabilityDetected,
+            Subject::joint(joint),
+            Quantity::Reversals,
+            f64::from(count),
+            first,
+        )
+    })
+}
+
+fn unbounded(
+    error: RobotError,
+    subject: Subject,
+    quantity: Quantity,
+    value: f64,
+    since: u64,
+) -> Finding {
+    Finding {
+        error,
+        subject,
+        quantity,
+        origin: Origin::Measured,
+        value,
+        bound: Bound::Unknown,
+        since,
+    }
+}
+
+/// Bodies further apart than this do not explain a stop, `[m]`: robots are known to stop before contact, and how long before
+/// is not published.
+const NEAR: f64 = 0.1;
+
+/// Velocity that is none, `[rad/s]`: several times what an arm at rest shows.
+const STILL: f64 = 0.02;

@@ -1,0 +1,172 @@
+//! Why the robot ended a motion: what was exceeded, by how much, since when, what led up to it and what to change.
+//!
+//! ```text
+//! errors, log, model ──> findings (one error each: commanded | measured | touch | link)
+//!                           └─> causes (step | link | touch | pose) ──> advice
+//! ```
+//!
+//! Everything here is read off the last cycles of the motion, outside the real-time path, when the error is made. The robot
+//! names errors and nothing else: no joint, no number. Joint and number come from the same differences and limits that it
+//! checks by (FCI documentation), so far as they are published and as states of single precision show them. What the log does
+//! not show is not guessed: a [`Diagnosis`] then says that it is not visible.
+//!
+//! What a log cannot hold: thresholds of collisions (a threshold is told by the two values that it lies between), virtual
+//! walls, filters of the robot's own, and whatever happened before its first cycle.
+
+mod advice;
+mod cause;
+mod commanded;
+mod evidence;
+mod finding;
+mod judge;
+mod link;
+mod measured;
+mod pose;
+mod step;
+#[cfg(test)]
+mod tests;
+mod touch;
+
+use core::fmt;
+
+use franka_model::Model;
+use franka_proto::{Errors, RobotError};
+
+use crate::driver::{ControlLog, LogEntry, MotionStatistics};
+use evidence::Evidence;
+
+pub use advice::Advice;
+pub use cause::Cause;
+pub use finding::{Axis, Bound, Finding, Origin, Quantity, Subject};
+
+/// Why the robot ended a motion, as far as its last cycles show.
+///
+/// `Display` is a few lines: what was exceeded, what led up to it, other errors, what to change.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Diagnosis {
+    /// The errors that the robot named.
+    pub errors: Errors,
+    /// Of them, the one that explains the others; `None` if it named none.
+    pub error: Option<RobotError>,
+    /// The limit behind it, if the log shows that.
+    pub finding: Option<Finding>,
+    /// What led up to it, the most likely first. Empty if the log shows nothing.
+    pub causes: Vec<Cause>,
+    /// What to change, the most promising first.
+    pub advice: Vec<Advice>,
+    /// The state that shows the end of the motion, by its `message_id`; `None` without a log.
+    pub end: Option<u64>,
+    /// Cycles that the log holds.
+    pub cycles: usize,
+}
+
+/// What a diagnosis is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Case<'a> {
+    /// `reflex_reason` of the state that ended the motion.
+    pub errors: Errors,
+    /// The last cycles of the motion.
+    pub log: &'a ControlLog,
+    /// The robot's, with its limits.
+    pub model: &'a Model,
+    /// Counts over the motion, for commands that left too late; `None` if they were not kept.
+    pub statistics: Option<&'a MotionStatistics>,
+}
+
+impl Diagnosis {
+    /// Reads a case. This allocates, and takes up to a few milliseconds for fifty cycles of a Cartesian motion: not for the
+    /// control thread.
+    pub fn of(case: &Case<'_>) -> Self {
+        let entries = case.log.iter().collect();
+        Self::of_entries(case.errors, entries, case.model, case.statistics)
+    }
+
+    fn of_entries(
+        errors: Errors,
+        entries: Vec<&LogEntry>,
+        model: &Model,
+        statistics: Option<&MotionStatistics>,
+    ) -> Self {
+        let evidence = Evidence {
+            entries,
+            model,
+            statistics,
+        };
+        let (error, finding) = judge::explaining(&evidence, errors);
+        let causes = error.map_or_else(Vec::new, |error| {
+            judge::causes(&evidence, error, finding.as_ref())
+        });
+        Self {
+            errors,
+            error,
+            advice: error.map_or_else(Vec::new, |error| {
+                judge::advice(error, finding.as_ref(), &causes)
+            }),
+            finding,
+            causes,
+            end: evidence.last().map(|state| state.message_id),
+            cycles: evidence.entries.len(),
+        }
+    }
+
+    /// Cycles from the one in which the limit was first exceeded to the one that shows the end of the motion.
+    pub fn cycles_before_end(&self) -> Option<u64> {
+        Some(self.end?.saturating_sub(self.finding?.since))
+    }
+
+    /// The errors besides the one that explains them.
+    fn others(&self) -> Errors {
+        let mut others = self.errors;
+        if let Some(error) = self.error {
+            others.remove(error);
+        }
+        others
+    }
+}
+
+impl fmt::Display for Diagnosis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(error) = self.error else {
+            return write!(f, "the robot named no error");
+        };
+        match (&self.finding, self.cycles_before_end()) {
+            (Some(finding), Some(before)) => {
+                let cycle = finding.since;
+                write!(
+                    f,
+                    "{finding}, since cycle {cycle} ms, {before} before the stop"
+                )?;
+                write!(f, " ({error})")?;
+            }
+            _ if self.cycles == 0 => write!(
+                f,
+                "{error}: there is no log (its size is 0) that would show why"
+            )?,
+            _ => write!(
+                f,
+                "{error}: not visible in the log of {} cycles",
+                self.cycles
+            )?,
+        }
+        for (i, cause) in self.causes.iter().take(CAUSES_SHOWN).enumerate() {
+            let lead = if i == 0 { "led up to by" } else { "and by" };
+            write!(f, "\n{lead}: {cause}")?;
+        }
+        let others = self.others();
+        if !others.is_empty() {
+            write!(f, "\nwith it:")?;
+            for (i, other) in others.iter().enumerate() {
+                write!(f, "{} {other}", if i == 0 { "" } else { "," })?;
+            }
+        }
+        for (i, advice) in self.advice.iter().enumerate() {
+            write!(f, "{} {advice}", if i == 0 { "\nchange:" } else { "; or" })?;
+        }
+        Ok(())
+    }
+}
+
+/// Causes that `Display` has lines for.
+const CAUSES_SHOWN: usize = 3;

@@ -1,0 +1,218 @@
+//! Commands that leap: at the start, at the end, and between.
+
+use franka_model::limits::MotionLimits;
+use franka_model::{JointVector, Twist, rotation, transform};
+use franka_proto::{MotionGeneratorMode as Generator, RobotError};
+use nalgebra::Vector3;
+
+use super::cause::Cause;
+use super::commanded::{self, Derivatives, Which};
+use super::evidence::{CYCLE, Evidence, Sample};
+use super::finding::{Bound, Finding, Origin, Quantity, Subject};
+
+/// How far the first command is from where the robot was; for the errors that say so.
+pub(super) fn start_offset(evidence: &Evidence<'_>, error: RobotError) -> Option<Finding> {
+    let sample = evidence.first()?;
+    let (subject, value) = offset(&sample, error)?;
+    (value != 0.0).then_some(Finding {
+        error,
+        subject,
+        quantity: Quantity::StartOffset,
+        origin: Origin::Commanded,
+        value,
+        bound: Bound::Unknown,
+        since: sample.cycle(),
+    })
+}
+
+fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
+    let Sample {
+        before, command, ..
+    } = sample;
+    match error {
+        RobotError::CartesianPositionMotionGeneratorStartPoseInvalid => {
+            let target = transform::isometry_from_array(&command.O_T_EE_c)?;
+            let from = transform::isometry_from_array(&before.O_T_EE_c)?;
+            let shift = target.translation.vector - from.translation.vector;
+            let turn = rotation::error(&target.rotation, &from.rotation);
+            // A radian counts as half a metre: with which of the two the robot disagrees is not published.
+            Some(if shift.norm() > 0.5 * turn.norm() {
+                (Subject::component(shift.iamax()), shift.norm())
+            } else {
+                (Subject::component(3 + turn.iamax()), turn.norm())
+            })
+        }
+        RobotError::CartesianMotionGeneratorStartElbowInvalid
+        | RobotError::StartElbowSignInconsistent => {
+            let [angle, _] = command.elbow_c?;
+            Some((Subject::Elbow, angle - before.elbow_c[0]))
+        }
+        _ => {
+            let off = JointVector::from(command.q_c) - JointVector::from(before.q_d);
+            let joint = off.iamax();
+            Some((Subject::joint(joint), off[joint]))
+        }
+    }
+}
+
+/// How the command leaps that a finding is about, if it does.
+pub(super) fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
+    let sample = evidence.sample(finding.since)?;
+    let cycle = sample.cycle();
+    let step = |subject, quantity, size| {
+        Some(Cause::TargetStep {
+            subject,
+            quantity,
+            size,
+            cycle,
+        })
+    };
+    match (finding.quantity, finding.subject) {
+        (Quantity::StartOffset, subject) => Some(Cause::WrongStart {
+            subject,
+            quantity: Quantity::Position,
+            offset: finding.value,
+            cycle,
+        }),
+        (Quantity::TorqueRate, subject) => {
+            let size = finding.value * CYCLE;
+            if sample.first {
+                return Some(Cause::WrongStart {
+                    subject,
+                    quantity: Quantity::Torque,
+                    offset: size,
+                    cycle,
+                });
+            }
+            step(subject, Quantity::Torque, size)
+        }
+        (_, Subject::Joint(number)) if finding.origin == Origin::Commanded => {
+            let index = usize::from(number) - 1;
+            let (_, motion) = commanded::joints(&sample)?;
+            let limits = evidence.model.joint_limits();
+            let limits = MotionLimits {
+                velocity: limits.velocity[index],
+                acceleration: limits.acceleration[index],
+                jerk: limits.jerk[index],
+            };
+            let acceleration = sample.before.ddq_d[index];
+            let (quantity, size) =
+                leap_of(&sample, &component(&motion, index), acceleration, &limits)?;
+            step(finding.subject, quantity, size)
+        }
+        (_, Subject::Elbow) => {
+            let motion = commanded::elbow(&sample)?;
+            let limits = &evidence.model.cartesian_limits().elbow;
+            let acceleration = sample.before.ddelbow_c[0];
+            let (quantity, size) = leap_of(&sample, &component(&motion, 0), acceleration, limits)?;
+            step(finding.subject, quantity, size)
+        }
+        _ => {
+            let (subject, quantity, size) = cartesian_leap(evidence, &sample)?;
+            step(subject, quantity, size)
+        }
+    }
+}
+
+/// Of a Cartesian command: whichever of translation and rotation leaps further by its limits.
+fn cartesian_leap(
+    evidence: &Evidence<'_>,
+    sample: &Sample<'_>,
+) -> Option<(Subject, Quantity, f64)> {
+    let (_, motion) = commanded::cartesian(sample)?;
+    let before = Twist::from(sample.before.O_ddP_EE_c);
+    let limits = evidence.model.cartesian_limits();
+    let half =
+        |vector: &Twist, offset| -> Vector3<f64> { vector.fixed_rows::<3>(offset).into_owned() };
+    let leaps = [(0, &limits.translation), (3, &limits.rotation)].map(|(offset, limits)| {
+        let acceleration = half(&motion.acceleration, offset);
+        let change = acceleration - half(&before, offset);
+        let axis = Subject::component(offset + change.iamax());
+        let norms = Derivatives {
+            velocity: nalgebra::vector![half(&motion.velocity, offset).norm()],
+            acceleration: nalgebra::vector![acceleration.norm()],
+            jerk: nalgebra::vector![half(&motion.jerk, offset).norm()],
+        };
+        let excess = (norms.jerk[0] / limits.jerk).max(norms.acceleration[0] / limits.acceleration);
+        (axis, norms, limits, change.norm(), excess)
+    });
+    let [translation, rotation] = leaps;
+    let further = if rotation.4 > translation.4 {
+        rotation
+    } else {
+        translation
+    };
+    let (axis, norms, limits, change, _) = further;
+    // Norms have no direction: the acceleration before is what the change leaves of this one.
+    let (quantity, size) = leap_of(sample, &norms, norms.acceleration[0] - change, limits)?;
+    Some((axis, quantity, size))
+}
+
+/// What of a command leaps: what is commanded itself if the acceleration is too large, the acceleration if the jerk is.
+fn leap_of(
+    sample: &Sample<'_>,
+    motion: &Derivatives<1>,
+    acceleration_before: f64,
+    limits: &MotionLimits,
+) -> Option<(Quantity, f64)> {
+    let acceleration = motion.acceleration[0];
+    let by_velocity = matches!(
+        sample.before.motion_generator_mode,
+        Generator::JointVelocity | Generator::CartesianVelocity
+    );
+    if acceleration.abs() > limits.acceleration {
+        Some(if by_velocity {
+            (Quantity::Velocity, acceleration * CYCLE)
+        } else {
+            (Quantity::Position, acceleration * CYCLE * CYCLE)
+        })
+    } else {
+        let size = acceleration - acceleration_before;
+        (motion.jerk[0].abs() > limits.jerk).then_some((Quantity::Acceleration, size))
+    }
+}
+
+/// Whether the finding is about a last command that moves: standing still would have had to follow it.
+pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
+    let sample = evidence.sample(finding.since).filter(Sample::is_finished)?;
+    let cycle = sample.cycle();
+    let moves = |subject, velocity: f64| {
+        (velocity != 0.0).then_some(Cause::FinishedMoving {
+            subject,
+            velocity,
+            cycle,
+        })
+    };
+    match (commanded::joints(&sample), commanded::cartesian(&sample)) {
+        (Some((_, motion)), _) => {
+            let joint = motion.velocity.iamax();
+            moves(Subject::joint(joint), motion.velocity[joint])
+        }
+        (None, Some(_)) => {
+            let speeds = commanded::cartesian_readings_of(evidence.model, &sample, Which::Velocity);
+            let fastest = speeds.iter().max_by(|a, b| a.score.total_cmp(&b.score))?;
+            moves(fastest.subject, fastest.value)
+        }
+        (None, None) => None,
+    }
+}
+
+/// The largest step of the commanded torques, if it takes more than half of what is allowed.
+pub(super) fn torque_step(evidence: &Evidence<'_>) -> Option<Cause> {
+    let readings = commanded::torque_readings(evidence);
+    let largest = readings.iter().max_by(|a, b| a.score.total_cmp(&b.score))?;
+    (largest.score > 0.5).then_some(Cause::TargetStep {
+        subject: largest.subject,
+        quantity: Quantity::Torque,
+        size: largest.value * CYCLE,
+        cycle: largest.cycle,
+    })
+}
+
+fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivatives<1> {
+    Derivatives {
+        velocity: nalgebra::vector![motion.velocity[index]],
+        acceleration: nalgebra::vector![motion.acceleration[index]],
+        jerk: nalgebra::vector![motion.jerk[index]],
+    }
+}

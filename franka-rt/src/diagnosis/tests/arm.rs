@@ -1,0 +1,184 @@
+use franka_model::Model;
+use franka_proto::MotionGeneratorMode as Generator;
+use franka_proto::RobotError as E;
+
+use super::*;
+use crate::diagnosis::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
+
+fn torques() -> Story {
+    Story::of(Model::fr3(), Generator::None)
+}
+
+#[test]
+fn a_speed_is_too_high_since_the_first_cycle_in_a_row() {
+    let mut story = torques();
+    // Once above, back below, then above to the end.
+    for velocity in [2.7, 2.5, 2.63, 2.7, 2.8] {
+        story.go(|_, _| {}, |state| state.dq[2] = velocity);
+    }
+    let from = story.newest().message_id - 2;
+    let diagnosis = story.stop(&[E::JointVelocityViolation], |_, _| {}, |_| {});
+    let finding = finding(&diagnosis);
+    assert_eq!(
+        (finding.subject, finding.quantity),
+        (Subject::Joint(3), Quantity::Velocity)
+    );
+    assert_eq!((finding.origin, finding.value), (Origin::Measured, 2.8));
+    assert_eq!(finding.bound, Bound::Limit(2.62));
+    assert_eq!(finding.since, from);
+    assert_eq!(diagnosis.cycles_before_end(), Some(3));
+    assert_eq!(diagnosis.advice, [Advice::SlowDown]);
+}
+
+#[test]
+fn a_step_in_torque_that_was_allowed_is_still_named() {
+    let mut story = torques();
+    story.go(|_, command| command.tau_J_d[5] = 0.9, |_| {});
+    let diagnosis = story.stop(
+        &[E::JointVelocityViolation],
+        |_, _| {},
+        |state| state.dq[5] = 4.5,
+    );
+    assert_eq!(finding(&diagnosis).subject, Subject::Joint(6));
+    assert!(matches!(
+        diagnosis.causes[..],
+        [Cause::TargetStep {
+            subject: Subject::Joint(6),
+            quantity: Quantity::Torque,
+            size: 0.9,
+            ..
+        }]
+    ));
+}
+
+#[test]
+fn a_collision_is_the_flagged_axis_not_the_strongest() {
+    let mut story = torques();
+    for (force, contact) in [(5.0, 0.0), (12.0, 1.0), (19.0, 1.0)] {
+        story.go(
+            |_, _| {},
+            |state| {
+                state.K_F_ext_hat_K = [30.0, 0.0, -force, 0.0, 0.0, 0.0];
+                state.cartesian_contact[2] = contact;
+            },
+        );
+    }
+    let diagnosis = story.stop(
+        &[E::CartesianReflex],
+        |_, _| {},
+        |state| {
+            state.K_F_ext_hat_K[2] = -21.0;
+            state.cartesian_collision[2] = 1.0;
+        },
+    );
+    let finding = finding(&diagnosis);
+    assert_eq!(finding.subject, Subject::Translation(Axis::Z));
+    assert_eq!(
+        (finding.value, finding.bound),
+        (-21.0, Bound::Between(19.0, 21.0))
+    );
+    let since = diagnosis.end.unwrap() - 2;
+    let contact = Cause::Contact {
+        subject: finding.subject,
+        value: -21.0,
+        since,
+    };
+    assert_eq!(diagnosis.causes, [contact]);
+    assert_eq!(diagnosis.advice, [Advice::Thresholds]);
+}
+
+#[test]
+fn a_threshold_that_a_larger_load_had_passed_is_not_told() {
+    let mut story = torques();
+    // The thresholds of acceleration phases are others.
+    story.go(|_, _| {}, |state| state.tau_ext_hat_filtered[1] = 30.0);
+    let diagnosis = story.stop(
+        &[E::JointReflex],
+        |_, _| {},
+        |state| {
+            state.tau_ext_hat_filtered[1] = 25.0;
+            state.joint_collision[1] = 1.0;
+        },
+    );
+    assert_eq!(finding(&diagnosis).subject, Subject::Joint(2));
+    assert_eq!(finding(&diagnosis).bound, Bound::Unknown);
+}
+
+#[test]
+fn two_links_that_come_near_each_other_are_named() {
+    let mut story = torques();
+    let mut q = [0.0; 7];
+    // The hand folds back onto the arm.
+    (q[1], q[3], q[5]) = (-0.6, -3.0, 0.6);
+    story.go(|_, _| {}, |state| (state.q, state.m_ee) = (q, 0.7));
+    let diagnosis = story.stop(&[E::SelfCollisionAvoidanceViolation], |_, _| {}, |_| {});
+    let finding = finding(&diagnosis);
+    let Subject::Bodies(inner, outer) = finding.subject else {
+        panic!("{finding:?}")
+    };
+    assert!(outer >= inner + 3);
+    assert!(finding.value < 0.1);
+    assert_eq!(diagnosis.advice, [Advice::StayClearOfItself]);
+}
+
+#[test]
+fn power_torque_and_shaking_are_read_off_the_sensors() {
+    let mut story = torques();
+    story.go(
+        |_, _| {},
+        |state| {
+            state.tau_J[1] = 90.0;
+            state.dq[1] = 2.0;
+        },
+    );
+    let power = story_of(&story).stop(&[E::PowerLimitViolation], |_, _| {}, |_| {});
+    assert_eq!(
+        (finding(&power).subject, finding(&power).value),
+        (Subject::Arm, 180.0)
+    );
+    let torque = story_of(&story).stop(&[E::TauJRangeViolation], |_, _| {}, |_| {});
+    assert_eq!(finding(&torque).subject, Subject::Joint(2));
+    assert_eq!(finding(&torque).bound, Bound::Limit(87.0));
+    assert_eq!(torque.advice, [Advice::LessEffort]);
+    for swing in 0..12 {
+        story.go(
+            |_, _| {},
+            |state| state.dq[4] = if swing % 2 == 0 { 0.2 } else { -0.2 },
+        );
+    }
+    let shaking = story.stop(&[E::InstabilityDetected], |_, _| {}, |_| {});
+    assert_eq!(finding(&shaking).subject, Subject::Joint(5));
+    assert_eq!(finding(&shaking).value, 11.0);
+    assert_eq!(shaking.advice, [Advice::SofterGains]);
+}
+
+fn story_of(story: &Story) -> Story {
+    Story {
+        model: story.model,
+        entries: story.entries.clone(),
+    }
+}
+
+#[test]
+fn the_fastest_direction_of_the_end_effector_is_named() {
+    let mut story = torques();
+    // Joint 1 swings a hand that is 0.31 m away from its axis; joints 2 and 4 drive it downwards.
+    story.go(|_, _| {}, |state| (state.dq[1], state.dq[3]) = (6.0, -5.0));
+    let diagnosis = story.stop(&[E::CartesianVelocityViolation], |_, _| {}, |_| {});
+    let finding = finding(&diagnosis);
+    assert!(matches!(finding.subject, Subject::Translation(_)));
+    assert_eq!(finding.bound, Bound::Limit(3.0));
+}
+
+#[test]
+fn a_deviation_from_the_path_is_measured() {
+    let mut story = torques();
+    story.go(|_, _| {}, |state| state.O_T_EE[13] += 0.03);
+    let diagnosis = story.stop(&[E::MaxPathPoseDeviationViolation], |_, _| {}, |_| {});
+    let finding = finding(&diagnosis);
+    assert_eq!(
+        (finding.subject, finding.quantity),
+        (Subject::Translation(Axis::Y), Quantity::Deviation)
+    );
+    assert!((finding.value - 0.03).abs() < 1e-12);
+}

@@ -1,0 +1,284 @@
+use franka_model::{EndEffector, Frame, JointVector, Model, READY, elbow, layout};
+use franka_proto::MotionGeneratorMode as Generator;
+use franka_proto::RobotError as E;
+
+use super::*;
+use crate::diagnosis::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
+
+#[test]
+fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {
+    let mut story = Story::of(Model::fr3(), Generator::JointPosition);
+    // Five states are lost; the robot has gone on meanwhile, and says so.
+    story.go(
+        |_, _| {},
+        |state| {
+            state.message_id += 5;
+            state.q_d[1] += 0.01;
+            state.dq_d[1] = 0.5;
+            state.control_command_success_rate = 0.95;
+        },
+    );
+    // Going on from there as before is no leap, however far it is from the command before.
+    story.go(
+        |before, command| command.q_c[1] = before.q_d[1] + 0.0005,
+        |_| {},
+    );
+    let diagnosis = story.stop(
+        &[E::JointMotionGeneratorVelocityDiscontinuity],
+        |before, command| command.q_c[1] = before.q_d[1] - 0.0005,
+        |_| {},
+    );
+    let finding = finding(&diagnosis);
+    assert_eq!(
+        (finding.subject, finding.quantity),
+        (Subject::Joint(2), Quantity::Acceleration)
+    );
+    assert_eq!(finding.bound, Bound::Limit(-10.0));
+    assert!((finding.value + 1000.0).abs() < 1e-3, "{finding:?}");
+    assert_eq!(finding.since, diagnosis.end.unwrap() - 1);
+    let [lost, step] = diagnosis.causes[..] else {
+        panic!("{:?}", diagnosis.causes)
+    };
+    let Cause::LostPackets {
+        states: 5,
+        commands: 0,
+        longest_run: 5,
+        first,
+        last,
+        ..
+    } = lost
+    else {
+        panic!("{lost:?}")
+    };
+    assert_eq!((first, last), (BEGIN + 2, BEGIN + 6));
+    let Cause::TargetStep {
+        subject,
+        quantity,
+        size,
+        ..
+    } = step
+    else {
+        panic!("{step:?}")
+    };
+    assert_eq!((subject, quantity), (Subject::Joint(2), Quantity::Position));
+    assert!((size + 0.001).abs() < 1e-9, "{size}");
+    assert_eq!(diagnosis.advice, [Advice::Network, Advice::Smooth]);
+}
+
+#[test]
+fn torques_of_a_first_command_are_compared_with_none() {
+    let mut story = Story::unbegun(Model::fer(), Generator::JointVelocity);
+    // Whatever the state of a robot that was held says.
+    story.entries[0].state.tau_J_d[2] = 4.0;
+    let diagnosis = story.stop(
+        &[E::ControllerTorqueDiscontinuity],
+        |_, command| command.tau_J_d[2] = 5.0,
+        |_| {},
+    );
+    assert_eq!(finding(&diagnosis).value, 5000.0);
+    assert!(matches!(
+        diagnosis.causes[..],
+        [Cause::WrongStart {
+            subject: Subject::Joint(3),
+            quantity: Quantity::Torque,
+            offset: 5.0,
+            cycle: BEGIN
+        }]
+    ));
+    assert_eq!(diagnosis.advice, [Advice::StartWhereItIs, Advice::Smooth]);
+}
+
+#[test]
+fn states_that_nobody_answered_are_this_hosts_doing() {
+    let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
+    let answered = story.newest().message_id - 1;
+    for _ in 0..20 {
+        story.go(|_, command| command.message_id = answered, |_| {});
+    }
+    let diagnosis = story.stop(
+        &[E::CommunicationConstraintsViolation],
+        |_, command| command.message_id = answered,
+        |_| {},
+    );
+    let [
+        Cause::LostPackets {
+            states: 0,
+            commands: 0,
+            unanswered: 21,
+            longest_run: 21,
+            ..
+        },
+    ] = diagnosis.causes[..]
+    else {
+        panic!("{:?}", diagnosis.causes)
+    };
+    assert_eq!(diagnosis.advice[0], Advice::Host);
+}
+
+#[test]
+fn a_velocity_within_its_cap_but_not_its_envelope_is_laid_to_the_limit_ahead() {
+    let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
+    // 0.1 rad before the end of joint 4's range.
+    story.entries.last_mut().unwrap().state.q_d[3] = -0.2458;
+    story.entries.last_mut().unwrap().state.dq_d[3] = 1.0;
+    let diagnosis = story.stop(
+        &[E::JointMotionGeneratorVelocityLimitsViolation],
+        |_, command| command.dq_c[3] = 1.0,
+        |_| {},
+    );
+    let finding = finding(&diagnosis);
+    // sqrt(2 4.0 0.1) - 0.3
+    let envelope = 0.8_f64.sqrt() - 0.3;
+    assert!(matches!(finding.bound, Bound::Limit(limit) if (limit - envelope).abs() < 1e-9));
+    let [
+        Cause::Limit {
+            joint: 4,
+            upper: true,
+            distance,
+            speed,
+            ..
+        },
+    ] = diagnosis.causes[..]
+    else {
+        panic!("{:?}", diagnosis.causes)
+    };
+    assert!((distance - 0.1).abs() < 1e-9 && (speed - envelope).abs() < 1e-9);
+    assert_eq!(diagnosis.advice[0], Advice::StayInRange);
+}
+
+#[test]
+fn a_commanded_position_beyond_the_range_is_named_before_the_measured_one() {
+    for error in [
+        E::JointMotionGeneratorPositionLimitsViolation,
+        E::JointPositionLimitsViolation,
+    ] {
+        let mut story = Story::of(Model::fer(), Generator::JointPosition);
+        story.entries.last_mut().unwrap().state.q_d[5] = 3.75;
+        story.entries.last_mut().unwrap().state.dq_d[5] = 5.0;
+        let diagnosis = story.stop(&[error], |_, command| command.q_c[5] = 3.755, |_| {});
+        let finding = finding(&diagnosis);
+        let expected = (Subject::Joint(6), Quantity::Position, Origin::Commanded);
+        assert_eq!(
+            (finding.subject, finding.quantity, finding.origin),
+            expected
+        );
+        assert_eq!(finding.bound, Bound::Limit(3.7525));
+        assert!((finding.excess().unwrap() - 0.0025).abs() < 1e-12);
+        assert!(diagnosis.advice.contains(&Advice::StayInRange));
+    }
+}
+
+#[test]
+fn the_zeros_that_finish_an_asynchronous_motion_are_no_target() {
+    let story = Story::of(Model::fr3(), Generator::JointPosition);
+    let diagnosis = story.stop(
+        &[E::JointPositionLimitsViolation],
+        |_, command| {
+            command.q_c = [0.0; 7];
+            command.motion_generation_finished = true;
+        },
+        |state| state.q[3] = 0.1,
+    );
+    assert_eq!(finding(&diagnosis).origin, Origin::Measured);
+}
+
+#[test]
+fn a_rotation_that_leaps_is_named_by_its_axis() {
+    let story = Story::of(Model::fr3(), Generator::CartesianVelocity);
+    let diagnosis = story.stop(
+        &[
+            E::CartesianMotionGeneratorAccelerationDiscontinuity,
+            E::CartesianMotionGeneratorJointAccelerationDiscontinuity,
+        ],
+        |_, command| command.O_dP_EE_c[4] = 0.3,
+        |_| {},
+    );
+    let finding = finding(&diagnosis);
+    assert_eq!(finding.subject, Subject::Rotation(Axis::Y));
+    assert_eq!(finding.bound, Bound::Limit(17.0));
+    assert!((finding.value - 300.0).abs() < 1e-9);
+    assert!(matches!(
+        diagnosis.causes[..],
+        [Cause::TargetStep { subject: Subject::Rotation(Axis::Y), quantity: Quantity::Velocity, size, .. }]
+            if (size - 0.3).abs() < 1e-9
+    ));
+    let text = diagnosis.to_string();
+    let with = "with it: cartesian_motion_generator_joint_acceleration_discontinuity";
+    assert!(text.lines().any(|line| line == with), "{text}");
+}
+
+#[test]
+fn the_elbow_has_limits_of_its_own() {
+    let story = Story::of(Model::fr3(), Generator::CartesianPosition);
+    let diagnosis = story.stop(
+        &[E::CartesianMotionGeneratorElbowLimitViolation],
+        |before, command| command.elbow_c = Some([before.elbow_c[0] + 0.002, -1.0]),
+        |_| {},
+    );
+    let finding = finding(&diagnosis);
+    // Of velocity, acceleration and jerk the jerk is furthest beyond.
+    assert_eq!(
+        (finding.subject, finding.quantity),
+        (Subject::Elbow, Quantity::Jerk)
+    );
+    assert!(matches!(
+        diagnosis.causes[..],
+        [Cause::TargetStep { subject: Subject::Elbow, quantity: Quantity::Position, size, .. }]
+            if (size - 0.002).abs() < 1e-9
+    ));
+}
+
+#[test]
+fn joints_of_a_smooth_command_in_a_singular_pose_are_found_by_inverse_kinematics() {
+    let mut story = Story::of(Model::fr3(), Generator::CartesianVelocity);
+    let mut q = READY;
+    q[1] = 0.2;
+    q[3] = elbow::FLIP_ANGLE - 0.08;
+    let pose = Model::fr3().pose(Frame::EndEffector, &q, &EndEffector::default());
+    let state = &mut story.entries.last_mut().unwrap().state;
+    (state.q, state.q_d, state.O_T_EE_c) = (q.into(), q.into(), layout::pose(&pose));
+    // The joints of 0.3 m/s towards the wrist's circle, a while ago.
+    let out = JointVector::from(q) - READY;
+    assert!(out.norm() > 0.5);
+    state.O_dP_EE_c[0] = 0.3;
+    let diagnosis = story.stop(
+        &[E::CartesianMotionGeneratorJointAccelerationDiscontinuity],
+        |_, command| command.O_dP_EE_c[0] = 0.3,
+        |_| {},
+    );
+    let finding = finding(&diagnosis);
+    assert_eq!(finding.origin, Origin::Desired);
+    assert!(matches!(finding.subject, Subject::Joint(_)));
+    let [
+        Cause::Singularity {
+            smallest, stretch, ..
+        },
+    ] = diagnosis.causes[..]
+    else {
+        panic!("{:?}", diagnosis.causes)
+    };
+    assert!(smallest < 0.1 && (stretch + 0.08).abs() < 1e-9);
+    assert_eq!(diagnosis.advice[0], Advice::AvoidSingularity);
+}
+
+#[test]
+fn a_start_pose_is_off_by_position_or_by_rotation() {
+    for (index, subject) in [
+        (13, Subject::Translation(Axis::Y)),
+        (14, Subject::Translation(Axis::Z)),
+    ] {
+        let story = Story::unbegun(Model::fer(), Generator::CartesianPosition);
+        let diagnosis = story.stop(
+            &[E::CartesianPositionMotionGeneratorStartPoseInvalid],
+            |_, command| command.O_T_EE_c[index] += 0.1,
+            |_| {},
+        );
+        let finding = finding(&diagnosis);
+        assert_eq!(
+            (finding.subject, finding.quantity),
+            (subject, Quantity::StartOffset)
+        );
+        assert!((finding.value - 0.1).abs() < 1e-9);
+        assert_eq!(diagnosis.advice, [Advice::StartWhereItIs]);
+    }
+}

@@ -1,0 +1,137 @@
+//! Diagnoses of logs that show one thing each.
+
+mod arm;
+mod commands;
+mod nothing;
+
+use franka_model::{EndEffector, Frame, JointVector, Model, READY, layout};
+use franka_proto::{
+    ControllerMode, Errors, MotionGeneratorMode, RobotCommand, RobotError, RobotMode, RobotState,
+};
+
+use super::{Diagnosis, Finding};
+use crate::driver::LogEntry;
+
+/// A log in the making: a state, then pairs of a command and the state after it.
+struct Story {
+    model: &'static Model,
+    entries: Vec<LogEntry>,
+}
+
+/// The first state.
+const BEGIN: u64 = 1000;
+
+impl Story {
+    /// A motion under this generator from the ready pose, after its first command.
+    fn of(model: &'static Model, generator: MotionGeneratorMode) -> Self {
+        let mut story = Self::unbegun(model, generator);
+        story.go(|_, _| {}, |_| {});
+        story
+    }
+
+    /// One whose first state has not been answered.
+    fn unbegun(model: &'static Model, generator: MotionGeneratorMode) -> Self {
+        let pose = model.pose(Frame::EndEffector, &READY, &EndEffector::default());
+        let state = RobotState {
+            message_id: BEGIN,
+            q: READY.into(),
+            q_d: READY.into(),
+            O_T_EE: layout::pose(&pose),
+            O_T_EE_d: layout::pose(&pose),
+            O_T_EE_c: layout::pose(&pose),
+            elbow_c: [READY[2], -1.0],
+            motion_generator_mode: generator,
+            controller_mode: ControllerMode::ExternalController,
+            robot_mode: RobotMode::Move,
+            control_command_success_rate: 1.0,
+            ..RobotState::default()
+        };
+        let entry = LogEntry {
+            state,
+            command: RobotCommand::default(),
+        };
+        Self {
+            model,
+            entries: vec![entry],
+        }
+    }
+
+    fn newest(&self) -> &RobotState {
+        &self.entries.last().expect("never empty").state
+    }
+
+    /// One cycle: the command that answers the newest state, at rest but for what `ask` makes of it, and the state after it,
+    /// which changes as `then` says. The numbers that a robot echoes are those of the command.
+    fn go(
+        &mut self,
+        ask: impl FnOnce(&RobotState, &mut RobotCommand),
+        then: impl FnOnce(&mut RobotState),
+    ) {
+        let before = *self.newest();
+        let mut command = RobotCommand {
+            message_id: before.message_id,
+            q_c: before.q_d,
+            O_T_EE_c: before.O_T_EE_c,
+            tau_J_d: before.tau_J_d,
+            ..RobotCommand::default()
+        };
+        ask(&before, &mut command);
+        let mut state = before;
+        state.message_id += 1;
+        state.tau_J_d = command.tau_J_d;
+        state.O_T_EE_c = command.O_T_EE_c;
+        match before.motion_generator_mode {
+            MotionGeneratorMode::JointPosition => {
+                let q = JointVector::from(command.q_c);
+                let dq = (q - JointVector::from(before.q_d)) / 1e-3;
+                state.q_d = command.q_c;
+                state.ddq_d = ((dq - JointVector::from(before.dq_d)) / 1e-3).into();
+                state.dq_d = dq.into();
+            }
+            MotionGeneratorMode::JointVelocity => {
+                let dq = JointVector::from(command.dq_c);
+                state.q_d = (JointVector::from(before.q_d) + dq * 1e-3).into();
+                state.ddq_d = ((dq - JointVector::from(before.dq_d)) / 1e-3).into();
+                state.dq_d = command.dq_c;
+            }
+            _ => {}
+        }
+        then(&mut state);
+        self.entries.push(LogEntry { state, command });
+    }
+
+    /// A last cycle, in which the robot stops for these errors.
+    fn stop(
+        mut self,
+        errors: &[RobotError],
+        ask: impl FnOnce(&RobotState, &mut RobotCommand),
+        then: impl FnOnce(&mut RobotState),
+    ) -> Diagnosis {
+        let errors: Errors = errors.iter().copied().collect();
+        let before = *self.newest();
+        self.go(ask, |state| {
+            // What broke the rules is not taken over.
+            *state = RobotState {
+                message_id: state.message_id,
+                ..before
+            };
+            state.motion_generator_mode = MotionGeneratorMode::Idle;
+            state.controller_mode = ControllerMode::Other;
+            state.robot_mode = RobotMode::Reflex;
+            state.control_command_success_rate = 0.0;
+            state.errors = errors;
+            state.reflex_reason = errors;
+            then(state);
+        });
+        let entries = self.entries.iter().collect();
+        let diagnosis = Diagnosis::of_entries(errors, entries, self.model, None);
+        let text = diagnosis.to_string();
+        println!("{text}\n");
+        assert!(text.lines().count() <= 6, "{text}");
+        diagnosis
+    }
+}
+
+fn finding(diagnosis: &Diagnosis) -> Finding {
+    diagnosis.finding.expect("it is visible")
+}

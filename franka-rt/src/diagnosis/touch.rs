@@ -1,0 +1,128 @@
+//! What the robot felt.
+
+use franka_proto::{RobotError, RobotState};
+
+use super::cause::Cause;
+use super::evidence::Evidence;
+use super::finding::{Bound, Finding, Origin, Quantity, Subject};
+
+/// The joints, or the axes of the stiffness frame.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sense {
+    Joints,
+    Axes,
+}
+
+impl Sense {
+    const ALL: [Self; 2] = [Self::Joints, Self::Axes];
+
+    fn load(self, state: &RobotState) -> &[f64] {
+        match self {
+            Self::Joints => &state.tau_ext_hat_filtered,
+            Self::Axes => &state.K_F_ext_hat_K,
+        }
+    }
+
+    fn contact(self, state: &RobotState) -> &[f64] {
+        match self {
+            Self::Joints => &state.joint_contact,
+            Self::Axes => &state.cartesian_contact,
+        }
+    }
+
+    fn collision(self, state: &RobotState) -> &[f64] {
+        match self {
+            Self::Joints => &state.joint_collision,
+            Self::Axes => &state.cartesian_collision,
+        }
+    }
+
+    fn subject(self, index: usize) -> Subject {
+        match self {
+            Self::Joints => Subject::joint(index),
+            Self::Axes => Subject::component(index),
+        }
+    }
+
+    fn index(self, subject: Subject) -> Option<usize> {
+        (0..6 + usize::from(self == Self::Joints)).find(|&i| self.subject(i) == subject)
+    }
+}
+
+/// What collided, by the flags of the last state.
+pub(super) fn collision(
+    evidence: &Evidence<'_>,
+    error: RobotError,
+    sense: Sense,
+) -> Option<Finding> {
+    let last = evidence.last()?;
+    let index = largest(sense.load(last), sense.collision(last))?;
+    let value = sense.load(last)[index];
+    let mut states = evidence.states().rev().skip(1);
+    let mut since = last.message_id;
+    let before = states.find(|state| {
+        let collides = sense.collision(state)[index] != 0.0;
+        if collides {
+            since = state.message_id;
+        }
+        !collides
+    });
+    let passed = before.map(|state| sense.load(state)[index].abs());
+    Some(Finding {
+        error,
+        subject: sense.subject(index),
+        quantity: Quantity::ExternalLoad,
+        origin: Origin::Estimated,
+        value,
+        // What passed before the flag came was below the threshold, unless that changed with the acceleration.
+        bound: match passed {
+            Some(passed) if since == last.message_id && passed < value.abs() => {
+                Bound::Between(passed, value.abs())
+            }
+            _ => Bound::Unknown,
+        },
+        since,
+    })
+}
+
+/// The contact that held when the motion ended: of what the finding is of, or else the strongest by its share of the
+/// joint's torque.
+pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Cause> {
+    let state = evidence.last()?;
+    let named = of.and_then(|subject| {
+        Sense::ALL.into_iter().find_map(|sense| {
+            let index = sense.index(subject)?;
+            (sense.contact(state)[index] != 0.0).then_some((sense, index))
+        })
+    });
+    let (sense, index) = named.or_else(|| {
+        Sense::ALL
+            .into_iter()
+            .find_map(|sense| Some((sense, largest(sense.load(state), sense.contact(state))?)))
+    })?;
+    let mut since = state.message_id;
+    let mut value = sense.load(state)[index];
+    let held = evidence
+        .states()
+        .rev()
+        .take_while(|state| sense.contact(state)[index] != 0.0);
+    for state in held {
+        since = state.message_id;
+        let load = sense.load(state)[index];
+        if load.abs() > value.abs() {
+            value = load;
+        }
+    }
+    Some(Cause::Contact {
+        subject: sense.subject(index),
+        value,
+        since,
+    })
+}
+
+/// The largest of the loads whose flag is set.
+fn largest(loads: &[f64], flags: &[f64]) -> Option<usize> {
+    (0..loads.len())
+        .filter(|&i| flags[i] != 0.0)
+        .max_by(|&a, &b| loads[a].abs().total_cmp(&loads[b].abs()))
+}
