@@ -171,7 +171,8 @@ fn a_diagnosis_names_its_parts() {
     let value = round_trip(&diagnosis);
     assert_eq!(value["error"], "joint_velocity_violation");
     assert_eq!(value["finding"]["subject"], json!({ "Joint": 4 }));
-    assert_eq!(value["finding"]["bound"], json!({ "Limit": 2.175 }));
+    assert_eq!(value["finding"]["bound"], json!({ "AtMost": 2.175 }));
     assert_eq!(value["finding"]["since"], 8);
-    assert_eq!(value["advice"], json!(["SlowDown"]));
+    // Joint 4 at zero is outside its range, too.
+    assert_eq!(value["advice"], json!(["SlowDown", "StayInRange"]));
 }

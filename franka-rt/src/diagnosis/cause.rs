@@ -110,7 +110,7 @@ impl fmt::Display for Cause {
                 cycle,
             } => write!(
                 f,
-                "a {} step of {}, {subject}, in cycle {cycle}",
+                "{} step of {}, {subject}, in cycle {cycle}",
                 noun(quantity),
                 quantity.of(subject, size),
             ),
@@ -198,23 +198,32 @@ impl fmt::Display for Cause {
                 distance,
                 speed,
                 cycle,
-            } => write!(
-                f,
-                "joint {joint} {} rad from its {} limit in cycle {cycle}, where {} rad/s is allowed towards it",
-                Digits(distance),
-                if upper { "upper" } else { "lower" },
-                Digits(speed)
-            ),
+            } => {
+                let (way, end) = (
+                    if distance < 0.0 { "beyond" } else { "from" },
+                    if upper { "upper" } else { "lower" },
+                );
+                write!(
+                    f,
+                    "joint {joint} {} rad {way} its {end} limit",
+                    Digits(distance.abs())
+                )?;
+                write!(
+                    f,
+                    " in cycle {cycle}, where {} rad/s is allowed towards it",
+                    Digits(speed)
+                )
+            }
         }
     }
 }
 
 fn noun(quantity: Quantity) -> &'static str {
     match quantity {
-        Quantity::Velocity => "velocity",
-        Quantity::Acceleration => "acceleration",
-        Quantity::Torque => "torque",
-        _ => "target",
+        Quantity::Velocity => "a velocity",
+        Quantity::Acceleration => "an acceleration",
+        Quantity::Torque => "a torque",
+        _ => "a target",
     }
 }
 

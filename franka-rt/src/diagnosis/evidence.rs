@@ -33,7 +33,7 @@ pub(super) struct Reading {
     pub(super) quantity: Quantity,
     pub(super) origin: Origin,
     pub(super) value: f64,
-    pub(super) limit: f64,
+    pub(super) bound: Bound,
     /// Above 1 if the limit is exceeded.
     pub(super) score: f64,
     pub(super) cycle: u64,
@@ -117,12 +117,17 @@ impl Reading {
         cycle: u64,
     ) -> Self {
         let ratio = value.abs() / limit.abs();
+        let bound = if value < 0.0 {
+            Bound::AtLeast(-limit.abs())
+        } else {
+            Bound::AtMost(limit.abs())
+        };
         Self {
             subject,
             quantity,
             origin,
             value,
-            limit: limit.copysign(value),
+            bound,
             // Where nothing is allowed, nothing is no violation.
             score: if ratio.is_nan() { 0.0 } else { ratio },
             cycle,
@@ -137,7 +142,7 @@ impl Reading {
             quantity: self.quantity,
             origin: self.origin,
             value: self.value,
-            bound: Bound::Limit(self.limit),
+            bound: self.bound,
             since: self.cycle,
         }
     }
@@ -172,31 +177,51 @@ pub(super) fn positions(
     (0..7)
         .map(|i| {
             let (below, above) = (limits.hard_lower[i] - q[i], q[i] - limits.hard_upper[i]);
-            let (beyond, limit) = if below > above {
-                (below, limits.hard_lower[i])
+            let (beyond, bound) = if below > above {
+                (below, Bound::AtLeast(limits.hard_lower[i]))
             } else {
-                (above, limits.hard_upper[i])
+                (above, Bound::AtMost(limits.hard_upper[i]))
             };
             Reading {
                 subject: Subject::joint(i),
                 quantity: Quantity::Position,
                 origin,
                 value: q[i],
-                limit,
-                score: 1.0 + beyond,
+                bound,
+                score: 1.0 + beyond / SCALE,
                 cycle,
             }
         })
         .collect()
 }
 
-/// The worst of some readings, oldest first, as a finding: with the first of the cycles in a row in which its limit was
-/// exceeded. `None` if nothing comes near its limit.
+/// The worst of some readings of the sensors, oldest first, as a finding: with the first of the cycles in a row in which its
+/// limit was exceeded. `None` if nothing comes near its limit.
 pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let worst = readings
         .iter()
         .filter(|reading| reading.score >= VISIBLE)
         .max_by(|a, b| a.score.total_cmp(&b.score))?;
+    Some(since_first(error, worst, readings))
+}
+
+/// Likewise of commands. The robot stops at the first that breaks a limit, so it is the newest that does; if none does for
+/// certain, the newest that comes near.
+pub(super) fn newest(error: RobotError, readings: &[Reading]) -> Option<Finding> {
+    let last = |least: f64| {
+        let cycle = readings
+            .iter()
+            .rev()
+            .find(|reading| reading.score > least)?
+            .cycle;
+        let of_cycle = readings.iter().filter(|reading| reading.cycle == cycle);
+        of_cycle.max_by(|a, b| a.score.total_cmp(&b.score))
+    };
+    let newest = last(1.0).or_else(|| last(VISIBLE))?;
+    Some(since_first(error, newest, readings))
+}
+
+fn since_first(error: RobotError, worst: &Reading, readings: &[Reading]) -> Finding {
     let mut since = worst.cycle;
     let earlier = |reading: &&Reading| {
         reading.cycle < worst.cycle
@@ -209,10 +234,10 @@ pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> 
         }
         since = reading.cycle;
     }
-    Some(Finding {
+    Finding {
         since,
         ..worst.finding(error)
-    })
+    }
 }
 
 impl Subject {
@@ -229,3 +254,6 @@ impl Subject {
 /// The share of a limit from which on it counts as reached. States in single precision move a third difference by up to a
 /// twentieth of what it may be, and how the robot itself measures is not published.
 const VISIBLE: f64 = 0.95;
+
+/// What a position may lack of a limit, over [`VISIBLE`], `[rad]`: so that half a hundredth of a radian is near.
+const SCALE: f64 = 0.1;

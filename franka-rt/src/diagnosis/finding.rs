@@ -86,8 +86,10 @@ pub enum Origin {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Bound {
-    /// The nominal limit of the robot's model, with the sign of the value.
-    Limit(f64),
+    /// The nominal limit of the robot's model on the positive side.
+    AtMost(f64),
+    /// The nominal limit of the robot's model on the negative side, or the lower end of a range.
+    AtLeast(f64),
     /// A threshold that no state shows: it lies between the magnitude that passed and the one that did not.
     Between(f64, f64),
     /// Neither published nor shown by a state.
@@ -116,29 +118,37 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// By how much the limit is exceeded, in the unit of the quantity; `None` if the limit is not known.
+    /// By how much the limit is exceeded, in the unit of the quantity; `None` if the limit is not known. Zero or less, by a
+    /// few hundredths of the limit, if the state is too coarse to tell.
     pub fn excess(&self) -> Option<f64> {
-        match self.bound {
-            Bound::Limit(limit) => Some((self.value - limit) * limit_sign(self.value, limit)),
-            Bound::Between(..) | Bound::Unknown => None,
-        }
+        self.bound.excess(self.value)
     }
 
     /// How many times the limit the value is; `None` if the limit is zero, a position, or not known.
     pub fn times(&self) -> Option<f64> {
-        match self.bound {
-            Bound::Limit(limit) if limit != 0.0 && self.quantity != Quantity::Position => {
-                Some(self.value / limit)
-            }
-            _ => None,
-        }
+        let limit = self.bound.limit()?;
+        let is_scale = limit != 0.0 && self.quantity != Quantity::Position;
+        is_scale.then_some(self.value / limit)
     }
 }
 
-/// The direction in which a limit bounds a value: outwards.
-fn limit_sign(value: f64, limit: f64) -> f64 {
-    // Positions may have both limits of one sign: whichever side the value is on, it is beyond.
-    if value < limit { -1.0 } else { 1.0 }
+impl Bound {
+    /// The nominal limit, if it is known.
+    pub fn limit(self) -> Option<f64> {
+        match self {
+            Self::AtMost(limit) | Self::AtLeast(limit) => Some(limit),
+            Self::Between(..) | Self::Unknown => None,
+        }
+    }
+
+    /// By how much a value is beyond; negative if it is not.
+    pub(super) fn excess(self, value: f64) -> Option<f64> {
+        match self {
+            Self::AtMost(limit) => Some(value - limit),
+            Self::AtLeast(limit) => Some(limit - value),
+            Self::Between(..) | Self::Unknown => None,
+        }
+    }
 }
 
 impl Subject {
@@ -215,6 +225,7 @@ impl fmt::Display for Measure {
             Quantity::TorqueRate => write!(f, "{number} N m/s"),
             Quantity::Deviation | Quantity::Distance => write!(f, "{number} m"),
             Quantity::Power => write!(f, "{number} W"),
+            // The name of the quantity says the rest.
             Quantity::LostCycles | Quantity::Reversals => write!(f, "{number}"),
         }
     }
@@ -291,24 +302,27 @@ impl fmt::Display for Finding {
         let value = quantity.of(subject, self.value);
         match quantity {
             // These name their origin.
-            Quantity::StartOffset
-            | Quantity::Distance
-            | Quantity::LostCycles
-            | Quantity::Deviation
-            | Quantity::Power
-            | Quantity::Reversals => write!(f, "{subject}: {} {value}", quantity.name())?,
+            Quantity::LostCycles | Quantity::Reversals => {
+                write!(f, "{subject}: {value} {}", quantity.name())?
+            }
+            Quantity::StartOffset | Quantity::Distance | Quantity::Deviation | Quantity::Power => {
+                write!(f, "{subject}: {} {value}", quantity.name())?
+            }
             _ => write!(f, "{subject}: {origin} {} {value}", quantity.name())?,
         }
         match self.bound {
-            Bound::Limit(limit) => {
-                write!(f, ", limit {}", quantity.of(subject, limit))?;
-                let beyond = self.excess().filter(|&excess| excess > 0.0);
-                match (self.times(), beyond) {
-                    (Some(times), _) => write!(f, " ({} times)", Digits(round(times))),
-                    (None, Some(beyond)) => {
-                        write!(f, " ({} beyond)", quantity.of(subject, beyond))
+            Bound::AtMost(limit) | Bound::AtLeast(limit) => {
+                let limit = quantity.of(subject, limit);
+                let excess = self.excess().unwrap_or_default();
+                match self.times() {
+                    _ if excess <= 0.0 => write!(f, ", at the limit of {limit}"),
+                    Some(times) if times > 1.1 => {
+                        write!(f, ", limit {limit} ({} times)", Digits(round(times)))
                     }
-                    (None, None) => Ok(()),
+                    _ => {
+                        let excess = quantity.of(subject, excess);
+                        write!(f, ", limit {limit} ({excess} beyond)")
+                    }
                 }
             }
             Bound::Between(passed, stopped) => write!(
@@ -347,19 +361,27 @@ mod tests {
     fn a_finding_says_what_and_by_how_much() {
         for (finding, expected) in [
             (
-                finding(Quantity::Velocity, -2.8, Bound::Limit(-2.62)),
-                "joint 4: measured velocity -2.8 rad/s, limit -2.62 rad/s (1.07 times)",
+                finding(Quantity::Velocity, -2.8, Bound::AtLeast(-2.62)),
+                "joint 4: measured velocity -2.8 rad/s, limit -2.62 rad/s (0.18 rad/s beyond)",
             ),
             (
-                finding(Quantity::Velocity, 0.2, Bound::Limit(0.0)),
+                finding(Quantity::Velocity, 3.93, Bound::AtMost(2.62)),
+                "joint 4: measured velocity 3.93 rad/s, limit 2.62 rad/s (1.5 times)",
+            ),
+            (
+                finding(Quantity::Jerk, 4900.0, Bound::AtMost(5000.0)),
+                "joint 4: measured jerk 4900 rad/s^3, at the limit of 5000 rad/s^3",
+            ),
+            (
+                finding(Quantity::Velocity, 0.2, Bound::AtMost(0.0)),
                 "joint 4: measured velocity 0.2 rad/s, limit 0 rad/s (0.2 rad/s beyond)",
             ),
             (
-                finding(Quantity::Position, -3.1, Bound::Limit(-3.0481)),
+                finding(Quantity::Position, -3.1, Bound::AtLeast(-3.0481)),
                 "joint 4: measured position -3.1 rad, limit -3.048 rad (0.0519 rad beyond)",
             ),
             (
-                finding(Quantity::Position, -0.1, Bound::Limit(-0.1458)),
+                finding(Quantity::Position, -0.1, Bound::AtMost(-0.1458)),
                 "joint 4: measured position -0.1 rad, limit -0.1458 rad (0.0458 rad beyond)",
             ),
             (
@@ -381,13 +403,15 @@ mod tests {
 
     #[test]
     fn the_excess_counts_outwards() {
-        let excess = |value, limit| {
-            finding(Quantity::Velocity, value, Bound::Limit(limit))
-                .excess()
-                .unwrap()
-        };
-        assert!((excess(-2.8, -2.62) - 0.18).abs() < 1e-12);
-        assert!((excess(2.8, 2.62) - 0.18).abs() < 1e-12);
+        for (value, bound, excess) in [
+            (-2.75, Bound::AtLeast(-2.5), 0.25),
+            (2.75, Bound::AtMost(2.5), 0.25),
+            (2.25, Bound::AtMost(2.5), -0.25),
+            (-0.125, Bound::AtMost(-0.25), 0.125),
+        ] {
+            let found = finding(Quantity::Velocity, value, bound).excess();
+            assert_eq!(found, Some(excess));
+        }
     }
 
     #[test]

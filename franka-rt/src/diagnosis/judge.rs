@@ -5,7 +5,7 @@ use franka_proto::{Errors, RobotError as E};
 use super::advice::Advice;
 use super::cause::Cause;
 use super::commanded::{self, Which};
-use super::evidence::{Evidence, Reading, worst};
+use super::evidence::{Evidence, Reading, newest, worst};
 use super::finding::{Finding, Quantity};
 use super::touch::Sense;
 use super::{link, measured, pose, step, touch};
@@ -157,7 +157,7 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
     let first_of = |readings: &[&dyn Fn() -> Vec<Reading>]| {
         readings
             .iter()
-            .find_map(|readings| worst(error, &readings()))
+            .find_map(|readings| newest(error, &readings()))
     };
     let joints = |which| move || commanded::joint_readings(evidence, which);
     let resulting = |which| move || commanded::resulting_readings(evidence, which);
@@ -202,13 +202,13 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
         E::SelfCollisionAvoidanceViolation => measured::nearest_bodies(evidence),
         // Newer systems of the FR3 say this of commands, too.
         E::JointPositionLimitsViolation => {
-            beyond(worst(error, &commanded::position_readings(evidence)))
+            beyond(newest(error, &commanded::position_readings(evidence)))
                 .or_else(|| worst(error, &measured::position_readings(evidence)))
         }
         E::InstabilityDetected => measured::shaking(evidence),
-        E::TauJRangeViolation => first_of(&[&|| measured::torque_readings(evidence)]),
-        E::JointVelocityViolation => first_of(&[&|| measured::velocity_readings(evidence)]),
-        E::CartesianVelocityViolation => first_of(&[&|| measured::speed_readings(evidence)]),
+        E::TauJRangeViolation => worst(error, &measured::torque_readings(evidence)),
+        E::JointVelocityViolation => worst(error, &measured::velocity_readings(evidence)),
+        E::CartesianVelocityViolation => worst(error, &measured::speed_readings(evidence)),
         E::PowerLimitViolation => measured::power(evidence),
         E::MaxPathPoseDeviationViolation | E::MaxGoalPoseDeviationViolation => {
             measured::deviation(evidence, error)
@@ -252,12 +252,19 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
             causes.extend(limit());
         }
         Matter::Contact => {
-            causes.extend(touch::contact(evidence, subject));
-            causes.extend(step::torque_step(evidence));
+            let contact = touch::contact(evidence, subject);
+            // What the commands do about a contact did not lead up to it.
+            let since = match contact {
+                Some(Cause::Contact { since, .. }) => since,
+                _ => u64::MAX,
+            };
+            causes.extend(contact);
+            causes.extend(step::torque_step(evidence, since));
         }
         Matter::Arm => {
             causes.extend(touch::contact(evidence, None));
-            causes.extend(step::torque_step(evidence));
+            let since = finding.map_or(u64::MAX, |finding| finding.since);
+            causes.extend(step::torque_step(evidence, since));
             causes.extend(pose::singularity(evidence));
             causes.extend(limit());
         }
@@ -266,26 +273,25 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
     causes
 }
 
-/// What to change: by the causes, or else by the error itself. Two at most.
-pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> Vec<Advice> {
-    let by_cause = causes.iter().filter_map(|cause| match cause {
+/// What to change. Two at most: by the causes, and by the error itself if they say nothing, or if it is about what the arm
+/// does, whatever led up to that.
+pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
+    let by_cause = causes.iter().map(|cause| match cause {
         Cause::LostPackets {
             states, commands, ..
-        } => Some(if states + commands > 0 {
-            Advice::Network
-        } else {
-            Advice::Host
-        }),
-        Cause::LateCommands { .. } => Some(Advice::Host),
-        Cause::WrongStart { .. } => Some(Advice::StartWhereItIs),
-        Cause::FinishedMoving { .. } => Some(Advice::FinishAtRest),
-        Cause::TargetStep { .. } => Some(Advice::Smooth),
-        Cause::Contact { .. } => Some(Advice::Thresholds),
-        Cause::Singularity { .. } => Some(Advice::AvoidSingularity),
-        Cause::Limit { .. } => Some(Advice::StayInRange),
+        } if states + commands > 0 => Advice::Network,
+        Cause::LostPackets { .. } | Cause::LateCommands { .. } => Advice::Host,
+        Cause::WrongStart { .. } => Advice::StartWhereItIs,
+        Cause::FinishedMoving { .. } => Advice::FinishAtRest,
+        Cause::TargetStep { .. } => Advice::Smooth,
+        Cause::Contact { .. } => Advice::Thresholds,
+        Cause::Singularity { .. } => Advice::AvoidSingularity,
+        Cause::Limit { .. } => Advice::StayInRange,
     });
+    let of_arm = matter(error) == Matter::Arm;
+    let first = (of_arm || causes.is_empty()).then(|| by_error(error));
     let mut advice: Vec<Advice> = Vec::new();
-    for next in by_cause.chain(by_error(error, finding)) {
+    for next in first.into_iter().chain(by_cause) {
         if advice.len() < 2 && !advice.contains(&next) {
             advice.push(next);
         }
@@ -293,24 +299,25 @@ pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> V
     advice
 }
 
-fn by_error(error: E, finding: Option<&Finding>) -> Option<Advice> {
-    let is_velocity = finding.is_some_and(|finding| finding.quantity == Quantity::Velocity);
-    Some(match matter(error) {
-        Matter::Link => Advice::Network,
-        Matter::Start => Advice::StartWhereItIs,
-        Matter::Command | Matter::Inverse if is_velocity => Advice::SlowDown,
-        Matter::Command => Advice::Smooth,
-        Matter::Inverse => Advice::SlowDown,
-        Matter::Contact => Advice::Thresholds,
-        Matter::Desk => Advice::Desk,
-        Matter::Arm => match error {
-            E::SelfCollisionAvoidanceViolation => Advice::StayClearOfItself,
-            E::JointPositionLimitsViolation => Advice::StayInRange,
-            E::InstabilityDetected => Advice::SofterGains,
-            E::TauJRangeViolation | E::PowerLimitViolation => Advice::LessEffort,
-            _ => Advice::SlowDown,
+fn by_error(error: E) -> Advice {
+    match error {
+        E::JointPositionLimitsViolation
+        | E::JointMotionGeneratorPositionLimitsViolation
+        | E::CartesianMotionGeneratorJointPositionLimitsViolation => Advice::StayInRange,
+        E::JointMotionGeneratorVelocityLimitsViolation
+        | E::CartesianMotionGeneratorVelocityLimitsViolation => Advice::SlowDown,
+        E::SelfCollisionAvoidanceViolation => Advice::StayClearOfItself,
+        E::InstabilityDetected => Advice::SofterGains,
+        E::TauJRangeViolation | E::PowerLimitViolation => Advice::LessEffort,
+        _ => match matter(error) {
+            Matter::Link => Advice::Network,
+            Matter::Start => Advice::StartWhereItIs,
+            Matter::Command => Advice::Smooth,
+            Matter::Contact => Advice::Thresholds,
+            Matter::Desk => Advice::Desk,
+            Matter::Inverse | Matter::Arm => Advice::SlowDown,
         },
-    })
+    }
 }
 
 #[cfg(test)]

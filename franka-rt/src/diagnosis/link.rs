@@ -6,8 +6,8 @@ use super::cause::Cause;
 use super::evidence::Evidence;
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Cycles lost in a row that end a motion (FCI documentation, `communication_constraints_violation`).
-const LOST_LIMIT: f64 = 20.0;
+/// Cycles that may be lost in a row: 20 end a motion (FCI documentation, `communication_constraints_violation`).
+const LOST_LIMIT: f64 = 19.0;
 
 /// Cycles without a command, oldest first, named by the states whose answers are missing.
 struct Losses {
@@ -88,7 +88,7 @@ pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
         quantity: Quantity::LostCycles,
         origin: Origin::Measured,
         value: length as f64,
-        bound: Bound::Limit(LOST_LIMIT),
+        bound: Bound::AtMost(LOST_LIMIT),
         since: first,
     })
 }

@@ -90,7 +90,9 @@ pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
             .abs();
         (power, state.message_id)
     });
-    let (value, since) = powers.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (value, since) = powers
+        .filter(|(power, _)| *power > 0.0)
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(unbounded(
         RobotError::PowerLimitViolation,
         Subject::Arm,
@@ -139,13 +141,8 @@ pub(super) fn deviation(evidence: &Evidence<'_>, error: RobotError) -> Option<Fi
     });
     let (shift, since) = deviations.max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()))?;
     let subject = Subject::component(shift.iamax());
-    Some(unbounded(
-        error,
-        subject,
-        Quantity::Deviation,
-        shift.norm(),
-        since,
-    ))
+    (shift.norm() > 0.0)
+        .then(|| unbounded(error, subject, Quantity::Deviation, shift.norm(), since))
 }
 
 /// The joint whose velocity changes its sign most often, if any does more than once.

@@ -101,9 +101,7 @@ impl Diagnosis {
         Self {
             errors,
             error,
-            advice: error.map_or_else(Vec::new, |error| {
-                judge::advice(error, finding.as_ref(), &causes)
-            }),
+            advice: error.map_or_else(Vec::new, |error| judge::advice(error, &causes)),
             finding,
             causes,
             end: evidence.last().map(|state| state.message_id),
@@ -133,11 +131,12 @@ impl fmt::Display for Diagnosis {
         };
         match (&self.finding, self.cycles_before_end()) {
             (Some(finding), Some(before)) => {
-                let cycle = finding.since;
-                write!(
-                    f,
-                    "{finding}, since cycle {cycle} ms, {before} before the stop"
-                )?;
+                write!(f, "{finding}, since cycle {} ms, ", finding.since)?;
+                match before {
+                    0 => write!(f, "the last one")?,
+                    1 => write!(f, "the one before the stop")?,
+                    cycles => write!(f, "{cycles} cycles before the stop")?,
+                }
                 write!(f, " ({error})")?;
             }
             _ if self.cycles == 0 => write!(

@@ -14,7 +14,7 @@ use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 pub(super) fn start_offset(evidence: &Evidence<'_>, error: RobotError) -> Option<Finding> {
     let sample = evidence.first()?;
     let (subject, value) = offset(&sample, error)?;
-    (value != 0.0).then_some(Finding {
+    (value.abs() > AT_THE_START).then_some(Finding {
         error,
         subject,
         quantity: Quantity::StartOffset,
@@ -197,10 +197,13 @@ pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Opt
     }
 }
 
-/// The largest step of the commanded torques, if it takes more than half of what is allowed.
-pub(super) fn torque_step(evidence: &Evidence<'_>) -> Option<Cause> {
+/// The largest step of the commanded torques before a cycle, if it takes more than half of what is allowed.
+pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
-    let largest = readings.iter().max_by(|a, b| a.score.total_cmp(&b.score))?;
+    let largest = readings
+        .iter()
+        .filter(|reading| reading.cycle < before)
+        .max_by(|a, b| a.score.total_cmp(&b.score))?;
     (largest.score > 0.5).then_some(Cause::TargetStep {
         subject: largest.subject,
         quantity: Quantity::Torque,
@@ -216,3 +219,7 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
         jerk: nalgebra::vector![motion.jerk[index]],
     }
 }
+
+/// An offset that no robot minds, `[rad]` or `[m]`: how far off a first command may be is not published, but clients begin at
+/// measured positions, too.
+const AT_THE_START: f64 = 1e-3;

@@ -123,6 +123,6 @@ pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Ca
 /// The largest of the loads whose flag is set.
 fn largest(loads: &[f64], flags: &[f64]) -> Option<usize> {
     (0..loads.len())
-        .filter(|&i| flags[i] != 0.0)
+        .filter(|&i| flags[i] != 0.0 && loads[i].is_finite())
         .max_by(|&a, &b| loads[a].abs().total_cmp(&loads[b].abs()))
 }

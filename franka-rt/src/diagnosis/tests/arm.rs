@@ -24,7 +24,7 @@ fn a_speed_is_too_high_since_the_first_cycle_in_a_row() {
         (Subject::Joint(3), Quantity::Velocity)
     );
     assert_eq!((finding.origin, finding.value), (Origin::Measured, 2.8));
-    assert_eq!(finding.bound, Bound::Limit(2.62));
+    assert_eq!(finding.bound, Bound::AtMost(2.62));
     assert_eq!(finding.since, from);
     assert_eq!(diagnosis.cycles_before_end(), Some(3));
     assert_eq!(diagnosis.advice, [Advice::SlowDown]);
@@ -138,7 +138,7 @@ fn power_torque_and_shaking_are_read_off_the_sensors() {
     );
     let torque = story_of(&story).stop(&[E::TauJRangeViolation], |_, _| {}, |_| {});
     assert_eq!(finding(&torque).subject, Subject::Joint(2));
-    assert_eq!(finding(&torque).bound, Bound::Limit(87.0));
+    assert_eq!(finding(&torque).bound, Bound::AtMost(87.0));
     assert_eq!(torque.advice, [Advice::LessEffort]);
     for swing in 0..12 {
         story.go(
@@ -167,7 +167,7 @@ fn the_fastest_direction_of_the_end_effector_is_named() {
     let diagnosis = story.stop(&[E::CartesianVelocityViolation], |_, _| {}, |_| {});
     let finding = finding(&diagnosis);
     assert!(matches!(finding.subject, Subject::Translation(_)));
-    assert_eq!(finding.bound, Bound::Limit(3.0));
+    assert_eq!(finding.bound, Bound::AtMost(3.0));
 }
 
 #[test]
