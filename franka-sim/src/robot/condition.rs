@@ -66,7 +66,8 @@ impl Robot {
         if let Some((id, _)) = self.waiting.replace((id, request)) {
             self.reply(id, Reply::Move(MoveStatus::Preempted));
         }
-        self.start_waiting();
+        // The state of this millisecond has gone out.
+        self.start_waiting(self.clock + 1);
     }
 
     fn is_possible(&self, request: &MoveRequest) -> bool {
@@ -89,8 +90,8 @@ impl Robot {
         positive && combination && asynchronous
     }
 
-    /// Begins the motion that waits, if the arm is at rest.
-    fn start_waiting(&mut self) {
+    /// Begins the motion that waits, if the arm is at rest; state `first_state` is the first to show it.
+    fn start_waiting(&mut self, first_state: u64) {
         if !matches!(self.activity, Activity::Holding) {
             return;
         }
@@ -115,7 +116,7 @@ impl Robot {
         self.command = None;
         self.desired = self.desired.as_published(self.kind.precision);
         let limits = self.model.joint_limits();
-        self.activity = Activity::Moving(Motion::new(id, request, self.clock + 1, limits));
+        self.activity = Activity::Moving(Motion::new(id, request, first_state, limits));
     }
 
     fn is_singular(&self) -> bool {
@@ -307,7 +308,8 @@ impl Robot {
             self.reply(id, Reply::StopMove(StopStatus::Success));
         }
         self.end_recovery();
-        self.start_waiting();
+        // The state of this millisecond is still to be published, and shows the motion already.
+        self.start_waiting(self.clock);
     }
 }
 

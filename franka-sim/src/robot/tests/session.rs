@@ -170,6 +170,38 @@ fn a_move_sent_right_behind_a_stop_begins_when_the_arm_is_at_rest() {
     assert_eq!(pair.statuses(second), [started]);
 }
 
+/// Asynchronous targets are sent once: there is no second chance to answer.
+#[test]
+fn the_first_state_of_a_motion_that_waited_for_the_brake_can_be_answered() {
+    let mut pair = Pair::fr3();
+    let request = MoveRequest {
+        asynchronous: Some([1.0; 7]),
+        ..MoveRequest::new(
+            MoveControllerMode::JointImpedance,
+            MoveGeneratorMode::JointPosition,
+        )
+    };
+    let home = pair.q_d();
+    pair.begin(request);
+    pair.tick(Some(positions(&home.add_scalar(0.2))));
+    pair.idle(200);
+    // Finished in mid-motion: the arm brakes by itself, and the next motion waits for that.
+    pair.tick(Some(RobotCommand {
+        motion_generation_finished: true,
+        ..RobotCommand::default()
+    }));
+    assert_eq!(pair.state.robot_mode, RobotMode::Idle);
+    assert!(pair.state.dq_d[0] > 0.1);
+    let second = pair.request(&Request::Move(request));
+    assert_eq!(pair.statuses(second), []);
+    while pair.state.robot_mode != RobotMode::Move {
+        pair.tick(None);
+    }
+    pair.tick(Some(positions(&home)));
+    pair.idle(1000);
+    assert!((pair.q_d() - home).amax() < 1e-6, "{}", pair.q_d() - home);
+}
+
 #[test]
 fn a_reflex_lasts_until_the_recovery() {
     let mut pair = Pair::fr3();
