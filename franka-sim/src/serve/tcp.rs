@@ -65,10 +65,14 @@ pub(super) async fn serve<D: Device>(
     }
 }
 
-/// Refused by closing: a client sees an orderly end instead of silence.
+/// Refused by a reset, which every client takes for the end of the connection. libfranka 0.21 waits for its first answer
+/// beyond an orderly end, for ever.
 fn refuse(visitor: Visitor, name: &str) {
     let peer = visitor.peer;
     tracing::warn!(%peer, "refused: the {name} has a client");
+    if let Err(error) = visitor.stream.set_zero_linger() {
+        tracing::debug!(%peer, %error, "an option of the connection");
+    }
 }
 
 async fn until(deadline: Option<Instant>) {
