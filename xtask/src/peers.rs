@@ -1,10 +1,11 @@
 //! Other clients against the simulator: starts its binary, runs a script against it, ends it.
 
 use std::env;
+use std::fmt;
 use std::io::{BufRead as _, BufReader};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -27,6 +28,7 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     workspace.run(&mut build)?;
 
     let address = loopback_address(std::process::id());
+    let mut summaries = Vec::new();
     for (name, arguments) in SCRIPTS {
         let mut simulator = real_time(&workspace.target().join("debug").join("franka-sim"));
         simulator.args(["--bind", &address, "--port", PORT]);
@@ -36,9 +38,95 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
         let mut script = workspace.program(&interpreter);
         script.arg(peers.join(name)).arg(&address);
         println!("$ python tests/peers/{name} {address}");
-        finish(script, SCRIPT_TIME_MAX)?;
+        let start = Instant::now();
+        let (steps, result) = count(script, SCRIPT_TIME_MAX);
+        summaries.push((name, steps, start.elapsed(), result));
     }
-    Ok(Outcome::Passed)
+    summarise(&summaries)
+}
+
+/// Prints what became of each script; fails if one did.
+fn summarise(summaries: &[(&str, Steps, Duration, anyhow::Result<()>)]) -> anyhow::Result<Outcome> {
+    let mut total = Steps::default();
+    println!();
+    for (name, steps, time, result) in summaries {
+        let seconds = time.as_secs_f64();
+        print!("{name:32} {steps}, {seconds:5.1} s");
+        match result {
+            Ok(()) => println!(),
+            Err(error) => println!(", {error:#}"),
+        }
+        total.passed += steps.passed;
+        total.failed += steps.failed;
+        total.repeated += steps.repeated;
+    }
+    println!("{:32} {total}", "together");
+    match summaries
+        .iter()
+        .filter(|(.., result)| result.is_err())
+        .count()
+    {
+        0 => Ok(Outcome::Passed),
+        failed => bail!("{failed} of {} scripts failed", summaries.len()),
+    }
+}
+
+/// What a script printed of its steps.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Steps {
+    passed: u32,
+    failed: u32,
+    /// Because commands came late.
+    repeated: u32,
+}
+
+impl Steps {
+    /// Takes in a line that a script printed.
+    fn note(&mut self, line: &str) {
+        if line.starts_with("ok    ") {
+            self.passed += 1;
+        } else if line.starts_with("FAIL  ") {
+            self.failed += 1;
+        } else if line.starts_with("      repeated ") {
+            self.repeated += 1;
+        }
+    }
+}
+
+impl fmt::Display for Steps {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            passed,
+            failed,
+            repeated,
+        } = self;
+        write!(f, "{passed:3} passed, {failed} failed, {repeated} repeated")
+    }
+}
+
+/// Runs a script to its end and counts its steps, which it prints; what else it prints is passed on.
+fn count(mut script: Command, time_max: Duration) -> (Steps, anyhow::Result<()>) {
+    let (sender, lines) = mpsc::channel();
+    let result = thread::scope(|scope| {
+        finish(script.stdout(Stdio::piped()), time_max, |output| {
+            scope.spawn(move || {
+                for line in BufReader::new(output).lines().map_while(Result::ok) {
+                    println!("{line}");
+                    // The receiver is there until all have been counted.
+                    let _ = sender.send(line);
+                }
+            });
+        })
+    });
+    let mut steps = Steps::default();
+    for line in lines {
+        steps.note(&line);
+    }
+    let result = match result {
+        Ok(()) if steps.passed == 0 => Err(anyhow!("no step passed")),
+        result => result,
+    };
+    (steps, result)
 }
 
 /// A Python interpreter that has the vendor's client, or why there is none.
@@ -132,9 +220,15 @@ impl Drop for Running {
     }
 }
 
-/// Runs a program to its end; one that takes longer than `time_max` is killed and counts as failed.
-fn finish(mut command: Command, time_max: Duration) -> anyhow::Result<()> {
+/// Runs a program to its end; one that takes longer than `time_max` is killed and counts as failed. `read` gets its
+/// output, if there is a pipe for it.
+fn finish(
+    command: &mut Command,
+    time_max: Duration,
+    read: impl FnOnce(ChildStdout),
+) -> anyhow::Result<()> {
     let mut child = command.spawn().context("cannot start the script")?;
+    child.stdout.take().map(read);
     let deadline = Instant::now() + time_max;
     loop {
         match child.try_wait()? {
@@ -157,12 +251,22 @@ fn kill(child: &mut Child) {
 }
 
 /// The scripts, and what their simulators are like.
-const SCRIPTS: [(&str, &[&str]); 2] = [
-    ("pylibfranka_basic.py", &[]),
+const SCRIPTS: [(&str, &[&str]); 11] = [
+    ("pylibfranka_setup.py", &[]),
+    ("pylibfranka_model.py", &["--hand"]),
+    ("pylibfranka_motions.py", &[]),
+    ("pylibfranka_modes.py", &[]),
+    ("pylibfranka_torque_control.py", &[]),
+    ("pylibfranka_active.py", &[]),
+    ("pylibfranka_async.py", &[]),
+    ("pylibfranka_reflexes.py", &[]),
+    // The Jacobian of the end effector all but loses a rank there.
     (
-        "pylibfranka_gripper.py",
-        &["--gripper-object-width", "0.05"],
+        "pylibfranka_singular.py",
+        &["--q", "0,1.28,0,-0.5415,0,2.74,0"],
     ),
+    ("pylibfranka_versions.py", &["--robot", "fer"]),
+    ("pylibfranka_hand.py", &["--gripper-object-width", "0.05"]),
 ];
 
 /// Versions of Python that the vendor builds wheels for.
@@ -174,7 +278,7 @@ const PORT: &str = "1337";
 /// A simulator listens within milliseconds; on a machine that is busy building it may take seconds.
 const READY_TIME_MAX: Duration = Duration::from_secs(20);
 
-/// The longest script takes some 15 s; a few of its motions may be repeated.
+/// The longest script takes some 12 s; a few of its motions may be repeated.
 const SCRIPT_TIME_MAX: Duration = Duration::from_secs(180);
 
 const POLL: Duration = Duration::from_millis(50);
@@ -197,11 +301,33 @@ mod tests {
     }
 
     #[test]
+    fn steps_are_counted_by_what_a_script_prints() {
+        let mut script = Command::new("printf");
+        script.arg("%s\n").args([
+            "ok    one (0.1 s): fine",
+            "      repeated for late commands: so late",
+            "ok    two (0.1 s): fine",
+            "FAIL  three: wrong",
+            "2 passed, 1 failed",
+        ]);
+        let (steps, result) = count(script, Duration::from_secs(20));
+        let expected = Steps {
+            passed: 2,
+            failed: 1,
+            repeated: 1,
+        };
+        assert_eq!(steps, expected);
+        result.unwrap();
+        let (_, result) = count(Command::new("true"), Duration::from_secs(20));
+        assert_eq!(result.unwrap_err().to_string(), "no step passed");
+    }
+
+    #[test]
     fn a_program_without_end_is_killed() {
         let mut command = Command::new("sleep");
         command.arg("60");
         let start = Instant::now();
-        let error = finish(command, Duration::from_millis(100)).unwrap_err();
+        let error = finish(&mut command, Duration::from_millis(100), drop).unwrap_err();
         assert!(error.to_string().contains("took longer"), "{error}");
         assert!(start.elapsed() < Duration::from_secs(30));
     }

@@ -1,0 +1,175 @@
+"""Motions that scripts command cycle by cycle, and what the robot says of them.
+
+A robot bridges lost commands by going on with constant acceleration, and takes the next command as it comes, so every
+command here continues the setpoint that the robot reports.
+"""
+
+import numpy
+from pylibfranka import CartesianPose, CartesianVelocities, JointPositions, JointVelocities, RobotMode
+
+from steps import column_major, equal, matrix
+
+CYCLE = 1e-3
+# How fast a setpoint returns to its plan, 1/s, and how long that may take at the end of a motion, s.
+RETURN = 20.0
+SETTLE = 0.3
+# States carry setpoints in single precision; steering from them ends this close to the plan, rad or m.
+SETPOINT_TOLERANCE = 5e-4
+
+
+def follow(control, command, duration, finish=True):
+    """Runs `duration` seconds of robot time of a motion and returns the states.
+
+    `command` maps the time since the first cycle and the state to the command of a cycle; the last one finishes the
+    motion unless `finish` is false.
+    """
+    t, states = 0.0, []
+    while t < duration:
+        state, step = control.readOnce()
+        t += step.to_sec()
+        equal("mode in a motion", state.robot_mode, RobotMode.Move)
+        states.append(state)
+        cycle = command(t, state)
+        cycle.motion_finished = finish and t >= duration
+        control.writeOnce(cycle)
+    return states
+
+
+def success_rate(states):
+    """The median of what the robot reports."""
+    rates = sorted(state.control_command_success_rate for state in states)
+    return rates[len(rates) // 2]
+
+
+def joint_positions(plan):
+    """Joint position commands along a plan."""
+
+    def command(t, state):
+        setpoint, _ = steer(state.q_d, state.dq_d, plan(t))
+        return JointPositions(setpoint.tolist())
+
+    return command
+
+
+def joint_velocities(plan):
+    """Joint velocity commands along a plan of positions."""
+
+    def command(t, state):
+        _, velocity = steer(state.q_d, state.dq_d, plan(t))
+        return JointVelocities(velocity.tolist())
+
+    return command
+
+
+def cartesian_poses(start, translation, rotation):
+    """Poses along a plan of the translation and one of the rotation vector away from the orientation of `start`."""
+
+    def command(t, state):
+        pose, twist = matrix(state.O_T_EE_c), numpy.array(state.O_dP_EE_c)
+        pose[:3, 3], _ = steer(pose[:3, 3], twist[:3], translation(t))
+        _, spin = steer(rotation_vector(start, pose), twist[3:], rotation(t))
+        pose[:3, :3] = turn(spin * CYCLE) @ pose[:3, :3]
+        return CartesianPose(column_major(pose))
+
+    return command
+
+
+def cartesian_velocities(start, translation, rotation):
+    """Twists along the same plans."""
+
+    def command(t, state):
+        pose, twist = matrix(state.O_T_EE_d), numpy.array(state.O_dP_EE_c)
+        _, velocity = steer(pose[:3, 3], twist[:3], translation(t))
+        _, spin = steer(rotation_vector(start, pose), twist[3:], rotation(t))
+        return CartesianVelocities([*velocity, *spin])
+
+    return command
+
+
+def standing_joints():
+    """Joint position commands that stay where the motion begins."""
+    return standing(lambda state: joint_positions(line(state.q_d, numpy.zeros(7), 1.0)))
+
+
+def standing_pose():
+    """Poses that stay where the motion begins."""
+
+    def begin(state):
+        pose = matrix(state.O_T_EE_c)
+        still = numpy.zeros(3)
+        return cartesian_poses(pose, line(pose[:3, 3], still, 1.0), line(still, still, 1.0))
+
+    return standing(begin)
+
+
+def standing(begin):
+    commands = []
+
+    def command(t, state):
+        if not commands:
+            commands.append(begin(state))
+        return commands[0](t, state)
+
+    return command
+
+
+def line(start, offset, duration):
+    """A plan from `start` to `start + offset`, from rest to rest: position, velocity and acceleration over time."""
+    start, offset = numpy.asarray(start), numpy.asarray(offset)
+
+    def plan(t):
+        position, velocity, acceleration = ease(t / duration)
+        return (
+            start + offset * position,
+            offset * velocity / duration,
+            offset * acceleration / duration**2,
+        )
+
+    return plan
+
+
+def steer(setpoint, velocity, plan):
+    """The setpoint and its velocity one cycle later: accelerating as planned, and back to the plan where they left it."""
+    setpoint, velocity = numpy.array(setpoint), numpy.array(velocity)
+    planned_setpoint, planned_velocity, acceleration = plan
+    acceleration = acceleration + 2.0 * RETURN * (planned_velocity - velocity)
+    acceleration += RETURN**2 * (planned_setpoint - setpoint)
+    velocity = velocity + acceleration * CYCLE
+    return setpoint + velocity * CYCLE, velocity
+
+
+def ease(x):
+    """Rises from 0 to 1 over 0 <= x <= 1, at rest at both ends; with its first and second derivative."""
+    x = min(max(x, 0.0), 1.0)
+    return (
+        x**3 * (10.0 + x * (6.0 * x - 15.0)),
+        30.0 * (x * (1.0 - x)) ** 2,
+        60.0 * x * (1.0 - x) * (1.0 - 2.0 * x),
+    )
+
+
+def skew(vector):
+    x, y, z = vector
+    return numpy.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def turn(vector):
+    """The rotation matrix of a rotation vector."""
+    angle = numpy.linalg.norm(vector)
+    if angle < 1e-12:
+        return numpy.eye(3) + skew(vector)
+    axis = skew(vector / angle)
+    return numpy.eye(3) + numpy.sin(angle) * axis + (1.0 - numpy.cos(angle)) * axis @ axis
+
+
+def rotation_vector(start, end):
+    """The rotation vector, in the axes of the base, from one orientation to another less than half a turn away."""
+    between = end[:3, :3] @ start[:3, :3].T
+    doubled_sine = numpy.array(
+        [between[2, 1] - between[1, 2], between[0, 2] - between[2, 0], between[1, 0] - between[0, 1]]
+    )
+    sine = 0.5 * numpy.linalg.norm(doubled_sine)
+    if sine < 1e-9:
+        return 0.5 * doubled_sine
+    angle = numpy.arctan2(sine, 0.5 * (numpy.trace(between) - 1.0))
+    return 0.5 * doubled_sine * angle / sine

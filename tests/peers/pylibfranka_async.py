@@ -1,0 +1,255 @@
+"""Asynchronous joint positions with pylibfranka: pylibfranka_async.py ADDRESS
+
+The robot plans the way to each target itself; the client sends targets when it likes. Nothing is late here, so that no
+step is ever repeated.
+"""
+
+import gc
+import time
+
+import numpy
+from pylibfranka import AsyncPositionControlHandler as Handler
+from pylibfranka import InvalidOperationException, RobotMode
+
+# The client's package does not export the type by name, only its values.
+from pylibfranka._pylibfranka import TargetStatus
+
+from steps import Session, check, equal, near, refuses, script, spread
+
+OFFSET = numpy.array([0.2, -0.1, 0.1, 0.2, 0.1, 0.1, 0.3])
+# Those of the vendor's example, rad/s.
+SPEED = [0.655] * 4 + [1.315] * 3
+TOLERANCE = 1e-3
+TIME_MAX = 5.0
+# Of the joints of the Franka Research 3, rad/s².
+ACCELERATION = 10.0
+ABORTED = "Control interface is in aborted state."
+BUSY = "libfranka robot: Cannot perform this operation while another control or read operation is running."
+
+
+def configuration(speed=SPEED):
+    configuration = Handler.Configuration(SPEED, TOLERANCE)
+    configuration.maximum_joint_velocities = speed
+    return configuration
+
+
+def configure(session, speed=SPEED):
+    result = Handler.configure(session.robot, configuration(speed))
+    equal("error", result.error_message, None)
+    return result.handler
+
+
+def command(handler, target):
+    result = handler.set_joint_position_target(Handler.JointPositionTarget(target))
+    equal("error of a target", result.error_message, None)
+    equal("success of a target", result.was_successful, True)
+    check(result.motion_uuid, "an identifier of the motion")
+
+
+def feedback(handler, state=None):
+    result = handler.get_target_feedback(state)
+    return result.status, result.error_message
+
+
+def statuses(session, handler, target):
+    """Every status until the target is reached, repetitions left out, and the states until then."""
+    seen, states = [], []
+    end = time.monotonic() + TIME_MAX
+    while not seen or seen[-1] == TargetStatus.kExecuting:
+        check(time.monotonic() < end, f"{target} is reached, after {seen}")
+        states.append(session.robot.read_once())
+        status, error = feedback(handler, states[-1])
+        equal("error on the way", error, None)
+        equal("mode on the way", states[-1].robot_mode, RobotMode.Move)
+        if seen[-1:] != [status]:
+            seen.append(status)
+    near("q_d at the target", states[-1].q_d, target, TOLERANCE)
+    return seen, states
+
+
+def wrong_velocities_are_answered_with_an_error(session):
+    out_of_range = "libfranka: Move command rejected: maximum path deviation out of range!"
+    cases = [
+        (None, "libfranka: Maximum velocities must be provided for variable rate."),
+        ([0.5] * 6, "libfranka: Invalid size of maximum velocities vector."),
+        ([0.0] * 7, out_of_range),
+        ([-0.5] * 7, out_of_range),
+        ([5.0] * 7, out_of_range),
+    ]
+    for speed, text in cases:
+        result = Handler.configure(session.robot, configuration(speed))
+        equal(f"handler for {speed}", result.handler, None)
+        equal(f"error for {speed}", result.error_message, text)
+        equal("mode after a refusal", session.fresh_state().robot_mode, RobotMode.Idle)
+    return f"{len(cases)} refused"
+
+
+def reaches_a_target_and_says_so(session):
+    start, target = numpy.array(session.state_at_rest().q_d), session.home + OFFSET
+    handler = configure(session)
+    equal("feedback before a target", feedback(handler), (TargetStatus.kIdle, None))
+    command(handler, target)
+    session.fresh_state()
+    seen, states = statuses(session, handler, target)
+    if spread(start, target) > TOLERANCE:
+        equal("statuses", seen, [TargetStatus.kExecuting, TargetStatus.kTargetReached])
+    fastest = numpy.max(numpy.abs([state.dq_d for state in states]), axis=0)
+    check(numpy.all(fastest <= numpy.array(SPEED) + 1e-3), f"{fastest} keeps {SPEED}")
+    check(numpy.max(fastest / SPEED) > 0.5, f"{fastest} makes use of {SPEED}")
+    near("success rate without a cycle", [state.control_command_success_rate for state in states], 0.0, 0.0)
+    handler.stop_control()
+    near("q", session.state_at_rest().q, target, 5e-3)
+    return f"fastest joint at {numpy.max(fastest / SPEED):.2f} of what is allowed"
+
+
+def goes_slower_where_told(session):
+    handler = configure(session, [0.3] * 7)
+    command(handler, session.home)
+    session.fresh_state()
+    _, states = statuses(session, handler, session.home)
+    handler.stop_control()
+    fastest = numpy.max(numpy.abs([state.dq_d for state in states]))
+    near("fastest joint", fastest, 0.3, 0.01)
+    return f"fastest joint at {fastest:.3f} rad/s"
+
+
+def turns_round_in_mid_motion(session):
+    handler = configure(session)
+    command(handler, session.home + OFFSET)
+    session.fresh_state()
+    # Far enough to be fast, and not yet there.
+    while (state := session.robot.read_once()).q_d[6] < session.home[6] + 0.4 * OFFSET[6]:
+        equal("feedback", feedback(handler, state), (TargetStatus.kExecuting, None))
+    speed = state.dq_d[6]
+    check(speed > 0.2, f"{speed:.2f} rad/s in mid-motion")
+    command(handler, session.home)
+    seen, states = statuses(session, handler, session.home)
+    equal("statuses", seen, [TargetStatus.kExecuting, TargetStatus.kTargetReached])
+    handler.stop_control()
+    steps = numpy.max(numpy.abs(numpy.diff([state.dq_d for state in states], axis=0)), axis=1)
+    # Between two states others may have been lost.
+    times = numpy.diff([state.time.to_sec() for state in states])
+    check(numpy.all(steps < ACCELERATION * times + 1e-4), f"velocity goes on without a step of {max(steps)} rad/s")
+    near("q", session.state_at_rest().q, session.home, 5e-3)
+    return f"from {speed:.2f} rad/s"
+
+
+def has_reached_a_target_where_it_is(session):
+    handler = configure(session)
+    command(handler, session.fresh_state().q_d)
+    equal("feedback", feedback(handler, session.fresh_state()), (TargetStatus.kTargetReached, None))
+    handler.stop_control()
+    return "at once"
+
+
+def stops_in_mid_motion_and_is_of_no_use_after(session):
+    handler = configure(session)
+    command(handler, session.home + OFFSET)
+    time.sleep(0.2)
+    check(max(map(abs, session.fresh_state().dq_d)) > 0.1, "moving")
+    handler.stop_control()
+    state = session.state_at_rest()
+    check(not state.last_motion_errors, f"errors {state.last_motion_errors}")
+    equal("feedback", feedback(handler), (TargetStatus.kAborted, ABORTED))
+    result = handler.set_joint_position_target(Handler.JointPositionTarget(session.home))
+    equal("target after the end", (result.was_successful, result.error_message), (False, ABORTED))
+    travel = state.q_d[0] - session.home[0]
+    check(0.0 < travel < OFFSET[0], f"between start and target, after {travel:.3f} rad")
+    return f"after {travel:.3f} rad"
+
+
+def goes_on_at_once_after_a_stop(session):
+    """The arm still brakes when the next motion is requested, which takes its first target all the same."""
+    turns = 5
+    for turn in range(turns):
+        target = session.home + (OFFSET if turn % 2 == 0 else 0.0)
+        handler = configure(session)
+        command(handler, target)
+        time.sleep(0.15)
+        check(max(map(abs, session.fresh_state().dq_d)) > 0.1, "moving")
+        handler.stop_control()
+        handler = configure(session)
+        command(handler, target)
+        session.fresh_state()
+        statuses(session, handler, target)
+        handler.stop_control()
+    return f"{turns} times"
+
+
+def shares_the_robot_with_no_other_motion(session):
+    handler = configure(session)
+    equal("a second one", Handler.configure(session.robot, configuration()).error_message, BUSY)
+    refuses(InvalidOperationException, BUSY, session.robot.start_torque_control)
+    command(handler, session.home)
+    session.fresh_state()
+    statuses(session, handler, session.home)
+    # Without stop_control: its end is that of the motion.
+    del handler
+    gc.collect()
+    session.state_at_rest()
+    return "and the first goes on"
+
+
+def ends_when_the_robot_is_stopped(session):
+    handler = configure(session)
+    command(handler, session.home + OFFSET)
+    time.sleep(0.2)
+    session.robot.stop()
+    session.state_at_rest()
+    status = feedback(handler)
+    equal("feedback", status, (TargetStatus.kAborted, "libfranka: Move command preempted!"))
+    return status[1]
+
+
+def aborts_beyond_the_range_of_the_joints(session):
+    handler = configure(session)
+    command(handler, [10.0] * 7)
+    session.fresh_state()
+    end = time.monotonic() + TIME_MAX
+    while (state := session.robot.read_once()).robot_mode == RobotMode.Move:
+        check(time.monotonic() < end, "a reflex")
+    equal("errors", str(state.current_errors), '["joint_position_limits_violation"]')
+    equal("by a state", feedback(handler, state), (TargetStatus.kAborted, "Control aborted due to reflex."))
+    # The second takes the client the answer to the motion, of which there is one.
+    text = 'libfranka: Move command aborted: motion aborted by reflex! ["joint_position_limits_violation"]'
+    equal("by the robot", feedback(handler), (TargetStatus.kAborted, text))
+    busy = Handler.configure(session.robot, configuration()).error_message
+    equal("while it lives", busy, BUSY)
+    del handler
+    gc.collect()
+    refused = Handler.configure(session.robot, configuration())
+    rejected = 'libfranka: Move command rejected: command not possible in the current mode ("Reflex")!'
+    equal("in a reflex", refused.error_message, rejected)
+    session.recover()
+    reaches_a_target_and_says_so(session)
+    return "and moves again after recovery"
+
+
+def no_numbers_are_refused_by_the_client(session):
+    handler = configure(session)
+    result = handler.set_joint_position_target(Handler.JointPositionTarget([float("nan")] * 7))
+    equal("target", (result.was_successful, result.error_message), (False, "Commanding value is infinite or NaN."))
+    equal("feedback", feedback(handler), (TargetStatus.kAborted, ABORTED))
+    del handler
+    gc.collect()
+    session.state_at_rest()
+    return "the motion ends with its handler"
+
+
+if __name__ == "__main__":
+    script(
+        [
+            wrong_velocities_are_answered_with_an_error,
+            reaches_a_target_and_says_so,
+            goes_slower_where_told,
+            turns_round_in_mid_motion,
+            has_reached_a_target_where_it_is,
+            stops_in_mid_motion_and_is_of_no_use_after,
+            goes_on_at_once_after_a_stop,
+            shares_the_robot_with_no_other_motion,
+            ends_when_the_robot_is_stopped,
+            aborts_beyond_the_range_of_the_joints,
+            no_numbers_are_refused_by_the_client,
+        ],
+        Session,
+    )

@@ -1,0 +1,146 @@
+"""What the scripts of this directory share: steps that are run, repeated and counted, and checks of what came out.
+
+A step is a function; its name says what it shows, and what it returns is printed. Each prints one line, the last line
+counts them, and the exit code of a script is 0 only if none failed.
+
+Client and simulator share a machine that may be busy. Twenty commands lost in a row end any motion. That says nothing
+about the simulator: the step is then repeated, a few times at most, and the output says so.
+"""
+
+import sys
+import time
+import traceback
+
+import numpy
+from pylibfranka import ControlException, RealtimeConfig, Robot, RobotMode
+
+LATE = "communication_constraints_violation"
+REPEATS_MAX = 4
+# Beyond this the arm still moves, rad/s; the robot's own motions and reflexes end within this, s.
+REST = 1e-3
+REST_TIME_MAX = 3.0
+
+
+def script(steps, connect):
+    """Runs a script: its address is the command line, `connect` makes of it what the steps get. Exits."""
+    if len(sys.argv) != 2:
+        sys.exit(f"usage: {sys.argv[0]} ADDRESS")
+    sys.exit(run(steps, connect(sys.argv[1])))
+
+
+def run(steps, session):
+    passed = 0
+    begin = time.monotonic()
+    for step in steps:
+        name = step.__name__.replace("_", " ")
+        start = time.monotonic()
+        try:
+            summary = repeat_if_late(step, session)
+        except Exception as error:  # Any exception of any step is a failure of that step.
+            print(f"FAIL  {name}: {type(error).__name__}: {error}", flush=True)
+            traceback.print_exc()
+        else:
+            passed += 1
+            print(f"ok    {name} ({time.monotonic() - start:.1f} s): {summary}", flush=True)
+            continue
+        # Here and not above: what the step started ends once nothing refers to the exception any more.
+        session.clear()
+    failed = len(steps) - passed
+    print(f"{passed} passed, {failed} failed in {time.monotonic() - begin:.1f} s", flush=True)
+    return 1 if failed else 0
+
+
+def repeat_if_late(step, session):
+    for _ in range(REPEATS_MAX):
+        try:
+            return step(session)
+        except ControlException as error:
+            if LATE not in str(error):
+                raise
+            print(f"      repeated for late commands: {error}", flush=True)
+        session.clear()
+    return step(session)
+
+
+class Session:
+    """A connection to the robot that the steps share."""
+
+    def __init__(self, address):
+        self.address = address
+        self.connect()
+        # Joint positions to which motions are relative, so that one that is repeated ends where it would have.
+        self.home = numpy.array(self.fresh_state().q_d)
+
+    def connect(self):
+        self.robot = None  # A robot serves one client at a time: let the old one go first.
+        self.robot = Robot(self.address, RealtimeConfig.kIgnore)
+
+    def fresh_state(self):
+        """A state of now: the first read may return one that waited in the socket since the last read."""
+        self.robot.read_once()
+        return self.robot.read_once()
+
+    def state_at_rest(self):
+        """The state once the arm has settled after a motion."""
+        start = self.fresh_state().time.to_sec()
+        while True:
+            state = self.robot.read_once()
+            if state.robot_mode == RobotMode.Idle and max(map(abs, state.dq)) < REST:
+                return state
+            check(state.time.to_sec() < start + REST_TIME_MAX, f"the arm rests: {state.robot_mode}, {state.dq}")
+
+    def recover(self):
+        """Clears a reflex and returns the state after it."""
+        self.robot.automatic_error_recovery()
+        state = self.state_at_rest()
+        check(not state.current_errors, f"errors after recovery: {state.current_errors}")
+        return state
+
+    def clear(self):
+        """Best effort after a failed step, so that the next one starts from an idle robot."""
+        try:
+            self.robot.automatic_error_recovery()
+        except Exception as error:
+            print(f"      clearing failed too: {error}", flush=True)
+
+
+def matrix(values):
+    """A transform, which the client has column by column."""
+    return numpy.array(values).reshape(4, 4, order="F")
+
+
+def column_major(transform):
+    return numpy.asarray(transform).flatten(order="F").tolist()
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def equal(what, got, want):
+    check(got == want, f"{what}: {got!r} instead of {want!r}")
+
+
+def spread(got, want):
+    return float(numpy.max(numpy.abs(numpy.asarray(got) - numpy.asarray(want))))
+
+
+def near(what, got, want, tolerance):
+    error = spread(got, want)
+    check(error <= tolerance, f"{what}: off by {error:.3e}, allowed {tolerance:g}")
+
+
+def raises(kind, action):
+    """The text of the exception with which `action` ends: of this type, not of one below it."""
+    try:
+        action()
+    except kind as error:
+        equal("type of the exception", type(error), kind)
+        return str(error).strip()
+    raise AssertionError(f"no {kind.__name__}")
+
+
+def refuses(kind, text, action):
+    """Checks that `action` ends with an exception of this type and text."""
+    equal(f"text of the {kind.__name__}", raises(kind, action), text)
