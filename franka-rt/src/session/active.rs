@@ -11,6 +11,7 @@ use crate::driver::Record;
 use crate::law::hybrid::Reference;
 
 use super::backend::{Backend, Stream};
+use super::chunk::{ChunkCourse, ChunkReader, ChunkStart};
 use super::course::{self, Course};
 use super::effort::Effort;
 use super::goal::{Goal, Stale, Target, Then, Watchdog};
@@ -39,6 +40,10 @@ pub(super) struct Active {
     lapse: Option<(Stale, Lapse)>,
     /// Cycles in which the course was held back, less those since in which it was not.
     held_back: u64,
+    /// Where the goal's last chunk has ended, if none runs.
+    chunk_end: Option<Target>,
+    /// A chunk that another course has taken the place of: it goes back in the next cycle.
+    left: Option<ChunkCourse>,
 }
 
 /// What follows the reference.
@@ -104,6 +109,8 @@ impl Active {
             since: state.message_id,
             heard: state.message_id,
             lapse: None,
+            chunk_end: None,
+            left: None,
             posture: q,
             reference,
             goal,
@@ -140,10 +147,64 @@ impl Active {
     fn set_out(&mut self, model: &Model) {
         self.stage = Stage::UnderWay;
         self.held_back = 0;
+        self.chunk_end = None;
         self.turn_to(model, self.goal.target);
     }
 
+    /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is over.
+    fn follow_chunks(&mut self, model: &Model, chunks: &mut ChunkReader, now: u64) {
+        if let Some(left) = self.left.take() {
+            left.end(chunks, now);
+        }
+        let gone = matches!(self.stage, Stage::Releasing(_) | Stage::Finished);
+        if gone || matches!(self.lapse, Some((_, Lapse::Deadman))) {
+            chunks.discard(self.goal.id);
+            return;
+        }
+        let over = match &self.course {
+            Course::Chunk(chunk) => chunk.is_over(now),
+            _ => true,
+        };
+        if let Some(chunk) = chunks.poll(self.goal.id, now, over) {
+            let (pose, drift) = self.course.pose(model, &self.ee, &self.reference);
+            let start = ChunkStart {
+                reference: &self.reference,
+                pose,
+                drift,
+                now,
+            };
+            let next = ChunkCourse::new(model, self.goal.id, self.goal.budget, chunk, start);
+            if let Course::Chunk(before) = core::mem::replace(&mut self.course, Course::Chunk(next))
+            {
+                before.end(chunks, now);
+            }
+            // A goal that had fallen silent was to be held until a newer one.
+            if self.lapse.take().is_some() {
+                self.goal.then = Then::Hold;
+            }
+            self.heard = now;
+            self.stage = Stage::UnderWay;
+        } else if over && let Course::Chunk(chunk) = &self.course {
+            let target = chunk.target();
+            self.turn_to(model, target);
+            self.chunk_end = Some(target);
+        }
+    }
+
+    /// Where the reference is to come to rest.
+    fn heading(&self) -> Target {
+        match &self.course {
+            Course::Chunk(chunk) => chunk.target(),
+            _ => self.chunk_end.unwrap_or(self.goal.target),
+        }
+    }
+
     fn turn_to(&mut self, model: &Model, target: Target) {
+        if matches!(self.course, Course::Chunk(_))
+            && let Course::Chunk(chunk) = core::mem::replace(&mut self.course, Course::Rest)
+        {
+            self.left = Some(chunk);
+        }
         let goal = Goal {
             target,
             ..self.goal
@@ -186,6 +247,7 @@ impl Active {
         &mut self,
         model: &Model,
         alive: bool,
+        chunks: Option<&mut ChunkReader>,
         state: &RobotState,
         record: &mut Record,
     ) -> Step {
@@ -199,6 +261,9 @@ impl Active {
         };
         let mut bindings = Bindings::default();
 
+        if let Some(chunks) = chunks {
+            self.follow_chunks(model, chunks, state.message_id);
+        }
         self.watch(model, alive, state.message_id);
         bindings.set(Guard::Deadman, !alive);
         bindings.set(
@@ -211,9 +276,14 @@ impl Active {
             reference,
             bounds,
             held,
-        } = self
-            .course
-            .step(model, &self.ee, &self.posture, &self.reference, &arm);
+        } = self.course.step(
+            model,
+            &self.ee,
+            &self.posture,
+            &self.reference,
+            &arm,
+            state.message_id,
+        );
         self.reference = reference;
         bindings.set(Guard::InverseKinematics, bounds.acceleration);
         bindings.set(Guard::JointVelocity, bounds.velocity);
@@ -284,14 +354,15 @@ impl Active {
         at_rest: bool,
         now: u64,
     ) -> Option<SessionEvent> {
+        let heading = self.heading();
         match &mut self.stage {
             Stage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
                 if self.goal.then != Then::Hold && (self.course.is_done() || stalled) {
-                    if stalled && self.goal.target != Target::Rest {
+                    if stalled && heading != Target::Rest {
                         self.turn_to(model, Target::Rest);
                     }
-                    let target = match self.goal.target {
+                    let target = match heading {
                         // Wherever it stands, it counts as held.
                         _ if self.lapse.is_some() => None,
                         Target::Rest | Target::Guide(_) => None,

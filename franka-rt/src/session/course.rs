@@ -6,6 +6,7 @@ use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 use crate::law::hybrid::Reference;
 use crate::otg::{AxisLimits, Generator, Limits, PlanError, State};
 use crate::session::active::Measured;
+use crate::session::chunk::ChunkCourse;
 use crate::session::guard::leash;
 use crate::session::guide::Guide;
 use crate::session::kinematics::{self, Drift, Held};
@@ -20,6 +21,7 @@ pub(super) enum Course {
     Joints(Generator<7>),
     Pose(PoseGenerator, Drift),
     Guide(Guide),
+    Chunk(ChunkCourse),
 }
 
 /// What a course does in one cycle.
@@ -50,7 +52,10 @@ impl Course {
                 debug_assert!(retargeted.is_ok(), "{retargeted:?}");
                 return;
             }
-            (Target::Pose(pose), Self::Rest | Self::Joints(_) | Self::Guide(_)) => {
+            (
+                Target::Pose(pose),
+                Self::Rest | Self::Joints(_) | Self::Guide(_) | Self::Chunk(_),
+            ) => {
                 let start = end_effector(model, ee, reference);
                 PoseGenerator::new(&start, pose, goal.budget, model.cartesian_limits())
                     .map(|generator| Self::Pose(generator, Drift::of(reference.dq)))
@@ -60,10 +65,11 @@ impl Course {
             }
             (Target::Rest, _) => joints(model, reference, None, &goal.budget).map(Self::Joints),
             (Target::Guide(free), Self::Guide(guide)) => return guide.free(free),
-            (Target::Guide(free), Self::Rest | Self::Joints(_) | Self::Pose(..)) => {
-                joints(model, reference, None, &goal.budget)
-                    .map(|brake| Self::Guide(Guide::new(free, brake)))
-            }
+            (
+                Target::Guide(free),
+                Self::Rest | Self::Joints(_) | Self::Pose(..) | Self::Chunk(_),
+            ) => joints(model, reference, None, &goal.budget)
+                .map(|brake| Self::Guide(Guide::new(free, brake))),
         };
         match planned {
             Ok(course) => *self = course,
@@ -71,7 +77,22 @@ impl Course {
         }
     }
 
-    /// One nominal millisecond on.
+    /// How the pose moves, and what is left of motions before it: what a course begins with that goes on over poses.
+    pub(super) fn pose(
+        &self,
+        model: &Model,
+        ee: &EndEffector,
+        reference: &Reference,
+    ) -> (PoseState, Drift) {
+        let followed = match self {
+            Self::Rest | Self::Joints(_) | Self::Guide(_) => None,
+            Self::Pose(generator, drift) => Some((generator.state(), *drift)),
+            Self::Chunk(chunk) => chunk.pose(),
+        };
+        followed.unwrap_or_else(|| (end_effector(model, ee, reference), Drift::of(reference.dq)))
+    }
+
+    /// One nominal millisecond on, in the answer to the state `now`, `message_id`.
     pub(super) fn step(
         &mut self,
         model: &Model,
@@ -79,6 +100,7 @@ impl Course {
         posture: &JointVector,
         reference: &Reference,
         arm: &Measured,
+        now: u64,
     ) -> Step {
         let free = |reference| Step {
             reference,
@@ -100,6 +122,7 @@ impl Course {
                 })
             }
             Self::Guide(guide) => free(guide.step(reference, arm)),
+            Self::Chunk(chunk) => chunk.step(model, ee, posture, reference, now),
             Self::Pose(generator, drift) => {
                 let next = generator.step();
                 let budget = generator.budget();
@@ -124,7 +147,7 @@ impl Course {
             Self::Rest => true,
             Self::Joints(generator) => generator.is_done(),
             Self::Pose(generator, _) => generator.is_done(),
-            Self::Guide(_) => false,
+            Self::Guide(_) | Self::Chunk(_) => false,
         }
     }
 }

@@ -49,7 +49,7 @@ const FADE: f64 = 0.3;
 
 /// What is left of a motion over the joints that a pose has taken over: its part in the arm's free direction, which the
 /// pose says nothing about. It fades; dropped at once it would step.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Drift {
     velocity: JointVector,
     cycle: u32,

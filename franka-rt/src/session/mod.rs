@@ -16,7 +16,6 @@ mod approach;
 mod backend;
 mod budget;
 pub(crate) mod check;
-#[expect(dead_code, reason = "sessions do not take up chunks yet")]
 mod chunk;
 mod course;
 mod deadman;
@@ -148,6 +147,8 @@ pub struct TargetSession {
     deadman: Option<Grip>,
     backend: Backend,
     version: Version,
+    /// Where chunks come from.
+    chunks: Option<ChunkReader>,
 }
 
 impl TargetSession {
@@ -163,6 +164,7 @@ impl TargetSession {
             deadman: None,
             backend: Backend::default(),
             version,
+            chunks: None,
         }
     }
 
@@ -177,6 +179,17 @@ impl TargetSession {
     #[must_use]
     pub fn bound_to(mut self, deadman: Grip) -> Self {
         self.deadman = Some(deadman);
+        self
+    }
+
+    /// Lets the session take up chunks.
+    ///
+    /// The newest chunk of the goal in force moves the arm, whatever the goal's own target is; where it ends the arm rests,
+    /// and what follows the arrival does. Send the first chunk before its goal is written, and the arm does not set out for
+    /// the goal's target: [`Target::Rest`] suits most.
+    #[must_use]
+    pub fn with_chunks(mut self, chunks: ChunkReader) -> Self {
+        self.chunks = Some(chunks);
         self
     }
 
@@ -277,7 +290,7 @@ impl TargetSession {
         };
         let alive = |grip: &mut Grip| grip.is_alive(state.message_id);
         let alive = self.deadman.as_mut().is_none_or(alive);
-        let mut step = active.step(&self.model, alive, state, record);
+        let mut step = active.step(&self.model, alive, self.chunks.as_mut(), state, record);
         if let Some(SessionEvent::Settled {
             goal, settlement, ..
         }) = &mut step.event

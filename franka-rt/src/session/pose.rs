@@ -115,7 +115,8 @@ impl PoseGenerator {
         self.axes.is_done()
     }
 
-    fn state(&self) -> PoseState {
+    /// How the pose moves now.
+    pub(crate) fn state(&self) -> PoseState {
         let State {
             position,
             velocity,

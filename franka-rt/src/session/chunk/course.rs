@@ -45,18 +45,34 @@ enum Play {
     },
 }
 
+/// Where a chunk is taken up.
+#[derive(Debug)]
+pub(in crate::session) struct ChunkStart<'a> {
+    /// The reference in the answer before.
+    pub(in crate::session) reference: &'a Reference,
+    /// The pose that it follows, or that of its end effector.
+    pub(in crate::session) pose: PoseState,
+    /// What is left of a motion over the joints.
+    pub(in crate::session) drift: Drift,
+    /// The state that is to be answered, `message_id`.
+    pub(in crate::session) now: u64,
+}
+
 impl ChunkCourse {
-    /// Takes up `chunk` in the answer to the state `now`, from a reference that was at `reference` in the answer before,
-    /// with the end effector at `pose`.
+    /// Takes up `chunk`.
     pub(in crate::session) fn new(
         model: &Model,
         goal: GoalId,
         budget: Budget,
         chunk: Chunk,
-        reference: &Reference,
-        pose: PoseState,
-        now: u64,
+        start: ChunkStart<'_>,
     ) -> Self {
+        let ChunkStart {
+            reference,
+            pose,
+            drift,
+            now,
+        } = start;
         let Chunk {
             points,
             origin,
@@ -73,7 +89,7 @@ impl ChunkCourse {
                 Play::Poses {
                     player: Player::new(curve, origin, blend, &pose, now),
                     state: pose,
-                    drift: Drift::of(reference.dq),
+                    drift,
                     translation: limits.translation,
                     rotation: limits.rotation,
                 }
@@ -124,11 +140,12 @@ impl ChunkCourse {
         }
     }
 
-    /// The pose that the reference of the joints follows, if that is what the chunk moves.
-    pub(in crate::session) fn pose(&self) -> Option<PoseState> {
+    /// The pose that the reference of the joints follows, if that is what the chunk moves, and what is left of motions
+    /// over the joints.
+    pub(in crate::session) fn pose(&self) -> Option<(PoseState, Drift)> {
         match &self.play {
             Play::Joints { .. } => None,
-            Play::Poses { state, .. } => Some(*state),
+            Play::Poses { state, drift, .. } => Some((*state, *drift)),
         }
     }
 
@@ -155,8 +172,13 @@ impl ChunkCourse {
         }
     }
 
-    /// Gives the chunk back, as the course ends.
-    pub(in crate::session) fn end(self, chunks: &mut ChunkReader, fate: Fate) {
+    /// Gives the chunk back, as the course has ended by `now`.
+    pub(in crate::session) fn end(self, chunks: &mut ChunkReader, now: u64) {
+        let fate = if self.is_over(now) {
+            Fate::Ended
+        } else {
+            Fate::Replaced
+        };
         let chunk = match self.play {
             Play::Joints { player, .. } => player.into_chunk(),
             Play::Poses { player, .. } => player.into_chunk(),

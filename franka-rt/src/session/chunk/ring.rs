@@ -130,14 +130,8 @@ impl ChunkReader {
     /// its first point's time has come, or `idle`, as no other chunk runs.
     ///
     /// What that makes superfluous goes back. Chunks of goals to come are kept.
-    pub(super) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
-        // At most as many as are under way: the writer cannot add to them without collecting.
-        for _ in 0..CHUNKS_MAX {
-            let Ok(sent) = self.chunks.pop() else { break };
-            if let Some(before) = self.newest.replace(sent) {
-                self.give_back(before.goal, before.chunk, Fate::Superseded);
-            }
-        }
+    pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
+        self.receive();
         let newest = self.newest.take_if(|newest| newest.goal <= goal)?;
         let Sent { goal: of, chunk } = newest;
         if of != goal {
@@ -154,6 +148,24 @@ impl ChunkReader {
         }
         self.newest = Some(Sent { goal, chunk });
         None
+    }
+
+    /// Gives back what has come for `goal`, or for one before it: it takes up no chunk any more.
+    pub(in crate::session) fn discard(&mut self, goal: GoalId) {
+        self.receive();
+        if let Some(Sent { goal, chunk }) = self.newest.take_if(|newest| newest.goal <= goal) {
+            self.give_back(goal, chunk, Fate::Stale);
+        }
+    }
+
+    fn receive(&mut self) {
+        // At most as many as are under way: the writer cannot add to them without collecting.
+        for _ in 0..CHUNKS_MAX {
+            let Ok(sent) = self.chunks.pop() else { break };
+            if let Some(before) = self.newest.replace(sent) {
+                self.give_back(before.goal, before.chunk, Fate::Superseded);
+            }
+        }
     }
 
     /// Gives back a chunk that is done with.

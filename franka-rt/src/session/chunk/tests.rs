@@ -1,18 +1,25 @@
 //! Chunks through the ring, the player and the servo, as a session takes them up.
 
 use core::time::Duration;
+use std::sync::Arc;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, READY, rotation};
+use franka_proto::{RobotState, Version};
 use nalgebra::{Isometry3, Translation3, Vector3};
 use proptest::prelude::*;
 
-use super::course::ChunkCourse;
+use super::course::{ChunkCourse, ChunkStart};
 use super::motion::stacked;
 use super::{Chunk, ChunkReader, ChunkWriter, Fate, chunk_ring};
+use crate::driver::Record;
 use crate::law::hybrid::Reference;
 use crate::otg::{CYCLE, Generator, Limits, State};
+use crate::session::kinematics::Drift;
 use crate::session::pose::PoseState;
-use crate::session::{Budget, GoalId, rigid};
+use crate::session::{
+    Budget, Goal, GoalId, SessionEvent, Settlement, Target, TargetSession, Then, rigid,
+};
+use crate::slot::{SlotWriter, slot};
 
 const GOAL: GoalId = GoalId(1);
 
@@ -53,19 +60,15 @@ impl Arm {
             .as_ref()
             .is_none_or(|course| course.is_over(self.now));
         if let Some(chunk) = self.reader.poll(GOAL, self.now, idle) {
-            let pose = self.pose();
-            let next = ChunkCourse::new(
-                self.model,
-                GOAL,
-                self.budget,
-                chunk,
-                &self.reference,
-                pose,
-                self.now,
-            );
+            let start = ChunkStart {
+                reference: &self.reference,
+                pose: self.pose(),
+                drift: Drift::of(self.reference.dq),
+                now: self.now,
+            };
+            let next = ChunkCourse::new(self.model, GOAL, self.budget, chunk, start);
             if let Some(before) = self.course.replace(next) {
-                let fate = if idle { Fate::Ended } else { Fate::Replaced };
-                before.end(&mut self.reader, fate);
+                before.end(&mut self.reader, self.now);
             }
         }
         if let Some(course) = &mut self.course {
@@ -78,11 +81,14 @@ impl Arm {
 
     fn pose(&self) -> PoseState {
         let course = self.course.as_ref().and_then(ChunkCourse::pose);
-        course.unwrap_or_else(|| PoseState {
-            pose: start(self.model),
-            twist: stacked(&Vector3::zeros(), &Vector3::zeros()),
-            acceleration: stacked(&Vector3::zeros(), &Vector3::zeros()),
-        })
+        course.map_or_else(
+            || PoseState {
+                pose: start(self.model),
+                twist: stacked(&Vector3::zeros(), &Vector3::zeros()),
+                acceleration: stacked(&Vector3::zeros(), &Vector3::zeros()),
+            },
+            |(pose, _)| pose,
+        )
     }
 }
 
@@ -335,4 +341,110 @@ fn a_chunk_of_poses_is_walked_to_its_end_and_rests_there() {
     ));
     assert!((reached.translation.vector - pose(20).translation.vector).norm() < 2e-4);
     assert!(arm.reference.dq.amax() < 5e-3, "{}", arm.reference.dq);
+}
+
+/// A session whose arm is wherever its reference is.
+struct Session {
+    session: TargetSession,
+    goals: SlotWriter<Goal>,
+    chunks: ChunkWriter,
+    state: RobotState,
+}
+
+impl Session {
+    fn new() -> Self {
+        let (goals, reader) = slot();
+        let (chunks, chunk_reader) = chunk_ring();
+        let identity = Isometry3::<f64>::identity().to_homogeneous();
+        let rigid: [f64; 16] = identity.as_slice().try_into().expect("sixteen numbers");
+        Self {
+            session: TargetSession::new(Arc::new(Model::fr3().clone()), Version::V10, reader)
+                .with_chunks(chunk_reader),
+            goals,
+            chunks,
+            state: RobotState {
+                message_id: 20_000,
+                q: READY.into(),
+                F_T_EE: rigid,
+                EE_T_K: rigid,
+                ..RobotState::default()
+            },
+        }
+    }
+
+    fn set(&mut self, id: u64, target: Target, then: Then) {
+        let goal = Goal::new(GoalId(id), target, then, Model::fr3().joint_limits());
+        self.goals.write(&goal);
+    }
+
+    fn run(&mut self, cycles: u64) -> Option<SessionEvent> {
+        let mut event = None;
+        for _ in 0..cycles {
+            self.state.message_id += 1;
+            let mut record = Record::default();
+            let step = self.session.step(&self.state, &mut record);
+            self.state.q = record.q_ref;
+            self.state.dq = record.dq_ref;
+            event = step.event.or(event);
+        }
+        event
+    }
+
+    fn fates(&mut self) -> Vec<Fate> {
+        core::iter::from_fn(|| self.chunks.collect())
+            .map(|returned| returned.fate)
+            .collect()
+    }
+
+    /// A smooth way of 0.1 rad over a second.
+    fn way() -> Chunk {
+        let point = |k: u64| {
+            let s = k as f64 / 20.0;
+            let s = s * s * s * (10.0 - s * (15.0 - 6.0 * s));
+            (ms(50 * k), (READY + JointVector::repeat(0.1 * s)).into())
+        };
+        Chunk::joints((0..=20).map(point)).unwrap()
+    }
+}
+
+#[test]
+fn a_session_follows_the_chunks_of_its_goal_and_arrives_where_they_end() {
+    let mut session = Session::new();
+    session.chunks.send(GOAL, Session::way()).unwrap();
+    session.set(1, Target::Rest, Then::Stay);
+    assert_eq!(session.run(501), None);
+    let half = JointVector::from(session.state.q) - READY;
+    assert!((half.add_scalar(-0.05)).amax() < 2e-4, "{half}");
+    let event = session.run(1000);
+    assert!(
+        matches!(
+            event,
+            Some(SessionEvent::Settled {
+                goal: GOAL,
+                settlement: Settlement::Arrived(_),
+                ..
+            })
+        ),
+        "{event:?}"
+    );
+    assert_eq!(session.fates(), [Fate::Ended]);
+    // Another one sets it in motion again.
+    session.chunks.send(GOAL, Session::way()).unwrap();
+    session.run(300);
+    assert!(JointVector::from(session.state.dq).amax() > 0.01);
+}
+
+#[test]
+fn another_goal_takes_over_from_a_chunk_whose_memory_goes_back() {
+    let mut session = Session::new();
+    session.chunks.send(GOAL, Session::way()).unwrap();
+    session.set(1, Target::Rest, Then::Hold);
+    session.run(500);
+    session.set(2, Target::Joints(READY.into()), Then::Hold);
+    session.run(2);
+    assert_eq!(session.fates(), [Fate::Replaced]);
+    session.chunks.send(GOAL, Session::way()).unwrap();
+    session.run(3000);
+    assert_eq!(session.fates(), [Fate::Stale]);
+    assert!((JointVector::from(session.state.q) - READY).amax() < 1e-6);
 }

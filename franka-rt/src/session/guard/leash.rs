@@ -56,6 +56,16 @@ pub(crate) fn hold(
             }
             None => Ok(()),
         },
+        Course::Chunk(chunk) => {
+            let ahead = chunk.pose().and_then(|(state, _)| {
+                within(&state.pose, measured, TRANSLATION_LEASH, ROTATION_LEASH)
+            });
+            if let Some(pose) = ahead {
+                bound = true;
+                chunk.reanchor(pose);
+            }
+            Ok(())
+        }
         Course::Rest | Course::Joints(_) | Course::Guide(_) => Ok(()),
     };
     // A measured state that is not finite; the robot will not send one, and the course then goes on as planned.
