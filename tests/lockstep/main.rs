@@ -6,6 +6,7 @@ mod endings;
 mod engaged;
 mod faults;
 mod goals;
+mod laws;
 mod random_targets;
 mod reflex_log;
 mod schedules;

@@ -1,7 +1,8 @@
-//! Target control that never ends: targets of both kinds, steps and streams, at irregular times.
+//! Target control that never ends: targets of both kinds, steps and streams, at irregular times, under each law in turn.
 
 use franka_model::READY;
-use franka_rt::session::{GoalId, Target, Then};
+use franka_rt::law::{Gains, Law};
+use franka_rt::session::{Goal, GoalId, Target, Then};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -16,6 +17,7 @@ pub struct Wander {
     home: Isometry3<f64>,
     goal: GoalId,
     next: u64,
+    turns: usize,
 }
 
 impl Wander {
@@ -35,6 +37,7 @@ impl Wander {
             home,
             goal: id,
             next: 0,
+            turns: 0,
         };
         this.lockstep.run(20);
         this
@@ -72,10 +75,32 @@ impl Wander {
     }
 
     fn submit(&mut self, target: Target) {
-        let goal = self.lockstep.goal(target, Then::Hold);
+        let goal = in_turn(self.turns, self.lockstep.goal(target, Then::Hold));
+        self.turns += 1;
         self.goal = self
             .lockstep
             .submit(goal)
             .expect("targets near the ready pose are reachable");
+    }
+}
+
+/// The goal under one law after the other, with a force cap under two of three.
+fn in_turn(turn: usize, goal: Goal) -> Goal {
+    let gains = match turn % 3 {
+        0 => goal.gains,
+        1 => Gains {
+            law: Law::OperationalSpace,
+            ..Gains::cartesian()
+        },
+        _ => Gains {
+            project_joint_gains: true,
+            feedforward_cutoff: 50.0,
+            ..Gains::cartesian()
+        },
+    };
+    Goal {
+        gains,
+        force_cap: (turn % 3 != 0).then_some(30.0),
+        ..goal
     }
 }
