@@ -1,18 +1,14 @@
-//! Clients against the simulator over real sockets, measured.
+//! Clients against the simulator over real sockets, and the simulator itself, measured.
 
-use crate::peers;
+use std::process::Command;
+
 use crate::workspace::Workspace;
+use crate::{mujoco, peers};
 
 /// Measures each client for `seconds` and writes `target/bench_live.json`.
 pub(crate) fn run(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
-    let mut build = workspace.cargo();
-    build.args(["build", "--release", "--package", "franka-sim"]);
-    build.args(["--package", "franka-tests", "--bins"]);
-    workspace.run(&mut build)?;
-    let release = workspace.target().join("release");
-    let mut measure = workspace.program(release.join("live"));
-    measure.arg(workspace.target().join("bench_live.json"));
-    measure.args(["--seconds", &seconds.to_string()]);
+    build(workspace, &[])?;
+    let mut measure = measure(workspace, "clients", "bench_live.json", seconds);
     match peers::interpreter(workspace)? {
         Ok(interpreter) => {
             let script = peers::directory(workspace).join("pylibfranka_torques.py");
@@ -21,4 +17,38 @@ pub(crate) fn run(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
         Err(why) => println!("pylibfranka is NOT MEASURED: {why}"),
     }
     workspace.run(&mut measure)
+}
+
+/// Measures the simulator, each case for `seconds`, and writes `target/bench_sim.json`.
+pub(crate) fn run_simulator(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
+    let mujoco = mujoco::prepare(workspace)?;
+    let mut measure = measure(workspace, "simulator", "bench_sim.json", seconds);
+    match mujoco {
+        Ok(()) => {
+            build(workspace, &["--features", "mujoco"])?;
+            measure.arg("--mujoco");
+        }
+        Err(why) => {
+            println!("the MuJoCo plant is NOT MEASURED: {why}");
+            build(workspace, &[])?;
+        }
+    }
+    workspace.run(&mut measure)
+}
+
+/// Builds the simulator and what measures it.
+fn build(workspace: &Workspace, features: &[&str]) -> anyhow::Result<()> {
+    let mut build = workspace.cargo();
+    build.args(["build", "--release", "--package", "franka-sim"]);
+    build.args(["--package", "franka-tests", "--bins"]);
+    workspace.run(build.args(features))
+}
+
+/// The program that measures, told what, where to write it and how long.
+fn measure(workspace: &Workspace, what: &str, output: &str, seconds: u32) -> Command {
+    let target = workspace.target();
+    let mut measure = workspace.program(target.join("release").join("live"));
+    measure.arg(what).arg(target.join(output));
+    measure.args(["--seconds", &seconds.to_string()]);
+    measure
 }

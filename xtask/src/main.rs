@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`fuzz`] | the fuzz targets, for a moment as a step or for as long as one likes |
-//! | [`live`] | clients against the simulator over real sockets, measured |
+//! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant, and the step that tests that plant |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | virtual environments, for these two |
@@ -59,6 +59,7 @@ enum Task {
     /// Measure the work of one control cycle and write `target/bench.json`.
     ///
     /// With --live: measure clients against the simulator over real sockets, and write `target/bench_live.json`.
+    /// With --sim: measure what one simulated arm costs, and write `target/bench_sim.json`.
     Bench {
         /// Rounds; each runs every benchmark once.
         #[arg(long, default_value_t = 15)]
@@ -67,13 +68,16 @@ enum Task {
         #[arg(long, conflicts_with = "live")]
         instructions: bool,
         /// Measure over real sockets instead: nothing else should run meanwhile.
-        #[arg(long)]
+        #[arg(long, group = "sockets")]
         live: bool,
         /// Measure what a busy program costs the control thread, and a task in the thread's place.
         #[arg(long, conflicts_with_all = ["live", "instructions"])]
         starvation: bool,
-        /// How long to measure each client.
-        #[arg(long, default_value_t = 30, requires = "live")]
+        /// Measure time to start, processor time, memory and punctuality of the simulator: nothing else should run meanwhile.
+        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
+        sim: bool,
+        /// How long to measure each case of --live and --sim.
+        #[arg(long, default_value_t = 30, requires = "sockets")]
         seconds: u32,
     },
     /// Fetch the native library that the simulator's feature `mujoco` links to.
@@ -109,6 +113,9 @@ fn run(task: Task) -> anyhow::Result<()> {
             seconds,
             ..
         } => live::run(&workspace, seconds),
+        Task::Bench {
+            sim: true, seconds, ..
+        } => live::run_simulator(&workspace, seconds),
         Task::Bench {
             starvation: true, ..
         } => workspace.run(&mut workspace.cargo_release_binary("starvation")),

@@ -1,20 +1,33 @@
-//! Measures clients against the simulator over real sockets: `live --seconds N OUTPUT.json [--python INTERPRETER SCRIPT]`.
+//! Measures over real sockets: clients against the simulator, or the simulator itself.
+//!
+//! `live clients OUTPUT.json [--seconds N] [--python INTERPRETER SCRIPT]`:
 //!
 //! ```text
 //!  franka-sim  --state-->  relay  --state, departure noted------------->  client
 //!              <-command-         <-command, stamped by the kernel-----   (a process of its own)
 //! ```
 //!
+//! `live simulator OUTPUT.json [--seconds N] [--mujoco]`:
+//!
+//! ```text
+//!  franka-sim  --state, stamped by the kernel-->  listener
+//!  (a process of its own: time to start, processor time, memory)
+//! ```
+//!
 //! | module | what it is |
 //! |---|---|
 //! | [`relay`] | between client and robot, noting what passes and when |
+//! | [`listener`] | a client that notes when states arrive |
 //! | [`stamp`] | datagrams with the kernel's time of arrival |
 //! | [`trace`] | what passed, and the numbers that come of it |
 //! | [`process`] | simulator and clients: started, watched, ended |
 //! | [`case`] | one client measured |
-//! | [`report`] | the table, and the JSON |
+//! | [`burden`] | one simulator measured |
+//! | [`report`] | the tables, and the JSON |
 
+mod burden;
 mod case;
+mod listener;
 mod process;
 mod relay;
 mod report;
@@ -22,26 +35,65 @@ mod stamp;
 mod trace;
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::Context as _;
-use clap::Parser;
+use clap::{Args, Parser, Subcommand};
+use serde_json::Value;
 
+use burden::{Burden, Company, Plant};
 use case::{Case, Client, Scheduler};
 
-/// Measures clients against the simulator over real sockets.
+/// Measures over real sockets.
 #[derive(Debug, Parser)]
 struct Arguments {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Clients against the simulator.
+    Clients {
+        #[command(flatten)]
+        common: Common,
+        /// Measure pylibfranka too: the interpreter that has it, and the script to run.
+        #[arg(long, num_args = 2, value_names = ["INTERPRETER", "SCRIPT"])]
+        python: Option<Vec<PathBuf>>,
+    },
+    /// What one simulated arm costs, and how punctual it is.
+    Simulator {
+        #[command(flatten)]
+        common: Common,
+        /// Measure the MuJoCo plant too, with which the simulator has to be built.
+        #[arg(long)]
+        mujoco: bool,
+    },
+}
+
+#[derive(Debug, Args)]
+struct Common {
     /// Where to write the values.
     output: PathBuf,
-    /// How long to measure each client.
+    /// How long to measure each.
     #[arg(long, default_value_t = 30)]
     seconds: u32,
-    /// Measure pylibfranka too: the interpreter that has it, and the script to run.
-    #[arg(long, num_args = 2, value_names = ["INTERPRETER", "SCRIPT"])]
-    python: Option<Vec<PathBuf>>,
+}
+
+impl Common {
+    fn time(&self) -> Duration {
+        Duration::from_secs(self.seconds.into())
+    }
+
+    fn write(&self, values: &Value) -> anyhow::Result<()> {
+        let json = serde_json::to_string_pretty(values)?;
+        fs::write(&self.output, json + "\n")
+            .with_context(|| format!("writing {}", self.output.display()))?;
+        println!("written to {}", self.output.display());
+        Ok(())
+    }
 }
 
 fn main() -> ExitCode {
@@ -57,11 +109,22 @@ fn main() -> ExitCode {
 fn run(arguments: Arguments) -> anyhow::Result<()> {
     let programs = std::env::current_exe()?;
     let programs = programs.parent().context("this program is somewhere")?;
-    let time = Duration::from_secs(arguments.seconds.into());
+    match arguments.what {
+        What::Clients { common, python } => measure_clients(programs, &common, python.as_deref()),
+        What::Simulator { common, mujoco } => measure_simulator(programs, &common, mujoco),
+    }
+}
+
+fn measure_clients(
+    programs: &Path,
+    common: &Common,
+    python: Option<&[PathBuf]>,
+) -> anyhow::Result<()> {
+    let time = common.time();
     let ours = [Client::Echo, Client::Torques, Client::Targets];
     let with = |scheduler| ours.clone().map(|client| Case { client, scheduler });
     let mut cases = Vec::from(with(Scheduler::Fifo));
-    if let Some([interpreter, script]) = arguments.python.as_deref() {
+    if let Some([interpreter, script]) = python {
         cases.push(Case {
             client: Client::Vendor {
                 interpreter: interpreter.clone(),
@@ -78,11 +141,40 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         results.push((case, result));
     }
     println!("{}", report::markdown(&results, time));
-    let json = serde_json::to_string_pretty(&report::json(&results, time))?;
-    fs::write(&arguments.output, json + "\n")
-        .with_context(|| format!("writing {}", arguments.output.display()))?;
-    println!("written to {}", arguments.output.display());
+    common.write(&report::json(&results, time))?;
     let failed = results.iter().filter(|(_, result)| result.is_err()).count();
     anyhow::ensure!(failed == 0, "{failed} of {} clients failed", results.len());
     Ok(())
 }
+
+fn measure_simulator(programs: &Path, common: &Common, mujoco: bool) -> anyhow::Result<()> {
+    let time = common.time();
+    let mut starts = Vec::new();
+    let mut burdens = Vec::new();
+    for plant in [Plant::Rigid, Plant::Mujoco] {
+        if plant == Plant::Mujoco && !mujoco {
+            continue;
+        }
+        eprintln!("starting {} {STARTS} times", plant.name());
+        starts.push((plant, plant.start(programs, STARTS)?));
+        for (company, realtime) in [
+            (Company::Nobody, false),
+            (Company::Listener, false),
+            (Company::Listener, true),
+            (Company::Targets, false),
+        ] {
+            let burden = Burden {
+                plant,
+                company,
+                realtime,
+            };
+            eprintln!("measuring {} for {time:?}", burden.name());
+            burdens.push((burden, burden.measure(programs, time)?));
+        }
+    }
+    println!("{}", report::simulator_markdown(&starts, &burdens, time));
+    common.write(&report::simulator_json(&starts, &burdens, time))
+}
+
+/// Starts of the simulator.
+const STARTS: u64 = 20;

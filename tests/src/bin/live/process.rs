@@ -46,6 +46,12 @@ impl Process {
         Ok(highest)
     }
 
+    /// The most memory that it has had at a time, `[KiB]`: `VmHWM` of proc_pid_status(5).
+    pub(crate) fn memory_max(&self) -> anyhow::Result<u64> {
+        let status = fs::read_to_string(format!("/proc/{}/status", self.child.id()))?;
+        memory_max(&status).context("no VmHWM in the status")
+    }
+
     /// Fails if it has ended.
     pub(crate) fn expect_running(&mut self) -> anyhow::Result<()> {
         match self.child.try_wait()? {
@@ -82,12 +88,18 @@ impl Drop for Process {
     }
 }
 
-/// The simulator, ready to serve; a robot sends its states whatever else the machine does, so it is preferred too.
+/// The simulator that clients are measured against; a robot sends its states whatever else the machine does, so it is
+/// preferred too.
 pub(crate) fn simulator(program: &Path) -> anyhow::Result<(Process, SocketAddr)> {
     let mut command = under_fifo(SIMULATOR_PRIORITY, program);
-    command.args(["--port", "0", "--no-gripper"]);
+    ready(command.args(["--port", "0", "--no-gripper"]))
+}
+
+/// Starts a simulator; returns when it serves, with its robot's address.
+pub(crate) fn ready(command: &mut Command) -> anyhow::Result<(Process, SocketAddr)> {
     let mut process = Process::start(command.stdout(Stdio::piped()))?;
-    let output = process.child.stdout.take().context("it is piped")?;
+    // Stays open: the program may have more to say.
+    let output = process.child.stdout.as_mut().context("it is piped")?;
     let mut line = String::new();
     BufReader::new(output).read_line(&mut line)?;
     let address = line.trim().rsplit(' ').next().unwrap_or_default();
@@ -110,6 +122,13 @@ fn fifo_priority(stat: &str) -> Option<u32> {
     let mut fields = rest.split_whitespace().skip(40 - 3);
     let (priority, policy) = (fields.next()?, fields.next()?);
     (policy == "1").then(|| priority.parse().ok())?
+}
+
+fn memory_max(status: &str) -> Option<u64> {
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix(" kB")?.parse().ok()
 }
 
 const POLL: Duration = Duration::from_millis(20);
@@ -136,6 +155,13 @@ mod tests {
         assert_eq!(fifo_priority(&stat(99, 1)), Some(99));
         assert_eq!(fifo_priority(&stat(0, 0)), None);
         assert_eq!(sleep("1").fifo_priority().unwrap(), None);
+    }
+
+    #[test]
+    fn memory_is_read_from_the_status() {
+        let status = "Name:\tx\nVmPeak:\t  9000 kB\nVmHWM:\t    4711 kB\nVmRSS:\t 815 kB\n";
+        assert_eq!(memory_max(status), Some(4711));
+        assert!(sleep("1").memory_max().unwrap() > 0);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
+use crate::burden::{Burden, Plant, Starts, Weighed};
 use crate::case::{Case, Client, Measured};
 use crate::trace::Quantiles;
 
@@ -23,10 +24,7 @@ pub(crate) fn markdown(rows: &[Row], time: Duration) -> String {
             Err(error) => format!("| {client} | failed: {error:#} |||||||"),
             Ok(measured) => {
                 let summary = &measured.summary;
-                let scheduler = match measured.fifo_priority {
-                    Some(priority) => format!("`SCHED_FIFO`, {priority}"),
-                    None => "normal".to_owned(),
-                };
+                let scheduler = scheduler(measured.fifo_priority);
                 format!(
                     "| {client} | {scheduler} | {:.4} / {:.2} | {} of {} | {} | {} | {} | {:.2} |",
                     summary.success_average,
@@ -56,6 +54,74 @@ pub(crate) fn json(rows: &[Row], time: Duration) -> Value {
         })
         .collect();
     json!({ "machine": machine(), "seconds": time.as_secs(), "clients": rows })
+}
+
+/// Where it was measured, how long the simulator takes to start, and what it costs.
+pub(crate) fn simulator_markdown(
+    starts: &[(Plant, Starts)],
+    burdens: &[(Burden, Weighed)],
+    time: Duration,
+) -> String {
+    let mut text = format!("{}; {} s each\n\n", machine(), time.as_secs());
+    text += "| plant | ready after, p50 / max, ms |\n|---|---|\n";
+    for (plant, Starts { p50, max, .. }) in starts {
+        let [p50, max] = [p50, max].map(|&nanos| nanos as f64 / 1e6);
+        let _ = writeln!(text, "| {} | {p50:.1} / {max:.1} |", plant.name());
+    }
+    text += "\n| plant | client | scheduler | CPU, % of a core | memory, MB | state interval p50 / p99 / p99.9 / max, µs | off a millisecond p50 / p99 / p99.9 / max, µs |\n";
+    text += "|---|---|---|---|---|---|---|\n";
+    for (burden, weighed) in burdens {
+        let columns = [
+            burden.plant.name().to_owned(),
+            burden.company.name().to_owned(),
+            scheduler(weighed.fifo_priority),
+            format!("{:.2}", weighed.cpu_percent),
+            format!("{:.1}", weighed.memory_kib as f64 * 1024.0 / 1e6),
+            weighed
+                .state_interval
+                .as_ref()
+                .map(micros)
+                .unwrap_or_default(),
+            weighed
+                .state_deviation
+                .as_ref()
+                .map(micros)
+                .unwrap_or_default(),
+        ];
+        let _ = writeln!(text, "| {} |", columns.join(" | "));
+    }
+    text
+}
+
+/// All values of the simulator.
+pub(crate) fn simulator_json(
+    starts: &[(Plant, Starts)],
+    burdens: &[(Burden, Weighed)],
+    time: Duration,
+) -> Value {
+    let starts: Vec<_> = starts
+        .iter()
+        .map(|(plant, starts)| json!({ "plant": plant.name(), "ready_ns": starts }))
+        .collect();
+    let burdens: Vec<_> = burdens
+        .iter()
+        .map(|(burden, weighed)| {
+            json!({
+                "plant": burden.plant.name(),
+                "client": burden.company.name(),
+                "realtime": burden.realtime,
+                "measured": weighed,
+            })
+        })
+        .collect();
+    json!({ "machine": machine(), "seconds": time.as_secs(), "starts": starts, "simulators": burdens })
+}
+
+fn scheduler(fifo_priority: Option<u32>) -> String {
+    match fifo_priority {
+        Some(priority) => format!("`SCHED_FIFO`, {priority}"),
+        None => "normal".to_owned(),
+    }
 }
 
 /// The echo under the same scheduler.
@@ -117,6 +183,7 @@ fn machine() -> String {
 
 #[cfg(test)]
 mod tests {
+    use crate::burden::Company;
     use crate::case::Scheduler;
     use crate::trace::Summary;
 
@@ -171,5 +238,44 @@ mod tests {
             json["clients"][1]["measured"]["summary"]["turnaround"]["p50"],
             10_000
         );
+    }
+    #[test]
+    fn a_simulator_has_intervals_where_somebody_listens() {
+        let starts = Starts {
+            count: 3,
+            p50: 12_340_000,
+            max: 23_450_000,
+        };
+        let starts = [(Plant::Rigid, starts)];
+        let listened = measured(100_000).summary.state_interval;
+        let burden = |company, interval| {
+            let burden = Burden {
+                plant: Plant::Rigid,
+                company,
+                realtime: false,
+            };
+            let weighed = Weighed {
+                cpu_percent: 2.345,
+                memory_kib: 10_000,
+                fifo_priority: None,
+                state_interval: interval,
+                state_deviation: interval,
+            };
+            (burden, weighed)
+        };
+        let burdens = [
+            burden(Company::Nobody, None),
+            burden(Company::Listener, Some(listened)),
+        ];
+        let time = Duration::from_secs(5);
+        let text = simulator_markdown(&starts, &burdens, time);
+        assert!(text.contains("| rigid | 12.3 / 23.4 |"), "{text}");
+        let nobody = "| rigid | nobody | normal | 2.35 | 10.2 |  |  |";
+        assert!(text.contains(nobody), "{text}");
+        assert!(text.contains("| 1000 / 2000 / 3000 / 40000 |"), "{text}");
+        let json = simulator_json(&starts, &burdens, time);
+        assert_eq!(json["starts"][0]["ready_ns"]["p50"], 12_340_000);
+        let interval = &json["simulators"][1]["measured"]["state_interval"];
+        assert_eq!(interval["p99"], 2_000_000);
     }
 }

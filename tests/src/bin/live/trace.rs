@@ -108,7 +108,8 @@ impl Quantiles {
         Self::of(moments.windows(2).map(gap))
     }
 
-    fn of(durations: impl IntoIterator<Item = Duration>) -> Self {
+    /// Of these times.
+    pub(crate) fn of(durations: impl IntoIterator<Item = Duration>) -> Self {
         let mut histogram = Histogram::<u64>::new_with_bounds(1, LONGEST, DIGITS)
             .expect("these bounds and digits are representable");
         for duration in durations {

@@ -1,0 +1,209 @@
+//! What one simulated arm costs its host, and how punctual it is: the simulator measured instead of its clients.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use crate::listener::Listener;
+use crate::process::{Process, ready};
+use crate::trace::Quantiles;
+
+/// What computes the arm's motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Plant {
+    /// Rigid bodies.
+    Rigid,
+    /// MuJoCo, the arm on a table that it does not touch.
+    Mujoco,
+}
+
+/// Who is connected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Company {
+    /// Nobody.
+    Nobody,
+    /// A client that takes the states, and commands nothing.
+    Listener,
+    /// Our target control, in a motion all the time.
+    Targets,
+}
+
+/// A simulator, and who is connected to it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Burden {
+    /// What it computes with.
+    pub(crate) plant: Plant,
+    /// Who is there.
+    pub(crate) company: Company,
+    /// Whether it asks for `SCHED_FIFO`.
+    pub(crate) realtime: bool,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Weighed {
+    /// Processor time of the simulator's process, all threads, in percent of one core.
+    pub(crate) cpu_percent: f64,
+    /// The most memory that it has had, `VmHWM`, in kibibytes.
+    pub(crate) memory_kib: u64,
+    /// `SCHED_FIFO` priority that its thread did have; none under the normal scheduler.
+    pub(crate) fifo_priority: Option<u32>,
+    /// Between arrivals of states, where there is a listener to note them.
+    pub(crate) state_interval: Option<Quantiles>,
+    /// By how much these differ from a millisecond, either way.
+    pub(crate) state_deviation: Option<Quantiles>,
+}
+
+/// From a start of the program to a client that has connected and has its first state, over some starts, in nanoseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct Starts {
+    /// How many.
+    pub(crate) count: u64,
+    /// Median.
+    pub(crate) p50: u64,
+    /// The longest.
+    pub(crate) max: u64,
+}
+
+impl Plant {
+    /// The plant in words.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Rigid => "rigid",
+            Self::Mujoco => "mujoco",
+        }
+    }
+
+    fn simulator(self, programs: &Path) -> Command {
+        let mut command = Command::new(programs.join("franka-sim"));
+        command.args(["--port", "0", "--plant", self.name()]);
+        command
+    }
+
+    /// Starts the simulator so many times.
+    pub(crate) fn start(self, programs: &Path, count: u64) -> anyhow::Result<Starts> {
+        let start = || {
+            let begin = Instant::now();
+            let (_simulator, robot) = ready(&mut self.simulator(programs))?;
+            let _client = Listener::connect(robot)?;
+            Ok(begin.elapsed())
+        };
+        let mut times = (0..count)
+            .map(|_| start())
+            .collect::<anyhow::Result<Vec<_>>>()?;
+        times.sort_unstable();
+        let nanos = |time: Option<&Duration>| time.map_or(0, |time| time.as_nanos() as u64);
+        Ok(Starts {
+            count,
+            p50: nanos(times.get(times.len() / 2)),
+            max: nanos(times.last()),
+        })
+    }
+}
+
+impl Company {
+    /// Who it is, in words.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Nobody => "nobody",
+            Self::Listener => "listener",
+            Self::Targets => "target control",
+        }
+    }
+}
+
+impl Burden {
+    /// What is measured, in words.
+    pub(crate) fn name(&self) -> String {
+        let scheduler = if self.realtime { ", --realtime" } else { "" };
+        let (plant, company) = (self.plant.name(), self.company.name());
+        format!("{plant}, {company}{scheduler}")
+    }
+
+    /// Measures a simulator of its own for `time`; the project's programs are in `programs`.
+    pub(crate) fn measure(&self, programs: &Path, time: Duration) -> anyhow::Result<Weighed> {
+        let mut command = self.plant.simulator(programs);
+        if self.realtime {
+            command.arg("--realtime");
+        }
+        let (mut simulator, robot) = ready(&mut command)?;
+        let (mut listener, mut client) = (None, None);
+        match self.company {
+            Company::Nobody => {}
+            Company::Listener => listener = Some(Listener::connect(robot)?),
+            Company::Targets => {
+                let seconds = (LEAD + time + LEAD).as_secs().to_string();
+                let mut command = Command::new(programs.join("live_client"));
+                command.args(["targets", &robot.to_string(), &seconds]);
+                client = Some(Process::start(&mut command)?);
+            }
+        }
+        std::thread::sleep(LEAD);
+
+        let (begin, used) = (Instant::now(), simulator.cpu_time()?);
+        let arrivals = match &mut listener {
+            Some(listener) => Some(listener.listen(time)?),
+            None => {
+                std::thread::sleep(time);
+                None
+            }
+        };
+        let used = simulator.cpu_time()?.saturating_sub(used);
+        let elapsed = begin.elapsed();
+        simulator.expect_running()?;
+        let (memory_kib, fifo_priority) = (simulator.memory_max()?, simulator.fifo_priority()?);
+        if let Some(client) = client {
+            // It fails if its motion does.
+            client.finish(END_TIME_MAX)?;
+        }
+        let intervals = arrivals.as_deref().map(intervals);
+        Ok(Weighed {
+            cpu_percent: 100.0 * used.as_secs_f64() / elapsed.as_secs_f64(),
+            memory_kib,
+            fifo_priority,
+            state_interval: intervals.as_ref().map(|all| Quantiles::of(all.clone())),
+            state_deviation: intervals.map(|all| {
+                let deviations = all.into_iter().map(|interval| interval.abs_diff(PERIOD));
+                Quantiles::of(deviations)
+            }),
+        })
+    }
+}
+
+/// From each moment to the next.
+fn intervals(moments: &[Duration]) -> Vec<Duration> {
+    let gap = |pair: &[Duration]| pair[1].saturating_sub(pair[0]);
+    moments.windows(2).map(gap).collect()
+}
+
+/// Between two states.
+const PERIOD: Duration = Duration::from_millis(1);
+
+/// Time in which a client gets to control, before what is measured and after.
+const LEAD: Duration = Duration::from_secs(2);
+
+/// Target control has the arm come to rest first.
+const END_TIME_MAX: Duration = Duration::from_secs(20);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_state_makes_a_long_interval_and_a_short_one() {
+        let moments = [5000, 6000, 7300, 8000].map(Duration::from_micros);
+        let expected = [1000, 1300, 700].map(Duration::from_micros);
+        assert_eq!(intervals(&moments), expected);
+        assert_eq!(intervals(&moments[..1]), []);
+    }
+
+    #[test]
+    fn the_plant_is_told_to_the_program() {
+        let command = Plant::Mujoco.simulator(Path::new("/bin"));
+        assert_eq!(command.get_program(), "/bin/franka-sim");
+        let arguments: Vec<_> = command.get_args().collect();
+        assert_eq!(arguments, ["--port", "0", "--plant", "mujoco"]);
+    }
+}
