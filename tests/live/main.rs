@@ -6,6 +6,7 @@ mod active;
 mod addresses;
 mod connecting;
 mod control;
+mod crowd;
 mod dropping;
 mod ending;
 mod failing;

@@ -1,0 +1,297 @@
+//! Ten simulators and ten driven robots in one process: nobody gets what is another's, and everything resolves.
+//!
+//! The arms keep to lanes of their own, have loads and tools of their own, and go from goal to goal. What reaches the wrong
+//! robot shows: a state in the lane, the load or the tool of a neighbour, a command in an arm that leaves its lane.
+//!
+//! The test takes [`SECONDS`]. For as long as one likes, of which the report tells more:
+//!
+//! ```text
+//! FRANKA_CROWD_SECONDS=60 cargo test --package franka-tests --test live crowd -- --nocapture
+//! ```
+//!
+//! `FRANKA_CROWD_STRICT=1` has the robots enforce communication, which takes a machine that carries twenty threads at 1 kHz.
+
+use std::future::IntoFuture;
+use std::time::{Duration, Instant};
+
+use franka_async::{Load, MotionError, MotionReport, Pose, Robot, RobotError, RobotState, Version};
+use franka_model::READY;
+use franka_sim::{Running, Sim, Tool};
+use tokio::task::{JoinHandle, JoinSet};
+use tokio::time::{sleep, timeout};
+
+use crate::{alone, connect};
+
+type Outcome = Result<MotionReport, MotionError>;
+
+/// What one of them has been through.
+#[derive(Debug, Default)]
+struct Tally {
+    arrived: u32,
+    superseded: u32,
+    stopped: u32,
+    /// Motions that the robot ended for want of commands.
+    starved: u32,
+    /// States that were held against what is this robot's own.
+    states: u64,
+    /// Of the motions that arrived.
+    success_rate_min: f64,
+}
+
+/// One arm and the simulator behind it.
+struct Member {
+    number: usize,
+    robot: Robot,
+    sim: Running,
+    tally: Tally,
+}
+
+/// `READY`, turned at the base into this robot's lane.
+fn home(number: usize) -> [f64; 7] {
+    let mut q: [f64; 7] = READY.into();
+    q[0] += LANE * (number as f64 - 4.5);
+    q
+}
+
+/// What is on the flange, `[kg]`.
+fn mass(number: usize) -> f64 {
+    0.05 * (number + 1) as f64
+}
+
+/// How far the tool of its own reaches beyond the Hand, `[m]`.
+fn reach(number: usize) -> f64 {
+    0.01 * (number + 1) as f64
+}
+
+/// Holds a state against what only this robot has.
+fn assert_own(number: usize, state: &RobotState) {
+    let aside = state.q[0] - home(number)[0];
+    assert!(aside.abs() < LANE / 2.0, "robot {number}: {aside} rad off");
+    let load = state.m_load - mass(number);
+    assert!(load.abs() < 1e-6, "robot {number}: {} kg", state.m_load);
+    let tool = state.NE_T_EE[14] - reach(number);
+    assert!(tool.abs() < 1e-6, "robot {number}: {:?}", state.NE_T_EE);
+}
+
+/// Checks every state to the end of the connection; returns how many.
+fn watch(number: usize, robot: &Robot) -> JoinHandle<u64> {
+    let mut states = robot.state_stream();
+    tokio::spawn(async move {
+        let (mut count, mut newest) = (0, 0);
+        while let Some(update) = states.next().await {
+            let state = &update.state;
+            assert!(state.message_id > newest, "robot {number}: {newest} again");
+            newest = state.message_id;
+            assert_own(number, state);
+            count += 1;
+        }
+        count
+    })
+}
+
+impl Member {
+    /// An FR3 or an FER, in its lane, with its load and its tool.
+    async fn new(number: usize, strict: bool) -> Self {
+        let sim = match number % 2 {
+            0 => Sim::fr3(),
+            _ => Sim::fer(),
+        };
+        let payload = franka_model::Load {
+            mass: mass(number),
+            ..franka_model::Load::NONE
+        };
+        let sim = sim.tool(Tool::hand()).q(home(number).into());
+        let sim = sim.payload(payload).enforce_communication(strict);
+        let sim = sim.start().await.expect("a simulator starts");
+        let robot = connect(&sim).await;
+        let expected = [Version::V10, Version::V5][number % 2];
+        assert_eq!(robot.version(), expected, "robot {number}");
+        let load = Load {
+            m_load: mass(number),
+            F_x_Cload: [0.0; 3],
+            I_load: [0.0; 9],
+        };
+        robot.set_load(load).await.expect("at rest");
+        let tool = Pose::translation(0.0, 0.0, reach(number));
+        robot.set_ee(tool).await.expect("at rest");
+        Self {
+            number,
+            robot,
+            sim,
+            tally: Tally {
+                success_rate_min: 1.0,
+                ..Tally::default()
+            },
+        }
+    }
+
+    /// A goal in the lane that no other robot has.
+    fn goal(&self, round: u32) -> [f64; 7] {
+        let mut q = home(self.number);
+        let side = if round.is_multiple_of(2) { 1.0 } else { -1.0 };
+        q[0] += side * 0.2 * LANE;
+        q[1 + self.number % 6] += side * (0.04 + 0.004 * self.number as f64);
+        q
+    }
+
+    /// The outcome of a motion, which comes.
+    async fn outcome(&self, motion: impl IntoFuture<Output = Outcome>) -> Outcome {
+        let number = self.number;
+        let outcome = timeout(LONGEST, motion.into_future()).await;
+        outcome.unwrap_or_else(|_| panic!("robot {number}: a future is lost"))
+    }
+
+    /// Notes how a motion ended that was to end as `expected` says. A robot that lacked commands is recovered.
+    async fn note(&mut self, outcome: Outcome, expected: fn(&mut Tally, &Outcome) -> bool) -> bool {
+        if expected(&mut self.tally, &outcome) {
+            return true;
+        }
+        let number = self.number;
+        let Err(MotionError::Control(error)) = &outcome else {
+            panic!("robot {number}: {outcome:?}")
+        };
+        let reasons = error.failure.reflex_reason;
+        assert!(
+            reasons.contains(RobotError::CommunicationConstraintsViolation),
+            "robot {number}: {error}"
+        );
+        self.tally.starved += 1;
+        let recovered = timeout(LONGEST, self.robot.recover()).await;
+        recovered.expect("it resolves").expect("it takes motions");
+        false
+    }
+
+    /// The arm of this robot's own simulator is where its driver was told to go.
+    async fn assert_there(&self, goal: &[f64; 7]) {
+        let truth = self.sim.state().await.expect("it runs");
+        for (whose, state) in [("driver", self.robot.state()), ("simulator", truth)] {
+            for (joint, (is, goal)) in state.q.iter().zip(goal).enumerate() {
+                let error = (is - goal).abs();
+                let number = self.number;
+                assert!(
+                    error < 5e-3,
+                    "robot {number}, {whose}: joint {joint} by {error}"
+                );
+            }
+        }
+    }
+
+    /// A motion of each kind of end.
+    async fn round(&mut self, round: u32) {
+        let arrived = |tally: &mut Tally, outcome: &Outcome| match outcome {
+            Ok(report) => {
+                tally.arrived += 1;
+                tally.success_rate_min = tally.success_rate_min.min(report.success_rate_min);
+                true
+            }
+            Err(_) => false,
+        };
+        let goal = self.goal(round);
+        let outcome = self.outcome(self.robot.move_joints(goal)).await;
+        if self.note(outcome, arrived).await {
+            self.assert_there(&goal).await;
+        }
+
+        let up = Pose::translation(0.0, 0.0, 0.02) * self.robot.pose();
+        let outcome = self.outcome(self.robot.move_to(up)).await;
+        self.note(outcome, arrived).await;
+
+        let slow = self.robot.move_joints(self.goal(round + 1)).speed(0.05);
+        let slow = tokio::spawn(slow.into_future());
+        sleep(HEAD_START).await;
+        let outcome = self.outcome(self.robot.move_joints(goal)).await;
+        if self.note(outcome, arrived).await {
+            self.assert_there(&goal).await;
+        }
+        let outcome = timeout(LONGEST, slow).await.expect("it resolves");
+        let superseded = |tally: &mut Tally, outcome: &Outcome| {
+            tally.superseded += 1;
+            matches!(outcome, Err(MotionError::Superseded))
+        };
+        self.note(outcome.expect("no panic"), superseded).await;
+
+        let slow = self.robot.move_joints(self.goal(round + 1)).speed(0.05);
+        let slow = tokio::spawn(slow.into_future());
+        sleep(HEAD_START).await;
+        let halted = timeout(LONGEST, self.robot.stop()).await;
+        let halted = halted.expect("it resolves");
+        let outcome = timeout(LONGEST, slow).await.expect("it resolves");
+        let stopped = |tally: &mut Tally, outcome: &Outcome| {
+            tally.stopped += 1;
+            matches!(outcome, Err(MotionError::Stopped))
+        };
+        if self.note(outcome.expect("no panic"), stopped).await {
+            halted.unwrap_or_else(|error| panic!("robot {}: {error}", self.number));
+        }
+    }
+
+    /// Round after round until `end`; says goodbye, and tells.
+    async fn run(mut self, end: Instant) -> (usize, Tally) {
+        // States from before what was set have arrived.
+        sleep(Duration::from_millis(100)).await;
+        let watching = watch(self.number, &self.robot);
+        let mut round = 0;
+        while Instant::now() < end {
+            self.round(round).await;
+            round += 1;
+        }
+        assert_own(self.number, &self.sim.state().await.expect("it runs"));
+        self.robot.shutdown().await;
+        let states = timeout(LONGEST, watching).await.expect("it ends");
+        self.tally.states = states.expect("no state of another robot");
+        let (stats, pace) = (self.robot.stats(), self.sim.pace().await.expect("it runs"));
+        println!(
+            "robot {}: {:?}; {} states, {} commands, {} lost, {} skipped, {} foreign; {pace:?}",
+            self.number,
+            self.tally,
+            stats.states.get(),
+            stats.commands.get(),
+            stats.lost.get(),
+            stats.skipped.get(),
+            stats.foreign.get(),
+        );
+        assert_eq!(stats.foreign.get(), 0, "robot {}", self.number);
+        assert_eq!(stats.malformed.get(), 0, "robot {}", self.number);
+        self.sim.stop().await;
+        (self.number, self.tally)
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn ten_robots_in_one_process_mind_their_own_business() {
+    let _alone = alone();
+    let seconds = std::env::var("FRANKA_CROWD_SECONDS").ok();
+    let seconds = seconds.map_or(SECONDS, |text| text.parse().expect("a number"));
+    let strict = std::env::var("FRANKA_CROWD_STRICT").is_ok_and(|value| value == "1");
+    let mut members = Vec::new();
+    for number in 0..ROBOTS {
+        members.push(Member::new(number, strict).await);
+    }
+    let end = Instant::now() + Duration::from_secs(seconds);
+    let mut running = JoinSet::new();
+    for member in members {
+        running.spawn(member.run(end));
+    }
+    let mut told = 0;
+    while let Some(done) = running.join_next().await {
+        let (number, tally) = done.expect("nothing goes wrong");
+        told += 1;
+        assert!(tally.arrived > 0, "robot {number}: {tally:?}");
+        assert!(tally.states > 100 * seconds, "robot {number}: {tally:?}");
+    }
+    assert_eq!(told, ROBOTS);
+}
+
+const ROBOTS: usize = 10;
+
+/// How long, unless told otherwise.
+const SECONDS: u64 = 10;
+
+/// From the base joint of one robot's home to that of the next, `[rad]`.
+const LANE: f64 = 0.3;
+
+/// After which a motion of more than that is under way.
+const HEAD_START: Duration = Duration::from_millis(150);
+
+/// What resolves later than this is lost.
+const LONGEST: Duration = Duration::from_secs(20);
