@@ -7,6 +7,7 @@ mod engaged;
 mod faults;
 mod goals;
 mod laws;
+mod mishaps;
 mod random_targets;
 mod reflex_log;
 mod schedules;

@@ -1,0 +1,179 @@
+//! Each thing that a network does to datagrams, under target control: what it does is what the report says, and within
+//! what the robot tolerates the arm arrives.
+//!
+//! Over sockets the same networks are in `tests/live/mishaps.rs`.
+
+use std::time::Duration;
+
+use franka_proto::{RobotError, Version};
+use franka_rt::lifecycle::{MotionError, MotionReport};
+use franka_rt::session::Target;
+use franka_sim::Network;
+use franka_sim::network::Tally;
+use franka_tests::lockstep::{Link, Lockstep, Outcome, for_each_robot};
+use franka_tests::mishaps;
+
+/// A motion of a bit more than a second over this network, and what became of the states meanwhile.
+fn travel(ready: &dyn Fn() -> Lockstep, network: Network) -> (Lockstep, Outcome, Tally) {
+    let mut lockstep = ready();
+    lockstep.link = Link::over(network);
+    let mut q = lockstep.client.state.q;
+    q[0] += 0.4;
+    q[5] += 0.2;
+    let goal = lockstep.begin(Target::Joints(q.into()));
+    let outcome = lockstep.until_resolved(goal, 20_000);
+    let tally = lockstep.link.network.to_client.tally();
+    if outcome.is_ok() {
+        for (is, target) in lockstep.client.state.q.iter().zip(q) {
+            assert!((is - target).abs() < 2e-3, "{is} for {target}");
+        }
+    }
+    println!("{tally:?}, {outcome:?}");
+    (lockstep, outcome, tally)
+}
+
+/// The report of a motion that arrives, for each robot and seed.
+fn arrives(
+    network: impl Fn(u64) -> Network,
+    check: impl Fn(Version, &MotionReport, Tally, &Lockstep),
+) {
+    for_each_robot(|ready| {
+        for seed in 1..=5 {
+            let (lockstep, outcome, tally) = travel(ready, network(seed));
+            let report = outcome.unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+            check(lockstep.client.version(), &report, tally, &lockstep);
+        }
+    });
+}
+
+/// All that was lost while the motion ran is in the report; it did not run for all of the time.
+fn assert_counted(report: &MotionReport, tally: Tally) {
+    let lost = report.lost_states;
+    assert!(
+        lost <= tally.lost && tally.lost <= lost + 6,
+        "{tally:?}, {report:?}"
+    );
+    assert!(lost > 0, "{report:?}");
+    assert_eq!(report.skipped_states, 0, "{report:?}");
+}
+
+/// Share of commands that come in time if datagrams pass with this probability per packet.
+fn answered(version: Version, passes: f64) -> f64 {
+    match version {
+        Version::V5 => passes.powi(3),
+        Version::V10 => passes.powi(2),
+    }
+}
+
+#[test]
+fn loss_is_counted_and_bridged() {
+    arrives(mishaps::loss, |version, report, tally, _| {
+        assert_counted(report, tally);
+        let expected = answered(version, 1.0 - mishaps::LOST);
+        let rate = report.success_rate_avg;
+        assert!((rate - expected).abs() < 0.03, "{rate} for {expected}");
+    });
+}
+
+#[test]
+fn loss_in_bursts_is_counted_and_bridged() {
+    arrives(mishaps::bursts, |_, report, tally, _| {
+        assert_counted(report, tally);
+        // As long as none of the losses above.
+        let longest = report.interval.expect("states came").max;
+        assert!(longest >= Duration::from_millis(4), "{longest:?}");
+        assert!(report.success_rate_min < 0.95, "{report:?}");
+    });
+}
+
+#[test]
+fn a_delay_within_the_cycle_costs_nothing() {
+    let network = |_| mishaps::delay(Duration::from_micros(300));
+    arrives(network, |_, report, tally, _| {
+        assert_eq!((report.lost_states, tally.lost), (0, 0));
+        assert_eq!(report.success_rate_min, 1.0);
+    });
+}
+
+/// Each command is on its way as the state, so that from half a millisecond on it misses its cycle.
+#[test]
+fn a_delay_beyond_the_cycle_leaves_no_command_in_time() {
+    for_each_robot(|ready| {
+        let (lockstep, outcome, _) = travel(ready, mishaps::delay(Duration::from_micros(600)));
+        let error = outcome.expect_err("the robot sees no command");
+        assert_eq!(lockstep.client.state.control_command_success_rate, 0.0);
+        println!("{error:?}");
+    });
+}
+
+#[test]
+fn jitter_makes_commands_late_and_loses_nothing() {
+    arrives(mishaps::jitter, |_, report, tally, _| {
+        assert_eq!((report.lost_states, tally.lost), (0, 0));
+        let rate = report.success_rate_avg;
+        assert!((rate - 0.72).abs() < 0.05, "{rate}");
+    });
+}
+
+#[test]
+fn what_is_overtaken_counts_as_lost() {
+    arrives(mishaps::reordering, |_, report, tally, _| {
+        assert_eq!(tally.lost, 0);
+        let cycles = report.duration.as_millis() as f64;
+        let share = report.lost_states as f64 / cycles;
+        assert!((share - mishaps::OVERTAKEN).abs() < 0.04, "{share}");
+        let expected = (1.0 - mishaps::OVERTAKEN).powi(2);
+        let rate = report.success_rate_avg;
+        assert!((rate - expected).abs() < 0.05, "{rate} for {expected}");
+    });
+}
+
+#[test]
+fn what_comes_twice_counts_once() {
+    arrives(mishaps::duplication, |_, report, _, _| {
+        assert_eq!((report.lost_states, report.skipped_states), (0, 0));
+        assert_eq!(report.success_rate_min, 1.0);
+    });
+}
+
+#[test]
+fn half_a_state_is_none() {
+    arrives(mishaps::halves, |version, report, tally, _| {
+        assert_counted(report, tally);
+        let whole = tally.lost - tally.halved;
+        match version {
+            // Of both packets, more than one in twenty times.
+            Version::V5 => assert!(tally.halved > 10 * whole, "{tally:?}"),
+            Version::V10 => assert_eq!(tally.halved, 0),
+        }
+        let packets = if version == Version::V5 { 2 } else { 1 };
+        let expected = (1.0 - mishaps::LOST_TO_CLIENT).powi(packets);
+        let rate = report.success_rate_avg;
+        assert!((rate - expected).abs() < 0.03, "{rate} for {expected}");
+    });
+}
+
+/// Nineteen commands may be missing, and twenty may not.
+#[test]
+fn a_cut_is_bridged_up_to_what_the_robot_tolerates() {
+    for_each_robot(|ready| {
+        let begin = Duration::from_millis(500);
+        let cut = |milliseconds| mishaps::cut(begin..begin + Duration::from_millis(milliseconds));
+        let (_, outcome, tally) = travel(ready, cut(19));
+        let report = outcome.expect("it is bridged");
+        assert_eq!((report.lost_states, tally.lost), (19, 19));
+
+        let (mut lockstep, outcome, _) = travel(ready, cut(20));
+        let Err(MotionError::Control(error)) = outcome else {
+            panic!("{outcome:?}")
+        };
+        let reason = error.failure.reflex_reason;
+        assert!(reason.contains(RobotError::CommunicationConstraintsViolation));
+        lockstep.request(&franka_proto::Request::AutomaticErrorRecovery);
+        lockstep.run(100);
+        let goal = lockstep.begin(Target::Joints(lockstep.client.state.q.into()));
+        lockstep
+            .until_resolved(goal, 5000)
+            .expect("the network is whole again");
+    });
+}
