@@ -125,7 +125,7 @@ fn compute_everywhere() {
 
 /// Puts the thread of the simulator, which stands for another computer, where this one's load does not reach it; below
 /// the control thread. Has no effect where the system does not grant it.
-fn prefer_the_simulator() {
+pub(crate) fn prefer_the_simulator() {
     for task in fs::read_dir("/proc/self/task").expect("Linux") {
         let task = task.expect("a thread").path();
         // A thread that has ended meanwhile is not the simulator's.

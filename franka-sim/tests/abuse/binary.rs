@@ -95,10 +95,18 @@ impl Binary {
 
     /// Memory that the process has and shares with no file, `[KiB]`.
     pub(crate) fn memory(&self) -> usize {
+        self.status("RssAnon:")
+    }
+
+    /// The most memory that it has had, what it shares with files included, `[KiB]`.
+    pub(crate) fn memory_max(&self) -> usize {
+        self.status("VmHWM:")
+    }
+
+    /// An amount of proc_pid_status(5), `[KiB]`.
+    fn status(&self, name: &str) -> usize {
         let status = fs::read_to_string(self.proc("status")).expect("Linux");
-        let line = status
-            .lines()
-            .find_map(|line| line.strip_prefix("RssAnon:"));
+        let line = status.lines().find_map(|line| line.strip_prefix(name));
         let text = line.expect("Linux 4.5").trim();
         text.trim_end_matches(" kB").parse().expect("a number")
     }

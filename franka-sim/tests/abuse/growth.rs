@@ -1,4 +1,4 @@
-//! What abuse leaves behind in the process: nothing.
+//! What the process takes, and what abuse leaves behind in it: nothing.
 
 use std::net::UdpSocket;
 use std::time::{Duration, Instant};
@@ -78,6 +78,15 @@ fn the_process_does_not_grow_with_the_number_of_abuses() {
             "{before} KiB before, {after} KiB after 100 rounds"
         );
         assert_served(binary);
+    });
+}
+
+#[test]
+fn a_robot_that_has_served_takes_less_than_fifty_megabytes() {
+    each_robot(|binary| {
+        assert_served(binary);
+        let memory = binary.memory_max();
+        assert!(memory > 0 && memory * 1024 < 50_000_000, "{memory} KiB");
     });
 }
 

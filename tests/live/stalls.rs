@@ -1,0 +1,102 @@
+//! An FER's transmit stalls over sockets: the figures of `tests/lockstep/stalls.rs`, for the driver as it is.
+//!
+//! ```text
+//! FRANKA_STALLS_SECONDS=30 cargo test --package franka-tests --test live stalls -- --nocapture
+//! ```
+//!
+//! measures for as long as robots were measured.
+
+use std::sync::{Arc, Mutex};
+
+use franka_async::{Finish as _, Robot, Torques};
+use franka_sim::{Network, Pace, Sim};
+
+use crate::starving::prefer_the_simulator;
+use crate::{alone, connect};
+
+/// What a control function notes, as libfranka's example `communication_test` does.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    /// Cycles of the robot, by the time that has passed.
+    cycles: u64,
+    calls: u64,
+    /// Most of the cycles without a call that followed each other.
+    row: u64,
+    /// Sum of the success rates.
+    rates: f64,
+}
+
+impl Tally {
+    fn lost(&self) -> u64 {
+        self.cycles - self.calls
+    }
+
+    fn rate(&self) -> f64 {
+        self.rates / self.calls as f64
+    }
+}
+
+/// Commands no torque to an FER for so many seconds, over `network`. Beside what was noted, how well this machine has kept the
+/// robot's millisecond.
+async fn communicate(network: Network, seconds: u64) -> (Tally, Pace) {
+    let sim = Sim::fer().network(network).enforce_communication(false);
+    let sim = sim.start().await.expect("a simulator starts");
+    let robot: Robot = connect(&sim).await;
+    prefer_the_simulator();
+    let tally = Arc::new(Mutex::new(Tally::default()));
+    let noted = Arc::clone(&tally);
+    let before = sim.pace().await.expect("it runs");
+    let motion = robot.control_torques(move |state, step| {
+        let mut tally = noted.lock().expect("no panic");
+        let passed = step.as_millis() as u64;
+        // The first call is told that no time has passed.
+        if passed > 0 {
+            tally.cycles += passed;
+            tally.calls += 1;
+            tally.row = tally.row.max(passed - 1);
+            tally.rates += state.control_command_success_rate;
+        }
+        Torques([0.0; 7]).finish_if(tally.cycles >= 1000 * seconds)
+    });
+    let report = motion.await.expect("the robot bridges such gaps");
+    let after = sim.pace().await.expect("it runs");
+    let (lost, skipped) = (report.lost_states, report.skipped_states);
+    println!("{lost} lost, {skipped} skipped, {:?}", report.turnaround);
+    robot.shutdown().await;
+    let tally = *tally.lock().expect("no panic");
+    let pace = Pace {
+        cycles: after.cycles - before.cycles,
+        burst: after.burst - before.burst,
+        skipped: after.skipped - before.skipped,
+    };
+    (tally, pace)
+}
+
+/// A state that has waited out a stall is answered late, whatever the client: some 14 of 1000 cycles.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn the_stalls_of_an_fer_cost_the_driver_what_they_cost_in_virtual_time() {
+    let _alone = alone();
+    let seconds = std::env::var("FRANKA_STALLS_SECONDS").ok();
+    let seconds = seconds.map_or(SECONDS, |text| text.parse().expect("a number"));
+    let (tally, pace) = communicate(Network::fer(1), seconds).await;
+    println!(
+        "{} of {} lost, {} in a row at most, success rate {:.4}; {pace:?}",
+        tally.lost(),
+        tally.cycles,
+        tally.row,
+        tally.rate(),
+    );
+    // No machine is better than the robot's network, and what this one adds is late in a burst or not sent.
+    assert!(tally.rate() < 0.995, "{tally:?}");
+    let own = (pace.burst + pace.skipped) as f64 / pace.cycles as f64;
+    if own < 0.005 {
+        assert!(tally.rate() > 0.96, "{tally:?}, {pace:?}");
+        // Three of a hundred, thirty times what was measured on robots.
+        assert!(tally.lost() * 100 < tally.cycles * 3, "{tally:?}, {pace:?}");
+    } else {
+        println!("THE FIGURES WERE NOT CHECKED: this machine is too busy to keep a millisecond");
+    }
+}
+
+/// How long, unless told otherwise.
+const SECONDS: u64 = 5;
