@@ -285,7 +285,7 @@ async fn ten_robots_in_one_process_mind_their_own_business() {
 const ROBOTS: usize = 10;
 
 /// How long, unless told otherwise.
-const SECONDS: u64 = 10;
+const SECONDS: u64 = 6;
 
 /// From the base joint of one robot's home to that of the next, `[rad]`.
 const LANE: f64 = 0.3;

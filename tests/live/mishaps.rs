@@ -196,20 +196,24 @@ async fn a_cut_is_bridged_or_a_reflex() {
         // On a busy machine, the simulator sends fewer than one in a millisecond.
         assert!(seen.report.lost_states >= 6 && seen.row >= 6, "{seen:?}");
     }
-    for (robot, _sim) in robots(true, || cut(60)).await {
-        let (motion, _) = turning(&robot);
-        let outcome = timeout(LONGEST, motion).await.expect("it resolves");
-        let Err(MotionError::Control(error)) = outcome else {
-            panic!("{outcome:?}")
-        };
-        let reasons = error.failure.reflex_reason;
-        assert!(
-            reasons.contains(RobotError::CommunicationConstraintsViolation),
-            "{error}"
-        );
-        robot.recover().await.expect("it takes motions");
-        robot.shutdown().await;
-    }
+    let strict = robots(true, || cut(60)).await;
+    join_all(strict.into_iter().map(trip)).await;
+}
+
+/// A motion that ends in a reflex for want of commands, and a recovery from it.
+async fn trip((robot, _sim): (Robot, Running)) {
+    let (motion, _) = turning(&robot);
+    let outcome = timeout(LONGEST, motion).await.expect("it resolves");
+    let Err(MotionError::Control(error)) = outcome else {
+        panic!("{outcome:?}")
+    };
+    let reasons = error.failure.reflex_reason;
+    assert!(
+        reasons.contains(RobotError::CommunicationConstraintsViolation),
+        "{error}"
+    );
+    robot.recover().await.expect("it takes motions");
+    robot.shutdown().await;
 }
 
 /// What resolves later than this is lost.

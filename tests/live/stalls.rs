@@ -99,4 +99,4 @@ async fn the_stalls_of_an_fer_cost_the_driver_what_they_cost_in_virtual_time() {
 }
 
 /// How long, unless told otherwise.
-const SECONDS: u64 = 5;
+const SECONDS: u64 = 4;
