@@ -1,4 +1,7 @@
-//! An FER's transmit stalls over sockets: the figures of `tests/lockstep/stalls.rs`, for the driver as it is.
+//! An FER's transmit stalls over sockets, for the driver as it is. In virtual time: `tests/lockstep/stalls.rs`.
+//!
+//! What is answered too late is about the same there and here. More states give way to a newer one here: a burst leaves the
+//! simulator faster than the driver's thread wakes up.
 //!
 //! ```text
 //! FRANKA_STALLS_SECONDS=30 cargo test --package franka-tests --test live stalls -- --nocapture
@@ -74,7 +77,7 @@ async fn communicate(network: Network, seconds: u64) -> (Tally, Pace) {
 
 /// A state that has waited out a stall is answered late, whatever the client: some 14 of 1000 cycles.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn the_stalls_of_an_fer_cost_the_driver_what_they_cost_in_virtual_time() {
+async fn the_stalls_of_an_fer_make_the_driver_as_late_as_in_virtual_time() {
     let _alone = alone();
     let seconds = std::env::var("FRANKA_STALLS_SECONDS").ok();
     let seconds = seconds.map_or(SECONDS, |text| text.parse().expect("a number"));

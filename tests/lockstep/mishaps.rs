@@ -20,7 +20,7 @@ fn travel(ready: &dyn Fn() -> Lockstep, network: Network) -> (Lockstep, Outcome,
     let mut q = lockstep.client.state.q;
     q[0] += 0.4;
     q[5] += 0.2;
-    let goal = lockstep.begin(Target::Joints(q.into()));
+    let goal = lockstep.begin(Target::Joints(q));
     let outcome = lockstep.until_resolved(goal, 20_000);
     let tally = lockstep.link.network.to_client.tally();
     if outcome.is_ok() {
@@ -175,7 +175,7 @@ fn a_cut_is_bridged_up_to_what_the_robot_tolerates() {
         assert!(reason.contains(RobotError::CommunicationConstraintsViolation));
         lockstep.request(&franka_proto::Request::AutomaticErrorRecovery);
         lockstep.run(100);
-        let goal = lockstep.begin(Target::Joints(lockstep.client.state.q.into()));
+        let goal = lockstep.begin(Target::Joints(lockstep.client.state.q));
         lockstep
             .until_resolved(goal, 5000)
             .expect("the network is whole again");
