@@ -87,7 +87,7 @@ impl Wander {
 /// The goal under one law after the other, with a force cap under two of three.
 fn in_turn(turn: usize, goal: Goal) -> Goal {
     let gains = match turn % 3 {
-        0 => goal.gains,
+        0 => return goal,
         1 => Gains {
             law: Law::OperationalSpace,
             ..Gains::cartesian()
@@ -100,7 +100,7 @@ fn in_turn(turn: usize, goal: Goal) -> Goal {
     };
     Goal {
         gains,
-        force_cap: (turn % 3 != 0).then_some(30.0),
+        force_cap: Some(30.0),
         ..goal
     }
 }
