@@ -383,6 +383,8 @@ fn a_leap_after_a_loss_is_laid_to_the_loss() {
         lockstep.link.drop_commands(12);
         let diagnosis = diagnosis(&mut lockstep, work);
         assert_eq!(found(&diagnosis).1, Subject::Joint(1));
+        // The robot has judged the first command after the loss, and none of those that were lost.
+        assert_eq!(diagnosis.cycles_before_end(), Some(1));
         assert!(
             matches!(
                 diagnosis.causes[..],
@@ -434,7 +436,7 @@ fn a_push_names_axis_force_and_threshold() {
             panic!("{finding:?}")
         };
         assert!(
-            passed < 25.0 && 25.0 <= stopped && stopped < 30.0,
+            passed < 25.0 && (25.0..30.0).contains(&stopped),
             "{finding:?}"
         );
         let Cause::Contact {

@@ -71,13 +71,14 @@ impl<'a> Evidence<'a> {
         )
     }
 
-    /// The commands whose state is in the log as well. Differences are to be taken from what that state publishes as
-    /// commanded: it includes what the robot made up for cycles without a command.
+    /// The commands that reached the robot, as far as its success rate tells, and whose state is in the log as well.
+    /// Differences are to be taken from what that state publishes as commanded: it includes what the robot made up for cycles
+    /// without a command.
     pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = Sample<'a>> {
         self.entries.windows(2).filter_map(|pair| {
             let (before, command) = (&pair[0].state, &pair[1].command);
             let answers = command.message_id == before.message_id && before.motion_running();
-            answers.then_some(Sample {
+            (answers && !is_lost(before, &pair[1].state)).then_some(Sample {
                 before,
                 command,
                 first: pair[0].command.message_id == 0,
@@ -146,6 +147,18 @@ impl Reading {
             since: self.cycle,
         }
     }
+}
+
+/// Whether the command between two states in a row did not reach the robot in time, by the success rate that it reports. The
+/// state that shows the end of the motion does not tell.
+pub(super) fn is_lost(before: &RobotState, after: &RobotState) -> bool {
+    let (rate, rate_after) = (
+        before.control_command_success_rate,
+        after.control_command_success_rate,
+    );
+    after.message_id == before.message_id + 1
+        && after.motion_running()
+        && rate_after < rate - SAME_RATE
 }
 
 /// The velocity of every joint against what is allowed at `q`.
@@ -257,3 +270,7 @@ const VISIBLE: f64 = 0.95;
 
 /// What a position may lack of a limit, over [`VISIBLE`], `[rad]`: so that half a hundredth of a radian is near.
 const SCALE: f64 = 0.1;
+
+/// Two success rates that differ by less are the same: one command in a hundred is a hundredth of a rate, and rates are at
+/// worst in single precision.
+const SAME_RATE: f64 = 1e-4;

@@ -154,10 +154,12 @@ pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>,
 
 /// What the log shows of an error.
 fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
+    // What is beyond its limit for certain comes before what is only near.
     let first_of = |readings: &[&dyn Fn() -> Vec<Reading>]| {
-        readings
-            .iter()
-            .find_map(|readings| newest(error, &readings()))
+        let found = || readings.iter().map(|readings| newest(error, &readings()));
+        found()
+            .find_map(beyond)
+            .or_else(|| found().flatten().next())
     };
     let joints = |which| move || commanded::joint_readings(evidence, which);
     let resulting = |which| move || commanded::resulting_readings(evidence, which);
@@ -170,11 +172,10 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
         | E::CartesianMotionGeneratorStartElbowInvalid
         | E::StartElbowSignInconsistent => step::start_offset(evidence, error),
         E::ControllerTorqueDiscontinuity => first_of(&[&|| commanded::torque_readings(evidence)]),
-        E::JointMotionGeneratorVelocityDiscontinuity => {
-            first_of(&[&joints(Acceleration), &joints(Jerk)])
-        }
-        // Of a velocity, the first difference is the acceleration.
-        E::JointMotionGeneratorAccelerationDiscontinuity => {
+        // Which of the two an error means depends on what is commanded: of a velocity, the acceleration is the first
+        // difference.
+        E::JointMotionGeneratorVelocityDiscontinuity
+        | E::JointMotionGeneratorAccelerationDiscontinuity => {
             first_of(&[&joints(Acceleration), &joints(Jerk)])
         }
         E::JointMotionGeneratorVelocityLimitsViolation => first_of(&[&joints(Velocity)]),
@@ -236,8 +237,13 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
     };
     match matter(error) {
         Matter::Link => {
-            causes.extend(link::lost_packets(evidence, true));
-            causes.extend(link::late_commands(evidence));
+            let late = link::late_commands(evidence);
+            let lost = link::lost_packets(evidence, true);
+            // Commands that left too late have not reached the robot in time, either.
+            let all_came = matches!(lost, Some(Cause::LostPackets { states: 0, .. }));
+            causes.extend(late.filter(|_| all_came));
+            causes.extend(lost);
+            causes.extend(late.filter(|_| !all_came));
         }
         Matter::Start | Matter::Command | Matter::Inverse => {
             let lost = link::lost_packets(evidence, false);

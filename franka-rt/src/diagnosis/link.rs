@@ -3,7 +3,7 @@
 use franka_proto::RobotError;
 
 use super::cause::Cause;
-use super::evidence::Evidence;
+use super::evidence::{Evidence, is_lost};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
 /// Cycles that may be lost in a row: 20 end a motion (FCI documentation, `communication_constraints_violation`).
@@ -36,23 +36,13 @@ impl Losses {
                 continue;
             }
             let missing = next - id - 1;
-            let (rate, rate_after) = (
-                before.control_command_success_rate,
-                after.control_command_success_rate,
-            );
             let ends = !after.motion_running();
             if command.message_id == 0 {
                 // The robot waits for the first command.
             } else if command.message_id != id {
                 losses.unanswered += 1;
                 losses.cycles.push(id);
-            } else if missing == 0
-                && if ends {
-                    starved
-                } else {
-                    rate_after < rate - SAME
-                }
-            {
+            } else if is_lost(before, after) || (ends && starved && missing == 0) {
                 losses.commands += 1;
                 losses.cycles.push(id);
             }
@@ -117,7 +107,3 @@ pub(super) fn late_commands(evidence: &Evidence<'_>) -> Option<Cause> {
         worst_turnaround: statistics.worst_turnaround,
     })
 }
-
-/// Two success rates that differ by less are the same: one command in a hundred is a hundredth of a rate, and rates are at
-/// worst in single precision.
-const SAME: f64 = 1e-4;

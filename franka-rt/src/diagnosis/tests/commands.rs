@@ -1,3 +1,5 @@
+use core::time::Duration;
+
 use franka_model::{EndEffector, Frame, JointVector, Model, READY, elbow, layout};
 use franka_proto::MotionGeneratorMode as Generator;
 use franka_proto::RobotError as E;
@@ -113,6 +115,40 @@ fn states_that_nobody_answered_are_this_hosts_doing() {
         panic!("{:?}", diagnosis.causes)
     };
     assert_eq!(diagnosis.advice[0], Advice::Host);
+}
+
+#[test]
+fn commands_that_left_too_late_are_told_from_the_counts() {
+    let mut story = Story::of(Model::fr3(), Generator::None);
+    for lost in 1..=19_u32 {
+        let rate = 1.0 - f64::from(lost) / 100.0;
+        story.go(|_, _| {}, |state| state.control_command_success_rate = rate);
+    }
+    let mut counts = MotionStatistics::default();
+    counts.overruns = 20;
+    counts.worst_turnaround = Duration::from_micros(1800);
+    let errors = [E::CommunicationConstraintsViolation];
+    let diagnosis = story.stop_counted(Some(&counts), &errors, |_, _| {}, |_| {});
+    let [late, Cause::LostPackets { commands: 20, .. }] = diagnosis.causes[..] else {
+        panic!("{:?}", diagnosis.causes)
+    };
+    let text = "20 commands that left this computer too late, up to 1.8 ms after their state";
+    assert_eq!(late.to_string(), text);
+    assert_eq!(diagnosis.advice, [Advice::Host, Advice::Network]);
+}
+
+#[test]
+fn a_jerk_that_is_too_large_comes_before_an_acceleration_that_nearly_is() {
+    let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
+    story.entries.last_mut().unwrap().state.ddq_d[0] = -9.0;
+    let diagnosis = story.stop(
+        &[E::JointMotionGeneratorAccelerationDiscontinuity],
+        |_, command| command.dq_c[0] = 0.0098,
+        |_| {},
+    );
+    let finding = finding(&diagnosis);
+    assert_eq!(finding.quantity, Quantity::Jerk);
+    assert!((finding.value - 18_800.0).abs() < 1e-6);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use franka_proto::{
 };
 
 use super::{Diagnosis, Finding};
-use crate::driver::LogEntry;
+use crate::driver::{LogEntry, MotionStatistics};
 
 /// A log in the making: a state, then pairs of a command and the state after it.
 struct Story {
@@ -102,7 +102,18 @@ impl Story {
 
     /// A last cycle, in which the robot stops for these errors.
     fn stop(
+        self,
+        errors: &[RobotError],
+        ask: impl FnOnce(&RobotState, &mut RobotCommand),
+        then: impl FnOnce(&mut RobotState),
+    ) -> Diagnosis {
+        self.stop_counted(None, errors, ask, then)
+    }
+
+    /// Likewise, with the counts of the motion.
+    fn stop_counted(
         mut self,
+        statistics: Option<&MotionStatistics>,
         errors: &[RobotError],
         ask: impl FnOnce(&RobotState, &mut RobotCommand),
         then: impl FnOnce(&mut RobotState),
@@ -124,7 +135,7 @@ impl Story {
             then(state);
         });
         let entries = self.entries.iter().collect();
-        let diagnosis = Diagnosis::of_entries(errors, entries, self.model, None);
+        let diagnosis = Diagnosis::of_entries(errors, entries, self.model, statistics);
         let text = diagnosis.to_string();
         println!("{text}\n");
         assert!(text.lines().count() <= 6, "{text}");
