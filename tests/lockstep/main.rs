@@ -13,6 +13,7 @@ mod reflex_log;
 mod schedules;
 mod silence;
 mod stalls;
+mod steps;
 mod taking_over;
 mod telemetry;
 mod together;

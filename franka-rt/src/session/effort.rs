@@ -1,7 +1,7 @@
 //! From a reference to torques: the law, then the guards of the torques, then what the robot accepts.
 //!
 //! ```text
-//! springs and dampers -> clamp -> force cap -> + coriolis -> velocity barrier -> robot's range -> low-pass -> rate
+//! springs and dampers -> clamp -> force cap -> + coriolis + M ddq_ref -> velocity barrier -> robot's range -> low-pass -> rate
 //! ```
 
 use franka_model::limits::JointLimits;
@@ -67,8 +67,9 @@ impl Effort {
             (Some(cap), Some(space)) => force_cap::hold(&clipped, cap, jacobian, space),
             _ => (tau, false),
         };
-        // Coriolis torques stay outside the clamp and the cap: they belong to the motion, not to the interaction.
-        let tau = tau + dynamics.coriolis;
+        // What the motion itself takes stays outside the clamp and the cap, which are for the interaction.
+        let inertial = dynamics.mass * (reference.ddq * tuning.feedforward);
+        let tau = tau + dynamics.coriolis + inertial;
         let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &most);
         let (tau, full) = shaping::clamp(&tau, &limits.torque);
         let filtered = shaping::low_pass(&tau, &last);

@@ -423,13 +423,22 @@ impl Lockstep {
 
     /// The true pose of the end effector, not rounded by the wire.
     pub fn true_pose(&self) -> Isometry3<f64> {
+        self.pose_at(self.robot.q())
+    }
+
+    /// The pose of the end effector where the reference of the driver's last command is.
+    pub fn reference_pose(&self) -> Isometry3<f64> {
+        self.pose_at(&self.client.record.q_ref.into())
+    }
+
+    fn pose_at(&self, q: &JointVector) -> Isometry3<f64> {
         let rigid =
             |column_major| transform::isometry_from_array(column_major).expect("a rigid frame");
         let ee = EndEffector {
             f_t_ee: transform::matrix(&rigid(&self.robot.state().F_T_EE)),
             ..EndEffector::default()
         };
-        pose_of(self.robot.q(), &ee)
+        pose_of(q, &ee)
     }
 }
 
