@@ -24,7 +24,7 @@ pub struct Reference {
     pub q: JointVector,
     /// Velocities, `[rad/s]`.
     pub dq: JointVector,
-    /// Accelerations, `[rad/s^2]`. The law does not use them; the next generator starts from them.
+    /// Accelerations, `[rad/s^2]`, whose inertia is fed forward beside the law, and from which the next generator starts.
     pub ddq: JointVector,
 }
 

@@ -28,6 +28,8 @@ pub(super) struct Active {
     load: Load,
     posture: JointVector,
     pub(super) goal: Goal,
+    /// Whether no state has been answered: the first answer holds the arm, and begins with no torque.
+    first: bool,
     /// When the goal was first seen, `message_id` of the state.
     since: u64,
     course: Course,
@@ -106,6 +108,7 @@ impl Active {
             drive,
             stage: Stage::UnderWay,
             held_back: 0,
+            first: true,
             since: state.message_id,
             heard: state.message_id,
             lapse: None,
@@ -276,14 +279,18 @@ impl Active {
             reference,
             bounds,
             held,
-        } = self.course.step(
-            model,
-            &self.ee,
-            &self.posture,
-            &self.reference,
-            &arm,
-            state.message_id,
-        );
+        } = if core::mem::take(&mut self.first) {
+            course::Step::free(self.reference)
+        } else {
+            self.course.step(
+                model,
+                &self.ee,
+                &self.posture,
+                &self.reference,
+                &arm,
+                state.message_id,
+            )
+        };
         self.reference = reference;
         bindings.set(Guard::InverseKinematics, bounds.acceleration);
         bindings.set(Guard::JointVelocity, bounds.velocity);

@@ -34,6 +34,17 @@ pub(super) struct Step {
     pub(super) held: bool,
 }
 
+impl Step {
+    /// One that nothing holds back.
+    pub(super) fn free(reference: Reference) -> Self {
+        Self {
+            reference,
+            bounds: Held::default(),
+            held: false,
+        }
+    }
+}
+
 impl Course {
     /// Turns towards a new goal from wherever the reference is and however it moves.
     ///
@@ -102,26 +113,21 @@ impl Course {
         arm: &Measured,
         now: u64,
     ) -> Step {
-        let free = |reference| Step {
-            reference,
-            bounds: Held::default(),
-            held: false,
-        };
         match self {
-            Self::Rest => free(Reference::at_rest(reference.q)),
+            Self::Rest => Step::free(Reference::at_rest(reference.q)),
             Self::Joints(generator) => {
                 let State {
                     position,
                     velocity,
                     acceleration,
                 } = *generator.step();
-                free(Reference {
+                Step::free(Reference {
                     q: position.into(),
                     dq: velocity.into(),
                     ddq: acceleration.into(),
                 })
             }
-            Self::Guide(guide) => free(guide.step(reference, arm)),
+            Self::Guide(guide) => Step::free(guide.step(reference, arm)),
             Self::Chunk(chunk) => chunk.step(model, ee, posture, reference, now),
             Self::Pose(generator, drift) => {
                 let next = generator.step();
