@@ -3,8 +3,8 @@
 use franka_model::{EndEffector, Model, READY, RobotKind};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalError, PoseError, Target, Then};
-use franka_tests::lockstep::{Lockstep, for_each_robot, pose_of};
+use franka_rt::session::{GoalError, PoseError, SELF_STOP, Target, Then};
+use franka_tests::lockstep::{Lockstep, for_each_robot, pose_of, self_distance};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 fn assert_near(lockstep: &Lockstep, target: &Isometry3<f64>) {
@@ -198,6 +198,12 @@ fn joints_are_reached_close_to_the_ends_of_their_ranges() {
         for end in [limits.lower[i] + 0.02, limits.upper[i] - 0.02] {
             let mut q: [f64; 7] = READY.into();
             q[i] = end;
+            if i == 3 && self_distance(&q.into()) < SELF_STOP {
+                continue; // Folded that far the hand is at the shoulder.
+            }
+            if self_distance(&q.into()) < SELF_STOP {
+                q[3] = -0.5; // With the elbow bent the hand would be in the base.
+            }
             let mut lockstep = Lockstep::ready();
             let goal = lockstep.begin(Target::Joints(q));
             let outcome = lockstep.until_resolved(goal, 20_000);
@@ -210,7 +216,7 @@ fn joints_are_reached_close_to_the_ends_of_their_ranges() {
 fn goals_are_held_against_the_ranges_of_the_connected_robot() {
     // Joint 6 of a Research 3 does not fold in that far, that of a Panda does.
     let mut q: [f64; 7] = READY.into();
-    q[5] = 0.3;
+    q[5] = 0.5;
     let mut fer = Lockstep::ready_of(RobotKind::Fer);
     let goal = fer.begin(Target::Joints(q));
     fer.until_resolved(goal, 10_000).unwrap();

@@ -6,6 +6,7 @@ mod endings;
 mod engaged;
 mod faults;
 mod goals;
+mod guards;
 mod laws;
 mod mishaps;
 mod random_targets;

@@ -150,6 +150,15 @@ impl Placed<'_> {
         })
     }
 
+    /// The distance of every pair that can meet, `[m]`, in the order of [`pairs`](Self::pairs). Costs less: there are no
+    /// gradients.
+    pub fn distances(&self) -> impl Iterator<Item = ((Body, Body), f64)> + '_ {
+        self.indices().map(|(a, b)| {
+            let nearest = self.segments[a].nearest(&self.segments[b]);
+            ((self.body(a), self.body(b)), nearest.distance)
+        })
+    }
+
     /// The pair with the least distance. Costs less than [`pairs`](Self::pairs): there is one gradient.
     pub fn nearest_pair(&self) -> Proximity<(Body, Body)> {
         let distances = self.indices().map(|(a, b)| {

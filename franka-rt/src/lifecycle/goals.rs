@@ -294,7 +294,8 @@ impl Lifecycle {
     ) {
         let (mut slot, reader) = slot::slot();
         slot.write(&waiting.goal);
-        let mut session = TargetSession::new(self.model.clone(), self.version, reader);
+        let mut session =
+            TargetSession::new(self.model.clone(), self.version, reader).out_of(self.keep_out);
         let (mut backend, mut observer) = (Backend::default(), None);
         let engaged = engagement.is_some().then_some(Engaged {
             id: waiting.goal.id,
@@ -302,7 +303,7 @@ impl Lifecycle {
         });
         if let Some(engagement) = engagement {
             (backend, observer) = (engagement.backend, engagement.observer);
-            session = session.with_backend(backend);
+            session = session.with_backend(backend).going_on();
             if let Some(deadman) = engagement.deadman {
                 session = session.bound_to(deadman);
             }

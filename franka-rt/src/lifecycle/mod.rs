@@ -32,7 +32,7 @@ use franka_proto::{MoveRequest, MoveStatus, Request, Version, Violation};
 use crate::driver::{
     ControlLog, Ending, Event, Modes, MotionId, MotionTimes, Observer, Order, Program,
 };
-use crate::session::GoalId;
+use crate::session::{GoalId, KeepOut};
 use crate::together::StartTicket;
 
 use active::{Active, CommandSide, NEVER_SHOWN, ThreadSide, Waiting, Work};
@@ -86,6 +86,8 @@ pub struct Lifecycle {
     motions: u64,
     /// Cycles that the log of a motion holds.
     log_size: usize,
+    /// Regions that the arm keeps out of under target control.
+    keep_out: KeepOut,
     outputs: VecDeque<Output>,
 }
 
@@ -108,6 +110,7 @@ impl Lifecycle {
             ended: None,
             motions: 0,
             log_size: ControlLog::DEFAULT_CAPACITY,
+            keep_out: KeepOut::default(),
             outputs: VecDeque::new(),
         }
     }
@@ -117,6 +120,11 @@ impl Lifecycle {
     pub fn with_log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self
+    }
+
+    /// Keeps the arm out of these regions under target control, from the next motion that starts.
+    pub fn keep_out_of(&mut self, regions: KeepOut) {
+        self.keep_out = regions;
     }
 
     /// Whether nothing moves and nothing waits to move.

@@ -15,11 +15,19 @@ use super::chunk::{ChunkCourse, ChunkReader, ChunkStart};
 use super::course::{self, Course};
 use super::effort::Effort;
 use super::goal::{Goal, Stale, Target, Then, Watchdog};
+use super::guard::clearance::{Clearance, KeepOut};
+use super::guard::deviation::Deviation;
+use super::guard::lead::LEAD_FRESH_MS;
 use super::guard::{Bindings, Guard, leash};
 use super::landing::{self, Landing, Release, Verdict};
+use super::route::Route;
 use super::{
     Answer, Lapse, STALL_TIMEOUT, SessionEvent, Settlement, Step, end_effector_of, load_of, rigid,
 };
+
+/// Joint velocity, `[rad/s]`, below which the reference may be stopped in one cycle. Joints at their bounds may still creep
+/// after a pose has come to its end.
+const REFERENCE_REST: f64 = 1e-3;
 
 /// What exists once the first state has been seen.
 #[derive(Debug)]
@@ -32,9 +40,14 @@ pub(super) struct Active {
     first: bool,
     /// When the goal was first seen, `message_id` of the state.
     since: u64,
-    course: Course,
+    /// What the reference heads for: the goal's target, or one nearer, or rest.
+    aim: Target,
+    route: Route,
     reference: Reference,
     drive: Drive,
+    deviation: Deviation,
+    /// What follows a goal that is held and has to be given up.
+    afterwards: Then,
     stage: Stage,
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
@@ -62,6 +75,8 @@ enum Drive {
 /// The arm as it was measured.
 #[derive(Debug)]
 pub(super) struct Measured {
+    /// `message_id` of the state.
+    pub(super) time: u64,
     pub(super) q: JointVector,
     /// `O_T_EE`.
     pub(super) pose: Isometry3<f64>,
@@ -90,6 +105,8 @@ impl Active {
         goal: Goal,
         backend: Backend,
         version: Version,
+        keep_out: KeepOut,
+        afterwards: Then,
         state: &RobotState,
     ) -> Option<Self> {
         let (q, drive) = match backend {
@@ -104,8 +121,12 @@ impl Active {
         let ee = end_effector_of(state)?;
         let load = load_of(state)?;
         let mut this = Self {
-            course: Course::Rest,
             drive,
+            aim: goal.target,
+            // Nothing tells which tool is mounted, but that one is: the Hand stands for it.
+            route: Route::new(Clearance::new(model.kind(), state.m_ee > 0.0, keep_out)),
+            deviation: Deviation::at(q),
+            afterwards,
             stage: Stage::UnderWay,
             held_back: 0,
             first: true,
@@ -126,6 +147,9 @@ impl Active {
 
     pub(super) fn take_up(&mut self, model: &Model, goal: Goal, now: u64) {
         if matches!(self.stage, Stage::Finished) {
+            return;
+        }
+        if goal.id == self.goal.id && matches!(self.lapse, Some((_, lapse)) if lapse.is_final()) {
             return;
         }
         self.heard = now;
@@ -160,16 +184,17 @@ impl Active {
             left.end(chunks, now);
         }
         let gone = matches!(self.stage, Stage::Releasing(_) | Stage::Finished);
-        if gone || matches!(self.lapse, Some((_, Lapse::Deadman))) {
+        let given_up = |(_, lapse): &(Stale, Lapse)| *lapse == Lapse::Deadman || lapse.is_final();
+        if gone || self.lapse.as_ref().is_some_and(given_up) {
             chunks.discard(self.goal.id);
             return;
         }
-        let over = match &self.course {
+        let over = match &self.route.course {
             Course::Chunk(chunk) => chunk.is_over(now),
             _ => true,
         };
         if let Some(chunk) = chunks.poll(self.goal.id, now, over) {
-            let (pose, drift) = self.course.pose(model, &self.ee, &self.reference);
+            let (pose, drift) = self.route.course.pose(model, &self.ee, &self.reference);
             let start = ChunkStart {
                 reference: &self.reference,
                 pose,
@@ -177,17 +202,19 @@ impl Active {
                 now,
             };
             let next = ChunkCourse::new(model, self.goal.id, self.goal.budget, chunk, start);
-            if let Course::Chunk(before) = core::mem::replace(&mut self.course, Course::Chunk(next))
+            if let Course::Chunk(before) =
+                core::mem::replace(&mut self.route.course, Course::Chunk(next))
             {
                 before.end(chunks, now);
             }
+            self.aim = self.heading();
             // A goal that had fallen silent was to be held until a newer one.
             if self.lapse.take().is_some() {
                 self.goal.then = Then::Hold;
             }
             self.heard = now;
             self.stage = Stage::UnderWay;
-        } else if over && let Course::Chunk(chunk) = &self.course {
+        } else if over && let Course::Chunk(chunk) = &self.route.course {
             let target = chunk.target();
             self.turn_to(model, target);
             self.chunk_end = Some(target);
@@ -196,24 +223,75 @@ impl Active {
 
     /// Where the reference is to come to rest.
     fn heading(&self) -> Target {
-        match &self.course {
+        match &self.route.course {
             Course::Chunk(chunk) => chunk.target(),
             _ => self.chunk_end.unwrap_or(self.goal.target),
         }
     }
 
     fn turn_to(&mut self, model: &Model, target: Target) {
-        if matches!(self.course, Course::Chunk(_))
-            && let Course::Chunk(chunk) = core::mem::replace(&mut self.course, Course::Rest)
+        if matches!(self.route.course, Course::Chunk(_))
+            && let Course::Chunk(chunk) = core::mem::replace(&mut self.route.course, Course::Rest)
         {
             self.left = Some(chunk);
         }
+        self.aim = target;
         let goal = Goal {
             target,
             ..self.goal
         };
-        self.course
-            .head_for(model, &self.ee, &self.reference, &goal);
+        self.route.head_for(model, &self.ee, &self.reference, &goal);
+    }
+
+    /// Draws a target nearer that is too far ahead of the arm; tells whether it is.
+    fn draw_nearer(&mut self, model: &Model, arm: &Measured, now: u64) -> bool {
+        let Some(lead) = self.goal.lead else {
+            return false;
+        };
+        let chunks = matches!(self.route.course, Course::Chunk(_)) || self.chunk_end.is_some();
+        if chunks || !matches!(self.stage, Stage::UnderWay) {
+            return false;
+        }
+        if now.saturating_sub(self.heard) <= LEAD_FRESH_MS {
+            let drawn = lead.drawn(&self.goal.target, &arm.q, &arm.pose);
+            let target = drawn.unwrap_or(self.goal.target);
+            if target != self.aim {
+                self.turn_to(model, target);
+            }
+        }
+        self.aim != self.goal.target
+    }
+
+    /// Gives the goal up, and brakes.
+    fn give_up(&mut self, model: &Model, lapse: Lapse) {
+        self.goal.target = Target::Rest;
+        self.set_out(model);
+        if self.goal.then == Then::Hold {
+            self.goal.then = self.afterwards;
+        }
+        self.lapse = Some((Stale::Brake, lapse));
+    }
+
+    /// Gives up a goal whose arm is being carried off; tells whether it is.
+    fn watch_deviation(&mut self, model: &Model, arm: &Measured, leashed: bool) -> bool {
+        if !leashed {
+            self.deviation.set_free(&self.reference.q);
+            return false;
+        }
+        if matches!(self.heading(), Target::Rest | Target::Guide(_)) {
+            return matches!(self.lapse, Some((_, Lapse::CarriedOff)));
+        }
+        let exceeded = self
+            .deviation
+            .is_exceeded(model, &self.ee, &arm.q, &arm.pose, &self.aim);
+        let follows = matches!(
+            self.stage,
+            Stage::UnderWay | Stage::Landing(_) | Stage::Staying
+        );
+        if exceeded && follows {
+            self.give_up(model, Lapse::CarriedOff);
+        }
+        exceeded
     }
 
     /// Gives the goal up: its updates stay away, or its deadman is silent.
@@ -258,6 +336,7 @@ impl Active {
         let dq = JointVector::from(state.dq);
         let dynamics = model.dynamics(&q, &dq, &self.ee, &self.load, &GRAVITY_EARTH);
         let arm = Measured {
+            time: state.message_id,
             q,
             pose: rigid(&dynamics.pose),
             jacobian: dynamics.jacobian,
@@ -275,6 +354,12 @@ impl Active {
         );
 
         self.reanchor(model, state);
+        let drawn = self.draw_nearer(model, &arm, state.message_id);
+        bindings.set(Guard::Lead, drawn);
+        let aim = Goal {
+            target: self.aim,
+            ..self.goal
+        };
         let course::Step {
             reference,
             bounds,
@@ -282,28 +367,31 @@ impl Active {
         } = if core::mem::take(&mut self.first) {
             course::Step::free(self.reference)
         } else {
-            self.course.step(
-                model,
-                &self.ee,
-                &self.posture,
-                &self.reference,
-                &arm,
-                state.message_id,
-            )
+            self.route
+                .step(model, &self.ee, &self.posture, &self.reference, &arm, &aim)
         };
+        if let Some(chunk) = self.route.left.take() {
+            self.chunk_end = Some(chunk.target());
+            self.left = Some(chunk);
+        }
         self.reference = reference;
+        bindings.set(Guard::Clearance, self.route.is_bound());
         bindings.set(Guard::InverseKinematics, bounds.acceleration);
         bindings.set(Guard::JointVelocity, bounds.velocity);
         bindings.set(Guard::PositionEnvelope, bounds.position);
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         let event = self.advance_stage(model, &arm, at_rest, state.message_id);
         let leashed = match self.drive {
-            Drive::Torques(_) => leash::hold(&mut self.course, &mut self.reference, &q, &arm.pose),
+            Drive::Torques(_) => {
+                leash::hold(&mut self.route.course, &mut self.reference, &q, &arm.pose)
+            }
             // What pulls is the robot's own controller, on whose setpoint the reference is anchored.
             Drive::Setpoints(_) => false,
         };
         bindings.set(Guard::Leash, leashed);
-        self.held_back = if leashed || held {
+        let carried_off = self.watch_deviation(model, &arm, leashed);
+        bindings.set(Guard::Deviation, carried_off);
+        self.held_back = if leashed || held || self.route.is_hindered() {
             self.held_back + 1
         } else {
             self.held_back.saturating_sub(1)
@@ -340,16 +428,18 @@ impl Active {
         };
         if let Some(echo) = stream.echo(model, &self.ee, &self.reference, state) {
             self.reference = echo;
-            if !self.course.is_done() {
-                self.course = Course::Rest;
-                let target = match self.stage {
-                    Stage::UnderWay => self.goal.target,
-                    Stage::Landing(_) | Stage::Staying | Stage::Releasing(_) | Stage::Finished => {
-                        Target::Rest
-                    }
-                };
-                self.turn_to(model, target);
-            }
+            let target = match self.stage {
+                Stage::UnderWay => self.aim,
+                Stage::Landing(_) | Stage::Staying | Stage::Releasing(_) | Stage::Finished => {
+                    Target::Rest
+                }
+            };
+            let aim = Goal {
+                target,
+                ..self.goal
+            };
+            self.route
+                .begin_again(model, &self.ee, &self.reference, &aim);
         }
     }
 
@@ -365,8 +455,10 @@ impl Active {
         match &mut self.stage {
             Stage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                if self.goal.then != Then::Hold && (self.course.is_done() || stalled) {
-                    if stalled && heading != Target::Rest {
+                if self.goal.then != Then::Hold && (self.route.is_done() || stalled) {
+                    if stalled && self.route.is_hindered() {
+                        self.give_up(model, Lapse::Blocked);
+                    } else if stalled && heading != Target::Rest {
                         self.turn_to(model, Target::Rest);
                     }
                     let target = match heading {
@@ -387,10 +479,16 @@ impl Active {
                     Verdict::Settling => return None,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
+                if self.goal.then == Then::Finish && self.reference.dq.amax() > REFERENCE_REST {
+                    if self.aim != Target::Rest {
+                        self.turn_to(model, Target::Rest);
+                    }
+                    return None;
+                }
                 self.stage = match (self.goal.then, &self.drive) {
                     (Then::Hold | Then::Stay, _) => Stage::Staying,
                     (Then::Finish, Drive::Torques(_)) => {
-                        self.course = Course::Rest;
+                        self.route.rest();
                         Stage::Releasing(Release::new(self.reference.q - arm.q))
                     }
                     // The robot holds the arm at its setpoint as it is.
@@ -409,7 +507,7 @@ impl Active {
             }
             Stage::Releasing(release) => {
                 self.reference = Reference::at_rest(arm.q + release.offset());
-                self.course = Course::Rest;
+                self.route.rest();
                 if release.is_over(at_rest) {
                     self.stage = Stage::Finished;
                 }

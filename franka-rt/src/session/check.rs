@@ -65,6 +65,12 @@ pub enum GoalError {
         /// Why not.
         why: &'static str,
     },
+    /// A lead is not positive.
+    #[error("lead {got}, expected above 0")]
+    Lead {
+        /// The value given.
+        got: f64,
+    },
     /// A silence of a watchdog or a deadman is shorter than a lossy network may bring by itself.
     #[error("silence of {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
     Silence {
@@ -93,6 +99,13 @@ impl Goal {
         for got in [self.tolerance.translation, self.tolerance.rotation] {
             if got.is_nan() || got <= 0.0 {
                 return Err(GoalError::Tolerance { got });
+            }
+        }
+        if let Some(lead) = self.lead {
+            for got in [lead.translation, lead.rotation, lead.joints] {
+                if got.is_nan() || got <= 0.0 {
+                    return Err(GoalError::Lead { got });
+                }
             }
         }
         if let Some(Watchdog { silence, .. }) = self.watchdog {

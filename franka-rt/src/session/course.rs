@@ -158,6 +158,17 @@ impl Course {
     }
 }
 
+/// Where the joints of a moving reference come to rest, `[rad]`, if it is braked now.
+pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget) -> JointVector {
+    match joints(model, reference, None, budget) {
+        Ok(brake) => (*brake.end()).into(),
+        Err(error) => {
+            debug_assert!(false, "{error}");
+            reference.q
+        }
+    }
+}
+
 /// A plan for the joints from the reference to `target`, or to rest.
 fn joints(
     model: &Model,

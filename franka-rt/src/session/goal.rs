@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use crate::law::Gains;
 use crate::otg::AxisLimits;
-use crate::session::Budget;
+use crate::session::{Budget, Lead};
 use crate::slot::Words;
 
 /// Names one goal for the life of a connection. Updates of a followed target keep the name of the goal they belong to.
@@ -140,6 +140,8 @@ pub struct Goal {
     /// With how much force springs and dampers may press at the end effector, `[N]`, in
     /// [`FORCE_CAP`](crate::session::FORCE_CAP); `None` for as much as they come to.
     pub force_cap: Option<f64>,
+    /// How far ahead of the arm its target may be.
+    pub lead: Option<Lead>,
 }
 
 impl Goal {
@@ -162,14 +164,15 @@ impl Goal {
             tolerance: Tolerance::default(),
             watchdog: None,
             force_cap: None,
+            lead: None,
         }
     }
 }
 
 /// Name, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of budget, the gains, 2 of
-/// tolerance, the force cap (none is no number).
+/// tolerance, the force cap (none is no number), 3 of the lead, which are zero where there is none.
 impl Words for Goal {
-    const WORDS: usize = 5 + 7 + 27 + Gains::NUMBERS + 2 + 1;
+    const WORDS: usize = 5 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
 
     fn store(&self, words: &mut [u64]) {
         let (kind, target) = match self.target {
@@ -204,7 +207,10 @@ impl Words for Goal {
             .chain(axes.flat_map(|l| [l.velocity, l.acceleration, l.jerk]))
             .chain(self.gains.to_array())
             .chain([self.tolerance.translation, self.tolerance.rotation])
-            .chain([self.force_cap.unwrap_or(f64::NAN)]);
+            .chain([self.force_cap.unwrap_or(f64::NAN)])
+            .chain(self.lead.map_or([0.0; 3], |lead| {
+                [lead.translation, lead.rotation, lead.joints]
+            }));
         let all = [self.id.0, kind, self.then.to_word(), watched, silence]
             .into_iter()
             .chain(numbers.map(f64::to_bits));
@@ -260,6 +266,12 @@ impl Words for Goal {
                 rotation: number(),
             },
             force_cap: Some(number()).filter(|cap| !cap.is_nan()),
+            lead: Some(Lead {
+                translation: number(),
+                rotation: number(),
+                joints: number(),
+            })
+            .filter(|lead| lead.translation > 0.0),
         }
     }
 }
@@ -302,16 +314,22 @@ mod tests {
             stale: Stale::Brake,
             then: Then::Stay,
         };
-        for (target, then, watchdog, force_cap) in [
-            (Target::Rest, Then::Finish, None, None),
+        let lead = Lead {
+            translation: 0.05,
+            rotation: 0.2,
+            joints: 0.1,
+        };
+        for (target, then, watchdog, force_cap, lead) in [
+            (Target::Rest, Then::Finish, None, None, None),
             (
                 Target::Joints([0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7]),
                 Then::Hold,
                 Some(watchdog),
                 Some(25.0),
+                None,
             ),
-            (Target::Pose(pose), Then::Stay, None, Some(5.0)),
-            (Target::Guide(free), Then::Hold, Some(watchdog), None),
+            (Target::Pose(pose), Then::Stay, None, Some(5.0), Some(lead)),
+            (Target::Guide(free), Then::Hold, Some(watchdog), None, None),
         ] {
             let goal = Goal {
                 id: GoalId(77),
@@ -325,6 +343,7 @@ mod tests {
                 },
                 watchdog,
                 force_cap,
+                lead,
             };
             let mut words = [u64::MAX; Goal::WORDS];
             goal.store(&mut words);

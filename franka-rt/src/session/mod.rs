@@ -26,6 +26,7 @@ mod guide;
 mod kinematics;
 mod landing;
 mod pose;
+mod route;
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -48,7 +49,10 @@ pub use chunk::{
 };
 pub use deadman::{Deadman, Grip};
 pub use goal::{Free, Goal, GoalId, Stale, Target, Then, Tolerance, Watchdog};
+pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
+pub use guard::deviation::{JOINT_DEVIATION, ROTATION_DEVIATION, TRANSLATION_DEVIATION};
 pub use guard::force_cap::FORCE_CAP;
+pub use guard::lead::{LEAD_FRESH_MS, Lead};
 pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::{Bindings, Guard};
@@ -106,6 +110,18 @@ pub enum Lapse {
     },
     /// The [`Deadman`] that the session is bound to fell silent, or was dropped.
     Deadman,
+    /// Something pushed the arm off its way by more than it is to swing back by itself: [`TRANSLATION_DEVIATION`],
+    /// [`ROTATION_DEVIATION`], [`JOINT_DEVIATION`].
+    CarriedOff,
+    /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`] and [`KEEP_OUT_STOP`].
+    Blocked,
+}
+
+impl Lapse {
+    /// Whether no update brings the goal back.
+    fn is_final(self) -> bool {
+        matches!(self, Self::CarriedOff | Self::Blocked)
+    }
 }
 
 impl core::fmt::Display for Lapse {
@@ -113,6 +129,11 @@ impl core::fmt::Display for Lapse {
         match self {
             Self::Silent { silence } => write!(f, "no target came for {} ms", silence.as_millis()),
             Self::Deadman => write!(f, "its deadman is silent"),
+            Self::CarriedOff => write!(f, "the arm was carried off from its way"),
+            Self::Blocked => write!(
+                f,
+                "the way leads too near to the arm itself or to a region to keep out of"
+            ),
         }
     }
 }
@@ -149,6 +170,9 @@ pub struct TargetSession {
     version: Version,
     /// Where chunks come from.
     chunks: Option<ChunkReader>,
+    keep_out: KeepOut,
+    /// What follows a goal that is held and has to be given up.
+    afterwards: Then,
 }
 
 impl TargetSession {
@@ -165,7 +189,26 @@ impl TargetSession {
             backend: Backend::default(),
             version,
             chunks: None,
+            keep_out: KeepOut::default(),
+            afterwards: Then::Finish,
         }
+    }
+
+    /// Holds the arm where a goal was given up that was to be held, until a newer one comes. By default the session ends
+    /// then.
+    #[must_use]
+    pub fn going_on(mut self) -> Self {
+        self.afterwards = Then::Stay;
+        self
+    }
+
+    /// Keeps the arm out of these regions; by default there are none. It always keeps clear of itself.
+    ///
+    /// What is on the flange counts as the vendor's Hand if the robot knows of an end effector with a mass.
+    #[must_use]
+    pub fn out_of(mut self, regions: KeepOut) -> Self {
+        self.keep_out = regions;
+        self
     }
 
     /// Has somebody else than the session's own law turn setpoints into torques.
@@ -267,7 +310,22 @@ impl TargetSession {
                 active
             }
             (none, Some(goal)) => {
-                match Active::begin(&self.model, goal, self.backend, self.version, state) {
+                let Self {
+                    backend,
+                    version,
+                    keep_out,
+                    afterwards,
+                    ..
+                } = *self;
+                match Active::begin(
+                    &self.model,
+                    goal,
+                    backend,
+                    version,
+                    keep_out,
+                    afterwards,
+                    state,
+                ) {
                     Some(active) => none.insert(active),
                     None => {
                         let event = Some(SessionEvent::BadTool);

@@ -21,6 +21,7 @@ mod wander;
 
 use std::time::Duration;
 
+use franka_model::collision::{Body, Shape};
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
 use franka_proto::{MoveRequest, Request, RobotCommand, RobotState};
 use franka_rt::control::{Callback, Command, WriteError};
@@ -28,7 +29,7 @@ use franka_rt::driver::Program;
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport};
 use franka_rt::session::{Goal, GoalError, GoalId, Target, Then};
 use franka_rt::together::StartTicket;
-use franka_sim::{Config, Robot, Unpublished};
+use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
 
 pub use client::Client;
@@ -99,16 +100,10 @@ impl Lockstep {
     }
 
     /// A robot of this kind in the ready pose with its hand, strict about limits.
-    ///
-    /// It does not mind coming near itself: the goals of these tests go to the ends of what joints can do, and the driver
-    /// does not plan around the arm.
     pub fn ready_of(kind: RobotKind) -> Self {
-        let mut unpublished = Unpublished::default();
-        unpublished.self_collision.margin = f64::NEG_INFINITY;
         Self::new(Config {
             kind,
             tool: franka_sim::Tool::hand(),
-            unpublished,
             ..Config::default()
         })
     }
@@ -454,4 +449,20 @@ pub fn for_each_robot(test: impl Fn(&dyn Fn() -> Lockstep)) {
 pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
     transform::isometry(&pose).expect("a rigid end effector")
+}
+
+/// How far the nearest links are apart that have two others between them, `[m]`; the Hand comes after link 7. What the
+/// robot's self-collision avoidance looks at.
+pub fn self_distance(q: &JointVector) -> f64 {
+    let number = |body| match body {
+        Body::Link(link) => link,
+        Body::Tool => 8,
+    };
+    let arm = Shape::vendor().with_hand().at(q);
+    let apart = arm
+        .distances()
+        .filter(|((inner, outer), _)| number(*outer) - number(*inner) >= 3);
+    apart
+        .map(|(_, distance)| distance)
+        .fold(f64::INFINITY, f64::min)
 }

@@ -27,6 +27,8 @@ fn distances_of_all_pairs_meet_an_independent_minimiser() {
             let nearest = placed.nearest_pair();
             assert!((nearest.distance - least).abs() < DISTANCE);
             assert!(placed.pairs().any(|pair| pair == nearest));
+            let pairs = placed.pairs().map(|pair| (pair.bodies, pair.distance));
+            assert!(pairs.eq(placed.distances()));
         }
     }
 }

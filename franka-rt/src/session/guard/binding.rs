@@ -28,6 +28,12 @@ pub enum Guard {
     JointVelocity,
     /// On the way to a pose a joint came to the end of its range, or had to be able to stop before it.
     PositionEnvelope,
+    /// The arm came near itself or a region to keep out of: the reference goes slowly, or brakes before it.
+    Clearance,
+    /// The arm was carried off from its way; its goal was given up for that.
+    Deviation,
+    /// The target was further ahead of the arm than it may be, and was drawn nearer.
+    Lead,
 }
 
 /// A set of guards.
@@ -35,7 +41,7 @@ pub enum Guard {
 pub struct Bindings(u16);
 
 impl Guard {
-    const ALL: [Self; 11] = [
+    const ALL: [Self; 14] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
@@ -47,6 +53,9 @@ impl Guard {
         Self::Backstop,
         Self::JointVelocity,
         Self::PositionEnvelope,
+        Self::Clearance,
+        Self::Deviation,
+        Self::Lead,
     ];
 }
 

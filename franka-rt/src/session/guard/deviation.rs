@@ -1,0 +1,143 @@
+//! Deviation: an arm that is carried off too far is not swung back.
+//!
+//! The leash takes the reference along with an arm that is pushed, and the course begins again wherever it is let go. So
+//! nothing else bounds how far from its way an arm can be taken, and how far it then moves by itself.
+
+use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
+use nalgebra::{Isometry3, Vector3};
+
+use crate::session::{Target, rigid};
+
+/// How far the end effector may be carried off, `[m]`.
+pub const TRANSLATION_DEVIATION: f64 = 0.30;
+
+/// How far it may be turned away, `[rad]`.
+pub const ROTATION_DEVIATION: f64 = 0.5;
+
+/// How far a joint may be carried off, `[rad]`.
+pub const JOINT_DEVIATION: f64 = 1.0;
+
+/// Remembers where the reference was before the leash took it along.
+#[derive(Debug)]
+pub(crate) struct Deviation {
+    /// Joint positions of the reference when it was last free, `[rad]`.
+    anchor: JointVector,
+}
+
+impl Deviation {
+    /// Of a reference at `anchor`, `[rad]`.
+    pub(crate) fn at(anchor: JointVector) -> Self {
+        Self { anchor }
+    }
+
+    /// The reference is not held by its leash.
+    pub(crate) fn set_free(&mut self, reference: &JointVector) {
+        self.anchor = *reference;
+    }
+
+    /// Whether the arm, at `q` and `measured`, is further than it may be from the way between where the reference was last
+    /// free and the target: an arm that comes along slowly is on its way, and not carried off.
+    pub(crate) fn is_exceeded(
+        &self,
+        model: &Model,
+        ee: &EndEffector,
+        q: &JointVector,
+        measured: &Isometry3<f64>,
+        target: &Target,
+    ) -> bool {
+        let pose_at = |q: &JointVector| rigid(&model.pose(Frame::EndEffector, q, ee));
+        let way = match target {
+            Target::Joints(target) => JointVector::from_fn(|i, _| {
+                let (a, b) = (self.anchor[i], target[i]);
+                q[i].clamp(a.min(b), a.max(b))
+            }),
+            Target::Pose(_) | Target::Guide(_) | Target::Rest => self.anchor,
+        };
+        let anchor = pose_at(&way);
+        let end = match target {
+            Target::Pose(pose) => pose,
+            Target::Joints(_) | Target::Guide(_) | Target::Rest => &anchor,
+        };
+        let from = anchor.translation.vector;
+        let aside = beside(
+            &(measured.translation.vector - from),
+            &(end.translation.vector - from),
+        );
+        let turned = beside(
+            &rotation::error(&measured.rotation, &anchor.rotation),
+            &rotation::error(&end.rotation, &anchor.rotation),
+        );
+        aside > TRANSLATION_DEVIATION
+            || turned > ROTATION_DEVIATION
+            || (q - way).amax() > JOINT_DEVIATION
+    }
+}
+
+/// Distance of a point from the line from the origin to `end`.
+fn beside(point: &Vector3<f64>, end: &Vector3<f64>) -> f64 {
+    let along = point.dot(end) / end.norm_squared().max(f64::MIN_POSITIVE);
+    (point - end * along.clamp(0.0, 1.0)).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_model::READY;
+    use nalgebra::{Translation3, UnitQuaternion};
+
+    fn exceeded(q: &JointVector, measured: &Isometry3<f64>, target: &Target) -> bool {
+        let deviation = Deviation::at(READY);
+        deviation.is_exceeded(Model::fr3(), &EndEffector::default(), q, measured, target)
+    }
+
+    fn ready() -> Isometry3<f64> {
+        let pose = Model::fr3().pose(Frame::EndEffector, &READY, &EndEffector::default());
+        rigid(&pose)
+    }
+
+    #[test]
+    fn a_hand_is_carried_off_at_thirty_centimetres_or_half_a_radian() {
+        let pose = Target::Pose(ready());
+        for (distance, off) in [(0.29, false), (0.31, true)] {
+            let there = Translation3::new(0.0, distance, 0.0) * ready();
+            assert_eq!(exceeded(&READY, &there, &pose), off);
+        }
+        for (angle, off) in [(0.49, false), (0.51, true)] {
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, angle, 0.0));
+            let there = Isometry3::from_parts(ready().translation, turn * ready().rotation);
+            assert_eq!(exceeded(&READY, &there, &pose), off);
+        }
+    }
+
+    #[test]
+    fn an_arm_on_its_way_to_the_target_is_not_carried_off() {
+        let far = Translation3::new(0.0, 0.8, 0.0) * ready();
+        let on_the_way = Translation3::new(0.0, 0.5, 0.1) * ready();
+        assert!(!exceeded(&READY, &on_the_way, &Target::Pose(far)));
+        assert!(exceeded(&READY, &on_the_way, &Target::Pose(ready())));
+        let beyond = Translation3::new(0.0, 1.15, 0.0) * ready();
+        assert!(exceeded(&READY, &beyond, &Target::Pose(far)));
+    }
+
+    #[test]
+    fn a_joint_is_carried_off_at_a_radian_from_its_way() {
+        let mut target = READY;
+        target[6] += 1.5;
+        for (angle, off) in [
+            (1.4, false),
+            (1.9, false),
+            (2.1, true),
+            (-0.4, false),
+            (-0.6, true),
+        ] {
+            let mut q = READY;
+            q[6] += angle;
+            let pose = rigid(&Model::fr3().pose(Frame::EndEffector, &q, &EndEffector::default()));
+            assert_eq!(
+                exceeded(&q, &pose, &Target::Joints(target.into())),
+                off,
+                "{angle}"
+            );
+        }
+    }
+}

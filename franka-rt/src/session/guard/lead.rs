@@ -1,0 +1,91 @@
+//! Lead: a streamed target that is far ahead of the arm is drawn nearer, so that one wild target cannot send the arm far
+//! once the stream stops.
+
+use franka_model::JointVector;
+use nalgebra::Isometry3;
+
+use crate::session::Target;
+use crate::session::guard::leash;
+
+/// How far ahead of the measured arm a target may be.
+///
+/// A target that is further ahead is drawn nearer on the straight line to it, in every cycle anew while targets come:
+/// for [`LEAD_FRESH_MS`](crate::session::LEAD_FRESH_MS) after the newest one, the same target again included. Then it stays
+/// where it was last drawn to. So an arm whose targets stop coming goes on by no more than this.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lead {
+    /// Of the end effector, for poses, `[m]`.
+    pub translation: f64,
+    /// Of the end effector, for poses, `[rad]`.
+    pub rotation: f64,
+    /// Of each joint, for joint positions, `[rad]`.
+    pub joints: f64,
+}
+
+/// Time after the newest target, `[ms]`, for which it is drawn anew. A stream of 5 Hz is followed without a pause.
+pub const LEAD_FRESH_MS: u64 = 200;
+
+impl Lead {
+    /// Where `target` is drawn to by an arm at `q` and `measured`; `None` if it is near enough.
+    pub(crate) fn drawn(
+        &self,
+        target: &Target,
+        q: &JointVector,
+        measured: &Isometry3<f64>,
+    ) -> Option<Target> {
+        match target {
+            Target::Guide(_) | Target::Rest => None,
+            Target::Joints(target) => {
+                let ahead = JointVector::from(*target) - q;
+                let most = ahead.amax();
+                (most > self.joints)
+                    .then(|| Target::Joints((q + ahead * (self.joints / most)).into()))
+            }
+            Target::Pose(pose) => {
+                leash::within(pose, measured, self.translation, self.rotation).map(Target::Pose)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_model::READY;
+    use nalgebra::{Translation3, Vector3};
+
+    const LEAD: Lead = Lead {
+        translation: 0.05,
+        rotation: 0.2,
+        joints: 0.1,
+    };
+
+    #[test]
+    fn a_target_far_ahead_is_drawn_nearer_on_the_straight_line() {
+        let measured = Isometry3::translation(0.3, 0.0, 0.5);
+        let way = Vector3::new(0.0, 0.3, -0.4);
+        let far = Target::Pose(Translation3::from(way) * measured);
+        let Some(Target::Pose(near)) = LEAD.drawn(&far, &READY, &measured) else {
+            panic!("half a metre is too far");
+        };
+        assert!((near.translation.vector - measured.translation.vector - way * 0.1).norm() < 1e-15);
+
+        let mut q = READY;
+        q[0] += 0.4;
+        q[1] -= 0.2;
+        let Some(Target::Joints(near)) = LEAD.drawn(&Target::Joints(q.into()), &READY, &measured)
+        else {
+            panic!("0.4 rad is too far");
+        };
+        assert!((JointVector::from(near) - (READY + (q - READY) * 0.25)).amax() < 1e-15);
+    }
+
+    #[test]
+    fn a_target_within_the_lead_is_left_alone() {
+        let measured = Isometry3::translation(0.3, 0.0, 0.5);
+        let near = Target::Pose(Translation3::new(0.0, 0.049, 0.0) * measured);
+        for target in [near, Target::Joints(READY.into()), Target::Rest] {
+            assert_eq!(LEAD.drawn(&target, &READY, &measured), None);
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! A course that keeps clear of the arm itself and of the regions to keep out of.
+
+use franka_model::{EndEffector, JointVector, Model};
+
+use crate::law::hybrid::Reference;
+use crate::otg::AxisLimits;
+use crate::session::active::Measured;
+use crate::session::chunk::ChunkCourse;
+use crate::session::course::{self, Course};
+use crate::session::guard::clearance::{Ahead, Clearance};
+use crate::session::{Budget, Goal, Target};
+
+/// Share of its velocity that a goal keeps where something is near.
+const SLOW: f64 = 0.3;
+
+/// Cycles without anything near ahead after which a goal goes on at its own pace.
+const CLEAR: u32 = 100;
+
+/// Cycles after a brake after which the way is tried again: it may have been another one.
+const RETRY: u32 = 100;
+
+/// Cycles for which a course that was braked counts as held back.
+const HINDERED: u32 = 250;
+
+/// Moves the reference, as long as the way is clear.
+#[derive(Debug)]
+pub(super) struct Route {
+    pub(super) course: Course,
+    clearance: Clearance,
+    pace: Pace,
+    /// Cycles for which it still counts as hindered.
+    hindered: u32,
+    /// A chunk that a brake has taken the place of.
+    pub(super) left: Option<ChunkCourse>,
+}
+
+#[derive(Debug)]
+enum Pace {
+    /// As the goal asks.
+    Full,
+    /// Slowly; so many cycles without anything near ahead.
+    Slow(u32),
+    /// Braked before something too near, so many cycles ago.
+    Braked(u32),
+}
+
+impl Route {
+    pub(super) fn new(clearance: Clearance) -> Self {
+        Self {
+            course: Course::Rest,
+            clearance,
+            pace: Pace::Full,
+            hindered: 0,
+            left: None,
+        }
+    }
+
+    /// See [`Course::head_for`]. What was near stays near for now.
+    pub(super) fn head_for(
+        &mut self,
+        model: &Model,
+        ee: &EndEffector,
+        reference: &Reference,
+        goal: &Goal,
+    ) {
+        let slow = match self.pace {
+            Pace::Full => false,
+            Pace::Slow(_) => true,
+            Pace::Braked(_) => {
+                self.pace = Pace::Slow(0);
+                true
+            }
+        };
+        if slow && goal.target != Target::Rest {
+            self.course.head_for(model, ee, reference, &slowed(goal));
+        } else {
+            self.course.head_for(model, ee, reference, goal);
+        }
+    }
+
+    /// Heads on for `goal` from a reference that something else has moved, if it is on its way.
+    pub(super) fn begin_again(
+        &mut self,
+        model: &Model,
+        ee: &EndEffector,
+        reference: &Reference,
+        goal: &Goal,
+    ) {
+        if self.course.is_done() {
+            return;
+        }
+        self.lay_aside();
+        self.course = Course::Rest;
+        if matches!(self.pace, Pace::Braked(_)) {
+            self.brake(model, ee, reference, goal);
+        } else {
+            self.head_for(model, ee, reference, goal);
+        }
+    }
+
+    /// A chunk is not freed here: it goes back.
+    fn lay_aside(&mut self) {
+        if matches!(self.course, Course::Chunk(_))
+            && let Course::Chunk(chunk) = core::mem::replace(&mut self.course, Course::Rest)
+        {
+            self.left = Some(chunk);
+        }
+    }
+
+    fn brake(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
+        self.lay_aside();
+        let rest = Goal {
+            target: Target::Rest,
+            ..*goal
+        };
+        self.course.head_for(model, ee, reference, &rest);
+    }
+
+    /// Stays where it is.
+    pub(super) fn rest(&mut self) {
+        self.course = Course::Rest;
+        self.pace = Pace::Full;
+    }
+
+    /// One nominal millisecond on towards `goal`, or away from what is too near.
+    pub(super) fn step(
+        &mut self,
+        model: &Model,
+        ee: &EndEffector,
+        posture: &JointVector,
+        reference: &Reference,
+        arm: &Measured,
+        goal: &Goal,
+    ) -> course::Step {
+        self.hindered = self.hindered.saturating_sub(1);
+        if let Pace::Braked(since) = &mut self.pace {
+            *since += 1;
+            if *since < RETRY || !self.course.is_done() {
+                self.hindered = HINDERED;
+                return self
+                    .course
+                    .step(model, ee, posture, reference, arm, arm.time);
+            }
+            self.head_for(model, ee, reference, goal);
+        }
+        let step = self
+            .course
+            .step(model, ee, posture, reference, arm, arm.time);
+        // A brake is clear: that was made sure of before. Whoever guides the arm by hand sees where it goes.
+        if matches!(goal.target, Target::Rest | Target::Guide(_)) {
+            return step;
+        }
+        let next = &step.reference;
+        let end = || course::end_of_brake(model, next, &goal.budget);
+        match (
+            self.clearance.ahead(&reference.q, next, end),
+            &mut self.pace,
+        ) {
+            (Ahead::TooNear, _) => {
+                self.pace = Pace::Braked(0);
+                self.hindered = HINDERED;
+                self.brake(model, ee, reference, goal);
+                return self
+                    .course
+                    .step(model, ee, posture, reference, arm, arm.time);
+            }
+            (Ahead::Near, pace @ Pace::Full) => {
+                *pace = Pace::Slow(0);
+                self.change_pace(model, ee, next, &slowed(goal));
+            }
+            (Ahead::Near, pace) => *pace = Pace::Slow(0),
+            (Ahead::Clear, Pace::Slow(clear)) => {
+                *clear += 1;
+                if *clear >= CLEAR {
+                    self.pace = Pace::Full;
+                    self.change_pace(model, ee, next, goal);
+                }
+            }
+            (Ahead::Clear, Pace::Full | Pace::Braked(_)) => {}
+        }
+        step
+    }
+
+    /// Goes on at the pace of `goal`. A chunk has a time for each of its points, and keeps it.
+    fn change_pace(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
+        if !matches!(self.course, Course::Chunk(_)) {
+            self.course.head_for(model, ee, reference, goal);
+        }
+    }
+
+    /// Whether something near slows the course down or keeps it from its goal.
+    pub(super) fn is_bound(&self) -> bool {
+        !matches!(self.pace, Pace::Full)
+    }
+
+    /// Whether something too near keeps the course from its goal, or did a moment ago.
+    pub(super) fn is_hindered(&self) -> bool {
+        self.hindered > 0
+    }
+
+    /// Whether the course has come to the end of its way.
+    pub(super) fn is_done(&self) -> bool {
+        self.course.is_done() && !matches!(self.pace, Pace::Braked(_))
+    }
+}
+
+/// The goal at a slower pace. What joints may do on the way to a pose stays.
+fn slowed(goal: &Goal) -> Goal {
+    let slow = |limits: AxisLimits| AxisLimits {
+        velocity: limits.velocity * SLOW,
+        ..limits
+    };
+    let Budget {
+        joints,
+        translation,
+        rotation,
+    } = goal.budget;
+    let joints = match goal.target {
+        Target::Joints(_) => joints.map(slow),
+        _ => joints,
+    };
+    Goal {
+        budget: Budget {
+            joints,
+            translation: slow(translation),
+            rotation: slow(rotation),
+        },
+        ..*goal
+    }
+}
