@@ -10,11 +10,24 @@ from pylibfranka import CartesianPose, CartesianVelocities, JointPositions, Join
 from steps import column_major, equal, matrix
 
 CYCLE = 1e-3
-# How fast a setpoint returns to its plan, 1/s, and how long that may take at the end of a motion, s.
+# How fast a setpoint returns to its plan, 1/s, and how long that takes at the end of a motion, s: longer if most commands
+# come late.
 RETURN = 20.0
-SETTLE = 0.3
+SETTLE, SETTLE_MAX = 0.3, 3.0
+# Below this a setpoint may stop from one cycle to the next, rad/s or m/s: the jerk of 5000 rad/s³ allows 5e-3.
+REST = 1e-3
 # States carry setpoints in single precision; steering from them ends this close to the plan, rad or m.
 SETPOINT_TOLERANCE = 5e-4
+
+
+def arrive(control, command, duration):
+    """Commands along a plan of so many seconds, finishes the motion once its setpoint rests, and returns the states."""
+
+    def is_over(t, state):
+        velocities = [*state.dq_d, *state.O_dP_EE_c]
+        return t >= duration + SETTLE and (max(map(abs, velocities)) < REST or t >= duration + SETTLE_MAX)
+
+    return cycles(control, command, is_over, finish=True)
 
 
 def follow(control, command, duration, finish=True):
@@ -23,14 +36,20 @@ def follow(control, command, duration, finish=True):
     `command` maps the time since the first cycle and the state to the command of a cycle; the last one finishes the
     motion unless `finish` is false.
     """
-    t, states = 0.0, []
-    while t < duration:
+    return cycles(control, command, lambda t, state: t >= duration, finish)
+
+
+def cycles(control, command, is_over, finish):
+    """Commands until `is_over`, which gets what `command` does; the last command is of the cycle that it ends with."""
+    t, states, over = 0.0, [], False
+    while not over:
         state, step = control.readOnce()
         t += step.to_sec()
         equal("mode in a motion", state.robot_mode, RobotMode.Move)
         states.append(state)
         cycle = command(t, state)
-        cycle.motion_finished = finish and t >= duration
+        over = is_over(t, state)
+        cycle.motion_finished = finish and over
         control.writeOnce(cycle)
     return states
 

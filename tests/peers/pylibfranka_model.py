@@ -8,7 +8,7 @@ body Jacobian. What there is has to agree with itself in any state, and with wha
 import numpy
 from pylibfranka import ControllerMode
 
-from plans import SETTLE, follow, joint_positions, line
+from plans import arrive, joint_positions, line
 from steps import Session, check, column_major, matrix, near, raises, script, spread
 
 GRAVITY = 9.81
@@ -165,7 +165,7 @@ def the_moving_arm_moves_as_the_model_says(arm):
 def move(arm, target):
     start = numpy.array(arm.state_at_rest().q_d)
     control = arm.robot.start_joint_position_control(ControllerMode.JointImpedance)
-    return follow(control, joint_positions(line(start, target - start, DURATION)), DURATION + SETTLE)
+    return arrive(control, joint_positions(line(start, target - start, DURATION)), DURATION)
 
 
 if __name__ == "__main__":

@@ -9,10 +9,9 @@ from pylibfranka import ControllerMode
 
 from plans import (
     SETPOINT_TOLERANCE,
-    SETTLE,
+    arrive,
     cartesian_poses,
     cartesian_velocities,
-    follow,
     joint_positions,
     joint_velocities,
     line,
@@ -96,7 +95,7 @@ def by_cartesian_velocities(session, controller, target):
 def to_joints(session, start, commands, controller, target):
     before = numpy.array(session.state_at_rest().q_d)
     plan = line(before, target - before, DURATION)
-    states = follow(start(controller), commands(plan), DURATION + SETTLE)
+    states = arrive(start(controller), commands(plan), DURATION)
     after = session.state_at_rest()
     near("q_d", after.q_d, target, SETPOINT_TOLERANCE)
     near("q", after.q, target, JOINT_LAG)
@@ -114,7 +113,7 @@ def to_pose(session, start, commands, controller, target):
     pose = matrix(before.O_T_EE_d)
     way, rotation = target[:3, 3] - pose[:3, 3], rotation_vector(pose, target)
     plans = (line(pose[:3, 3], way, DURATION), line(numpy.zeros(3), rotation, DURATION))
-    states = follow(start(controller), commands(pose, *plans), DURATION + SETTLE)
+    states = arrive(start(controller), commands(pose, *plans), DURATION)
     after = session.state_at_rest()
     for what, reached in (("O_T_EE_d", matrix(after.O_T_EE_d)), ("O_T_EE", matrix(after.O_T_EE))):
         near(f"position of {what}", reached[:3, 3], target[:3, 3], TIP_LAG)

@@ -22,7 +22,7 @@ from pylibfranka import (
 from plans import (
     CYCLE,
     SETPOINT_TOLERANCE,
-    SETTLE,
+    arrive,
     follow,
     joint_positions,
     joint_velocities,
@@ -246,7 +246,7 @@ def moves_home(session):
     start = numpy.array(session.state_at_rest().q_d)
     duration = max(1.0, 2.0 * spread(start, session.home))
     plan = line(start, session.home - start, duration)
-    follow(joint_motion(session)(), joint_positions(plan), duration + SETTLE)
+    arrive(joint_motion(session)(), joint_positions(plan), duration)
     near("q_d", session.state_at_rest().q_d, session.home, SETPOINT_TOLERANCE)
 
 
