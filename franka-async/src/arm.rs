@@ -8,7 +8,7 @@ use franka_proto::RobotState;
 use franka_rt::driver::{Observer, Record};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, Tuning};
-use franka_rt::session::{Backend, Budget, Free, Goal, GoalId, Grip, Target, Then};
+use franka_rt::session::{Backend, Budget, Chunk, Free, Goal, GoalId, Grip, Target, Then};
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
@@ -190,6 +190,30 @@ impl Arm {
     /// As [`Self::set`].
     pub async fn set_joints(&self, q: [f64; 7]) -> Result<(), MotionError> {
         self.take(Target::Joints(q)).await
+    }
+
+    /// Follows a chunk of points with times, as a policy predicts them, from now on; returns as soon as it is taken. A chunk
+    /// that comes while another one runs goes on from it: see [`Chunk::blend`]. What the observation is old that it was
+    /// made from, [`Chunk::observed_at`] makes up for. The limits are kept whatever the points are. The arm rests at the
+    /// last one unless another chunk or goal comes.
+    ///
+    /// # Errors
+    /// As [`Self::set`]; [`GoalError::Late`](crate::GoalError::Late) if all points have passed, and
+    /// [`GoalError::Chunks`](crate::GoalError::Chunks) if chunks come faster than the control thread takes them up.
+    ///
+    /// # Cancel safety
+    /// As [`Self::set`].
+    pub async fn chunk(&self, chunk: Chunk) -> Result<(), MotionError> {
+        let id = self.session.id;
+        let goal = Box::new(self.goal(chunk.target(), Then::Hold));
+        let chunk = Box::new(chunk);
+        self.ask(|taken| Input::Chunk {
+            id,
+            goal,
+            chunk,
+            taken,
+        })
+        .await
     }
 
     /// Lets a hand guide the arm, from when it rests: along the axes that are `free` there is no spring, and none holds the

@@ -11,7 +11,7 @@ use std::time::Duration;
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order, Program};
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport, Output, Tuning};
-use franka_rt::session::{Goal, GoalError, GoalId, Target};
+use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target};
 use franka_rt::thread::{Handle, Notice, Thread};
 use franka_rt::wake::Wake;
 use tokio::io::Interest;
@@ -48,6 +48,12 @@ pub(crate) enum Input {
     Set {
         id: GoalId,
         goal: Box<Goal>,
+        taken: oneshot::Sender<Result<(), MotionError>>,
+    },
+    Chunk {
+        id: GoalId,
+        goal: Box<Goal>,
+        chunk: Box<Chunk>,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
     Tune {
@@ -387,6 +393,15 @@ impl Bridge {
             Input::Set { id, goal, taken } => {
                 let state = &self.publisher.state();
                 let _ = taken.send(self.lifecycle.submit_within(id, *goal, state, now));
+            }
+            Input::Chunk {
+                id,
+                goal,
+                chunk,
+                taken,
+            } => {
+                let state = &self.publisher.state();
+                let _ = taken.send(self.lifecycle.chunk(id, *goal, *chunk, state, now));
             }
             Input::Tune { id, tuning, taken } => {
                 let state = &self.publisher.state();

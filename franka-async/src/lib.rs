@@ -109,8 +109,8 @@ pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{
-    Backend, Budget, Deadman, Free, GoalError, Grip, Lapse, PoseError, Setpoints, Stale, Target,
-    Tolerance,
+    Backend, Budget, Chunk, ChunkError, Deadman, Free, GoalError, Grip, Lapse, PoseError,
+    Setpoints, Stale, Target, Tolerance,
 };
 pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
 pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};

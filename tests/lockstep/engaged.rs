@@ -9,8 +9,8 @@ use franka_rt::driver::Observer;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
 use franka_rt::session::{
-    Backend, Deadman, Free, Goal, GoalError, GoalId, Guard, Lapse, PoseError, Setpoints, Stale,
-    Target, Then, Watchdog,
+    Backend, Chunk, Deadman, Free, Goal, GoalError, GoalId, Guard, Lapse, PoseError, Setpoints,
+    Stale, Target, Then, Watchdog,
 };
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3};
@@ -427,5 +427,54 @@ fn an_observer_sees_every_cycle_and_its_panic_is_its_own() {
         assert_eq!(seen.load(Ordering::Relaxed), 2001);
         let goal = lockstep.within(engaged, turned(0.1), Then::Stay).unwrap();
         lockstep.until_resolved(goal, 5000).unwrap();
+    });
+}
+
+/// A policy that predicts a sine of joint 1 at 10 Hz, from observations that are 150 ms old: 16 points, 50 ms apart.
+#[test]
+fn chunks_of_a_slow_policy_become_one_smooth_motion() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let begin = lockstep.client.state.message_id;
+        let sine = |time: f64| 0.05 * (1.0 - (2.0 * time).cos());
+        let predicted = |time: f64| {
+            let mut q = <[f64; 7]>::from(READY);
+            q[0] += sine(time);
+            q
+        };
+        let mut worst: f64 = 0.0;
+        for call in 0..60 {
+            let now = lockstep.client.state.message_id;
+            let observed = now.saturating_sub(150).max(begin);
+            let since = (observed - begin) as f64 * 1e-3;
+            let points = (0..16).map(|i| {
+                let offset = Duration::from_millis(50 * i);
+                (offset, predicted(since + offset.as_secs_f64()))
+            });
+            let chunk = Chunk::joints(points).unwrap().observed_at(observed);
+            lockstep.chunk(engaged, chunk).unwrap();
+            for _ in 0..100 {
+                lockstep.tick();
+                let time = (lockstep.client.record.time - begin) as f64 * 1e-3;
+                if call >= 10 {
+                    worst = worst.max((lockstep.robot.q()[0] - READY[0] - sine(time)).abs());
+                }
+            }
+        }
+        println!("off by {worst} rad at most");
+        assert!(worst < 4e-3, "{worst} rad");
+        // A pose takes over from the last chunk.
+        let pose = up(&lockstep, 0.05);
+        let goal = lockstep
+            .within(engaged, Target::Pose(pose), Then::Stay)
+            .unwrap();
+        lockstep.until_resolved(goal, 6000).unwrap();
+        let stale = Chunk::joints([(Duration::ZERO, predicted(0.0))]).unwrap();
+        let late = lockstep.chunk(engaged, stale.observed_at(begin));
+        assert!(
+            matches!(late, Err(MotionError::Goal(GoalError::Late { .. }))),
+            "{late:?}"
+        );
     });
 }

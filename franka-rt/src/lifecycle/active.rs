@@ -11,7 +11,7 @@ use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
 use crate::diagnosis::{Case, Diagnosis};
 use crate::driver::{Ended, Ending, Failure, MotionId, MotionTimes, Order, Program};
 use crate::panic;
-use crate::session::{Backend, Goal, GoalError, GoalId, Settlement, Target, Then};
+use crate::session::{Backend, ChunkWriter, Goal, GoalError, GoalId, Settlement, Target, Then};
 use crate::slot::SlotWriter;
 
 /// A goal, and whether its owner has taken it back.
@@ -62,6 +62,10 @@ pub(super) struct Goals {
     pub(super) engaged: Option<Engaged>,
     /// Who turns setpoints into torques.
     pub(super) backend: Backend,
+    /// The way of chunks to that session.
+    pub(super) chunks: Option<ChunkWriter>,
+    /// The goal that its newest chunk belongs to.
+    pub(super) chunk_goal: GoalId,
     /// Goals that came for that session when it had ended, and nobody knew yet how.
     pub(super) late: Vec<GoalId>,
 }

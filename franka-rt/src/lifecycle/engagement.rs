@@ -9,7 +9,9 @@ use super::{Lifecycle, MotionError, Phase};
 use crate::driver::Observer;
 use crate::law::Gains;
 use crate::session::check::check_silence;
-use crate::session::{Backend, Budget, Goal, GoalId, Grip, Target, Then};
+use crate::session::{
+    Backend, Budget, Chunk, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks,
+};
 
 /// What a session that goes from goal to goal has beside its goals.
 #[derive(Debug, Default)]
@@ -92,6 +94,62 @@ impl Lifecycle {
             cancelled: false,
         };
         self.replace(waiting, MotionError::Superseded, now);
+        Ok(())
+    }
+
+    /// Hands a chunk to the session `engaged`. It takes the place of the chunk before it, as it says itself; any other goal is
+    /// superseded by `goal`, which names the chunks until another goal comes, and says how fast and how stiff. The arm rests
+    /// at the last point.
+    ///
+    /// # Errors
+    /// As [`Self::submit_within`]; [`GoalError::Late`] for a chunk whose points have all passed, [`GoalError::Chunks`] if too
+    /// many are under way.
+    pub fn chunk(
+        &mut self,
+        engaged: GoalId,
+        goal: Goal,
+        chunk: Chunk,
+        state: &RobotState,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        self.check_engaged(engaged)?;
+        chunk.check(&self.model, state)?;
+        if chunk.end_after(state.message_id).is_zero() {
+            let by = chunk.late_by(state.message_id);
+            return Err(GoalError::Late { by }.into());
+        }
+        let goal = Goal {
+            target: Target::Rest,
+            then: Then::Hold,
+            ..goal
+        };
+        goal.check(&self.model, state)?;
+        let ending = self.is_ending();
+        let Some(goals) = self.goals() else {
+            return Err(MotionError::Disengaged);
+        };
+        goals.backend.check(&chunk.target())?;
+        let Some(chunks) = goals.chunks.as_mut().filter(|_| !ending) else {
+            // The session has ended, and says so when it is known how.
+            goals.late.push(goal.id);
+            return Ok(());
+        };
+        while let Some(done) = chunks.collect() {
+            drop(done);
+        }
+        let goes_on = goals.current.goal.id == goals.chunk_goal;
+        let of = if goes_on { goals.chunk_goal } else { goal.id };
+        chunks
+            .send(of, chunk)
+            .map_err(|_| GoalError::from(TooManyChunks))?;
+        goals.chunk_goal = of;
+        if !goes_on {
+            let waiting = Waiting {
+                goal,
+                cancelled: false,
+            };
+            self.replace(waiting, MotionError::Superseded, now);
+        }
         Ok(())
     }
 

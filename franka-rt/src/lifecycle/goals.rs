@@ -9,7 +9,9 @@ use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{Lifecycle, MotionError, MotionReport, Phase};
 use crate::driver::{MotionId, MotionStatistics, Program};
-use crate::session::{Backend, Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then};
+use crate::session::{
+    self, Backend, Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then,
+};
 use crate::slot;
 use crate::together::StartTicket;
 
@@ -296,14 +298,16 @@ impl Lifecycle {
         slot.write(&waiting.goal);
         let mut session =
             TargetSession::new(self.model.clone(), self.version, reader).out_of(self.keep_out);
-        let (mut backend, mut observer) = (Backend::default(), None);
+        let (mut backend, mut observer, mut chunks) = (Backend::default(), None, None);
         let engaged = engagement.is_some().then_some(Engaged {
             id: waiting.goal.id,
             disengaged: false,
         });
         if let Some(engagement) = engagement {
             (backend, observer) = (engagement.backend, engagement.observer);
-            session = session.with_backend(backend).going_on();
+            let (writer, reader) = session::chunk_ring();
+            chunks = Some(writer);
+            session = session.with_backend(backend).with_chunks(reader).going_on();
             if let Some(deadman) = engagement.deadman {
                 session = session.bound_to(deadman);
             }
@@ -317,6 +321,8 @@ impl Lifecycle {
             bad_tool: false,
             engaged,
             backend,
+            chunks,
+            chunk_goal: GoalId::default(),
             late: Vec::new(),
         });
         self.start(work, program, request, (ticket, observer), now);

@@ -7,7 +7,7 @@ use franka_proto::RobotState;
 
 use crate::law::GainError;
 use crate::otg::AxisLimits;
-use crate::session::{Budget, FORCE_CAP, Goal, Target, Watchdog, approach};
+use crate::session::{Budget, CHUNKS_MAX, FORCE_CAP, Goal, Target, Watchdog, approach};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -59,6 +59,15 @@ pub enum GoalError {
         /// The value given.
         got: f64,
     },
+    /// The last point of a chunk has passed: the arm has nothing left to follow of it.
+    #[error("the last point of the chunk passed {} ms ago", .by.as_millis())]
+    Late {
+        /// How long ago, by the robot's clock.
+        by: Duration,
+    },
+    /// Too many chunks came within a few cycles of the control thread.
+    #[error(transparent)]
+    Chunks(#[from] TooManyChunks),
     /// The robot's own controller cannot take the arm there.
     #[error("the robot's controller, which this session commands, {why}")]
     Backend {
@@ -144,6 +153,11 @@ pub(super) fn target(target: &Target, model: &Model, state: &RobotState) -> Resu
         }
     }
 }
+
+/// Chunks came faster than the control thread takes them up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{CHUNKS_MAX} chunks are under way already")]
+pub struct TooManyChunks;
 
 /// Checks the silence that a watchdog or a deadman bears.
 pub(crate) fn check_silence(got: Duration) -> Result<(), GoalError> {

@@ -42,7 +42,7 @@ use crate::together::StartFault;
 
 pub use backend::{Backend, Setpoints};
 pub use budget::Budget;
-pub use check::GoalError;
+pub use check::{GoalError, TooManyChunks};
 pub use chunk::{
     BLEND, CHUNKS_MAX, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, OFFSET_MAX,
     POINTS_MAX, Returned, chunk_ring,

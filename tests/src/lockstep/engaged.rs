@@ -1,7 +1,7 @@
 //! Sessions that go from goal to goal.
 
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{Backend, Goal, GoalId, Target, Then};
+use franka_rt::session::{Backend, Chunk, Goal, GoalId, Target, Then};
 
 use super::Lockstep;
 
@@ -62,6 +62,19 @@ impl Lockstep {
         self.submit_by(goal, |lifecycle, goal, state, now| {
             lifecycle.submit_within(engaged, goal, state, now)
         })
+    }
+
+    /// Hands a chunk to the session.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn chunk(&mut self, engaged: GoalId, chunk: Chunk) -> Result<(), MotionError> {
+        let goal = self.goal(chunk.target(), Then::Hold);
+        let client = &mut self.client;
+        let (state, now) = (&client.state, client.now);
+        let taken = client.lifecycle.chunk(engaged, goal, chunk, state, now);
+        client.carry_out();
+        taken
     }
 
     /// Changes how the session goes about its goal.

@@ -212,6 +212,11 @@ impl Chunk {
         Duration::try_from_secs_f64(self.end() - self.since_origin(now)).unwrap_or(Duration::ZERO)
     }
 
+    /// Time from the last point to the robot's state `now`: zero if that has not passed.
+    pub fn late_by(&self, now: u64) -> Duration {
+        Duration::try_from_secs_f64(self.since_origin(now) - self.end()).unwrap_or(Duration::ZERO)
+    }
+
     /// Where the arm rests after the last point.
     pub fn target(&self) -> Target {
         match &self.points {
