@@ -23,7 +23,41 @@ pub(super) struct Effort {
     fade: Fade,
     /// Reference velocity behind its low-pass, `[rad/s]`.
     feedforward: JointVector,
+    inertia: Inertia,
 }
+
+/// The acceleration that the arm is given the torque for.
+///
+/// At the leash the reference goes where the arm is pushed, and its acceleration is that of the joints' bounds: torques for
+/// it would push back. There it fades, and comes back with the time for which the reference has been free.
+#[derive(Debug)]
+struct Inertia {
+    /// `[rad/s^2]`.
+    acceleration: JointVector,
+    /// Cycles since the leash held the reference.
+    free: u32,
+}
+
+impl Inertia {
+    /// The acceleration in a cycle in which the reference has that of `reference`.
+    fn step(&mut self, reference: &JointVector, leashed: bool) -> JointVector {
+        self.free = if leashed {
+            0
+        } else {
+            self.free.saturating_add(1)
+        };
+        let weight = (f64::from(self.free) / f64::from(RETURN)).min(1.0);
+        let towards = if weight < 1.0 { FADE } else { 1.0 };
+        self.acceleration += (reference * weight - self.acceleration) * towards;
+        self.acceleration
+    }
+}
+
+/// Cycles of a free reference after which its whole acceleration counts again.
+const RETURN: u32 = 300;
+
+/// Share of the way to its new value that the acceleration goes in a cycle meanwhile: it fades in about ten.
+const FADE: f64 = 0.1;
 
 impl Effort {
     /// With the gains of the first goal, for a reference at rest.
@@ -31,6 +65,10 @@ impl Effort {
         Self {
             fade: Fade::at(Tuning::new(&goal.gains, goal.force_cap)),
             feedforward: JointVector::zeros(),
+            inertia: Inertia {
+                acceleration: JointVector::zeros(),
+                free: RETURN,
+            },
         }
     }
 
@@ -68,7 +106,9 @@ impl Effort {
             _ => (tau, false),
         };
         // What the motion itself takes stays outside the clamp and the cap, which are for the interaction.
-        let inertial = dynamics.mass * (reference.ddq * tuning.feedforward);
+        let leashed = bindings.contains(Guard::Leash);
+        let acceleration = self.inertia.step(&reference.ddq, leashed);
+        let inertial = dynamics.mass * (acceleration * tuning.feedforward);
         let tau = tau + dynamics.coriolis + inertial;
         let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &most);
         let (tau, full) = shaping::clamp(&tau, &limits.torque);
@@ -80,5 +120,30 @@ impl Effort {
         bindings.set(Guard::VelocityBarrier, braked);
         bindings.set(Guard::TorqueRate, slowed);
         tau
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_acceleration_of_a_leashed_reference_fades_and_comes_back_without_a_step() {
+        let mut inertia = Inertia {
+            acceleration: JointVector::zeros(),
+            free: RETURN,
+        };
+        let asked = JointVector::repeat(5.0);
+        assert_eq!(inertia.step(&asked, false), asked);
+        let mut last = 5.0;
+        for cycle in 0..1000 {
+            // A leash that comes and goes.
+            let leashed = cycle < 200 && cycle % 7 < 5;
+            let now = inertia.step(&asked, leashed)[0];
+            assert!((now - last).abs() <= 5.0 * FADE + 1e-9, "{cycle}: {now}");
+            assert!(!(100..200).contains(&cycle) || now < 0.1, "{cycle}: {now}");
+            last = now;
+        }
+        assert_eq!(last, 5.0);
     }
 }
