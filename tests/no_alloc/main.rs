@@ -3,6 +3,7 @@
 mod control;
 mod endings;
 mod generator;
+mod guards;
 mod thread;
 
 use std::alloc::{GlobalAlloc, Layout, System};
