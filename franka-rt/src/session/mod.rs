@@ -1,7 +1,8 @@
 //! Target control: goals in, one continuous joint-space reference and the torques that follow it out.
 //!
 //! ```text
-//! goal slot -> course (joint generator | pose generator -> inverse kinematics) -> leash -> law -> shaping -> torques
+//! goal slot -> lead -> course (joint generator | pose generator -> inverse kinematics) -> clearance -> leash -> law
+//!           -> shaping -> torques
 //! ```
 //!
 //! The state of a session is a joint reference `q, dq, ddq`. A course moves it: over seven joints for joint goals and
