@@ -9,6 +9,7 @@ mod control;
 mod crowd;
 mod dropping;
 mod ending;
+mod engaging;
 mod failing;
 mod fer;
 mod garbling;

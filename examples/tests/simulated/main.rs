@@ -35,6 +35,15 @@ fn follow_watch_follows_to_the_end() {
 }
 
 #[test]
+fn engage_goes_from_goal_to_goal_and_back() {
+    for robot in ROBOTS {
+        let said = run("engage", robot);
+        assert!(said.contains("held: no target came"), "{robot}: {said}");
+        assert!(said.contains("back after "), "{robot}: {said}");
+    }
+}
+
+#[test]
 fn pick_holds_the_block_and_puts_it_down() {
     for robot in ROBOTS {
         let said = run("pick", robot);

@@ -297,7 +297,10 @@ impl Active {
     /// Gives the goal up: its updates stay away, or its deadman is silent.
     fn watch(&mut self, model: &Model, alive: bool, now: u64) {
         let given_up = matches!(self.lapse, Some((Stale::Brake, _)));
-        if given_up || matches!(self.stage, Stage::Releasing(_) | Stage::Finished) {
+        // Whoever asks for rest gets it, with or without a deadman.
+        let comes_to_rest = self.goal.target == Target::Rest && self.goal.then != Then::Hold;
+        if given_up || comes_to_rest || matches!(self.stage, Stage::Releasing(_) | Stage::Finished)
+        {
             return;
         }
         let silence = Duration::from_millis(now.saturating_sub(self.heard));

@@ -1,0 +1,101 @@
+//! One session, many goals: poses, joints, a stream, the chunks of a policy, a guiding hand, without a stop in between.
+//!
+//! `cargo run --release --example engage [ADDRESS]`
+
+use std::time::Duration;
+
+use clap::Parser;
+use franka_async::{
+    Chunk, Deadman, Engage, Free, Gains, MotionError, Pose, PoseError, Robot, RobotState, Stale,
+    Tuning,
+};
+use franka_examples::Arguments;
+use tokio::sync::watch;
+
+#[tokio::main]
+async fn main() -> anyhow::Result<()> {
+    let connection = Arguments::parse().connection;
+    let (robot, _sim) = connection.open().await?;
+    connection.ask("moves its hand by up to 10 cm from where it is")?;
+    let outcome = run(&robot).await;
+    if let Err(error) = &outcome
+        && let Some(diagnosis) = error.diagnosis()
+    {
+        eprintln!("{diagnosis}");
+    }
+    robot.shutdown().await;
+    Ok(outcome?)
+}
+
+async fn run(robot: &Robot) -> Result<(), MotionError> {
+    // Whoever holds the token has to show life; here a task does, as a remote front end would with every message.
+    let (token, grip) = Deadman::new(Duration::from_millis(500));
+    let alive = tokio::spawn(async move {
+        let mut clock = tokio::time::interval(Duration::from_millis(50));
+        loop {
+            clock.tick().await;
+            token.keep_alive();
+        }
+    });
+    let arm = robot.engage(Engage::default().deadman(grip)).await?;
+    let start = robot.pose();
+    let ready = robot.state().q;
+
+    arm.move_to(Pose::translation(0.0, 0.0, 0.05) * start)
+        .await?;
+    // The next goal may come in mid-motion, and be of another kind.
+    arm.set(Pose::translation(0.0, 0.1, 0.05) * start).await?;
+    tokio::time::sleep(Duration::from_millis(300)).await;
+    arm.move_joints(ready).await?;
+
+    let soft = [300.0, 300.0, 300.0, 15.0, 15.0, 15.0];
+    let gains = Gains::cartesian().with_cartesian_stiffness(soft);
+    let tuning = Tuning {
+        gains: Some(gains),
+        ..Tuning::default()
+    };
+    arm.tune(tuning).await?;
+
+    // A stream that falls silent is named, and the arm holds.
+    let (sender, targets) = watch::channel(start);
+    let silence = Duration::from_millis(200);
+    let follow = arm.follow(targets).watchdog(silence, Stale::Hold);
+    sender.send_replace(Pose::translation(0.0, -0.05, 0.0) * start);
+    match follow.await {
+        Err(MotionError::Held(why)) => println!("held: {why}"),
+        other => println!("the stream ended: {other:?}"),
+    }
+
+    for _ in 0..10 {
+        let chunk = predict(&robot.state(), &ready);
+        arm.chunk(chunk).await?;
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    arm.hold().await?;
+
+    arm.guide(Free::ALL).await?;
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    let report = arm.move_joints(ready).await?;
+    let error = PoseError::between(&robot.pose(), &start);
+    println!(
+        "back after {:.2} s, {:.3} mm off",
+        report.duration.as_secs_f64(),
+        error.translation * 1e3
+    );
+    arm.disengage().await?;
+    alive.abort();
+    Ok(())
+}
+
+/// What a policy would predict from an observation: here, a second of motion of the first joint towards the others' place.
+fn predict(observation: &RobotState, ready: &[f64; 7]) -> Chunk {
+    let points = (1..=10_u32).map(|step| {
+        let share = f64::from(step) / 10.0;
+        let q = std::array::from_fn(|joint| {
+            observation.q_d[joint] + share * (ready[joint] - observation.q_d[joint])
+        });
+        (Duration::from_millis(100) * step, q)
+    });
+    let chunk = Chunk::joints(points).expect("the points are apart and finite");
+    chunk.observed_at(observation.message_id)
+}

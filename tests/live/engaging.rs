@@ -1,0 +1,111 @@
+//! Engaged sessions over sockets: what a program sees of them.
+
+use std::time::Duration;
+
+use franka_async::{
+    Chunk, Deadman, Engage, Free, GoalError, Lapse, MotionError, Pose, PoseError, Stale, Tuning,
+};
+use tokio::sync::watch;
+
+use crate::{alone, simulated};
+
+#[tokio::test(flavor = "multi_thread")]
+async fn goals_of_every_kind_are_reached_within_one_session() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let start = robot.pose();
+    let ready = robot.state().q;
+    let arm = robot.engage(Engage::default().speed(1.5)).await.unwrap();
+    let motion = robot.state().motion_generator_mode;
+
+    let up = Pose::translation(0.0, 0.0, 0.05) * start;
+    arm.move_to(up).await.unwrap();
+    assert!(PoseError::between(&robot.pose(), &up).translation < 1e-3);
+    arm.set(start).await.unwrap();
+    tokio::time::sleep(Duration::from_millis(100)).await;
+    arm.move_joints(ready).await.unwrap();
+
+    let (sender, targets) = watch::channel(up);
+    drop(sender);
+    arm.follow(targets).await.unwrap();
+    assert!(PoseError::between(&robot.pose(), &up).translation < 1e-3);
+    let steps = tokio_stream::iter([up, start]);
+    arm.follow_stream(steps).await.unwrap();
+    assert!(PoseError::between(&robot.pose(), &start).translation < 1e-3);
+
+    arm.guide(Free::ALL).await.unwrap();
+    let mut q = ready;
+    q[0] += 0.05;
+    let chunk = Chunk::joints([(Duration::from_millis(300), q)]).unwrap();
+    let observed = robot.state().message_id;
+    arm.chunk(chunk.observed_at(observed)).await.unwrap();
+    tokio::time::sleep(Duration::from_millis(800)).await;
+    assert!((robot.state().q[0] - q[0]).abs() < 5e-3);
+    arm.hold().await.unwrap();
+
+    assert_eq!(robot.move_to(start).await, Err(MotionError::Busy));
+    assert_eq!(robot.state().motion_generator_mode, motion, "one motion");
+    let gains = arm.tune(Tuning {
+        budget: Some(franka_async::Budget::of(robot.model().joint_limits()).scaled(100.0)),
+        ..Tuning::default()
+    });
+    let refused = gains.await;
+    assert!(matches!(
+        refused,
+        Err(MotionError::Goal(GoalError::Budget { .. }))
+    ));
+    let other = arm.clone();
+    arm.disengage().await.unwrap();
+    assert_eq!(other.set(start).await, Err(MotionError::Disengaged));
+    robot.move_to(start).await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_session_ends_with_its_last_handle_or_by_a_stop() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    let ended = arm.ended();
+    let far = Pose::translation(0.0, 0.1, 0.1) * robot.pose();
+    let moving = tokio::spawn(arm.move_to(far).into_future());
+    drop(arm);
+    tokio::time::sleep(Duration::from_millis(300)).await;
+    assert!(!moving.is_finished(), "a motion is a handle too");
+    moving.abort();
+    ended.await.unwrap();
+
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    let moving = tokio::spawn(arm.move_to(far).into_future());
+    tokio::time::sleep(Duration::from_millis(300)).await;
+    robot.stop().await.unwrap();
+    assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
+    assert_eq!(arm.ended().await, Err(MotionError::Stopped));
+    assert_eq!(arm.set(far).await, Err(MotionError::Stopped));
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn silence_of_a_stream_and_of_a_deadman_hold_the_arm_under_their_names() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let start = robot.pose();
+    let far = Pose::translation(0.0, 0.1, 0.1) * start;
+    let (token, grip) = Deadman::new(Duration::from_millis(1500));
+    let arm = robot.engage(Engage::default().deadman(grip)).await.unwrap();
+    let (_sender, targets) = watch::channel(far);
+    let silent = arm
+        .follow(targets)
+        .watchdog(Duration::from_millis(100), Stale::Brake);
+    let outcome = silent.await;
+    let braked = matches!(outcome, Err(MotionError::Braked(Lapse::Silent { .. })));
+    assert!(braked, "{outcome:?}");
+    token.keep_alive();
+    let moving = tokio::spawn(arm.move_to(far).into_future());
+    drop(token);
+    let held = Err(MotionError::Held(Lapse::Deadman));
+    assert_eq!(moving.await.unwrap(), held);
+    assert_eq!(arm.move_to(start).await, held);
+    arm.disengage().await.unwrap();
+    robot.shutdown().await;
+}
