@@ -9,6 +9,10 @@ pub(super) const EXACT: f64 = 1e-9;
 /// limits from 1e-3 to 1e6.
 const ROUNDING: f64 = 1e-12;
 
+/// Relative error of a jerk between two states: an instant at which a plan changes course is rounded, and the jerk counts it
+/// in full. Seen in ten million plans: 3.6e-10.
+const JERK: f64 = 1e-9;
+
 /// Checks the step of one axis from one state to another `dt` later.
 ///
 /// `size` is the magnitude of the positions, whose rounding is no motion.
@@ -37,7 +41,7 @@ pub(super) fn check_step<const N: usize>(
         );
         let rounding = 4.0 * f64::EPSILON * l.acceleration / dt;
         assert!(
-            jerk <= l.jerk * (1.0 + EXACT) + rounding,
+            jerk <= l.jerk * (1.0 + JERK) + rounding,
             "axis {i}: jerk {jerk} of {}",
             l.jerk
         );
