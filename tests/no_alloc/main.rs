@@ -2,6 +2,7 @@
 
 mod control;
 mod endings;
+mod engaged;
 mod generator;
 mod guards;
 mod thread;

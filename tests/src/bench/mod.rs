@@ -15,6 +15,7 @@
 //! | [`codec`] | a state read, a command written |
 //! | [`collision`] | distances of the arm to itself, with gradients |
 //! | [`cycle`] | target control, datagram in to datagram out |
+//! | [`guarded`] | the same with every guard on, for each kind of goal |
 //! | [`inverse`] | all postures of a pose, joint velocities in a box |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
 //! | [`otg`] | a new target for axes in motion |
@@ -27,6 +28,7 @@ use std::time::Instant;
 pub mod codec;
 pub mod collision;
 pub mod cycle;
+pub mod guarded;
 pub mod inverse;
 pub mod model;
 pub mod otg;
@@ -89,6 +91,7 @@ pub fn all() -> Vec<Benchmark> {
         codec::all(),
         collision::all(),
         cycle::all(),
+        guarded::all(),
         inverse::all(),
         model::all(),
         otg::all(),
@@ -100,10 +103,11 @@ pub fn all() -> Vec<Benchmark> {
     .collect()
 }
 
-/// The calls whose instructions can be counted too: those of the model.
+/// The calls whose instructions can be counted too: those of the model, and the guarded cycle.
 pub fn subjects() -> Vec<Subject> {
     let mut subjects = model::subjects();
     subjects.extend(inverse::subjects());
+    subjects.extend(guarded::subjects());
     subjects
 }
 

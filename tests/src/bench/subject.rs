@@ -8,6 +8,8 @@ use super::{Benchmark, Inputs, Statistic, timed};
 pub struct Subject {
     /// As that of [`Benchmark`].
     pub key: &'static str,
+    /// The function, a pattern of callgrind's, whose instructions count; without one all do.
+    pub within: Option<&'static str>,
     /// Makes one call.
     pub call: Box<dyn FnMut()>,
 }
@@ -21,6 +23,7 @@ impl Subject {
     ) -> Self {
         Self {
             key,
+            within: None,
             call: Box::new(move || {
                 black_box(function(black_box(inputs.next())));
             }),

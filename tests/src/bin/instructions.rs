@@ -1,5 +1,5 @@
-//! Counts instructions: `instructions` prints, for every call of the model that the benchmarks time, how many machine
-//! instructions it takes. Time on a shared machine is noisy; this is not.
+//! Counts instructions: `instructions` prints, for every call of the model that the benchmarks time and for the guarded
+//! cycle, how many machine instructions it takes. Time on a shared machine is noisy; this is not.
 //!
 //! Needs `valgrind`. Every call is made a few and many times under its callgrind tool; the difference is that of the
 //! calls, without what starting and preparing the inputs takes.
@@ -39,8 +39,8 @@ fn table() -> ExitCode {
         return ExitCode::FAILURE;
     }
     println!("{:<28} {:>12}", "", "instructions");
-    for Subject { key, .. } in subjects() {
-        match (count(key, FEW), count(key, MANY)) {
+    for Subject { key, within, .. } in subjects() {
+        match (count(key, within, FEW), count(key, within, MANY)) {
             (Some(few), Some(many)) => {
                 let name = key.trim_end_matches("_ns");
                 println!("{name:<28} {:>12}", (many - few) / (MANY - FEW));
@@ -54,10 +54,12 @@ fn table() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Instructions of a process that makes `calls` calls.
-fn count(key: &str, calls: u64) -> Option<u64> {
+/// Instructions of a process that makes `calls` calls; those in the function `within` alone if there is one.
+fn count(key: &str, within: Option<&str>, calls: u64) -> Option<u64> {
+    let within = within.map(|within| format!("--toggle-collect={within}"));
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .args(within)
         .arg(env::current_exe().ok()?)
         .args([key, &calls.to_string()])
         .output()

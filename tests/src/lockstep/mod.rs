@@ -16,6 +16,7 @@
 mod client;
 mod engaged;
 mod guard;
+mod guarded;
 mod link;
 mod wander;
 
@@ -33,6 +34,7 @@ use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
 
 pub use client::Client;
+pub use guarded::{Errand, Guarded};
 pub use link::Link;
 pub use wander::Wander;
 

@@ -1,0 +1,209 @@
+//! Sessions that go from goal to goal: every kind of goal under every guard, and what their owners do to them.
+//!
+//! That an observer panics is not among it: what a panic takes, the machinery of panics allocates before anybody catches it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use franka_model::{READY, Wrench};
+use franka_proto::RobotMode;
+use franka_rt::driver::Observer;
+use franka_rt::law::{Gains, Law};
+use franka_rt::lifecycle::{Engagement, Tuning};
+use franka_rt::session::{
+    Backend, Deadman, Fate, Free, Goal, GoalId, Guard, Setpoints, Stale, Target, Then, Watchdog,
+};
+use franka_tests::lockstep::{Errand, Guarded, Lockstep, Part};
+use nalgebra::Translation3;
+
+use crate::calls_during;
+
+/// Milliseconds of each kind of goal.
+const CYCLES: u64 = 30_000;
+
+#[test]
+fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
+    for (errand, seed) in Errand::ALL
+        .map(|errand| (errand, 0))
+        .into_iter()
+        .chain([(Errand::RobotController, 1)])
+    {
+        let mut arm = Guarded::new(errand, seed);
+        let (mut cycles, mut calls) = (0, 0);
+        while cycles < CYCLES {
+            arm.tick_around(|part, work| {
+                calls += calls_during(work);
+                cycles += u64::from(part == Part::Answer);
+            });
+        }
+        let bound = &arm.bound;
+        println!("{errand:?}: {bound:?}");
+        for guard in [Guard::Watchdog, Guard::Deadman, Guard::Clearance] {
+            let watched = errand != Errand::Guide || guard != Guard::Clearance;
+            assert!(!watched || bound.contains(&guard), "{errand:?}: {bound:?}");
+        }
+        if matches!(errand, Errand::Poses | Errand::Joints) {
+            for guard in [Guard::ForceCap, Guard::Lead, Guard::Leash] {
+                assert!(bound.contains(&guard), "{errand:?}: {bound:?}");
+            }
+        }
+        if errand == Errand::Chunks {
+            for fate in [Fate::Replaced, Fate::Ended, Fate::Stale, Fate::Superseded] {
+                assert!(arm.fates.contains(&fate), "no chunk is {fate:?}");
+            }
+        }
+        assert_eq!(calls, 0, "{errand:?}, seed {seed}");
+    }
+}
+
+/// A session, and the calls of the allocator in all that the thread does in it.
+struct Engaged {
+    lockstep: Lockstep,
+    id: GoalId,
+    calls: u64,
+    /// Cycles that the observer has seen.
+    seen: Arc<AtomicU64>,
+    token: Option<Deadman>,
+}
+
+impl Engaged {
+    fn with(backend: Backend) -> Self {
+        let seen = Arc::new(AtomicU64::new(0));
+        let count = seen.clone();
+        let observer = move |_: &_, _: &_| {
+            count.fetch_add(1, Ordering::Relaxed);
+        };
+        let (token, grip) = Deadman::new(Duration::from_millis(100));
+        let mut lockstep = Lockstep::ready();
+        let id = lockstep.engage_with(Engagement {
+            deadman: Some(grip),
+            backend,
+            observer: Some(Observer::new(observer)),
+        });
+        Self {
+            lockstep,
+            id,
+            calls: 0,
+            seen,
+            token: Some(token),
+        }
+    }
+
+    /// So many milliseconds in which the deadman shows life.
+    fn run(&mut self, milliseconds: u64) {
+        for _ in 0..milliseconds {
+            if let Some(token) = &self.token {
+                token.keep_alive();
+            }
+            self.tick();
+        }
+    }
+
+    fn tick(&mut self) {
+        let Self {
+            lockstep, calls, ..
+        } = self;
+        lockstep.tick_around(|_, work| *calls += calls_during(work));
+    }
+
+    fn go(&mut self, target: Target, then: Then) -> GoalId {
+        let goal = self.lockstep.within(self.id, target, then);
+        goal.expect("the session takes it")
+    }
+
+    fn binds(&self, guard: Guard) -> bool {
+        self.lockstep.client.record.bindings.contains(guard)
+    }
+}
+
+fn turned(by: f64) -> Target {
+    let mut q = READY;
+    q[0] += by;
+    Target::Joints(q.into())
+}
+
+#[test]
+fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
+    for backend in [
+        Backend::Torques,
+        Backend::RobotController(Setpoints::Joints),
+        Backend::RobotController(Setpoints::Poses),
+    ] {
+        let mut engaged = Engaged::with(backend);
+        let home = engaged.lockstep.true_pose();
+        let up = Target::Pose(Translation3::new(0.0, 0.0, 0.05) * home);
+        let poses = backend == Backend::RobotController(Setpoints::Poses);
+        let there = if poses { up } else { turned(0.2) };
+
+        // Superseded in mid-motion, then reached.
+        for target in [up, there, Target::Pose(home)] {
+            engaged.go(target, Then::Hold);
+            engaged.run(300);
+        }
+        let goal = engaged.go(there, Then::Stay);
+        engaged.run(4000);
+        assert!(matches!(engaged.lockstep.client.outcome(goal), Some(Ok(_))));
+
+        if backend == Backend::Torques {
+            engaged.go(Target::Guide(Free::ALL), Then::Hold);
+            engaged.run(400);
+            let push = Wrench::new(4.0, 4.0, 0.0, 0.0, 0.0, 0.0);
+            engaged.lockstep.robot.push_end_effector(push, 300);
+            engaged.run(500);
+        }
+        // Tuned on its way.
+        engaged.go(up, Then::Hold);
+        engaged.run(100);
+        let tuning = Tuning {
+            gains: Some(Gains {
+                law: Law::OperationalSpace,
+                ..Gains::cartesian()
+            }),
+            budget: None,
+        };
+        let tuned = engaged.lockstep.tune(engaged.id, tuning);
+        tuned.expect("gains within their bounds");
+        engaged.run(500);
+
+        // A stream that falls silent, both ways.
+        for stale in [Stale::Hold, Stale::Brake] {
+            let goal = Goal {
+                watchdog: Some(Watchdog {
+                    silence: Duration::from_millis(100),
+                    stale,
+                    then: Then::Stay,
+                }),
+                ..engaged.lockstep.goal(Target::Pose(home), Then::Hold)
+            };
+            let id = engaged.id;
+            let goal = engaged.lockstep.submit_within(id, goal);
+            goal.expect("the session takes it");
+            engaged.run(400);
+            assert!(engaged.binds(Guard::Watchdog));
+        }
+
+        // A deadman that falls silent, lives again, and is gone.
+        engaged.go(up, Then::Hold);
+        for _ in 0..300 {
+            engaged.tick();
+        }
+        assert!(engaged.binds(Guard::Deadman));
+        engaged.go(up, Then::Hold);
+        engaged.run(200);
+        assert!(!engaged.binds(Guard::Deadman));
+        engaged.token = None;
+        engaged.run(400);
+        assert!(engaged.binds(Guard::Deadman));
+
+        let seen = engaged.seen.load(Ordering::Relaxed);
+        engaged.run(100);
+        assert_eq!(engaged.seen.load(Ordering::Relaxed) - seen, 100);
+        engaged.lockstep.disengage(engaged.id);
+        engaged.run(1500);
+        let outcome = engaged.lockstep.client.outcome(engaged.id);
+        assert!(matches!(outcome, Some(Ok(_))), "{outcome:?}");
+        assert_eq!(engaged.lockstep.client.state.robot_mode, RobotMode::Idle);
+        assert_eq!(engaged.calls, 0, "{backend:?}");
+    }
+}

@@ -1,0 +1,211 @@
+//! The cycle of target control with every guard on, for every kind of goal.
+//!
+//! A session is simulated in episodes from seeds, and an episode goes the same way each time: its cycle number n always has
+//! the same work before it. So a cycle can be measured again, in the state that its session had.
+
+use std::cell::RefCell;
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::time::Instant;
+
+use super::{Benchmark, Statistic, Subject};
+use crate::lockstep::{Errand, Guarded, Part};
+
+/// All kinds of goals mixed, each kind, and the longest cycle, as it came and measured again.
+pub fn all() -> Vec<Benchmark> {
+    let survey = Rc::new(RefCell::new(Survey::default()));
+    let again = survey.clone();
+    let mut benchmarks = vec![
+        sampled(
+            "rt.cycle_guarded_ns",
+            &Errand::ALL,
+            &[Statistic::P50, Statistic::P99],
+        ),
+        Benchmark {
+            key: "rt.cycle_guarded_ns",
+            statistics: &[Statistic::Max],
+            round: Box::new(move || again.borrow_mut().measure_again()),
+        },
+        Benchmark {
+            key: "rt.cycle_guarded_once_ns",
+            statistics: &[Statistic::Max],
+            round: Box::new(move || vec![survey.borrow_mut().longest()]),
+        },
+    ];
+    let kinds: [(_, &'static [Errand]); 5] = [
+        ("rt.cycle_poses_ns", &[Errand::Poses]),
+        ("rt.cycle_joints_ns", &[Errand::Joints]),
+        ("rt.cycle_chunks_ns", &[Errand::Chunks]),
+        ("rt.cycle_guide_ns", &[Errand::Guide]),
+        ("rt.cycle_setpoints_ns", &[Errand::RobotController]),
+    ];
+    benchmarks.extend(
+        kinds
+            .into_iter()
+            .map(|(key, errands)| sampled(key, errands, &[Statistic::P50])),
+    );
+    benchmarks
+}
+
+/// The mix, for counting instructions: a millisecond of one kind of goal after the other, of which only the cycle counts.
+pub fn subjects() -> Vec<Subject> {
+    let mut arms: Option<Vec<Guarded>> = None;
+    let mut turn = 0;
+    let call = move || {
+        let begin = || Errand::ALL.map(|errand| Guarded::new(errand, SEED)).into();
+        let arms = arms.get_or_insert_with(begin);
+        let arm = turn % arms.len();
+        turn += 1;
+        arms[arm].tick_around(|_, work| work());
+    };
+    vec![Subject {
+        key: "rt.cycle_guarded_ns",
+        within: Some("*lockstep*Client*answer*"),
+        call: Box::new(call),
+    }]
+}
+
+/// Each round has an episode of its own of each of these kinds.
+fn sampled(
+    key: &'static str,
+    errands: &'static [Errand],
+    statistics: &'static [Statistic],
+) -> Benchmark {
+    let mut seed = SEED;
+    Benchmark {
+        key,
+        statistics,
+        round: Box::new(move || {
+            seed += 1;
+            let mut samples = Vec::with_capacity(errands.len() * EPISODE);
+            for &errand in errands {
+                run(Episode { errand, seed }, EPISODE, |_, took| {
+                    samples.push(took);
+                });
+            }
+            samples
+        }),
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Episode {
+    errand: Errand,
+    seed: u64,
+}
+
+/// Runs so many cycles of an episode, and tells of each which it was and the nanoseconds that it took.
+fn run(episode: Episode, cycles: usize, mut each: impl FnMut(usize, u64)) {
+    let mut arm = Guarded::new(episode.errand, episode.seed);
+    let mut cycle = 0;
+    while cycle < cycles {
+        arm.tick_around(|part, work| {
+            let start = Instant::now();
+            work();
+            if part == Part::Answer {
+                let took = start.elapsed().as_nanos();
+                each(cycle, u64::try_from(took).unwrap_or(u64::MAX));
+                cycle += 1;
+            }
+        });
+    }
+}
+
+/// The longest of 10⁶ cycles.
+#[derive(Debug, Default)]
+struct Survey {
+    /// As they came the first time.
+    longest: u64,
+    /// By episode and number in it, the shortest time that each of the suspects has taken so far.
+    suspects: BTreeMap<Episode, BTreeMap<usize, u64>>,
+}
+
+impl Survey {
+    /// The longest time of a cycle that is measured once.
+    fn longest(&mut self) -> u64 {
+        self.survey();
+        self.longest
+    }
+
+    /// Runs the episodes of the suspects again, and gives the shortest time of each.
+    fn measure_again(&mut self) -> Vec<u64> {
+        self.survey();
+        for (episode, suspects) in &mut self.suspects {
+            let last = suspects.keys().next_back().copied().unwrap_or(0);
+            run(*episode, last + 1, |cycle, took| {
+                if let Some(shortest) = suspects.get_mut(&cycle) {
+                    *shortest = took.min(*shortest);
+                }
+            });
+        }
+        let all = self.suspects.values().flat_map(BTreeMap::values);
+        all.copied().collect()
+    }
+
+    /// Goes through all cycles, in each episode more than once, so that few are suspected only because something else ran.
+    fn survey(&mut self) {
+        if !self.suspects.is_empty() {
+            return;
+        }
+        let mut suspects: Vec<(u64, Episode, usize)> = Vec::new();
+        let mut shortest = vec![0; EPISODE];
+        for seed in 0..SEEDS {
+            for errand in Errand::ALL {
+                let episode = Episode { errand, seed };
+                run(episode, EPISODE, |cycle, took| {
+                    self.longest = self.longest.max(took);
+                    shortest[cycle] = took;
+                });
+                for _ in 1..SWEEPS {
+                    run(episode, EPISODE, |cycle, took| {
+                        shortest[cycle] = took.min(shortest[cycle]);
+                    });
+                }
+                let all = shortest.iter().enumerate();
+                suspects.extend(all.map(|(cycle, &took)| (took, episode, cycle)));
+                suspects.sort_by_key(|&(took, ..)| Reverse(took));
+                suspects.truncate(SUSPECTS);
+            }
+        }
+        for (took, episode, cycle) in suspects {
+            self.suspects
+                .entry(episode)
+                .or_default()
+                .insert(cycle, took);
+        }
+    }
+}
+
+const SEED: u64 = 100;
+
+/// Cycles of an episode: ten seconds. Tests run a round of each benchmark, and not for its figures.
+const EPISODE: usize = if cfg!(debug_assertions) { 200 } else { 10_000 };
+
+/// Episodes of each kind of goal, which come to 10⁶ cycles.
+const SEEDS: u64 = if cfg!(debug_assertions) { 1 } else { 20 };
+
+const SWEEPS: usize = 3;
+const SUSPECTS: usize = 20;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_episode_goes_the_same_way_each_time() {
+        for errand in Errand::ALL {
+            let commanded = || {
+                let mut arm = Guarded::new(errand, 3);
+                (0..1000)
+                    .map(|_| {
+                        arm.tick_around(|_, work| work());
+                        let record = &arm.lockstep.client.record;
+                        (record.tau_c, record.q_ref, record.bindings)
+                    })
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(commanded(), commanded(), "{errand:?}");
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! Target control that never ends with every guard on, whatever it is given to do.
+//!
+//! Updates that stay away, a deadman that falls silent, pushes, regions in the way and targets far ahead are part of it: from
+//! time to time each of the guards binds.
+
+use std::collections::HashSet;
+use std::time::Duration;
+
+use franka_model::collision::Obstacle;
+use franka_model::limits::JointLimits;
+use franka_model::{JointVector, Model, READY, Wrench};
+use franka_proto::{
+    CollisionBehavior, MoveControllerMode, MoveGeneratorMode, MoveRequest, Request,
+};
+use franka_rt::driver::{Activity, Program};
+use franka_rt::law::{Gains, Law};
+use franka_rt::session::{
+    Backend, Chunk, ChunkWriter, Deadman, Fate, Free, Goal, GoalId, Guard, KeepOut, Lead,
+    Setpoints, Stale, Target, TargetSession, Then, Watchdog, chunk_ring,
+};
+use franka_rt::slot::{SlotWriter, slot};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+use super::{Lockstep, Part};
+
+/// What a session is given to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Errand {
+    /// Poses, as steps and as streams.
+    Poses,
+    /// Joint positions, likewise.
+    Joints,
+    /// Chunks of joints and of poses, most of them replaced before their end.
+    Chunks,
+    /// A hand to guide it, and a pose now and then.
+    Guide,
+    /// Joint positions and poses for the robot's own controller; under an odd seed poses alone, as Cartesian setpoints.
+    RobotController,
+}
+
+impl Errand {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Poses,
+        Self::Joints,
+        Self::Chunks,
+        Self::Guide,
+        Self::RobotController,
+    ];
+
+    fn backend(self, seed: u64) -> Backend {
+        match self {
+            Self::RobotController if seed % 2 == 1 => Backend::RobotController(Setpoints::Poses),
+            Self::RobotController => Backend::RobotController(Setpoints::Joints),
+            _ => Backend::Torques,
+        }
+    }
+}
+
+/// A session with every guard on, and a world that keeps it busy, from a seed.
+pub struct Guarded {
+    /// The system that it runs in.
+    pub lockstep: Lockstep,
+    /// The guards that have bound so far.
+    pub bound: HashSet<Guard>,
+    /// What became of the chunks so far.
+    pub fates: Vec<Fate>,
+    errand: Errand,
+    backend: Backend,
+    random: SmallRng,
+    home: Isometry3<f64>,
+    goals: SlotWriter<Goal>,
+    chunks: ChunkWriter,
+    deadman: Deadman,
+    goal: Goal,
+    turns: usize,
+    /// When something new comes, and when the deadman shows life again, `[ms]`.
+    next: u64,
+    beat: u64,
+}
+
+impl Guarded {
+    /// An arm in the ready pose, on its way.
+    ///
+    /// # Panics
+    /// If the motion does not begin.
+    pub fn new(errand: Errand, seed: u64) -> Self {
+        let mut lockstep = Lockstep::ready();
+        let most = CollisionBehavior::uniform([1000.0; 7], [1000.0; 7], [1000.0; 6], [1000.0; 6]);
+        lockstep.request(&Request::SetCollisionBehavior(most));
+        lockstep.run(5);
+
+        let version = lockstep.client.version();
+        let home = lockstep.true_pose();
+        let backend = errand.backend(seed);
+        let (mut goals, reader) = slot();
+        let (chunks, taken) = chunk_ring();
+        let (deadman, grip) = Deadman::new(SILENCE);
+        let goal = Goal::new(GoalId(1), Target::Rest, Then::Hold, limits());
+        goals.write(&goal);
+        let session = TargetSession::new(Model::fr3().clone().into(), version, reader)
+            .going_on()
+            .out_of(regions(&home))
+            .with_backend(backend)
+            .bound_to(grip)
+            .with_chunks(taken);
+        let (controller, generator) = match backend {
+            Backend::Torques => (
+                MoveControllerMode::ExternalController,
+                version.torque_generator(),
+            ),
+            Backend::RobotController(Setpoints::Joints) => (
+                MoveControllerMode::JointImpedance,
+                MoveGeneratorMode::JointPosition,
+            ),
+            Backend::RobotController(Setpoints::Poses) => (
+                MoveControllerMode::CartesianImpedance,
+                MoveGeneratorMode::CartesianPosition,
+            ),
+        };
+        let request = MoveRequest::new(controller, generator);
+        lockstep
+            .control(Program::Target(Box::new(session)), request)
+            .expect("nothing else moves");
+        lockstep.run(20);
+        let mut this = Self {
+            lockstep,
+            bound: HashSet::new(),
+            fates: Vec::new(),
+            errand,
+            backend,
+            random: SmallRng::seed_from_u64(seed),
+            home,
+            goals,
+            chunks,
+            deadman,
+            goal,
+            turns: 0,
+            next: 0,
+            beat: 0,
+        };
+        this.assert_running();
+        this.submit(Target::Pose(home));
+        this
+    }
+
+    /// One millisecond; see [`Lockstep::tick_around`].
+    ///
+    /// # Panics
+    /// If the motion has ended.
+    pub fn tick_around(&mut self, around: impl FnMut(Part, &mut dyn FnMut())) {
+        let now = self.lockstep.now();
+        if now >= self.beat {
+            self.deadman.keep_alive();
+            let most = if self.random.random_bool(0.01) { 8 } else { 1 };
+            self.beat = now + most * 20;
+        }
+        if now >= self.next {
+            let pause = self.random.random_bool(0.08);
+            let wait = if pause { 350..700 } else { 5..250 };
+            self.next = now + self.random.random_range(wait);
+            self.disturb();
+            self.change_course();
+        }
+        self.lockstep.tick_around(around);
+        while let Some(returned) = self.chunks.collect() {
+            self.fates.push(returned.fate);
+        }
+        self.assert_running();
+        self.bound
+            .extend(self.lockstep.client.record.bindings.iter());
+    }
+
+    fn assert_running(&self) {
+        let Self {
+            lockstep, errand, ..
+        } = self;
+        let activity = lockstep.client.record.activity;
+        assert_eq!(
+            activity,
+            Activity::Running,
+            "{errand:?} at {} ms",
+            lockstep.now()
+        );
+    }
+
+    /// Pushes the arm, or does not.
+    fn disturb(&mut self) {
+        let (often, most) = match self.errand {
+            Errand::Guide => (0.6, 12.0),
+            _ => (0.1, 25.0),
+        };
+        if self.random.random_bool(often) {
+            let force = self.vector(most);
+            let push = Wrench::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
+            let lasting = self.random.random_range(20..200);
+            self.lockstep.robot.push_end_effector(push, lasting);
+        }
+    }
+
+    fn change_course(&mut self) {
+        match self.errand {
+            Errand::Poses => {
+                let pose = self.pose();
+                self.go_to(Target::Pose(pose));
+            }
+            Errand::Joints => {
+                let q = self.joints();
+                self.go_to(Target::Joints(q));
+            }
+            Errand::Chunks => self.send_chunk(),
+            Errand::Guide if self.random.random_bool(0.2) => self.submit(Target::Pose(self.home)),
+            Errand::Guide => {
+                let free = Free {
+                    axes: core::array::from_fn(|_| self.random.random_bool(0.7)),
+                    elbow: self.random.random_bool(0.3),
+                };
+                self.submit(Target::Guide(free));
+            }
+            Errand::RobotController => {
+                let poses = self.backend == Backend::RobotController(Setpoints::Poses);
+                let target = if poses || self.random.random_bool(0.5) {
+                    Target::Pose(self.pose())
+                } else {
+                    Target::Joints(self.joints())
+                };
+                self.go_to(target);
+            }
+        }
+    }
+
+    /// By a goal of its own, or as the newest target of the one before.
+    fn go_to(&mut self, target: Target) {
+        let alike = core::mem::discriminant(&target) == core::mem::discriminant(&self.goal.target);
+        if alike && self.random.random_bool(0.5) {
+            self.goal.target = target;
+            self.goals.write(&self.goal);
+        } else {
+            self.submit(target);
+        }
+    }
+
+    fn submit(&mut self, target: Target) {
+        let id = GoalId(self.goal.id.0 + 1);
+        self.turns += 1;
+        let stale = if self.turns.is_multiple_of(2) {
+            Stale::Hold
+        } else {
+            Stale::Brake
+        };
+        let goal = Goal {
+            force_cap: Some(FORCE_CAP),
+            lead: Some(LEAD),
+            watchdog: Some(Watchdog {
+                silence: SILENT_STREAM,
+                stale,
+                then: Then::Stay,
+            }),
+            ..Goal::new(id, target, Then::Hold, limits())
+        };
+        self.goal = match (self.turns % 3, target) {
+            (0, _) | (_, Target::Guide(_)) => goal,
+            (1, _) => Goal {
+                gains: Gains {
+                    law: Law::OperationalSpace,
+                    ..Gains::cartesian()
+                },
+                ..goal
+            },
+            _ => Goal {
+                gains: Gains {
+                    project_joint_gains: true,
+                    feedforward_cutoff: 50.0,
+                    ..Gains::cartesian()
+                },
+                then: Then::Stay,
+                ..goal
+            },
+        };
+        self.goals.write(&self.goal);
+    }
+
+    /// From where the arm is to somewhere else, through a good many points.
+    fn send_chunk(&mut self) {
+        if self.random.random_bool(0.15) {
+            self.submit(Target::Rest);
+        }
+        let count = self.random.random_range(2..40_u32);
+        let apart = Duration::from_millis(self.random.random_range(20..60));
+        let share = |k: u32| f64::from(k) / f64::from(count - 1);
+        let chunk = if self.random.random_bool(0.5) {
+            let start = JointVector::from(self.lockstep.client.record.q_ref);
+            let way = JointVector::from(self.joints()) - start;
+            Chunk::joints((0..count).map(|k| (apart * k, (start + way * share(k)).into())))
+        } else {
+            let (start, end) = (self.lockstep.reference_pose(), self.pose());
+            Chunk::poses((0..count).map(|k| (apart * k, start.lerp_slerp(&end, share(k)))))
+        };
+        let mut chunk = chunk.expect("finite points in the order of their times");
+        if self.random.random_bool(0.5) {
+            let seen = self.random.random_range(0..60);
+            chunk = chunk.observed_at(self.lockstep.client.state.message_id - seen);
+        }
+        if self.random.random_bool(0.25) {
+            chunk = chunk.replace();
+        }
+        // No more are under way than are taken up or given back in the next cycle.
+        self.chunks
+            .send(self.goal.id, chunk)
+            .expect("there is room");
+    }
+
+    fn pose(&mut self) -> Isometry3<f64> {
+        let (way, turn) = (self.vector(0.08), self.vector(0.2));
+        Isometry3::from_parts(
+            Translation3::from(self.home.translation.vector + way),
+            UnitQuaternion::from_scaled_axis(turn) * self.home.rotation,
+        )
+    }
+
+    fn joints(&mut self) -> [f64; 7] {
+        core::array::from_fn(|i| READY[i] + self.random.random_range(-0.2..0.2))
+    }
+
+    fn vector(&mut self, most: f64) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| self.random.random_range(-most..most))
+    }
+}
+
+fn limits() -> &'static JointLimits {
+    Model::fr3().joint_limits()
+}
+
+/// A floor, a wall, a table and a shelf, of which the last three are near enough to be met.
+fn regions(home: &Isometry3<f64>) -> KeepOut {
+    let at = home.translation;
+    let (x, y, z) = (at.x, at.y, at.z);
+    let block = |x, y, z, half| Obstacle::Box {
+        pose: Isometry3::translation(x, y, z),
+        half,
+    };
+    [
+        Some(Obstacle::floor(-0.05)),
+        Some(Obstacle::Plane {
+            normal: UnitVector3::new_normalize(-Vector3::y()),
+            offset: -(y + 0.25),
+        }),
+        Some(block(x, y, z - 0.14, Vector3::new(0.1, 0.1, 0.05))),
+        Some(block(x + 0.4, y, z, Vector3::new(0.25, 0.4, 0.2))),
+    ]
+}
+
+/// Silence of the deadman that is the end of a goal, and of a stream.
+const SILENCE: Duration = Duration::from_millis(100);
+const SILENT_STREAM: Duration = Duration::from_millis(300);
+
+/// Low enough to bind, `[N]`.
+const FORCE_CAP: f64 = 20.0;
+
+/// Short enough to bind.
+const LEAD: Lead = Lead {
+    translation: 0.05,
+    rotation: 0.2,
+    joints: 0.1,
+};
