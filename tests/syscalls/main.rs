@@ -94,6 +94,16 @@ fn targets_are_followed_with_the_calls_of_a_cycle_alone() {
 }
 
 #[test]
+fn an_engaged_session_takes_the_calls_of_a_cycle_alone() {
+    trace(
+        an_engaged_session_takes_the_calls_of_a_cycle_alone,
+        &[CONTROL],
+        scenarios::engaged(),
+        assert_clean,
+    );
+}
+
+#[test]
 fn control_functions_and_reflexes_take_the_calls_of_a_cycle_alone() {
     trace(
         control_functions_and_reflexes_take_the_calls_of_a_cycle_alone,

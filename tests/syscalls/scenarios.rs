@@ -2,11 +2,14 @@
 
 use std::future::IntoFuture;
 use std::os::unix::process::parent_id;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use franka_async::{
-    Active, AsynchronousOptions, CartesianPose, CartesianVelocities, Control, Finish,
-    JointPositions, JointVelocities, Next, Pose, Realtime, Robot, RobotState, Torques,
+    Active, Arm, AsynchronousOptions, Backend, CartesianPose, CartesianVelocities, Chunk, Control,
+    Deadman, Engage, Finish, Free, Gains, JointPositions, JointVelocities, Lapse, MotionError, Next,
+    Pose, Realtime, Robot, RobotState, Setpoints, Stale, Torques, Tuning,
 };
 use franka_proto::{MoveControllerMode, RobotError};
 use franka_sim::{Running, Sim, Tool};
@@ -74,6 +77,83 @@ pub(crate) async fn targets() {
     silence.await.expect("it comes back");
     lost.await.expect("no panic").expect_err("the link is lost");
     robot.shutdown().await;
+}
+
+/// Sessions of both backends through every kind of goal, with an observer, a deadman and a stream that falls silent.
+pub(crate) async fn engaged() {
+    let (robot, _sim) = simulated().await;
+    let (deadman, grip) = Deadman::new(Duration::from_millis(500));
+    let seen = Arc::new(AtomicU64::new(0));
+    let count = seen.clone();
+    let engage = Engage::default().deadman(grip).observer(move |_, _| {
+        count.fetch_add(1, Ordering::Relaxed);
+    });
+    let arm = robot.engage(engage).await.expect("it begins");
+    every_kind_of_goal(&robot, &arm, &deadman).await;
+    arm.guide(Free::ALL).await.expect("it floats");
+    still(&deadman).await;
+    let tuning = Tuning {
+        gains: Some(Gains::cartesian()),
+        budget: None,
+    };
+    arm.tune(tuning).await.expect("gains within their bounds");
+    still(&deadman).await;
+    let records = seen.load(Ordering::Relaxed);
+    assert!(records > 500, "{records} cycles seen");
+    // A silent deadman holds the arm.
+    let held = arm.move_to(above(&robot, 0.1)).await;
+    assert_eq!(held, Err(MotionError::Held(Lapse::Deadman)));
+    deadman.keep_alive();
+    arm.disengage().await.expect("it ends");
+
+    let (deadman, grip) = Deadman::new(Duration::from_millis(500));
+    let backend = Backend::RobotController(Setpoints::Joints);
+    let engage = Engage::default().deadman(grip).backend(backend);
+    let arm = robot.engage(engage).await.expect("it begins");
+    every_kind_of_goal(&robot, &arm, &deadman).await;
+    arm.disengage().await.expect("it ends");
+    robot.shutdown().await;
+}
+
+/// Joint positions, a chunk, and a stream of poses that falls silent.
+async fn every_kind_of_goal(robot: &Robot, arm: &Arm, deadman: &Deadman) {
+    let mut q = robot.state().q_d;
+    q[0] += 0.05;
+    arm.set_joints(q).await.expect("the session takes it");
+    still(deadman).await;
+    let q = robot.state().q_d;
+    let points = (0..6).map(|k| {
+        let mut q = q;
+        q[0] += 0.01 * f64::from(k);
+        (Duration::from_millis(50) * k, q)
+    });
+    let chunk = Chunk::joints(points).expect("finite points");
+    arm.chunk(chunk).await.expect("the session takes it");
+    still(deadman).await;
+    let (sender, targets) = watch::channel(robot.pose());
+    let silence = Duration::from_millis(200);
+    let following = arm.follow(targets).watchdog(silence, Stale::Brake);
+    let following = tokio::spawn(following.into_future());
+    for step in 1..=3 {
+        sender.send(above(robot, 0.01 * f64::from(step))).expect("it goes on");
+        sleep(Duration::from_millis(100)).await;
+        deadman.keep_alive();
+    }
+    still(deadman).await;
+    let lapse = following.await.expect("no panic").expect_err("it is silent");
+    assert!(
+        matches!(lapse, MotionError::Braked(Lapse::Silent { .. })),
+        "{lapse}"
+    );
+    deadman.keep_alive();
+}
+
+/// Half a second in which the deadman lives.
+async fn still(deadman: &Deadman) {
+    for _ in 0..10 {
+        sleep(Duration::from_millis(50)).await;
+        deadman.keep_alive();
+    }
 }
 
 /// A control function that answers so many states with a command, and that is `also` called each time.

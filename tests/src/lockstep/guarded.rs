@@ -306,10 +306,12 @@ impl Guarded {
         if self.random.random_bool(0.25) {
             chunk = chunk.replace();
         }
-        // No more are under way than are taken up or given back in the next cycle.
-        self.chunks
-            .send(self.goal.id, chunk)
-            .expect("there is room");
+        // Twice at once: the second supersedes the first. What is not in use comes back in the next cycle, so there is room.
+        let times = if self.random.random_bool(0.1) { 2 } else { 1 };
+        for chunk in std::iter::repeat_n(chunk, times) {
+            let sent = self.chunks.send(self.goal.id, chunk);
+            sent.expect("there is room");
+        }
     }
 
     fn pose(&mut self) -> Isometry3<f64> {
