@@ -10,8 +10,8 @@ pub(super) const EXACT: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 
 /// Relative error of a jerk between two states: an instant at which a plan changes course is rounded, and the jerk counts it
-/// in full. Seen: 3.6e-10 in ten million plans, 3.7e-9 where one is made anew in each cycle.
-const JERK: f64 = 1e-8;
+/// in full. Seen: 3.6e-10 in ten million plans, 1.1e-8 where one is made anew in each cycle.
+const JERK: f64 = 1e-7;
 
 /// Checks the step of one axis from one state to another `dt` later.
 ///
