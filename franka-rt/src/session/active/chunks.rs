@@ -1,0 +1,61 @@
+//! Chunks of a session: taken up, gone on from, given back.
+
+use franka_model::Model;
+
+use super::{Active, Stage};
+use crate::session::chunk::{ChunkCourse, ChunkReader, ChunkStart};
+use crate::session::course::Course;
+use crate::session::{Lapse, Stale, Target, Then};
+
+impl Active {
+    /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is over.
+    pub(super) fn follow_chunks(&mut self, model: &Model, chunks: &mut ChunkReader, now: u64) {
+        if let Some(left) = self.left.take() {
+            left.end(chunks, now);
+        }
+        let gone = matches!(self.stage, Stage::Releasing(_) | Stage::Finished);
+        let given_up = |(_, lapse): &(Stale, Lapse)| *lapse == Lapse::Deadman || lapse.is_final();
+        if gone || self.lapse.as_ref().is_some_and(given_up) {
+            chunks.discard(self.goal.id);
+            return;
+        }
+        let over = match &self.route.course {
+            Course::Chunk(chunk) => chunk.is_over(now),
+            _ => true,
+        };
+        if let Some(chunk) = chunks.poll(self.goal.id, now, over) {
+            let (pose, drift) = self.route.course.pose(model, &self.ee, &self.reference);
+            let start = ChunkStart {
+                reference: &self.reference,
+                pose,
+                drift,
+                now,
+            };
+            let next = ChunkCourse::new(model, self.goal.id, self.goal.budget, chunk, start);
+            if let Course::Chunk(before) =
+                core::mem::replace(&mut self.route.course, Course::Chunk(next))
+            {
+                before.end(chunks, now);
+            }
+            self.aim = self.heading();
+            // A goal that had fallen silent was to be held until a newer one.
+            if self.lapse.take().is_some() {
+                self.goal.then = Then::Hold;
+            }
+            self.heard = now;
+            self.stage = Stage::UnderWay;
+        } else if over && let Course::Chunk(chunk) = &self.route.course {
+            let target = chunk.target();
+            self.turn_to(model, target);
+            self.chunk_end = Some(target);
+        }
+    }
+
+    /// Where the reference is to come to rest.
+    pub(super) fn heading(&self) -> Target {
+        match &self.route.course {
+            Course::Chunk(chunk) => chunk.target(),
+            _ => self.chunk_end.unwrap_or(self.goal.target),
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The stages of a goal, from the way to its end.
+
+use franka_model::{Frame, Model};
+
+use super::{Active, Drive, Measured};
+use crate::law::hybrid::Reference;
+use crate::session::landing::{Landing, Release, Verdict};
+use crate::session::{Lapse, STALL_TIMEOUT, SessionEvent, Settlement, Stale, Target, Then, rigid};
+
+/// Joint velocity, `[rad/s]`, below which the reference may be stopped in one cycle. Joints at their bounds may still creep
+/// after a pose has come to its end.
+const REFERENCE_REST: f64 = 1e-3;
+
+/// What the session does about its goal.
+#[derive(Debug)]
+pub(super) enum Stage {
+    /// The reference moves, or holds a goal that is to be held.
+    UnderWay,
+    /// The reference has arrived; the arm settles.
+    Landing(Landing),
+    /// The goal has come to its end, and is held.
+    Staying,
+    /// The spring is being let go, so that the torques end at zero.
+    Releasing(Release),
+    /// The last command is out.
+    Finished,
+}
+
+impl Active {
+    /// Moves through the stages of a goal that is to come to an end. The only place where the stage advances.
+    pub(super) fn advance_stage(
+        &mut self,
+        model: &Model,
+        arm: &Measured,
+        at_rest: bool,
+        now: u64,
+    ) -> Option<SessionEvent> {
+        let heading = self.heading();
+        match &mut self.stage {
+            Stage::UnderWay => {
+                let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
+                if self.goal.then != Then::Hold && (self.route.is_done() || stalled) {
+                    if stalled && self.route.is_hindered() {
+                        self.give_up(model, Lapse::Blocked);
+                    } else if stalled && heading != Target::Rest {
+                        self.turn_to(model, Target::Rest);
+                    }
+                    let target = match heading {
+                        // Wherever it stands, it counts as held.
+                        _ if self.lapse.is_some() => None,
+                        Target::Rest | Target::Guide(_) => None,
+                        Target::Pose(pose) => Some(pose),
+                        Target::Joints(q) => {
+                            Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
+                        }
+                    };
+                    self.stage = Stage::Landing(Landing::new(target, self.goal.tolerance));
+                }
+                None
+            }
+            Stage::Landing(landing) => {
+                let (settlement, held) = match landing.judge(&arm.pose, at_rest) {
+                    Verdict::Settling => return None,
+                    Verdict::Settled(settlement, held) => (settlement, held),
+                };
+                if self.goal.then == Then::Finish && self.reference.dq.amax() > REFERENCE_REST {
+                    if self.aim != Target::Rest {
+                        self.turn_to(model, Target::Rest);
+                    }
+                    return None;
+                }
+                self.stage = match (self.goal.then, &self.drive) {
+                    (Then::Hold | Then::Stay, _) => Stage::Staying,
+                    (Then::Finish, Drive::Torques(_)) => {
+                        self.route.rest();
+                        Stage::Releasing(Release::new(self.reference.q - arm.q))
+                    }
+                    // The robot holds the arm at its setpoint as it is.
+                    (Then::Finish, Drive::Setpoints(_)) => Stage::Finished,
+                };
+                Some(SessionEvent::Settled {
+                    goal: self.goal.id,
+                    settlement: match self.lapse {
+                        Some((Stale::Hold, lapse)) => Settlement::Held(lapse),
+                        Some((Stale::Brake, Lapse::Deadman)) => Settlement::Held(Lapse::Deadman),
+                        Some((Stale::Brake, lapse)) => Settlement::Braked(lapse),
+                        None => settlement,
+                    },
+                    duration_ms: (now - self.since).saturating_sub(held),
+                })
+            }
+            Stage::Releasing(release) => {
+                self.reference = Reference::at_rest(arm.q + release.offset());
+                self.route.rest();
+                if release.is_over(at_rest) {
+                    self.stage = Stage::Finished;
+                }
+                None
+            }
+            Stage::Staying | Stage::Finished => None,
+        }
+    }
+}

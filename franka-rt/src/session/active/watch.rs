@@ -1,0 +1,95 @@
+//! Who watches over a goal: the lead of its target, the deviation of the arm, its watchdog and the deadman.
+
+use core::time::Duration;
+
+use franka_model::Model;
+
+use super::{Active, Measured, Stage};
+use crate::session::course::Course;
+use crate::session::guard::lead::LEAD_FRESH_MS;
+use crate::session::{Lapse, Stale, Target, Then, Watchdog};
+
+impl Active {
+    /// Draws a target nearer that is too far ahead of the arm; tells whether it is.
+    pub(super) fn draw_nearer(&mut self, model: &Model, arm: &Measured, now: u64) -> bool {
+        let Some(lead) = self.goal.lead else {
+            return false;
+        };
+        let chunks = matches!(self.route.course, Course::Chunk(_)) || self.chunk_end.is_some();
+        if chunks || !matches!(self.stage, Stage::UnderWay) {
+            return false;
+        }
+        if now.saturating_sub(self.heard) <= LEAD_FRESH_MS {
+            let drawn = lead.drawn(&self.goal.target, &arm.q, &arm.pose);
+            let target = drawn.unwrap_or(self.goal.target);
+            if target != self.aim {
+                self.turn_to(model, target);
+            }
+        }
+        self.aim != self.goal.target
+    }
+
+    /// Gives the goal up, and brakes.
+    pub(super) fn give_up(&mut self, model: &Model, lapse: Lapse) {
+        self.goal.target = Target::Rest;
+        self.set_out(model);
+        if self.goal.then == Then::Hold {
+            self.goal.then = self.afterwards;
+        }
+        self.lapse = Some((Stale::Brake, lapse));
+    }
+
+    /// Gives up a goal whose arm is being carried off; tells whether it is.
+    pub(super) fn watch_deviation(&mut self, model: &Model, arm: &Measured, leashed: bool) -> bool {
+        if !leashed {
+            self.deviation.set_free(&self.reference.q);
+            return false;
+        }
+        if matches!(self.heading(), Target::Rest | Target::Guide(_)) {
+            return matches!(self.lapse, Some((_, Lapse::CarriedOff)));
+        }
+        let exceeded = self
+            .deviation
+            .is_exceeded(model, &self.ee, &arm.q, &arm.pose, &self.aim);
+        let follows = matches!(
+            self.stage,
+            Stage::UnderWay | Stage::Landing(_) | Stage::Staying
+        );
+        if exceeded && follows {
+            self.give_up(model, Lapse::CarriedOff);
+        }
+        exceeded
+    }
+
+    /// Gives the goal up: its updates stay away, or its deadman is silent.
+    pub(super) fn watch(&mut self, model: &Model, alive: bool, now: u64) {
+        let given_up = matches!(self.lapse, Some((Stale::Brake, _)));
+        // Whoever asks for rest gets it, with or without a deadman.
+        let comes_to_rest = self.goal.target == Target::Rest && self.goal.then != Then::Hold;
+        if given_up || comes_to_rest || matches!(self.stage, Stage::Releasing(_) | Stage::Finished)
+        {
+            return;
+        }
+        let silence = Duration::from_millis(now.saturating_sub(self.heard));
+        let lapse = match self.goal.watchdog {
+            _ if !alive => (Stale::Brake, Lapse::Deadman),
+            Some(Watchdog {
+                silence: most,
+                stale,
+                then,
+            }) if self.goal.then == Then::Hold && silence >= most => {
+                self.goal.then = then;
+                (stale, Lapse::Silent { silence })
+            }
+            _ => return,
+        };
+        if lapse.0 == Stale::Brake {
+            self.goal.target = Target::Rest;
+            self.set_out(model);
+        }
+        if self.goal.then == Then::Hold {
+            self.goal.then = Then::Stay;
+        }
+        self.lapse = Some(lapse);
+    }
+}
