@@ -10,7 +10,7 @@ use crate::driver::Observer;
 use crate::law::Gains;
 use crate::session::check::check_silence;
 use crate::session::{
-    Backend, Budget, Chunk, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks,
+    Backend, Budget, Chunk, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks, Watchdog,
 };
 
 /// What a session that goes from goal to goal has beside its goals.
@@ -79,6 +79,7 @@ impl Lifecycle {
         now: Duration,
     ) -> Result<(), MotionError> {
         self.check_engaged(engaged)?;
+        let goal = going_on(goal);
         goal.check(&self.model, state)?;
         if let Some(goals) = self.goals() {
             goals.backend.check(&goal.target)?;
@@ -121,7 +122,7 @@ impl Lifecycle {
         let goal = Goal {
             target: Target::Rest,
             then: Then::Hold,
-            ..goal
+            ..going_on(goal)
         };
         goal.check(&self.model, state)?;
         let ending = self.is_ending();
@@ -137,7 +138,8 @@ impl Lifecycle {
         while let Some(done) = chunks.collect() {
             drop(done);
         }
-        let goes_on = goals.current.goal.id == goals.chunk_goal;
+        // One that was taken back is on its way to rest, and nobody's any more.
+        let goes_on = goals.current.goal.id == goals.chunk_goal && !goals.current.cancelled;
         let of = if goes_on { goals.chunk_goal } else { goal.id };
         chunks
             .send(of, chunk)
@@ -167,14 +169,18 @@ impl Lifecycle {
         let Some(goals) = self.goals() else {
             return Err(MotionError::Disengaged);
         };
-        let id = goals.current.goal.id;
-        let change = |goal: &Goal| Goal {
-            gains: tuning.gains.unwrap_or(goal.gains),
-            budget: tuning.budget.unwrap_or(goal.budget),
-            ..*goal
+        let current = goals.current.goal;
+        let tuned = Goal {
+            gains: tuning.gains.unwrap_or(current.gains),
+            budget: tuning.budget.unwrap_or(current.budget),
+            ..current
         };
-        let amended = self.amend(id, change, Some(state))?;
-        debug_assert!(amended, "the newest goal is the one that is followed");
+        tuned.check(&self.model, state)?;
+        // Also a goal that was taken back: it is held until the next one comes.
+        if let Some(goals) = self.goals() {
+            goals.current.goal = tuned;
+            goals.slot.write(&tuned);
+        }
         Ok(())
     }
 
@@ -251,5 +257,17 @@ impl Lifecycle {
                 _ => MotionError::Disengaged,
             }),
         }
+    }
+}
+
+/// The goal, after whose silence the session goes on.
+fn going_on(goal: Goal) -> Goal {
+    let stays = |watchdog| Watchdog {
+        then: Then::Stay,
+        ..watchdog
+    };
+    Goal {
+        watchdog: goal.watchdog.map(stays),
+        ..goal
     }
 }

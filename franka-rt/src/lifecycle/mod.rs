@@ -318,19 +318,7 @@ impl Lifecycle {
                 if end.as_ref().is_none_or(|(engaged, _)| *engaged != current) {
                     self.resolve(current, result.clone());
                 }
-                let late = match &end {
-                    Some((_, Err(error))) => error.clone(),
-                    _ => MotionError::Disengaged,
-                };
-                for goal in goals.late {
-                    self.resolve(goal, Err(late.clone()));
-                }
-                if let Some((engaged, result)) = end {
-                    if let Err(error) = &result {
-                        self.ended = Some((engaged, error.clone()));
-                    }
-                    self.resolve(engaged, result);
-                }
+                self.resolve_session(goals.late, end);
             }
             Work::Program(program) => {
                 self.resolve(program.id, result.clone());
@@ -338,6 +326,27 @@ impl Lifecycle {
                     self.resolve(stop, rest.clone());
                 }
             }
+        }
+    }
+
+    /// Tells everybody who awaits the session of a motion how it turned out, and goals that came too late for it.
+    fn resolve_session(
+        &mut self,
+        late: Vec<GoalId>,
+        end: Option<(GoalId, Result<MotionReport, MotionError>)>,
+    ) {
+        let reason = match &end {
+            Some((_, Err(error))) => error.clone(),
+            _ => MotionError::Disengaged,
+        };
+        for goal in late {
+            self.resolve(goal, Err(reason.clone()));
+        }
+        if let Some((engaged, result)) = end {
+            if let Err(error) = &result {
+                self.ended = Some((engaged, error.clone()));
+            }
+            self.resolve(engaged, result);
         }
     }
 
@@ -424,7 +433,13 @@ impl Lifecycle {
                         self.next.is_none(),
                         "a newer goal would have taken its place"
                     );
-                    return self.follow(goals.current, &Ok(()), &Counted::of(ended), now);
+                    let (current, counted) = (goals.current, Counted::of(ended));
+                    let well = Ok(MotionReport::new(&counted, 0, None));
+                    let end = goals.end_of_engagement(&well);
+                    // The end of a session, as of its own goal, is told below.
+                    let end = end.filter(|(engaged, _)| *engaged != current.goal.id);
+                    self.resolve_session(goals.late.clone(), end);
+                    return self.follow(current, &Ok(()), &counted, now);
                 }
                 (active.verdict(ended, &self.model), Counted::of(ended))
             }

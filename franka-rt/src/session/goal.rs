@@ -107,7 +107,7 @@ pub struct Watchdog {
     pub silence: Duration,
     /// What the arm does then.
     pub stale: Stale,
-    /// Whether the motion ends once the arm rests.
+    /// Whether the motion ends once the arm rests. A session that goes from goal to goal goes on.
     pub then: Then,
 }
 

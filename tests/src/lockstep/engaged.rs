@@ -4,6 +4,7 @@ use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
 use franka_rt::session::{Backend, Chunk, Goal, GoalId, Target, Then};
 
 use super::Lockstep;
+use super::guard::CommandGuard;
 
 impl Lockstep {
     /// Begins a session with the defaults, and runs until it holds the arm.
@@ -19,10 +20,9 @@ impl Lockstep {
     /// # Panics
     /// As [`Self::engage`].
     pub fn engage_with(&mut self, engagement: Engagement) -> GoalId {
-        if engagement.backend != Backend::Torques {
-            // The robot is the judge of its setpoints.
-            self.guard = None;
-        }
+        // The robot is the judge of its setpoints.
+        self.guard = (engagement.backend == Backend::Torques)
+            .then(|| CommandGuard::new(self.model.joint_limits()));
         let goal = self.goal(Target::Rest, Then::Hold);
         let id = goal.id;
         let client = &mut self.client;
@@ -70,11 +70,22 @@ impl Lockstep {
     /// As the lifecycle.
     pub fn chunk(&mut self, engaged: GoalId, chunk: Chunk) -> Result<(), MotionError> {
         let goal = self.goal(chunk.target(), Then::Hold);
-        let client = &mut self.client;
-        let (state, now) = (&client.state, client.now);
-        let taken = client.lifecycle.chunk(engaged, goal, chunk, state, now);
-        client.carry_out();
-        taken
+        self.submit_chunk(engaged, goal, chunk).map(|_| ())
+    }
+
+    /// The same with a goal of the test's own, which names the chunk unless it goes on from another one.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn submit_chunk(
+        &mut self,
+        engaged: GoalId,
+        goal: Goal,
+        chunk: Chunk,
+    ) -> Result<GoalId, MotionError> {
+        self.submit_by(goal, |lifecycle, goal, state, now| {
+            lifecycle.chunk(engaged, goal, chunk, state, now)
+        })
     }
 
     /// Changes how the session goes about its goal.

@@ -103,11 +103,16 @@ impl Lockstep {
 
     /// A robot of this kind in the ready pose with its hand, strict about limits.
     pub fn ready_of(kind: RobotKind) -> Self {
-        Self::new(Config {
+        Self::new(Self::config_of(kind))
+    }
+
+    /// What makes the robot of [`Self::ready_of`].
+    pub fn config_of(kind: RobotKind) -> Config {
+        Config {
             kind,
             tool: franka_sim::Tool::hand(),
             ..Config::default()
-        })
+        }
     }
 
     /// Time since the beginning, `[ms]`.

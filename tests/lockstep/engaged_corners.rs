@@ -1,0 +1,157 @@
+//! Corners of sessions that go from goal to goal: what meets a goal that was taken back, and what a session without its
+//! deadman makes of its end.
+
+use std::time::Duration;
+
+use franka_model::READY;
+use franka_rt::law::Gains;
+use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
+use franka_rt::session::{Chunk, Deadman, Goal, GoalId, Lapse, Stale, Target, Then, Watchdog};
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+
+fn turned(by: f64) -> [f64; 7] {
+    let mut q: [f64; 7] = READY.into();
+    q[0] += by;
+    q
+}
+
+fn chunk(from: f64, to: f64) -> Chunk {
+    let point = |k: u32| {
+        let way = from + (to - from) * f64::from(k) / 10.0;
+        (Duration::from_millis(50) * k, turned(way))
+    };
+    Chunk::joints((0..=10).map(point)).expect("points 50 ms apart")
+}
+
+fn give_chunk(lockstep: &mut Lockstep, engaged: GoalId, from: f64, to: f64) -> GoalId {
+    let goal = lockstep.goal(Target::Rest, Then::Hold);
+    lockstep
+        .submit_chunk(engaged, goal, chunk(from, to))
+        .expect("near the ready pose")
+}
+
+#[test]
+fn a_chunk_after_chunks_that_were_taken_back_is_a_goal_of_its_own() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let first = give_chunk(&mut lockstep, engaged, 0.0, 0.2);
+        lockstep.run(200);
+        lockstep.cancel(first);
+        lockstep.run(10);
+        let second = give_chunk(&mut lockstep, engaged, 0.0, 0.1);
+        let superseded = lockstep.until_resolved(first, 1);
+        assert_eq!(superseded, Err(MotionError::Superseded));
+        lockstep.run(2000);
+        assert_eq!(lockstep.client.outcome(second), None);
+        assert!((lockstep.robot.q()[0] - turned(0.1)[0]).abs() < 2e-3);
+    });
+}
+
+#[test]
+fn a_session_is_tuned_also_while_a_goal_is_taken_back() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = lockstep
+            .within(engaged, Target::Joints(turned(0.3)), Then::Stay)
+            .expect("near the ready pose");
+        lockstep.run(300);
+        lockstep.cancel(goal);
+        let gains = Gains {
+            feedforward_cutoff: 50.0,
+            ..Gains::joint()
+        };
+        let tuning = Tuning {
+            gains: Some(gains),
+            budget: None,
+        };
+        assert_eq!(lockstep.tune(engaged, tuning), Ok(()));
+        let outcome = lockstep.until_resolved(goal, 2000);
+        assert_eq!(outcome, Err(MotionError::Stopped));
+    });
+}
+
+#[test]
+fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = Goal {
+            watchdog: Some(Watchdog {
+                silence: Duration::from_millis(50),
+                stale: Stale::Brake,
+                then: Then::Finish,
+            }),
+            ..lockstep.goal(Target::Joints(turned(0.2)), Then::Hold)
+        };
+        let goal = lockstep.submit_within(engaged, goal).expect("it is near");
+        let outcome = lockstep.until_resolved(goal, 3000);
+        assert!(
+            matches!(outcome, Err(MotionError::Braked(Lapse::Silent { .. }))),
+            "{outcome:?}"
+        );
+        lockstep.run(1000);
+        assert_eq!(lockstep.client.outcome(engaged), None);
+        let back = lockstep
+            .within(engaged, Target::Joints(turned(0.0)), Then::Stay)
+            .expect("the session goes on");
+        lockstep
+            .until_resolved(back, 5000)
+            .expect("nothing stops it");
+        lockstep.disengage(engaged);
+        lockstep.until_resolved(engaged, 1000).expect("as asked");
+    });
+}
+
+#[test]
+fn a_stop_and_the_end_of_a_session_come_well_without_its_deadman() {
+    for_each_robot(|ready| {
+        for stops in [true, false] {
+            let (token, grip) = Deadman::new(Duration::from_millis(50));
+            let mut lockstep = ready();
+            let engaged = lockstep.engage_with(Engagement {
+                deadman: Some(grip),
+                ..Engagement::default()
+            });
+            drop(token);
+            lockstep.run(500);
+            if stops {
+                let stop = lockstep.stop().expect("a session runs");
+                lockstep.until_resolved(stop, 1000).expect("it rests");
+                let stopped = lockstep.until_resolved(engaged, 1);
+                assert_eq!(stopped, Err(MotionError::Stopped));
+            } else {
+                lockstep.disengage(engaged);
+                lockstep.until_resolved(engaged, 1000).expect("as asked");
+            }
+        }
+    });
+}
+
+#[test]
+fn a_stop_that_comes_too_late_for_a_session_ends_it_nevertheless() {
+    for_each_robot(|ready| {
+        let mut late = 0;
+        // While the arm is being let go: with its states lost, the stop is not seen before the end.
+        for wait in 0..150 {
+            let mut lockstep = ready();
+            let engaged = lockstep.engage();
+            let goal = lockstep
+                .within(engaged, Target::Rest, Then::Finish)
+                .expect("there is nothing to it");
+            lockstep.run(100 + wait);
+            let before = lockstep.client.outcome(goal).is_some();
+            let Some(stop) = lockstep.stop() else {
+                continue;
+            };
+            late += u64::from(!before);
+            lockstep.until_resolved(stop, 2000).expect("it rests");
+            for ended in [goal, engaged] {
+                let outcome = lockstep.client.outcome(ended);
+                assert!(outcome.is_some(), "{wait}: {ended:?} is resolved");
+            }
+        }
+        assert!(late > 10, "{late}");
+    });
+}

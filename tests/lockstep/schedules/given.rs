@@ -1,0 +1,181 @@
+//! What was given to a session, and what it may come to.
+
+use std::time::Duration;
+
+use franka_model::EndEffector;
+use franka_rt::driver::Record;
+use franka_rt::lifecycle::{MotionError, MotionReport};
+use franka_rt::session::{
+    GoalId, Guard, Lapse, PoseError, Stale, Target, Then, Tolerance, Watchdog,
+};
+use franka_sim::Tool;
+use franka_tests::lockstep::{Lockstep, Outcome, pose_of};
+
+use super::causes::Causes;
+
+/// Guards that may keep an arm from its target.
+const HINDRANCES: [Guard; 9] = [
+    Guard::Leash,
+    Guard::InverseKinematics,
+    Guard::JointVelocity,
+    Guard::PositionEnvelope,
+    Guard::TorqueClamp,
+    Guard::ForceCap,
+    Guard::Clearance,
+    Guard::Deviation,
+    Guard::TorqueRate,
+];
+
+/// What resolves, apart from goals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Work {
+    Goal(Target),
+    /// Chunks, one after the other.
+    Chunks,
+    Session,
+    Stop,
+}
+
+/// Something that resolves, and all that happened to it.
+#[derive(Clone, Debug)]
+pub(super) struct Given {
+    pub(super) id: GoalId,
+    pub(super) work: Work,
+    pub(super) then: Then,
+    pub(super) watchdog: Option<Watchdog>,
+    /// Its newest sign of life, `[ms]`.
+    pub(super) heard: u64,
+    pub(super) superseded: bool,
+    /// Taken back by its owner.
+    pub(super) cancelled: bool,
+    /// Something else was stopped that it is part of.
+    pub(super) stopped: bool,
+    /// Of a session: its end was asked for. Of a goal: its session was ending.
+    pub(super) released: bool,
+    /// A goal was to end the session.
+    pub(super) finishing: bool,
+    /// Its deadman was silent.
+    pub(super) deadman: bool,
+    /// The springs may be too soft to get it there.
+    pub(super) soft: bool,
+    /// Something was in its way.
+    hindered: bool,
+}
+
+impl Given {
+    pub(super) fn new(id: GoalId, work: Work, then: Then, now: u64) -> Self {
+        Self {
+            id,
+            work,
+            then,
+            watchdog: None,
+            heard: now,
+            superseded: false,
+            cancelled: false,
+            stopped: false,
+            released: false,
+            finishing: false,
+            deadman: false,
+            soft: false,
+            hindered: false,
+        }
+    }
+
+    /// One more cycle under way.
+    pub(super) fn observe(&mut self, record: &Record) {
+        self.hindered |= HINDRANCES
+            .into_iter()
+            .any(|guard| record.bindings.contains(guard));
+    }
+
+    /// Holds how it turned out at `now` against what happened.
+    ///
+    /// # Panics
+    /// If nothing did that this may come of.
+    pub(super) fn judge(&self, outcome: &Outcome, lockstep: &Lockstep, causes: &Causes) {
+        let fits = match outcome {
+            Ok(report) => self.may_be_ok() && self.is_there(report, lockstep),
+            Err(error) => self.may_fail(error, lockstep.now(), causes),
+        };
+        assert!(
+            fits,
+            "at {} {self:?}: {outcome:?} after {causes:?}",
+            lockstep.now()
+        );
+    }
+
+    fn may_be_ok(&self) -> bool {
+        match self.work {
+            // The arm that a goal lets go has reached it, whatever comes after that.
+            Work::Goal(_) if self.then == Then::Finish && self.stopped => true,
+            Work::Goal(_) | Work::Chunks => {
+                self.then != Then::Hold && !self.cancelled && !self.superseded && !self.stopped
+            }
+            Work::Session => self.released,
+            Work::Stop => true,
+        }
+    }
+
+    /// Whether the arm is where the report says that it is, and that is where it was to go.
+    fn is_there(&self, report: &MotionReport, lockstep: &Lockstep) -> bool {
+        let target = match self.work {
+            Work::Goal(Target::Pose(pose)) => pose,
+            Work::Goal(Target::Joints(q)) => {
+                let tool = Tool::hand();
+                let ee = EndEffector {
+                    f_t_ee: tool.f_t_ne,
+                    ..EndEffector::default()
+                };
+                pose_of(&q.into(), &ee)
+            }
+            _ => return report.final_error.is_none(),
+        };
+        let Some(reported) = report.final_error else {
+            return false;
+        };
+        let off = PoseError::between(&lockstep.true_pose(), &target);
+        let most = Tolerance::default();
+        // It swings on a little after it was measured.
+        reported.translation <= most.translation
+            && reported.rotation <= most.rotation
+            && off.translation <= most.translation + 1e-3
+            && off.rotation <= most.rotation + 2e-3
+    }
+
+    fn may_fail(&self, error: &MotionError, now: u64, causes: &Causes) -> bool {
+        let goal = matches!(self.work, Work::Goal(_) | Work::Chunks);
+        match error {
+            MotionError::Superseded => goal && self.superseded,
+            MotionError::Stopped => {
+                self.stopped || (goal && self.cancelled) || self.finishing || self.released
+            }
+            MotionError::Disengaged => goal && self.released,
+            MotionError::Held(Lapse::Deadman) => self.deadman && self.work != Work::Stop,
+            MotionError::Held(Lapse::Silent { silence }) => {
+                goal && self.was_silent(Stale::Hold, *silence, now)
+            }
+            MotionError::Braked(Lapse::Silent { silence }) => {
+                goal && self.was_silent(Stale::Brake, *silence, now)
+            }
+            MotionError::Short(off) => {
+                let far = off.translation > 1e-3 || off.rotation > 1e-3;
+                let may = causes.pushed || self.soft || self.hindered;
+                far && may && (goal || self.finishing)
+            }
+            MotionError::Braked(Lapse::CarriedOff) => causes.pushed,
+            MotionError::Braked(Lapse::Blocked) => self.hindered,
+            MotionError::Control(error) => causes.excuse(error),
+            MotionError::Rejected(_) => causes.any(),
+            _ => false,
+        }
+    }
+
+    fn was_silent(&self, how: Stale, reported: Duration, now: u64) -> bool {
+        let Some(Watchdog { silence, stale, .. }) = self.watchdog else {
+            return false;
+        };
+        // A gap in the states makes it longer, but not as long as it now is.
+        let since = Duration::from_millis(now + 1 - self.heard);
+        stale == how && reported >= silence && reported <= since
+    }
+}

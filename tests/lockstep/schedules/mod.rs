@@ -1,0 +1,129 @@
+//! Random schedules of goals, stops and faults, each replayable from its seed.
+//!
+//! Every fourth schedule or more is calm: nothing goes wrong, so nothing may be reported as wrong. The others lose datagrams,
+//! push the arm, trip the robot and press its user stop. Whatever happens, every goal resolves once and fittingly, the arm
+//! comes to rest, and the next motion works. The harness holds every command and its reference against the limits
+//! meanwhile.
+//!
+//! * `motions`: motions that supersede one another, each with an end of its own.
+//! * `sessions`: sessions that go from goal to goal, of all kinds, with both backends. `given`: what each goal may come to.
+//! * `causes`: what was done from outside, and what a robot owes to it.
+//! * `draw`: random goals.
+
+mod causes;
+mod draw;
+mod given;
+mod motions;
+mod sessions;
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::Lapse;
+use franka_tests::lockstep::{Lockstep, Outcome};
+
+use motions::Motions;
+use sessions::Sessions;
+
+/// Schedules of one run; each takes some five seconds of the robot's time,
+const MOTIONS: u64 = 120;
+
+/// and each of these some two.
+const SESSIONS: u64 = 200;
+
+/// How schedules turned out: so many goals in each way, and the robot's time.
+#[derive(Debug, Default)]
+struct Tally {
+    outcomes: BTreeMap<&'static str, u64>,
+    /// `[ms]`
+    robot_time: u64,
+}
+
+impl Tally {
+    fn count(&mut self, outcome: &Outcome) {
+        *self.outcomes.entry(kind(outcome)).or_default() += 1;
+    }
+}
+
+#[test]
+fn every_schedule_ends_with_all_goals_resolved_and_the_arm_at_rest() {
+    run(MOTIONS, |seed, tally| {
+        let mut schedule = Motions::new(seed);
+        schedule.play();
+        schedule.finish(tally);
+    });
+}
+
+#[test]
+fn every_schedule_of_a_session_ends_with_all_goals_resolved_and_the_arm_at_rest() {
+    run(SESSIONS, |seed, tally| {
+        Sessions::play(seed, Lockstep::ready_of, tally);
+    });
+}
+
+#[cfg(feature = "mujoco")]
+#[test]
+fn schedules_of_sessions_end_as_well_with_an_arm_of_mujoco() {
+    use franka_model::RobotKind;
+    use franka_sim::Robot;
+    use franka_sim::plant::{MujocoArm, Scene};
+
+    run(SESSIONS / 10, |seed, tally| {
+        let arm = |kind: RobotKind| {
+            let plant = MujocoArm::new(kind, Scene::table()).expect("a scene");
+            let robot = Robot::with_plant(Lockstep::config_of(kind), Box::new(plant));
+            Lockstep::with_robot(robot)
+        };
+        Sessions::play(seed, arm, tally);
+    });
+}
+
+/// Plays so many schedules, or as many as the environment says: `FRANKA_SCHEDULES` from `FRANKA_SCHEDULE_SEED` on.
+fn run(count: u64, mut play: impl FnMut(u64, &mut Tally)) {
+    let number = |name| std::env::var(name).ok().and_then(|text| text.parse().ok());
+    let first: u64 = number("FRANKA_SCHEDULE_SEED").unwrap_or(1);
+    let count: u64 = number("FRANKA_SCHEDULES").unwrap_or(count);
+    let mut tally = Tally::default();
+    let mut failed = Vec::new();
+    for seed in first..first + count {
+        // What a schedule that failed has counted stays: the tally is a count, and nothing else.
+        let played = catch_unwind(AssertUnwindSafe(|| play(seed, &mut tally)));
+        if played.is_err() {
+            eprintln!("replay with FRANKA_SCHEDULE_SEED={seed} FRANKA_SCHEDULES=1");
+            failed.push(seed);
+        }
+        let played = seed + 1 - first;
+        if played == count || played.is_multiple_of(500) {
+            let Tally {
+                outcomes,
+                robot_time,
+            } = &tally;
+            let seconds = robot_time / 1000;
+            println!("seeds {first} to {seed}: {seconds} s of robot time, {outcomes:?}");
+        }
+    }
+    assert!(
+        failed.is_empty(),
+        "of {count} schedules these failed: {failed:?}"
+    );
+}
+
+fn kind(outcome: &Outcome) -> &'static str {
+    match outcome {
+        Ok(_) => "ok",
+        Err(MotionError::Superseded) => "superseded",
+        Err(MotionError::Stopped) => "stopped",
+        Err(MotionError::Short(_)) => "short",
+        Err(MotionError::Disengaged) => "disengaged",
+        Err(MotionError::Held(Lapse::Silent { .. })) => "silent, held",
+        Err(MotionError::Braked(Lapse::Silent { .. })) => "silent, braked",
+        Err(MotionError::Held(Lapse::Deadman)) => "deadman",
+        Err(MotionError::Braked(Lapse::CarriedOff)) => "carried off",
+        Err(MotionError::Braked(Lapse::Blocked)) => "blocked",
+        Err(MotionError::Control(error)) if error.is_reflex() => "reflex",
+        Err(MotionError::Rejected(_)) => "rejected",
+        Err(MotionError::Control(_)) => "aborted",
+        Err(error) => panic!("nothing in here causes {error:?}"),
+    }
+}
