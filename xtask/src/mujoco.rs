@@ -57,6 +57,9 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let mut test = workspace.cargo();
     // What drives the binary from outside does not depend on the plant, and is tested without.
     workspace.run(test.arg("test").args(package).args(["--lib", "--bins"]))?;
+    let mut schedules = workspace.cargo();
+    schedules.args(["test", "--package", "franka-tests", "--features", "mujoco"]);
+    workspace.run(schedules.args(["--test", "lockstep", "mujoco"]))?;
     Ok(Outcome::Passed)
 }
 
