@@ -57,12 +57,13 @@ impl Robot {
         let dq = *self.plant.dq();
         let mut torque = JointVector::zeros();
         let mut sensed = JointVector::zeros();
-        for _ in 0..STEPS {
+        for step in 0..STEPS {
+            let into = CYCLE * f64::from(step) / f64::from(STEPS);
             let (q_now, dq_now) = (self.plant.q(), self.plant.dq());
             torque = law.torque(q_now, dq_now);
             let motor = (torque + self.dynamics.gravity).zip_map(&limit, |t, l| t.clamp(-l, l));
             let frames = &self.settings.frames;
-            let external = self.touches.torque(self.model, frames, q_now, dq_now);
+            let external = self.touches.torque(self.model, frames, q_now, dq_now, into);
             self.plant.step(&motor, &external, CYCLE / f64::from(STEPS));
             sensed += self.plant.sensed_torque();
         }

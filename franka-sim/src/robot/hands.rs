@@ -22,6 +22,12 @@ impl Robot {
         self.touches.remove(touch)
     }
 
+    /// What a touch has done to the arm in the last millisecond, on the mean: a wrench `[force; torque]` about the place that is
+    /// touched, base axes, `[N, N·m]`. None once it has ended; of torques on joints it is zero.
+    pub fn felt(&self, touch: TouchId) -> Option<Wrench> {
+        self.touches.felt(touch)
+    }
+
     /// Takes all hands off the arm, and everything else that touches it.
     pub fn let_go(&mut self) {
         self.touches.clear();

@@ -1,9 +1,13 @@
 //! What touches the arm: hands that push, springs that pull, tables that are in the way.
 
-use franka_model::{EndEffector, Frame, JointVector, Model, Twist, Wrench, rotation, transform};
-use nalgebra::{Isometry3, Matrix3, Vector3};
+mod present;
 
-use crate::signal::{CYCLE, halves, stack};
+use franka_model::{Frame, JointVector, Wrench};
+use nalgebra::{Isometry3, Vector3};
+
+use crate::signal::stack;
+
+pub(super) use present::Touches;
 
 /// Something that acts on the arm from outside, at one place, for a while.
 ///
@@ -44,6 +48,14 @@ enum Effort {
     OverTime(Box<dyn FnMut(f64) -> Wrench + Send>),
     Spring {
         to: Vector3<f64>,
+        spring: Spring,
+    },
+    /// A spring whose point moves.
+    Carry {
+        path: Box<dyn FnMut(f64) -> Vector3<f64> + Send>,
+        /// Where the point is at the beginning of this millisecond, and how it goes on, `[m]`, `[m/s]`.
+        point: Vector3<f64>,
+        velocity: Vector3<f64>,
         spring: Spring,
     },
     /// Holds the pose that the place has when the touch begins.
@@ -102,6 +114,18 @@ impl Touch {
         })
     }
 
+    /// A spring of this stiffness, `[N/m]`, to a point that moves: a hand that leads the arm, or something that runs into it
+    /// and stays on it. `path` is a function of the time since the touch began, `[s]` to `[m]`; it is asked once per
+    /// millisecond. The damper acts on the velocity relative to the point's.
+    pub fn carry(path: impl FnMut(f64) -> Vector3<f64> + Send + 'static, stiffness: f64) -> Self {
+        Self::new(Effort::Carry {
+            path: Box::new(path),
+            point: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            spring: Spring::damped(stiffness, FELT_MASS),
+        })
+    }
+
     /// A firm grip that keeps position and orientation of the place where they are now.
     pub fn hold() -> Self {
         Self::new(Effort::Hold {
@@ -140,6 +164,7 @@ impl Touch {
     pub fn stiffness(mut self, stiffness: f64) -> Self {
         match &mut self.effort {
             Effort::Spring { spring, .. }
+            | Effort::Carry { spring, .. }
             | Effort::Wall { spring, .. }
             | Effort::Hold { linear: spring, .. } => {
                 *spring = Spring::damped(stiffness, FELT_MASS);
@@ -184,6 +209,7 @@ impl core::fmt::Debug for Touch {
             Effort::Wrench(wrench) => wrench,
             Effort::OverTime(_) => &"over time",
             Effort::Spring { .. } => &"spring",
+            Effort::Carry { .. } => &"moving spring",
             Effort::Hold { .. } => &"hold",
             Effort::Block { .. } => &"block",
             Effort::Wall { .. } => &"wall",
@@ -207,147 +233,6 @@ impl Spring {
 
     fn pull(&self, stretch: Vector3<f64>, velocity: &Vector3<f64>) -> Vector3<f64> {
         stretch * self.stiffness - velocity * self.damping
-    }
-}
-
-/// Everything that touches the arm now.
-#[derive(Debug, Default)]
-pub(super) struct Touches {
-    touches: Vec<Present>,
-    count: u64,
-}
-
-#[derive(Debug)]
-struct Present {
-    id: TouchId,
-    touch: Touch,
-    since: u64,
-    /// Of a touch as a function of time, in this millisecond.
-    wrench: Wrench,
-}
-
-impl Touches {
-    pub(super) fn add(&mut self, touch: Touch, now: u64) -> TouchId {
-        self.count += 1;
-        let id = TouchId(self.count);
-        self.touches.push(Present {
-            id,
-            touch,
-            since: now,
-            wrench: Wrench::zeros(),
-        });
-        id
-    }
-
-    pub(super) fn remove(&mut self, id: TouchId) -> bool {
-        let count = self.touches.len();
-        self.touches.retain(|present| present.id != id);
-        self.touches.len() < count
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.touches.clear();
-    }
-
-    /// Begins the millisecond that ends at `now`: what is over ends, functions of time are asked.
-    pub(super) fn advance(&mut self, now: u64) {
-        self.touches.retain(|present| {
-            let end = present
-                .touch
-                .lasts
-                .map(|lasts| present.since.saturating_add(lasts));
-            end.is_none_or(|end| now <= end)
-        });
-        for present in &mut self.touches {
-            if let Effort::OverTime(wrench) = &mut present.touch.effort {
-                // At the beginning of the millisecond.
-                let elapsed = now.saturating_sub(present.since + 1);
-                present.wrench = wrench(elapsed as f64 * CYCLE);
-            }
-        }
-    }
-
-    /// Their torques on the joints in this state of the arm, `[N·m]`.
-    pub(super) fn torque(
-        &mut self,
-        model: &Model,
-        frames: &EndEffector,
-        q: &JointVector,
-        dq: &JointVector,
-    ) -> JointVector {
-        let mut sum = JointVector::zeros();
-        for present in &mut self.touches {
-            sum += present.torque(model, frames, q, dq);
-        }
-        sum
-    }
-}
-
-impl Present {
-    fn torque(
-        &mut self,
-        model: &Model,
-        frames: &EndEffector,
-        q: &JointVector,
-        dq: &JointVector,
-    ) -> JointVector {
-        let frame = self.touch.frame;
-        match &mut self.touch.effort {
-            Effort::Torque(torque) => return *torque,
-            Effort::Block { joint, angle } => {
-                let angle = angle.get_or_insert(q[*joint]);
-                let spring = Spring::damped(FIRM_JOINT, JOINT_INERTIA);
-                let mut torque = JointVector::zeros();
-                torque[*joint] =
-                    spring.stiffness * (*angle - q[*joint]) - spring.damping * dq[*joint];
-                return torque;
-            }
-            _ => {}
-        }
-        let pose = model.pose(frame, q, frames);
-        let turn: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
-        let arm = turn * self.touch.offset;
-        let position = Vector3::new(pose.m14, pose.m24, pose.m34) + arm;
-        let jacobian = model.zero_jacobian(frame, q, frames);
-        let (linear, angular) = halves(&Twist::from(jacobian * dq));
-        let velocity = linear + angular.cross(&arm);
-        let (force, torque) = match &mut self.touch.effort {
-            Effort::Wrench(wrench) => halves(wrench),
-            Effort::OverTime(_) => halves(&self.wrench),
-            Effort::Spring { to, spring } => {
-                (spring.pull(*to - position, &velocity), Vector3::zeros())
-            }
-            Effort::Hold {
-                pose: held,
-                linear,
-                angular: turning,
-            } => {
-                let Some(mut here) = transform::isometry(&pose) else {
-                    return JointVector::zeros();
-                };
-                here.translation.vector = position;
-                let held = held.get_or_insert(here);
-                let way = held.translation.vector - position;
-                let off = rotation::error(&held.rotation, &here.rotation);
-                (linear.pull(way, &velocity), turning.pull(off, &angular))
-            }
-            Effort::Wall {
-                point,
-                normal,
-                spring,
-            } => {
-                let depth = (*point - position).dot(normal);
-                // Nothing sticks to a wall.
-                let push = if depth > 0.0 {
-                    (spring.stiffness * depth - spring.damping * velocity.dot(normal)).max(0.0)
-                } else {
-                    0.0
-                };
-                (*normal * push, Vector3::zeros())
-            }
-            Effort::Torque(_) | Effort::Block { .. } => return JointVector::zeros(),
-        };
-        jacobian.tr_mul(&stack(&force, &(torque + arm.cross(&force))))
     }
 }
 

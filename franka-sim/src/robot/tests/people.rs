@@ -170,3 +170,30 @@ fn a_payload_comes_and_goes_while_the_robot_stands_and_is_felt_until_it_is_decla
 fn axis(joint: usize) -> JointVector {
     JointVector::from_fn(|i, _| if i == joint { 1.0 } else { 0.0 })
 }
+
+#[test]
+fn a_moving_spring_leads_the_hand_along_and_says_how_hard_it_pulls() {
+    for_each_robot(|name, pair| {
+        assert!(pair.robot.guide(true));
+        let start = hand(pair);
+        let path = move |t: f64| start + Vector3::new(0.0, 0.1 * t, 0.0);
+        let lead = pair.robot.touch(Touch::carry(path, 2000.0));
+        pair.idle(1000);
+        let off = hand(pair) - path(1.0);
+        assert!(off.norm() < 3e-3, "{name}: {off}");
+        let felt = pair.robot.felt(lead).expect("it has not ended");
+        // Damper and spring, at the end of a millisecond instead of on the mean.
+        let expected = off.y * -2000.0;
+        assert!(
+            (felt.y - expected).abs() < 1.0,
+            "{name}: {felt} of {expected}"
+        );
+
+        pair.robot.let_go();
+        assert_eq!(pair.robot.felt(lead), None, "{name}");
+        let push = Wrench::new(1.0, -2.0, 3.0, 0.1, 0.2, -0.1);
+        let push = (pair.robot.touch(Touch::wrench(push)), push);
+        pair.idle(10);
+        assert_eq!(pair.robot.felt(push.0), Some(push.1), "{name}");
+    });
+}
