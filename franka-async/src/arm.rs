@@ -4,6 +4,7 @@ use std::fmt;
 use std::future::Future;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 use franka_rt::driver::{Observer, Record};
 use franka_rt::law::Gains;
@@ -42,6 +43,28 @@ impl Engage {
     /// Gains of every goal; by default those of its kind, see [`Motion::gains`].
     pub fn gains(mut self, gains: Gains) -> Self {
         self.tuning.gains = Some(gains);
+        self
+    }
+
+    /// Force cap of every goal, `[N]`; see [`Motion::force_cap`].
+    pub fn force_cap(mut self, newtons: f64) -> Self {
+        self.tuning.force_cap = Some(Some(newtons));
+        self
+    }
+
+    /// Takes the force cap away from every goal; see [`Motion::without_force_cap`].
+    pub fn without_force_cap(mut self) -> Self {
+        self.tuning.force_cap = Some(None);
+        self
+    }
+
+    /// Keeps the arm out of these regions, base frame, none by default. The reference slows down
+    /// on the way to one and stops [`KEEP_OUT_STOP`](crate::KEEP_OUT_STOP) before it, and a goal that this blocks is given up
+    /// as [`Lapse::Blocked`](crate::Lapse::Blocked); an arm that stands in a region may leave it. Links and the Franka Hand
+    /// are kept out, no other tool. [`GoalError::KeepOut`](crate::GoalError::KeepOut) refuses more than
+    /// [`KEEP_OUT_MAX`](crate::KEEP_OUT_MAX) regions, numbers that are not finite and negative sides.
+    pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
+        self.engagement.keep_out = Some(regions.into_iter().collect());
         self
     }
 
@@ -120,6 +143,7 @@ impl Robot {
             tuning.budget = Some(goal.budget);
         }
         goal.gains = tuning.gains.unwrap_or(goal.gains);
+        goal.force_cap = tuning.force_cap.unwrap_or(goal.force_cap);
         let (begin, began) = oneshot::channel();
         let (done, ended) = watch::channel(None);
         let arm = Arm {
@@ -250,7 +274,7 @@ impl Arm {
         Follow::new(self.robot().clone(), Some(self.clone()), goal, targets)
     }
 
-    /// Changes gains and limits, of the goal under way and of those to come. Gains fade over 0.3 s: the torques do not step.
+    /// Changes gains, limits and force cap, of the goal under way and of those to come. Gains fade over 0.3 s: the torques do not step.
     ///
     /// # Errors
     /// [`MotionError::Goal`] for values out of their bounds, which change nothing; what ended the session.
@@ -269,6 +293,7 @@ impl Arm {
         let mut kept = self.tuning();
         kept.gains = tuning.gains.or(kept.gains);
         kept.budget = tuning.budget.or(kept.budget);
+        kept.force_cap = tuning.force_cap.or(kept.force_cap);
         Ok(())
     }
 
@@ -326,6 +351,7 @@ impl Arm {
         let tuning = *self.tuning();
         Goal {
             budget: tuning.budget.unwrap_or(goal.budget),
+            force_cap: tuning.force_cap.unwrap_or(goal.force_cap),
             gains: match target {
                 // The axes that are free are free of springs, whatever the others have.
                 Target::Guide(_) => goal.gains,

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
-use franka_rt::session::{Budget, Goal, Stale, Target, Then, Tolerance, Watchdog};
+use franka_rt::session::{Budget, Goal, Lead, Stale, Target, Then, Tolerance, Watchdog};
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::wrappers::WatchStream;
@@ -82,6 +82,20 @@ impl Follow {
     /// See [`Motion::force_cap`](crate::Motion::force_cap).
     pub fn force_cap(mut self, newtons: f64) -> Self {
         self.goal.force_cap = Some(newtons);
+        self
+    }
+
+    /// See [`Motion::without_force_cap`](crate::Motion::without_force_cap).
+    pub fn without_force_cap(mut self) -> Self {
+        self.goal.force_cap = None;
+        self
+    }
+
+    /// Bounds how far ahead of the arm a target may be, metres and radians above zero; by default nothing does. One that is
+    /// further ahead is drawn nearer, in every cycle anew while targets come, so a wild one cannot send the arm far once the
+    /// stream stops.
+    pub fn lead(mut self, lead: Lead) -> Self {
+        self.goal.lead = Some(lead);
         self
     }
 

@@ -87,6 +87,7 @@ pub use reading::{ReadError, Reading, StateStream};
 pub use robot::Robot;
 pub use vacuum::{VacuumGripper, VacuumGripperError};
 
+pub use franka_model::collision::Obstacle;
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 pub use franka_model::model_library::{LibraryError, ModelLibrary};
 #[cfg(feature = "urdf")]
@@ -109,8 +110,9 @@ pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{
-    Backend, Budget, Chunk, ChunkError, Deadman, Free, GoalError, Grip, Lapse, PoseError,
-    Setpoints, Stale, Target, Tolerance,
+    Backend, Budget, Chunk, ChunkError, DEFAULT_FORCE_CAP, Deadman, FORCE_CAP, Free, GoalError,
+    Grip, KEEP_OUT_MAX, KEEP_OUT_STOP, LEAD_FRESH_MS, Lapse, Lead, PoseError, Setpoints, Stale,
+    Target, Tolerance,
 };
 pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
 pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};

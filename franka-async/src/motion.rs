@@ -127,16 +127,26 @@ impl Motion {
         self
     }
 
-    /// Replaces all gains; by default [`Gains::cartesian`] for poses and [`Gains::joint`] for joint positions.
+    /// Replaces the law and all gains; by default [`Gains::cartesian`] for poses and [`Gains::joint`] for joint positions.
+    /// The law is [`Gains::law`]: [`Law::OperationalSpace`](crate::Law::OperationalSpace) moves the arm by the springs at the
+    /// end effector, and gains without any are refused under it.
     pub fn gains(mut self, gains: Gains) -> Self {
         self.goal.gains = gains;
         self
     }
 
-    /// Bounds the force with which springs and dampers press at the end effector, `[N]`, between 5 and 200; by default there is
-    /// no such bound, only the reach of the springs.
+    /// Bounds the force with which springs and dampers press at the end effector, `[N]`, between 5 and 200; by default
+    /// [`DEFAULT_FORCE_CAP`](crate::DEFAULT_FORCE_CAP) for poses and none for joint positions, whose torques the cap may
+    /// take away where the arm is stretched out. What the arm carries without having been told counts: it sinks under
+    /// more weight than the cap, and the motion does not arrive.
     pub fn force_cap(mut self, newtons: f64) -> Self {
         self.goal.force_cap = Some(newtons);
+        self
+    }
+
+    /// Lets springs and dampers press with as much force as they come to. The reach of the springs still bounds theirs.
+    pub fn without_force_cap(mut self) -> Self {
+        self.goal.force_cap = None;
         self
     }
 

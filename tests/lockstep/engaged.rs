@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use franka_model::collision::Obstacle;
 use franka_model::{READY, Wrench};
 use franka_rt::driver::Observer;
-use franka_rt::law::Gains;
+use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
 use franka_rt::session::{
     Backend, Chunk, Deadman, Free, Goal, GoalError, GoalId, Guard, Lapse, PoseError, Setpoints,
@@ -286,7 +287,7 @@ fn gains_are_tuned_without_a_step_and_only_within_their_bounds() {
                 engaged,
                 Tuning {
                     gains,
-                    budget: None,
+                    ..Tuning::default()
                 },
             )
             .unwrap();
@@ -310,7 +311,7 @@ fn gains_are_tuned_without_a_step_and_only_within_their_bounds() {
             engaged,
             Tuning {
                 gains,
-                budget: None,
+                ..Tuning::default()
             },
         );
         assert!(matches!(
@@ -477,4 +478,89 @@ fn chunks_of_a_slow_policy_become_one_smooth_motion() {
             "{late:?}"
         );
     });
+}
+
+#[test]
+fn a_force_cap_is_tuned_within_its_bounds() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let cap = |newtons| Tuning {
+            force_cap: Some(newtons),
+            ..Tuning::default()
+        };
+        for refused in [4.9, 201.0, f64::NAN] {
+            let outcome = lockstep.tune(engaged, cap(Some(refused)));
+            assert!(
+                matches!(outcome, Err(MotionError::Goal(GoalError::ForceCap { .. }))),
+                "{outcome:?}"
+            );
+        }
+        // 12 N of push hold against the default cap, and not against one of 8 N, until it is taken away.
+        lockstep
+            .robot
+            .push_end_effector(Wrench::new(0.0, 12.0, 0.0, 0.0, 0.0, 0.0), 1_000_000);
+        let bound = |lockstep: &mut Lockstep| {
+            lockstep.run(600);
+            lockstep.client.record.bindings.contains(Guard::ForceCap)
+        };
+        assert!(!bound(&mut lockstep));
+        lockstep.tune(engaged, cap(Some(8.0))).unwrap();
+        assert!(bound(&mut lockstep));
+        lockstep.tune(engaged, cap(None)).unwrap();
+        assert!(!bound(&mut lockstep));
+    });
+}
+
+#[test]
+fn a_session_keeps_out_of_its_regions_and_refuses_what_is_none() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let floor = Obstacle::floor(lockstep.true_pose().translation.z - 0.1);
+        let engaged = lockstep.engage_with(Engagement {
+            keep_out: Some(vec![floor]),
+            ..Engagement::default()
+        });
+        let down = up(&lockstep, -0.2);
+        let goal = lockstep
+            .within(engaged, Target::Pose(down), Then::Stay)
+            .unwrap();
+        let outcome = lockstep.until_resolved(goal, 20_000);
+        assert_eq!(outcome, Err(MotionError::Braked(Lapse::Blocked)));
+        lockstep.disengage(engaged);
+        lockstep.until_resolved(engaged, 1000).unwrap();
+        for regions in [vec![floor; 5], vec![Obstacle::floor(f64::NAN)]] {
+            let engagement = Engagement {
+                keep_out: Some(regions),
+                ..Engagement::default()
+            };
+            let goal = lockstep.goal(Target::Rest, Then::Hold);
+            let client = &mut lockstep.client;
+            let (state, now) = (&client.state, client.now);
+            let refused = client.lifecycle.engage(goal, engagement, state, now);
+            assert!(
+                matches!(refused, Err(MotionError::Goal(GoalError::KeepOut { .. }))),
+                "{refused:?}"
+            );
+        }
+    });
+}
+
+#[test]
+fn gains_that_would_not_hold_the_arm_are_refused() {
+    let mut lockstep = Lockstep::ready();
+    for gains in [
+        Gains {
+            law: Law::OperationalSpace,
+            ..Gains::joint()
+        },
+        Gains {
+            project_joint_gains: true,
+            ..Gains::joint()
+        },
+    ] {
+        let goal = lockstep.goal(turned(0.1), Then::Finish);
+        let refused = lockstep.submit(Goal { gains, ..goal });
+        assert_eq!(refused, Err(MotionError::Goal(GoalError::Unheld)));
+    }
 }

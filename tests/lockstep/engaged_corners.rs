@@ -65,6 +65,7 @@ fn a_session_is_tuned_also_while_a_goal_is_taken_back() {
         let tuning = Tuning {
             gains: Some(gains),
             budget: None,
+            ..Tuning::default()
         };
         assert_eq!(lockstep.tune(engaged, tuning), Ok(()));
         let outcome = lockstep.until_resolved(goal, 2000);

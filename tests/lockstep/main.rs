@@ -1,11 +1,13 @@
 //! Motions in lockstep: no sockets, no sleeps, every run the same.
 
 mod awkward_poses;
+mod cancelling;
 mod diagnosis;
 mod endings;
 mod engaged;
 mod engaged_corners;
 mod faults;
+mod force;
 mod goals;
 mod guards;
 mod laws;

@@ -82,6 +82,7 @@ impl Engaged {
             deadman: Some(grip),
             backend,
             observer: Some(Observer::new(observer)),
+            ..Engagement::default()
         });
         Self {
             lockstep,
@@ -178,6 +179,7 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
                 ..Gains::cartesian()
             }),
             budget: None,
+            ..Tuning::default()
         };
         let tuned = engaged.lockstep.tune(engaged.id, tuning);
         tuned.expect("gains within their bounds");

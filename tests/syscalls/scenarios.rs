@@ -95,6 +95,7 @@ pub(crate) async fn engaged() {
     let tuning = Tuning {
         gains: Some(Gains::cartesian()),
         budget: None,
+        ..Tuning::default()
     };
     arm.tune(tuning).await.expect("gains within their bounds");
     still(&deadman).await;

@@ -2,13 +2,14 @@
 
 use core::time::Duration;
 
+use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 
 use super::active::Waiting;
 use super::{Lifecycle, MotionError, Phase};
 use crate::driver::Observer;
 use crate::law::Gains;
-use crate::session::check::check_silence;
+use crate::session::check::{check_keep_out, check_silence};
 use crate::session::{
     Backend, Budget, Chunk, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks, Watchdog,
 };
@@ -18,6 +19,9 @@ use crate::session::{
 pub struct Engagement {
     /// The deadman that it is bound to.
     pub deadman: Option<Grip>,
+    /// What the arm keeps out of, in the place of the regions of [`Lifecycle::keep_out_of`]; up to
+    /// [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX), base frame.
+    pub keep_out: Option<Vec<Obstacle>>,
     /// Who turns setpoints into torques.
     pub backend: Backend,
     /// Who sees its cycles.
@@ -31,6 +35,9 @@ pub struct Tuning {
     pub gains: Option<Gains>,
     /// How fast.
     pub budget: Option<Budget>,
+    /// With how much force springs and dampers may press, `[N]`: see [`Goal::force_cap`]. `Some(None)` takes the cap away. It
+    /// fades as the gains do.
+    pub force_cap: Option<Option<f64>>,
 }
 
 impl Lifecycle {
@@ -38,7 +45,7 @@ impl Lifecycle {
     /// `goal`, whose `id` becomes the name of the session. It resolves when the session has ended.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for gains or a budget that are not accepted, [`MotionError::Busy`] while anything controls the
+    /// [`MotionError::Goal`] for gains, a budget or regions that are not accepted, [`MotionError::Busy`] while anything controls the
     /// arm, [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved then.
     pub fn engage(
         &mut self,
@@ -57,6 +64,9 @@ impl Lifecycle {
         goal.check(&self.model, state)?;
         if let Some(deadman) = &engagement.deadman {
             check_silence(deadman.silence())?;
+        }
+        if let Some(regions) = &engagement.keep_out {
+            check_keep_out(regions)?;
         }
         let waiting = Waiting {
             goal,
@@ -173,6 +183,7 @@ impl Lifecycle {
         let tuned = Goal {
             gains: tuning.gains.unwrap_or(current.gains),
             budget: tuning.budget.unwrap_or(current.budget),
+            force_cap: tuning.force_cap.unwrap_or(current.force_cap),
             ..current
         };
         tuned.check(&self.model, state)?;

@@ -9,6 +9,7 @@ use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{Lifecycle, MotionError, MotionReport, Phase};
 use crate::driver::{MotionId, MotionStatistics, Program};
+use crate::session::check::check_keep_out;
 use crate::session::{
     self, Backend, Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then,
 };
@@ -308,6 +309,10 @@ impl Lifecycle {
             let (writer, reader) = session::chunk_ring();
             chunks = Some(writer);
             session = session.with_backend(backend).with_chunks(reader).going_on();
+            if let Some(regions) = engagement.keep_out {
+                // Checked where the session was asked for.
+                session = session.out_of(check_keep_out(&regions).unwrap_or(self.keep_out));
+            }
             if let Some(deadman) = engagement.deadman {
                 session = session.bound_to(deadman);
             }

@@ -2,12 +2,13 @@
 
 use core::time::Duration;
 
+use franka_model::collision::Obstacle;
 use franka_model::{EndEffector, JointVector, Model, inverse_kinematics};
 use franka_proto::RobotState;
 
-use crate::law::GainError;
+use crate::law::{GainError, Law};
 use crate::otg::AxisLimits;
-use crate::session::{Budget, CHUNKS_MAX, FORCE_CAP, Goal, Target, Watchdog, approach};
+use crate::session::{Budget, CHUNKS_MAX, FORCE_CAP, Goal, KeepOut, Target, Watchdog, approach};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -53,6 +54,10 @@ pub enum GoalError {
     /// A stiffness or damping is out of bounds.
     #[error(transparent)]
     Gains(#[from] GainError),
+    /// Gains whose joint springs act only in the null space of the end effector have no spring at the end effector: nothing
+    /// would take the arm to its target.
+    #[error("no spring at the end effector, and those of the joints act in its null space only")]
+    Unheld,
     /// A tolerance is not positive.
     #[error("tolerance {got}, expected above 0")]
     Tolerance {
@@ -72,6 +77,14 @@ pub enum GoalError {
     #[error("the robot's controller, which this session commands, {why}")]
     Backend {
         /// Why not.
+        why: &'static str,
+    },
+    /// A region to keep out of is one too many, or none at all.
+    #[error("region {region} to keep out of {why}")]
+    KeepOut {
+        /// Which one, from 1.
+        region: usize,
+        /// What is wrong with it.
         why: &'static str,
     },
     /// A lead is not positive.
@@ -105,6 +118,11 @@ impl Goal {
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
         check_budget(&self.budget, model)?;
         self.gains.check()?;
+        let projected = self.gains.project_joint_gains || self.gains.law == Law::OperationalSpace;
+        let guided = matches!(self.target, Target::Guide(_));
+        if projected && !guided && self.gains.cartesian_stiffness == [0.0; 6] {
+            return Err(GoalError::Unheld);
+        }
         for got in [self.tolerance.translation, self.tolerance.rotation] {
             if got.is_nan() || got <= 0.0 {
                 return Err(GoalError::Tolerance { got });
@@ -158,6 +176,35 @@ pub(super) fn target(target: &Target, model: &Model, state: &RobotState) -> Resu
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{CHUNKS_MAX} chunks are under way already")]
 pub struct TooManyChunks;
+
+/// Checks regions to keep out of, and gives them the form of a session.
+pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError> {
+    let mut checked = KeepOut::default();
+    for (i, region) in regions.iter().enumerate() {
+        let refused = |why| GoalError::KeepOut { region: i + 1, why };
+        let slot = checked.get_mut(i);
+        let slot = slot.ok_or_else(|| refused("is one more than a session has room for"))?;
+        let (finite, positive) = match region {
+            Obstacle::Plane { normal, offset } => {
+                (normal.iter().chain([offset]).all(|x| x.is_finite()), true)
+            }
+            Obstacle::Box { pose, half } => {
+                let (p, r) = (pose.translation.vector, pose.rotation.coords);
+                let numbers = p.iter().chain(r.iter()).chain(half.iter());
+                let finite = numbers.copied().all(f64::is_finite);
+                (finite, half.iter().all(|&side| side >= 0.0))
+            }
+        };
+        if !finite {
+            return Err(refused("holds a number that is not finite"));
+        }
+        if !positive {
+            return Err(refused("has a negative side"));
+        }
+        *slot = Some(*region);
+    }
+    Ok(checked)
+}
 
 /// Checks the silence that a watchdog or a deadman bears.
 pub(crate) fn check_silence(got: Duration) -> Result<(), GoalError> {

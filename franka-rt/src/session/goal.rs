@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use crate::law::Gains;
 use crate::otg::AxisLimits;
-use crate::session::{Budget, Lead};
+use crate::session::{Budget, DEFAULT_FORCE_CAP, Lead};
 use crate::slot::Words;
 
 /// Names one goal for the life of a connection. Updates of a followed target keep the name of the goal they belong to.
@@ -149,7 +149,8 @@ impl Goal {
     pub const SILENCE_MIN: Duration = Duration::from_millis(10);
 
     /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on the way to joint
-    /// positions and the end effector compliant otherwise, the default tolerance, no force cap.
+    /// positions and the end effector compliant otherwise, the default tolerance, and [`DEFAULT_FORCE_CAP`] unless it leads to
+    /// joint positions.
     pub fn new(id: GoalId, target: Target, then: Then, limits: &JointLimits) -> Self {
         Self {
             id,
@@ -163,7 +164,10 @@ impl Goal {
             },
             tolerance: Tolerance::default(),
             watchdog: None,
-            force_cap: None,
+            force_cap: match target {
+                Target::Joints(_) => None,
+                Target::Pose(_) | Target::Rest | Target::Guide(_) => Some(DEFAULT_FORCE_CAP),
+            },
             lead: None,
         }
     }

@@ -402,6 +402,7 @@ impl<'a> Sessions<'a> {
                 .random_bool(0.7)
                 .then(|| draw::gains(&mut self.random)),
             budget: None,
+            ..Tuning::default()
         };
         let budget = self.random.random_bool(0.5).then(|| self.budget());
         let tuned = self.lockstep.tune(id, Tuning { budget, ..tuning });

@@ -1,7 +1,7 @@
 //! The touches there are now, and what each does to the arm.
 
-use franka_model::{EndEffector, Frame, JointVector, Model, Twist, Wrench, rotation, transform};
-use nalgebra::{Isometry3, Matrix3, Vector3};
+use franka_model::{EndEffector, JointVector, Model, Twist, Wrench, rotation, transform};
+use nalgebra::{Matrix3, Vector3};
 
 use super::{Effort, FIRM_JOINT, JOINT_INERTIA, Spring, Touch, TouchId};
 use crate::signal::{CYCLE, halves, stack};

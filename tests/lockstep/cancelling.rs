@@ -1,0 +1,102 @@
+//! A goal taken back in every millisecond of its motion, as dropping its future does. Every command on the way is held
+//! against the limits, that of the jerk included, by the harness.
+
+use franka_proto::RobotMode;
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::{Goal, GoalId, Target, Then};
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+use nalgebra::Translation3;
+
+/// Longest that an arm takes to rest once its goal is taken back, and to be let go, `[ms]`.
+const STOP: u64 = 600;
+
+/// Joint velocity of an arm at rest, `[rad/s]`.
+const REST: f64 = 0.01;
+
+/// A brisk goal half a centimetre away, up and down in turn.
+fn goal(lockstep: &mut Lockstep, turn: u64, then: Then, joints: bool) -> Goal {
+    let way = if turn.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let target = if joints {
+        let mut q: [f64; 7] = (*lockstep.robot.q()).into();
+        q[3] += way * 0.02;
+        Target::Joints(q)
+    } else {
+        (Translation3::new(0.0, 0.0, way * 0.005) * lockstep.true_pose()).into()
+    };
+    let goal = lockstep.goal(target, then);
+    Goal {
+        budget: goal.budget.scaled(1.7),
+        ..goal
+    }
+}
+
+/// Takes a goal back in its first millisecond, in its second, and so on until one arrives before that.
+fn in_every_millisecond(
+    lockstep: &mut Lockstep,
+    mut submit: impl FnMut(&mut Lockstep, u64) -> GoalId,
+    mut at_rest: impl FnMut(&mut Lockstep),
+) {
+    for moment in 0.. {
+        let goal = submit(lockstep, moment);
+        lockstep.run(moment);
+        if let Some(outcome) = lockstep.client.outcome(goal) {
+            println!("arrived after {moment} ms");
+            assert!(outcome.is_ok(), "{outcome:?}");
+            assert!(moment > 300, "{moment} ms");
+            return;
+        }
+        lockstep.cancel(goal);
+        at_rest(lockstep);
+        assert!(lockstep.robot.dq().amax() < REST, "{moment} ms");
+        let outcome = lockstep.client.outcome(goal);
+        assert!(
+            matches!(outcome, None | Some(Ok(_) | Err(MotionError::Stopped))),
+            "{moment} ms: {outcome:?}"
+        );
+    }
+}
+
+#[test]
+fn a_motion_taken_back_in_any_millisecond_ends_at_rest() {
+    for_each_robot(|ready| {
+        for joints in [false, true] {
+            let mut lockstep = ready();
+            in_every_millisecond(
+                &mut lockstep,
+                |lockstep, turn| {
+                    let goal = goal(lockstep, turn, Then::Finish, joints);
+                    lockstep.submit(goal).expect("within reach")
+                },
+                |lockstep| {
+                    lockstep.until_idle(STOP);
+                    lockstep.run(5);
+                    assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
+                },
+            );
+        }
+    });
+}
+
+#[test]
+fn a_goal_of_a_session_taken_back_in_any_millisecond_leaves_the_arm_held() {
+    for_each_robot(|ready| {
+        for joints in [false, true] {
+            let mut lockstep = ready();
+            let engaged = lockstep.engage();
+            in_every_millisecond(
+                &mut lockstep,
+                |lockstep, turn| {
+                    let goal = goal(lockstep, turn, Then::Stay, joints);
+                    lockstep.submit_within(engaged, goal).expect("within reach")
+                },
+                |lockstep| {
+                    lockstep.run(STOP / 2);
+                    assert_eq!(lockstep.client.outcome(engaged), None, "it goes on");
+                    assert_eq!(lockstep.client.state.robot_mode, RobotMode::Move);
+                },
+            );
+            lockstep.disengage(engaged);
+            lockstep.until_resolved(engaged, 1000).expect("as asked");
+        }
+    });
+}

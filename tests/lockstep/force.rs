@@ -1,0 +1,377 @@
+//! With how much force the arm presses: on something that stands in its way, and on a hand that pushes it.
+//!
+//! The forces are those of the simulated contact, in the millisecond in which it acts on the arm; nothing of them is taken
+//! from the driver. Of a push, the part that accelerates the arm is not the law's. It is what the contact has to give
+//! whatever the torques are, `Lambda J ddq`, with the simulated arm's whole inertia, rotors included, and is subtracted: by
+//! the equations of motion the rest is what torques and friction of the joints oppose to the hand,
+//!
+//! ```text
+//! M ddq + c = tau - friction + J' f    =>    f - Lambda (J ddq) = -Lambda J M^-1 (tau - friction - c)
+//! ```
+
+use franka_model::{EndEffector, JointVector, Load, Model, transform};
+use franka_proto::{CollisionBehavior, Request, RobotMode};
+use franka_rt::law::{Gains, Law};
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::{DEFAULT_FORCE_CAP, Goal, GoalId, Guard, Target, Then, Tolerance};
+use franka_sim::plant::ArmParameters;
+use franka_sim::{Touch, TouchId};
+use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
+use nalgebra::{SMatrix, Translation3, Vector3};
+
+/// A robot whose collision thresholds let anybody push.
+fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
+    let mut lockstep = ready();
+    let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
+    lockstep.request(&Request::SetCollisionBehavior(tolerant));
+    lockstep.run(5);
+    lockstep
+}
+
+fn force(lockstep: &Lockstep, touch: TouchId) -> Vector3<f64> {
+    let felt = lockstep.robot.felt(touch).expect("it has not ended");
+    felt.fixed_rows::<3>(0).into_owned()
+}
+
+fn directions() -> [Vector3<f64>; 3] {
+    [Vector3::x(), Vector3::y(), -Vector3::z()]
+}
+
+/// Twice as stiff as the default: its spring alone reaches 37.5 N at the leash.
+fn stiff() -> Gains {
+    Gains::cartesian().with_cartesian_stiffness([1500.0, 1500.0, 1500.0, 15.0, 15.0, 15.0])
+}
+
+fn operational() -> Gains {
+    Gains {
+        law: Law::OperationalSpace,
+        ..stiff()
+    }
+}
+
+fn head_for(
+    lockstep: &mut Lockstep,
+    engaged: GoalId,
+    target: Target,
+    gains: Gains,
+    force_cap: Option<f64>,
+) {
+    let goal = Goal {
+        gains,
+        force_cap,
+        ..lockstep.goal(target, Then::Hold)
+    };
+    lockstep.submit_within(engaged, goal).expect("within reach");
+}
+
+/// Mean and greatest force on a wall 3 cm from the arm, whose goal is 20 cm beyond it, in the last of three seconds.
+fn on_a_wall(
+    ready: &dyn Fn() -> Lockstep,
+    way: Vector3<f64>,
+    gains: Gains,
+    force_cap: Option<f64>,
+) -> (f64, f64) {
+    let mut lockstep = tolerant(ready);
+    let start = lockstep.true_pose();
+    let engaged = lockstep.engage();
+    let at = start.translation.vector + way * 0.03;
+    let wall = lockstep
+        .robot
+        .touch(Touch::wall(at, -way).stiffness(5000.0));
+    let beyond = Translation3::from(way * 0.23) * start;
+    head_for(&mut lockstep, engaged, beyond.into(), gains, force_cap);
+    lockstep.run(2000);
+    let (mut mean, mut most) = (0.0, 0.0_f64);
+    for _ in 0..1000 {
+        lockstep.tick();
+        let force = force(&lockstep, wall).norm();
+        mean += force / 1000.0;
+        most = most.max(force);
+    }
+    assert_eq!(lockstep.client.outcome(engaged), None);
+    assert_eq!(lockstep.client.state.robot_mode, RobotMode::Move);
+    (mean, most)
+}
+
+#[test]
+fn an_arm_held_at_its_leash_pulls_with_no_more_than_the_cap() {
+    for_each_robot(|ready| {
+        for way in directions() {
+            for (name, gains) in [
+                ("default", Gains::cartesian()),
+                ("1500 N/m", stiff()),
+                ("joints", Gains::joint()),
+                ("operational", operational()),
+            ] {
+                let (free, _) = on_a_wall(ready, way, gains, None);
+                for cap in [15.0, 25.0, 30.0] {
+                    let (mean, most) = on_a_wall(ready, way, gains, Some(cap));
+                    println!("{name}: {free:.1} N, {mean:.2} N ({most:.2} N) under {cap} N");
+                    if gains.law == Law::Hybrid {
+                        // Friction holds a little against the spring.
+                        assert!(most <= 1.05 * cap, "{way}, {name}: {most} N under {cap} N");
+                        assert!(mean >= 0.95 * cap.min(free), "{way}, {name}: {mean} N");
+                    } else {
+                        // Coupled by the inertia the arm trembles on a stiff wall, and some of it goes beyond the cap.
+                        assert!(mean <= 1.1 * cap, "{way}, {name}: {mean} N under {cap} N");
+                    }
+                }
+            }
+        }
+    });
+}
+
+/// The arm as the simulator has it, to tell what a push spends on its inertia.
+struct Body {
+    model: &'static Model,
+    load: Load,
+    parameters: ArmParameters,
+    ee: EndEffector,
+}
+
+impl Body {
+    fn of(lockstep: &Lockstep) -> Self {
+        let config = lockstep.robot.config();
+        let f_t_ee = transform::isometry_from_array(&lockstep.robot.state().F_T_EE);
+        Self {
+            model: Model::of(config.kind),
+            load: config.tool.load,
+            parameters: ArmParameters::of(config.kind),
+            ee: EndEffector {
+                f_t_ee: transform::matrix(&f_t_ee.expect("a rigid frame")),
+                ..EndEffector::default()
+            },
+        }
+    }
+
+    /// The force that a hand at the end effector has to give to accelerate the joints so.
+    fn inertial(&self, q: &JointVector, dq: &JointVector, ddq: &JointVector) -> Vector3<f64> {
+        let gravity = &self.parameters.gravity_earth;
+        let dynamics = self.model.dynamics(q, dq, &self.ee, &self.load, gravity);
+        let mass = dynamics.mass + SMatrix::from_diagonal(&self.parameters.armature);
+        let inverse = mass.try_inverse().expect("positive definite");
+        let jacobian = dynamics.jacobian;
+        let mobility = jacobian * inverse * jacobian.transpose();
+        let wrench = mobility.try_inverse().expect("regular") * (jacobian * ddq);
+        wrench.fixed_rows::<3>(0).into_owned()
+    }
+}
+
+/// What a push felt like, `[N]`.
+#[derive(Debug, Default)]
+struct Felt {
+    /// The greatest force of the contact.
+    whole: f64,
+    /// The greatest of it without what accelerates the arm.
+    pressed: f64,
+    /// The mean over the last 100 ms, when the hand is at its pace.
+    steady: f64,
+    /// In how many milliseconds the cap bound.
+    capped: u32,
+}
+
+/// Pace of the hand, `[m/s]`.
+const PACE: f64 = 0.25;
+
+/// How long it takes to come to that pace, `[s]`.
+const START: f64 = 0.1;
+
+/// How long it pushes, `[ms]`: over 16 cm.
+const PUSH: u64 = 700;
+
+/// Where the hand is after so many seconds, `[m]`.
+fn hand(t: f64) -> f64 {
+    if t < START {
+        let turn = core::f64::consts::PI / START;
+        PACE / 2.0 * (t - (turn * t).sin() / turn)
+    } else {
+        PACE * (t - START / 2.0)
+    }
+}
+
+/// A hand as stiff as 5000 N/m pushes the end effector of an arm that is to stay where it is.
+fn pushed(
+    ready: &dyn Fn() -> Lockstep,
+    way: Vector3<f64>,
+    gains: Gains,
+    force_cap: Option<f64>,
+) -> Felt {
+    let mut lockstep = tolerant(ready);
+    let body = Body::of(&lockstep);
+    let engaged = lockstep.engage();
+    let start = lockstep.true_pose();
+    head_for(&mut lockstep, engaged, start.into(), gains, force_cap);
+    lockstep.run(500);
+    let from = lockstep.true_pose().translation.vector;
+    let push = Touch::carry(move |t| from + way * hand(t), 5000.0);
+    let push = lockstep.robot.touch(push);
+    let mut felt = Felt::default();
+    for cycle in 0..PUSH {
+        let (q, dq) = (*lockstep.robot.q(), *lockstep.robot.dq());
+        lockstep.tick();
+        let ddq = (lockstep.robot.dq() - dq) / 1e-3;
+        let force = force(&lockstep, push);
+        let pressed = force - body.inertial(&q, &dq, &ddq);
+        felt.whole = felt.whole.max(force.norm());
+        felt.pressed = felt.pressed.max(pressed.norm());
+        if cycle + 100 >= PUSH {
+            felt.steady += force.norm() / 100.0;
+        }
+        let bindings = lockstep.client.record.bindings;
+        felt.capped += u32::from(bindings.contains(Guard::ForceCap));
+    }
+    assert_eq!(lockstep.client.state.robot_mode, RobotMode::Move);
+    felt
+}
+
+#[test]
+fn a_hand_that_pushes_meets_no_more_than_the_cap_and_without_one_it_does() {
+    for_each_robot(|ready| {
+        for way in directions() {
+            for (name, gains) in [
+                ("default", Gains::cartesian()),
+                ("1500 N/m", stiff()),
+                ("joints", Gains::joint()),
+                ("operational", operational()),
+            ] {
+                let free = pushed(ready, way, gains, None);
+                println!("{name}: {free:.1?}");
+                assert_eq!(free.capped, 0);
+                assert!(
+                    free.pressed > 1.1 * DEFAULT_FORCE_CAP,
+                    "{way}, {name}: {free:?}"
+                );
+                for cap in [15.0, 25.0, DEFAULT_FORCE_CAP] {
+                    let felt = pushed(ready, way, gains, Some(cap));
+                    println!("  {cap} N: {felt:.1?}");
+                    assert!(felt.capped > 20, "{way}, {name}: {felt:?}");
+                    assert!(
+                        felt.pressed <= 1.1 * cap,
+                        "{way}, {name}, {cap} N: {felt:?}"
+                    );
+                }
+            }
+        }
+    });
+}
+
+/// A load on the flange, 5 cm in front of it, `[kg]`.
+fn load(mass: f64) -> Load {
+    Load {
+        mass,
+        com: Vector3::new(0.0, 0.0, 0.05),
+        inertia: nalgebra::Matrix3::identity() * (mass * 2e-3),
+    }
+}
+
+fn declare(lockstep: &mut Lockstep, load: &Load) {
+    let mut inertia = [0.0; 9];
+    inertia.copy_from_slice(load.inertia.as_slice());
+    lockstep.request(&Request::SetLoad(franka_proto::Load {
+        m_load: load.mass,
+        F_x_Cload: load.com.into(),
+        I_load: inertia,
+    }));
+    lockstep.run(1000);
+}
+
+/// The target of a load that nobody has declared is missed by as much as it sags.
+const SAG: Tolerance = Tolerance {
+    translation: 0.01,
+    rotation: 0.05,
+};
+
+/// Runs until the goal has arrived; returns the milliseconds in which the cap bound.
+fn capped_until_it_arrives(lockstep: &mut Lockstep, engaged: GoalId, target: Target) -> u32 {
+    let goal = Goal {
+        tolerance: SAG,
+        ..lockstep.goal(target, Then::Stay)
+    };
+    let goal = Goal {
+        force_cap: Some(DEFAULT_FORCE_CAP),
+        ..goal
+    };
+    let goal = lockstep.submit_within(engaged, goal).expect("within reach");
+    let mut capped = 0;
+    while lockstep.client.outcome(goal).is_none() {
+        lockstep.tick();
+        let bindings = lockstep.client.record.bindings;
+        capped += u32::from(bindings.contains(Guard::ForceCap));
+    }
+    lockstep.until_resolved(goal, 1).expect("an arrival");
+    capped
+}
+
+#[test]
+fn motions_that_nothing_holds_back_do_not_meet_the_default_cap() {
+    for_each_robot(|ready| {
+        for (mass, declared) in [(0.0, false), (3.0, true), (0.5, false)] {
+            let mut lockstep = tolerant(ready);
+            if mass > 0.0 {
+                lockstep.robot.attach(load(mass));
+            }
+            if declared {
+                declare(&mut lockstep, &load(mass));
+            }
+            let engaged = lockstep.engage();
+            let mut capped = 0;
+            for way in directions() {
+                for sign in [1.0, -1.0] {
+                    let step = Translation3::from(way * 0.05 * sign);
+                    let target = (step * lockstep.reference_pose()).into();
+                    capped += capped_until_it_arrives(&mut lockstep, engaged, target);
+                }
+            }
+            for joint in 0..7 {
+                let mut q = lockstep.client.record.q_ref;
+                q[joint] += 0.4;
+                let target = Target::Joints(q);
+                capped += capped_until_it_arrives(&mut lockstep, engaged, target);
+            }
+            // A stop out of full pace.
+            let far = Translation3::new(0.0, 0.2, 0.0) * lockstep.reference_pose();
+            lockstep
+                .within(engaged, far.into(), Then::Hold)
+                .expect("within reach");
+            lockstep.run(700);
+            capped += capped_until_it_arrives(&mut lockstep, engaged, Target::Rest);
+            assert_eq!(capped, 0, "{mass} kg, declared: {declared}");
+        }
+    });
+}
+
+#[test]
+fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
+    for_each_robot(|ready| {
+        for (mass, force_cap) in [
+            (2.0, None),
+            (2.0, Some(DEFAULT_FORCE_CAP)),
+            (4.0, None),
+            (4.0, Some(DEFAULT_FORCE_CAP)),
+        ] {
+            let mut lockstep = tolerant(ready);
+            let engaged = lockstep.engage();
+            let mut q: [f64; 7] = (*lockstep.robot.q()).into();
+            q[0] += 0.2;
+            let goal = Goal {
+                force_cap,
+                ..lockstep.goal(Target::Joints(q), Then::Stay)
+            };
+            lockstep.robot.attach(load(mass));
+            let id = lockstep.submit_within(engaged, goal).expect("in range");
+            let outcome = lockstep.until_resolved(id, 30_000);
+            println!("{mass} kg, {force_cap:?}: {}", told(&outcome));
+            let error = outcome.expect_err("it is not within a millimetre");
+            let borne = force_cap.is_none_or(|cap| mass * 9.81 < cap);
+            let short = matches!(error, MotionError::Short(_));
+            assert_eq!(short, borne, "{mass} kg: {error}");
+        }
+    });
+}
+
+fn told(outcome: &Outcome) -> String {
+    outcome.as_ref().map_or_else(
+        |error| error.to_string(),
+        |report| format!("{:?}", report.final_error),
+    )
+}
