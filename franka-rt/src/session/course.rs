@@ -32,6 +32,8 @@ pub(super) struct Step {
     pub(super) bounds: Held,
     /// Whether the pose had to wait for joints that were held back.
     pub(super) held: bool,
+    /// Whether a leash of the course's own moved the reference with the arm.
+    pub(super) leashed: bool,
 }
 
 impl Step {
@@ -41,6 +43,7 @@ impl Step {
             reference,
             bounds: Held::default(),
             held: false,
+            leashed: false,
         }
     }
 }
@@ -127,7 +130,13 @@ impl Course {
                     ddq: acceleration.into(),
                 })
             }
-            Self::Guide(guide) => Step::free(guide.step(reference, arm)),
+            Self::Guide(guide) => {
+                let (reference, leashed) = guide.step(reference, arm);
+                Step {
+                    leashed,
+                    ..Step::free(reference)
+                }
+            }
             Self::Chunk(chunk) => chunk.step(model, ee, posture, reference, now),
             Self::Pose(generator, drift) => {
                 let next = generator.step();
@@ -142,6 +151,7 @@ impl Course {
                     reference,
                     bounds,
                     held,
+                    leashed: false,
                 }
             }
         }

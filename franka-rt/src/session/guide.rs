@@ -64,7 +64,8 @@ impl Guide {
         }
     }
 
-    pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> Reference {
+    /// One nominal millisecond on; tells whether something pushed the arm off what stays, by more than the leash.
+    pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> (Reference, bool) {
         let begun = match &mut self.stage {
             Stage::Braking(generator) if !generator.is_done() => {
                 let State {
@@ -72,11 +73,12 @@ impl Guide {
                     velocity,
                     acceleration,
                 } = *generator.step();
-                return Reference {
+                let braking = Reference {
                     q: position.into(),
                     dq: velocity.into(),
                     ddq: acceleration.into(),
                 };
+                return (braking, false);
             }
             Stage::Floating(floating) if floating.cycle < u32::MAX => floating,
             Stage::Braking(_) | Stage::Floating(_) => {
@@ -87,7 +89,8 @@ impl Guide {
                 }
             }
         };
-        Reference::at_rest(arm.q + begun.step(self.free, arm))
+        let (away, leashed) = begun.step(self.free, arm);
+        (Reference::at_rest(arm.q + away), leashed)
     }
 }
 
@@ -109,11 +112,11 @@ impl Floating {
         }
     }
 
-    /// The distance of the reference from the arm.
-    fn step(&mut self, free: Free, arm: &Measured) -> JointVector {
+    /// The distance of the reference from the arm, and whether the leash held it.
+    fn step(&mut self, free: Free, arm: &Measured) -> (JointVector, bool) {
         let left = 1.0 - f64::from(self.cycle.min(LET_GO)) / f64::from(LET_GO);
         self.cycle = (self.cycle + 1).min(LET_GO);
-        let at_ee = self.at_end_effector(free, arm, left);
+        let (at_ee, mut leashed) = self.at_end_effector(free, arm, left);
         let inverse = Inverse::of(arm);
         let along = inverse.solve(arm, &at_ee);
         let elbow = if free.elbow {
@@ -123,13 +126,17 @@ impl Floating {
             let held = away.map(|away| away.clamp(-JOINT_LEASH, JOINT_LEASH));
             // Like the leash: pushed further, the elbow stays where it has been pushed.
             self.q = arm.q + held;
+            leashed |= held != away;
             held
         };
-        along + elbow - inverse.solve(arm, &(arm.jacobian * elbow))
+        let away = along + elbow - inverse.solve(arm, &(arm.jacobian * elbow));
+        // Near a singular posture a small way of the end effector is a long one of the joints.
+        let held = away.map(|away| away.clamp(-JOINT_LEASH, JOINT_LEASH));
+        (held, leashed || held != away)
     }
 
     /// The same at the end effector. Axes that stay are held as by the leash.
-    fn at_end_effector(&mut self, free: Free, arm: &Measured, left: f64) -> Twist {
+    fn at_end_effector(&mut self, free: Free, arm: &Measured, left: f64) -> (Twist, bool) {
         let away = self.pose.translation.vector - arm.pose.translation.vector;
         let turned = rotation::error(&self.pose.rotation, &arm.pose.rotation);
         let mut offset = Twist::zeros();
@@ -140,9 +147,11 @@ impl Floating {
                 (false, _) => turned[axis - 3],
             };
         }
+        let mut leashed = false;
         for (part, most) in [(0, TRANSLATION_LEASH), (3, ROTATION_LEASH)] {
             let length = offset.fixed_rows::<3>(part).norm();
             if length > most {
+                leashed = true;
                 offset.fixed_rows_mut::<3>(part).scale_mut(most / length);
             }
         }
@@ -151,7 +160,7 @@ impl Floating {
             (arm.pose.translation.vector + ahead).into(),
             rotation::exp(&turn.into_owned()) * arm.pose.rotation,
         );
-        offset
+        (offset, leashed)
     }
 }
 

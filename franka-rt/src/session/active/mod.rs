@@ -214,6 +214,7 @@ impl Active {
             reference,
             bounds,
             held,
+            leashed: guided,
         } = if core::mem::take(&mut self.first) {
             course::Step::free(self.reference)
         } else {
@@ -238,7 +239,7 @@ impl Active {
             // What pulls is the robot's own controller, on whose setpoint the reference is anchored.
             Drive::Setpoints(_) => false,
         };
-        bindings.set(Guard::Leash, leashed);
+        bindings.set(Guard::Leash, leashed || guided);
         let carried_off = self.watch_deviation(model, &arm, leashed);
         bindings.set(Guard::Deviation, carried_off);
         self.held_back = if leashed || held || self.route.is_hindered() {

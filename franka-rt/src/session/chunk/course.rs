@@ -112,6 +112,7 @@ impl ChunkCourse {
                 reference: follow_joints(model.joint_limits(), limits, reference, &player.at(now)),
                 bounds: Held::default(),
                 held: false,
+                leashed: false,
             },
             Play::Poses {
                 player,
@@ -135,6 +136,7 @@ impl ChunkCourse {
                     reference,
                     bounds,
                     held,
+                    leashed: false,
                 }
             }
         }
