@@ -94,24 +94,30 @@ impl Landing {
     }
 }
 
-/// Lets the spring go: its length shrinks to zero, so that the motion ends without a step in torque.
+/// Lets the spring go: the reference goes to where the arm was, so that the motion ends without a step in torque. An arm whose
+/// load is not what was declared still hangs on the spring then, and does not fall.
 #[derive(Debug)]
 pub(super) struct Release {
+    arm: JointVector,
     length: JointVector,
     cycle: u32,
 }
 
 impl Release {
-    /// For a spring that reaches from the measured joints over `length` to the reference, `[rad]`.
-    pub(super) fn new(length: JointVector) -> Self {
-        Self { length, cycle: 0 }
+    /// For a spring that reaches from the arm at `arm` to the reference, both `[rad]`.
+    pub(super) fn new(arm: JointVector, reference: &JointVector) -> Self {
+        Self {
+            arm,
+            length: reference - arm,
+            cycle: 0,
+        }
     }
 
-    /// The length in this cycle.
-    pub(super) fn offset(&mut self) -> JointVector {
+    /// The reference in this cycle.
+    pub(super) fn reference(&mut self) -> JointVector {
         self.cycle += 1;
         let left = RELEASE.saturating_sub(self.cycle);
-        self.length * (f64::from(left) / f64::from(RELEASE))
+        self.arm + self.length * (f64::from(left) / f64::from(RELEASE))
     }
 
     pub(super) fn is_over(&self, at_rest: bool) -> bool {
@@ -164,15 +170,16 @@ mod tests {
 
     #[test]
     fn the_spring_is_let_go_evenly_and_only_at_rest() {
-        let mut release = Release::new(JointVector::repeat(0.01));
+        let arm = JointVector::repeat(-0.5);
+        let mut release = Release::new(arm, &JointVector::repeat(-0.49));
         let mut last = 0.01;
         for _ in 0..RELEASE {
             assert!(!release.is_over(true));
-            let length = release.offset()[0];
+            let length = release.reference()[0] - arm[0];
             assert!((last - length - 1e-4).abs() < 1e-12);
             last = length;
         }
-        assert_eq!(last, 0.0);
+        assert_eq!(release.reference(), arm);
         assert!(release.is_over(true));
         assert!(!release.is_over(false));
     }

@@ -73,7 +73,7 @@ impl Active {
                     (Then::Hold | Then::Stay, _) => Stage::Staying,
                     (Then::Finish, Drive::Torques(_)) => {
                         self.route.rest();
-                        Stage::Releasing(Release::new(self.reference.q - arm.q))
+                        Stage::Releasing(Release::new(arm.q, &self.reference.q))
                     }
                     // The robot holds the arm at its setpoint as it is.
                     (Then::Finish, Drive::Setpoints(_)) => Stage::Finished,
@@ -90,7 +90,7 @@ impl Active {
                 })
             }
             Stage::Releasing(release) => {
-                self.reference = Reference::at_rest(arm.q + release.offset());
+                self.reference = Reference::at_rest(release.reference());
                 self.route.rest();
                 if release.is_over(at_rest) {
                     self.stage = Stage::Finished;
