@@ -7,7 +7,7 @@ use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, RobotStat
 use crate::control::{CartesianPose, JointPositions, MotionCommand, Torques};
 use crate::law::hybrid::Reference;
 use crate::session::{Answer, GoalError, Target, rigid};
-use crate::shaping::{MAX_CUTOFF_FREQUENCY, Shaper};
+use crate::shaping::{Bounds, MAX_CUTOFF_FREQUENCY, Shaper};
 
 /// Who turns setpoints into torques.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,6 +87,23 @@ impl Backend {
 /// its echo is rounded by, and less than any cycle of a motion that matters.
 const ECHO: f64 = 2e-6;
 
+/// Share of the robot's acceleration and jerk that the backstop lets pass: the echo that it limits against is rounded to
+/// `f32` by a Franka Research 3, by up to 0.25 rad/s^2 of what it makes of two positions.
+const BACKSTOP: f64 = 0.95;
+
+/// The bounds of the limiter behind the stream.
+fn backstop(version: Version) -> Bounds {
+    let bounds = match version {
+        Version::V5 => Bounds::fer(),
+        Version::V10 => Bounds::fr3(),
+    };
+    Bounds {
+        joint_acceleration: bounds.joint_acceleration.map(|most| most * BACKSTOP),
+        joint_jerk: bounds.joint_jerk.map(|most| most * BACKSTOP),
+        ..bounds
+    }
+}
+
 /// Streams setpoints to the robot's controller.
 #[derive(Debug)]
 pub(super) struct Stream {
@@ -100,7 +117,9 @@ impl Stream {
     pub(super) fn new(setpoints: Setpoints, version: Version, limits: &JointLimits) -> Self {
         Self {
             setpoints,
-            shaper: Shaper::new(version, true, MAX_CUTOFF_FREQUENCY).with_limits_of(limits),
+            shaper: Shaper::new(version, true, MAX_CUTOFF_FREQUENCY)
+                .with_bounds(backstop(version))
+                .with_limits_of(limits),
             first: true,
         }
     }

@@ -44,6 +44,9 @@ enum Pace {
     Braked(u32),
 }
 
+/// Joint velocity, `[rad/s]`, that a reference may be put to rest from at once: 0.1 rad/s^2 in one cycle.
+const AT_REST: f64 = 1e-4;
+
 impl Route {
     pub(super) fn new(clearance: Clearance) -> Self {
         Self {
@@ -78,7 +81,7 @@ impl Route {
         }
     }
 
-    /// Heads on for `goal` from a reference that something else has moved, if it is on its way.
+    /// Heads on for `goal` from a reference that something else has moved, if it is on its way or has been set moving.
     pub(super) fn begin_again(
         &mut self,
         model: &Model,
@@ -86,7 +89,7 @@ impl Route {
         reference: &Reference,
         goal: &Goal,
     ) {
-        if self.course.is_done() {
+        if self.course.is_done() && reference.dq.amax() < AT_REST {
             return;
         }
         self.lay_aside();

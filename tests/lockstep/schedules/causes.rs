@@ -45,6 +45,8 @@ impl Causes {
             // The arm is measured to go that fast, whatever is commanded.
             RobotError::JointVelocityViolation,
             RobotError::CartesianVelocityViolation,
+            // It may be pushed into itself.
+            RobotError::SelfCollisionAvoidanceViolation,
         ] {
             self.owed.insert(error);
         }

@@ -325,7 +325,8 @@ impl<'a> Sessions<'a> {
                     given.heard = now;
                 }
                 (Ok(false), given) => {
-                    let lost = |given: &mut Given| given.cancelled || self.causes.any();
+                    let told = self.lockstep.client.outcome(id).is_some();
+                    let lost = |given: &mut Given| told || given.cancelled || self.causes.any();
                     assert!(given.is_none_or(lost), "it is followed");
                     return;
                 }
