@@ -177,6 +177,19 @@ impl Placed<'_> {
         })
     }
 
+    /// The same capsules in the same order: what the distance, `[m]`, is at least, and how to get it in full. Most capsules
+    /// are further from most obstacles than anybody needs to know, and the bound takes a fraction of the time.
+    pub fn bounds_to<'o>(
+        &'o self,
+        obstacle: &'o Obstacle,
+    ) -> impl Iterator<Item = (f64, impl FnOnce() -> f64 + 'o)> + 'o {
+        self.moving().map(move |i| {
+            let segment = &self.segments[i];
+            let distance = move || obstacle.nearest(segment).distance;
+            (obstacle.at_least(segment), distance)
+        })
+    }
+
     /// The moving capsule that is nearest to an obstacle. To a floor at the height of the base this is link 1 in most
     /// postures, which turns in place a decimetre above it.
     pub fn nearest_to(&self, obstacle: &Obstacle) -> Proximity<Body> {

@@ -128,7 +128,8 @@ impl Clearance {
         }
     }
 
-    /// What is left at a posture of each distance that is to be kept, always in the same order.
+    /// What is left at a posture of each distance that is to be kept, always in the same order: exactly of the least and
+    /// of all below [`SLOW_ZONE`], and of others perhaps less.
     fn rooms(&self, q: &JointVector) -> Rooms {
         let mut rooms = Rooms {
             all: [f64::INFINITY; ROOMS_MAX],
@@ -141,9 +142,18 @@ impl Clearance {
         }
         if self.keep_out.iter().any(Option::is_some) {
             let arm = self.cover.at(q);
+            let mut least = rooms.least();
             for region in self.keep_out.iter().flatten() {
-                for near in arm.to(region) {
-                    rooms.push(near.distance - KEEP_OUT_STOP);
+                for (bound, distance) in arm.bounds_to(region) {
+                    // A bound stands for what is neither slow nor the least: no comparison asks for more.
+                    let bound = bound - KEEP_OUT_STOP;
+                    let room = if bound >= SLOW_ZONE && bound >= least {
+                        bound
+                    } else {
+                        distance() - KEEP_OUT_STOP
+                    };
+                    least = least.min(room);
+                    rooms.push(room);
                 }
             }
         }
