@@ -4,6 +4,7 @@
 
 mod active;
 mod addresses;
+mod cancelling;
 mod connecting;
 mod control;
 mod crowd;

@@ -47,7 +47,10 @@ fn goals_come_to_their_ends_and_the_session_goes_on_until_it_is_ended() {
             assert_stays(&mut lockstep, engaged);
         }
         lockstep.disengage(engaged);
+        // A motion that comes meanwhile waits for the session to end.
+        let next = lockstep.begin(turned(0.05));
         lockstep.until_resolved(engaged, 1000).unwrap();
+        lockstep.until_resolved(next, 6000).unwrap();
         assert!(lockstep.client.lifecycle.is_idle());
         let late = lockstep.within(engaged, turned(0.0), Then::Stay);
         assert_eq!(late, Err(MotionError::Disengaged));

@@ -222,6 +222,12 @@ impl Lifecycle {
         self.goals().is_some_and(|goals| goals.engaged.is_some())
     }
 
+    /// Whether a session has the arm that takes more goals.
+    pub(super) fn is_engaged_for_more(&mut self) -> bool {
+        self.goals()
+            .is_some_and(|goals| goals.engaged.is_some() && goals.goes_on())
+    }
+
     /// Ends the session of that name. Returns whether it has the arm.
     pub(super) fn release(&mut self, engaged: GoalId, now: Duration) -> bool {
         let ending = self.is_ending();

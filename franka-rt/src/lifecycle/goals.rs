@@ -32,18 +32,22 @@ impl Lifecycle {
         now: Duration,
     ) -> Result<(), MotionError> {
         self.check_open()?;
-        if self.runs_program() || self.is_engaged() {
+        if self.runs_program() || self.is_engaged_for_more() {
             return Err(MotionError::Busy);
         }
         goal.check(&self.model, state)?;
-        self.replace(
-            Waiting {
-                goal,
-                cancelled: false,
-            },
-            MotionError::Superseded,
-            now,
-        );
+        let waiting = Waiting {
+            goal,
+            cancelled: false,
+        };
+        if self.is_engaged() {
+            // The session is about to let the arm go.
+            if let Some(before) = self.next.replace(waiting) {
+                self.resolve(before.goal.id, Err(MotionError::Superseded));
+            }
+        } else {
+            self.replace(waiting, MotionError::Superseded, now);
+        }
         Ok(())
     }
 

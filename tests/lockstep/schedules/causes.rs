@@ -57,6 +57,11 @@ impl Causes {
         self.owed.insert(error);
     }
 
+    /// Whether anybody pushed the arm.
+    pub(super) fn pushed(&self) -> bool {
+        self.pushed
+    }
+
     /// Whether anything was done that may end a motion.
     pub(super) fn any(&self) -> bool {
         self.stopped || !self.owed.is_empty()
