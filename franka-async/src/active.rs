@@ -14,7 +14,7 @@ use franka_rt::thread::{BorrowError, Lease, WriteFault};
 use futures::FutureExt;
 use tokio::sync::oneshot;
 
-use crate::bridge::Outcome;
+use crate::input::Outcome;
 use crate::{MotionError, MotionReport, Party, Robot};
 
 impl Robot {

@@ -13,7 +13,7 @@ use franka_rt::session::{Backend, Budget, Chunk, Free, Goal, GoalId, Grip, Targe
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
-use crate::bridge::{Done, Input, Outcome, Waiting};
+use crate::input::{Done, Input, Outcome, Waiting};
 use crate::motion::Work;
 use crate::{Follow, Motion, Pose, Robot};
 

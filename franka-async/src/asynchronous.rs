@@ -11,7 +11,7 @@ use franka_rt::slot::SlotWriter;
 use futures::FutureExt;
 use futures::future::{BoxFuture, Shared};
 
-use crate::bridge::Outcome;
+use crate::input::Outcome;
 use crate::{MotionError, Robot};
 
 /// Options of [`Robot::asynchronous_joint_positions`].

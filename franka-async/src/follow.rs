@@ -14,7 +14,7 @@ use tokio::sync::{oneshot, watch};
 use tokio_stream::wrappers::WatchStream;
 use tokio_stream::{Stream, StreamExt};
 
-use crate::bridge::Input;
+use crate::input::Input;
 use crate::motion::{Moving, Work};
 use crate::{Arm, Robot};
 

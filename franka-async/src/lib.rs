@@ -57,6 +57,7 @@ mod endpoint;
 pub mod error;
 mod follow;
 mod gripper;
+mod input;
 mod model;
 mod motion;
 mod newest;

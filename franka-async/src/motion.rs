@@ -13,7 +13,7 @@ use franka_rt::session::{Budget, Goal, GoalId, Tolerance};
 use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
-use crate::bridge::Outcome;
+use crate::input::Outcome;
 use crate::{Arm, Robot};
 
 /// What a motion does, on its way to the bridge.

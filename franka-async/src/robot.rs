@@ -14,10 +14,10 @@ use franka_rt::stats::Stats;
 use franka_rt::thread::Lender;
 use tokio::sync::{broadcast, oneshot, watch};
 
-use crate::bridge::{Done, Input, Inputs, Outcome, Waiting};
 use crate::builder::Builder;
 use crate::channel::Channel;
 use crate::endpoint::Endpoint;
+use crate::input::{Done, Input, Inputs, Outcome, Waiting};
 use crate::motion::Work;
 use crate::newest::Newest;
 use crate::publish::Subscriptions;
