@@ -5,7 +5,6 @@ mod cancelling;
 mod diagnosis;
 mod endings;
 mod engaged;
-mod engaged_corners;
 mod faults;
 mod force;
 mod goals;

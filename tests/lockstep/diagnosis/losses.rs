@@ -1,0 +1,138 @@
+//! Packets that were lost, and cycles that were not noted.
+
+use super::{begin, diagnosis, found, stepping};
+use franka_proto::RobotError;
+use franka_rt::control::{Callback, JointVelocities, Torques};
+use franka_rt::diagnosis::{Advice, Bound, Cause, Diagnosis, Quantity, Subject};
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+
+fn starving(lockstep: &mut Lockstep, lose: impl FnOnce(&mut Lockstep)) -> Diagnosis {
+    let version = lockstep.client.version();
+    let work = begin(
+        lockstep,
+        Callback::torques(version, |_, _| Torques([0.0; 7])),
+    );
+    lockstep.run(200);
+    lose(lockstep);
+    let diagnosis = diagnosis(lockstep, work);
+    let error = RobotError::CommunicationConstraintsViolation;
+    let (found, subject, quantity, _) = found(&diagnosis);
+    assert_eq!(
+        (found, subject, quantity),
+        (error, Subject::Arm, Quantity::LostCycles)
+    );
+    assert_eq!(diagnosis.finding.unwrap().bound, Bound::AtMost(19.0));
+    assert_eq!(diagnosis.advice, [Advice::Network]);
+    diagnosis
+}
+
+#[test]
+fn lost_states_are_counted() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let diagnosis = starving(&mut lockstep, |lockstep| lockstep.link.drop_states(30));
+        let end = diagnosis.end.unwrap();
+        let lost = Cause::LostPackets {
+            states: 30,
+            commands: 0,
+            unanswered: 0,
+            longest_run: 30,
+            first: end - 30,
+            last: end - 1,
+            success_rate: 1.0,
+        };
+        assert_eq!(diagnosis.causes, [lost]);
+        assert_eq!(diagnosis.finding.unwrap().value, 30.0);
+    });
+}
+
+#[test]
+fn commands_that_did_not_arrive_are_counted() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let diagnosis = starving(&mut lockstep, |lockstep| lockstep.link.drop_commands(100));
+        let end = diagnosis.end.unwrap();
+        let [
+            Cause::LostPackets {
+                states: 0,
+                commands: 20,
+                unanswered: 0,
+                longest_run: 20,
+                first,
+                last,
+                ..
+            },
+        ] = diagnosis.causes[..]
+        else {
+            panic!("{:?}", diagnosis.causes)
+        };
+        assert_eq!((first, last), (end - 20, end - 1));
+    });
+}
+
+#[test]
+fn a_leap_after_a_loss_is_laid_to_the_loss() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let mut cycle = 0;
+        // Accelerates, so that what the robot makes up for the lost cycles goes on accelerating; the function does not
+        // know, and lets the velocity swing.
+        let callback = Callback::motion(lockstep.client.version(), move |_, _| {
+            cycle += 1;
+            let mut dq = [0.0; 7];
+            dq[0] = 0.2 * (0.03 * f64::from(cycle)).sin() * (f64::from(cycle) / 500.0).min(1.0);
+            JointVelocities(dq)
+        });
+        let work = begin(&mut lockstep, callback);
+        lockstep.run(700);
+        lockstep.link.drop_commands(12);
+        let diagnosis = diagnosis(&mut lockstep, work);
+        assert_eq!(found(&diagnosis).1, Subject::Joint(1));
+        // The robot has judged the first command after the loss, and none of those that were lost.
+        assert_eq!(diagnosis.cycles_before_end(), Some(1));
+        assert!(
+            matches!(
+                diagnosis.causes[..],
+                [
+                    Cause::LostPackets {
+                        commands: 12,
+                        longest_run: 12,
+                        ..
+                    },
+                    Cause::TargetStep { .. }
+                ]
+            ),
+            "{:?}",
+            diagnosis.causes
+        );
+        assert_eq!(diagnosis.advice[0], Advice::Network);
+    });
+}
+
+#[test]
+fn without_a_log_the_diagnosis_says_so() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let lifecycle = std::mem::replace(
+            &mut lockstep.client.lifecycle,
+            franka_rt::lifecycle::Lifecycle::new(
+                franka_model::Model::of(lockstep.robot.config().kind)
+                    .clone()
+                    .into(),
+                lockstep.robot.version(),
+            ),
+        );
+        lockstep.client.lifecycle = lifecycle.with_log_size(0);
+        let mut torques = stepping(0, 10.0);
+        let callback = Callback::torques(lockstep.client.version(), move |_, _| Torques(torques()));
+        let work = begin(&mut lockstep, callback);
+        let diagnosis = diagnosis(&mut lockstep, work);
+        assert_eq!(
+            diagnosis.error,
+            Some(RobotError::ControllerTorqueDiscontinuity)
+        );
+        assert_eq!((diagnosis.finding, diagnosis.end), (None, None));
+        assert!(diagnosis.causes.is_empty());
+        assert!(diagnosis.to_string().contains("there is no log"));
+    });
+}

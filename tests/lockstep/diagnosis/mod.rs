@@ -1,0 +1,74 @@
+//! Reflexes of the simulated robot, and what the error says of how they came about.
+
+mod arm;
+mod losses;
+mod steps;
+
+use franka_proto::{MoveControllerMode, RobotError};
+use franka_rt::control::Callback;
+use franka_rt::diagnosis::{Diagnosis, Origin, Quantity, Subject};
+use franka_rt::driver::Program;
+use franka_rt::session::GoalId;
+use franka_rt::shaping::Shaper;
+use franka_tests::lockstep::Lockstep;
+
+/// Cycles before something happens.
+const QUIET: u32 = 150;
+
+fn begin(lockstep: &mut Lockstep, callback: Callback) -> GoalId {
+    let version = lockstep.client.version();
+    let callback = callback.with_shaper(Shaper::new(version, false, 1000.0));
+    let request = callback.request(version, MoveControllerMode::JointImpedance);
+    let program = Program::Callback(Box::new(callback));
+    lockstep.control(program, request).expect("nothing moves")
+}
+
+/// Runs until a reflex ends the motion; prints what is said of it, and checks its shape.
+fn diagnosis(lockstep: &mut Lockstep, work: GoalId) -> Diagnosis {
+    let error = lockstep.until_resolved(work, 8000).expect_err("a reflex");
+    let diagnosis = error.diagnosis().expect("the robot's doing").clone();
+    println!("{diagnosis}\n");
+    let text = diagnosis.to_string();
+    assert!(text.lines().count() <= 6, "{text}");
+    assert_eq!(
+        diagnosis.errors,
+        error.control().unwrap().failure.reflex_reason
+    );
+    diagnosis
+}
+
+/// What was found: error, subject, quantity and origin.
+fn found(diagnosis: &Diagnosis) -> (RobotError, Subject, Quantity, Origin) {
+    let finding = diagnosis.finding.expect("it is visible");
+    assert_eq!(diagnosis.error, Some(finding.error));
+    (
+        finding.error,
+        finding.subject,
+        finding.quantity,
+        finding.origin,
+    )
+}
+
+/// The limit that was exceeded, which the value has to be beyond.
+fn limit(diagnosis: &Diagnosis) -> f64 {
+    let finding = diagnosis.finding.expect("it is visible");
+    let Some(limit) = finding.bound.limit() else {
+        panic!("{finding:?} has no limit")
+    };
+    assert!(
+        finding.excess().is_some_and(|excess| excess > 0.0),
+        "{finding:?}"
+    );
+    limit
+}
+
+/// A function that returns zeros, and after [`QUIET`] cycles `value` for joint `index`.
+fn stepping(index: usize, value: f64) -> impl FnMut() -> [f64; 7] + Send {
+    let mut cycle = 0;
+    move || {
+        cycle += 1;
+        let mut values = [0.0; 7];
+        values[index] = if cycle > QUIET { value } else { 0.0 };
+        values
+    }
+}

@@ -1,0 +1,238 @@
+//! Sessions that go from goal to goal.
+//!
+//! * `lapses`: silent streams and deadmen. `options`: gains, force cap and regions. `backends`: the robot's own controller, and
+//!   observers. `corners`: what meets a goal that was taken back, and a session without its deadman.
+
+mod backends;
+mod corners;
+mod lapses;
+mod options;
+
+use std::time::Duration;
+
+use franka_model::{READY, Wrench};
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::{Chunk, Free, GoalError, GoalId, PoseError, Target, Then};
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+use nalgebra::{Isometry3, Translation3};
+
+fn up(lockstep: &Lockstep, metres: f64) -> Isometry3<f64> {
+    Translation3::new(0.0, 0.0, metres) * lockstep.true_pose()
+}
+
+fn turned(by: f64) -> Target {
+    let mut q = READY;
+    q[0] += by;
+    Target::Joints(q.into())
+}
+
+fn assert_stays(lockstep: &mut Lockstep, engaged: GoalId) {
+    let before = lockstep.true_pose();
+    lockstep.run(500);
+    let moved = PoseError::between(&lockstep.true_pose(), &before);
+    assert!(moved.translation < 1e-3, "{moved:?}");
+    assert_eq!(lockstep.client.outcome(engaged), None, "it goes on");
+}
+
+#[test]
+fn goals_come_to_their_ends_and_the_session_goes_on_until_it_is_ended() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let pose = up(&lockstep, 0.05);
+        for target in [Target::Pose(pose), turned(0.1), Target::Rest] {
+            let goal = lockstep.within(engaged, target, Then::Stay).unwrap();
+            let report = lockstep.until_resolved(goal, 6000).unwrap();
+            assert_eq!(report.final_error.is_none(), target == Target::Rest);
+            assert_stays(&mut lockstep, engaged);
+        }
+        lockstep.disengage(engaged);
+        // A motion that comes meanwhile waits for the session to end.
+        let next = lockstep.begin(turned(0.05));
+        lockstep.until_resolved(engaged, 1000).unwrap();
+        lockstep.until_resolved(next, 6000).unwrap();
+        assert!(lockstep.client.lifecycle.is_idle());
+        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        assert_eq!(late, Err(MotionError::Disengaged));
+    });
+}
+
+#[test]
+fn a_goal_of_another_kind_takes_over_in_mid_motion() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let pose = up(&lockstep, 0.1);
+        let mut before = None;
+        for target in [
+            Target::Pose(pose),
+            turned(0.3),
+            Target::Pose(pose),
+            turned(0.0),
+        ] {
+            let goal = lockstep.within(engaged, target, Then::Stay).unwrap();
+            if let Some(before) = before.replace(goal) {
+                let superseded = lockstep.until_resolved(before, 1);
+                assert_eq!(superseded, Err(MotionError::Superseded));
+            }
+            lockstep.run(400);
+        }
+        let last = before.expect("there were goals");
+        lockstep.until_resolved(last, 6000).unwrap();
+        assert_stays(&mut lockstep, engaged);
+    });
+}
+
+#[test]
+fn nobody_else_gets_the_arm_meanwhile_but_anybody_can_stop_it() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = lockstep.goal(turned(0.1), Then::Finish);
+        assert_eq!(lockstep.submit(goal), Err(MotionError::Busy));
+        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        lockstep.run(300);
+        let stop = lockstep.stop().expect("it moves");
+        lockstep.until_resolved(stop, 2000).unwrap();
+        for ended in [goal, engaged] {
+            let outcome = lockstep.until_resolved(ended, 1);
+            assert_eq!(outcome, Err(MotionError::Stopped));
+        }
+        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        assert_eq!(late, Err(MotionError::Stopped));
+    });
+}
+
+#[test]
+fn a_goal_that_is_taken_back_leaves_the_arm_held() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        lockstep.run(300);
+        lockstep.cancel(goal);
+        let outcome = lockstep.until_resolved(goal, 2000);
+        assert_eq!(outcome, Err(MotionError::Stopped));
+        assert_stays(&mut lockstep, engaged);
+        // Dropping the session itself lets the arm go.
+        lockstep.cancel(engaged);
+        lockstep.until_resolved(engaged, 1000).unwrap();
+    });
+}
+
+#[test]
+fn a_reflex_is_what_every_goal_hears_that_comes_after_it() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        lockstep.run(300);
+        lockstep.robot.press_user_stop(true);
+        let outcome = lockstep.until_resolved(goal, 2000);
+        let Err(MotionError::Control(error)) = &outcome else {
+            panic!("{outcome:?}");
+        };
+        assert_eq!(lockstep.until_resolved(engaged, 1), outcome);
+        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        assert_eq!(late, Err(MotionError::Control(error.clone())));
+    });
+}
+
+#[test]
+fn a_goal_that_comes_while_the_session_is_ending_hears_how_it_ended() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        lockstep.robot.press_user_stop(true);
+        let mut late = Vec::new();
+        while lockstep.client.outcome(engaged).is_none() {
+            lockstep.tick();
+            late.extend(lockstep.within(engaged, turned(0.1), Then::Stay));
+        }
+        let outcome = lockstep.until_resolved(engaged, 1);
+        assert!(matches!(outcome, Err(MotionError::Control(_))));
+        for (i, goal) in late.iter().enumerate() {
+            let heard = lockstep.until_resolved(*goal, 1);
+            let superseded = heard == Err(MotionError::Superseded);
+            assert!(superseded || heard == outcome, "{i}: {heard:?}");
+        }
+    });
+}
+
+#[test]
+fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let free = Free {
+            axes: [false, true, false, false, false, false],
+            elbow: false,
+        };
+        lockstep
+            .within(engaged, Target::Guide(free), Then::Hold)
+            .unwrap();
+        lockstep.run(400);
+        let start = lockstep.true_pose();
+        let push = Wrench::new(4.0, 4.0, 4.0, 0.0, 0.0, 0.0);
+        lockstep.robot.push_end_effector(push, 1500);
+        lockstep.run(1500);
+        let moved = lockstep.true_pose().translation.vector - start.translation.vector;
+        assert!(moved.y > 0.05, "{moved}");
+        assert!(moved.x.abs() < 0.01 && moved.z.abs() < 0.01, "{moved}");
+        let turned = PoseError::between(&lockstep.true_pose(), &start).rotation;
+        assert!(turned < 0.05, "{turned} rad");
+        // Taken over while the hand still moves it.
+        let hold = lockstep.within(engaged, Target::Rest, Then::Stay).unwrap();
+        lockstep.until_resolved(hold, 5000).unwrap();
+        assert_stays(&mut lockstep, engaged);
+    });
+}
+
+/// A policy that predicts a sine of joint 1 at 10 Hz, from observations that are 150 ms old: 16 points, 50 ms apart.
+#[test]
+fn chunks_of_a_slow_policy_become_one_smooth_motion() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let begin = lockstep.client.state.message_id;
+        let sine = |time: f64| 0.05 * (1.0 - (2.0 * time).cos());
+        let predicted = |time: f64| {
+            let mut q = <[f64; 7]>::from(READY);
+            q[0] += sine(time);
+            q
+        };
+        let mut worst: f64 = 0.0;
+        for call in 0..60 {
+            let now = lockstep.client.state.message_id;
+            let observed = now.saturating_sub(150).max(begin);
+            let since = (observed - begin) as f64 * 1e-3;
+            let points = (0..16).map(|i| {
+                let offset = Duration::from_millis(50 * i);
+                (offset, predicted(since + offset.as_secs_f64()))
+            });
+            let chunk = Chunk::joints(points).unwrap().observed_at(observed);
+            lockstep.chunk(engaged, chunk).unwrap();
+            for _ in 0..100 {
+                lockstep.tick();
+                let time = (lockstep.client.record.time - begin) as f64 * 1e-3;
+                if call >= 10 {
+                    worst = worst.max((lockstep.robot.q()[0] - READY[0] - sine(time)).abs());
+                }
+            }
+        }
+        println!("off by {worst} rad at most");
+        assert!(worst < 4e-3, "{worst} rad");
+        // A pose takes over from the last chunk.
+        let pose = up(&lockstep, 0.05);
+        let goal = lockstep
+            .within(engaged, Target::Pose(pose), Then::Stay)
+            .unwrap();
+        lockstep.until_resolved(goal, 6000).unwrap();
+        let stale = Chunk::joints([(Duration::ZERO, predicted(0.0))]).unwrap();
+        let late = lockstep.chunk(engaged, stale.observed_at(begin));
+        assert!(
+            matches!(late, Err(MotionError::Goal(GoalError::Late { .. }))),
+            "{late:?}"
+        );
+    });
+}
