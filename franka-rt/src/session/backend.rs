@@ -29,6 +29,10 @@ pub enum Setpoints {
     /// Joint positions, for its joint impedance controller. Every goal but hand guiding.
     Joints,
     /// Poses of the end effector, for its Cartesian impedance controller. Poses only.
+    ///
+    /// The robot moves its joints by an inverse kinematics of its own. Where that accelerates a joint by more than the
+    /// reference does here, in particular after lost commands, it may stop itself with a joint discontinuity; slower limits
+    /// make that rarer, [`Self::Joints`] does not have it.
     Poses,
 }
 
