@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport};
-use franka_rt::session::{Budget, Goal, Lead, Stale, Target, Then, Tolerance, Watchdog};
+use franka_rt::session::{Budget, Goal, Lead, Stale, Target, Tolerance, Watchdog};
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::wrappers::WatchStream;
@@ -110,15 +110,7 @@ impl Follow {
     /// [`MotionError::Braked`] when it rests, unless targets come again before that. A target counts even if it equals the
     /// one before. The control thread watches this by itself. Without it, the last target is held for ever.
     pub fn watchdog(mut self, silence: Duration, stale: Stale) -> Self {
-        let then = match self.arm {
-            Some(_) => Then::Stay,
-            None => Then::Finish,
-        };
-        self.goal.watchdog = Some(Watchdog {
-            silence,
-            stale,
-            then,
-        });
+        self.goal.watchdog = Some(Watchdog { silence, stale });
         self
     }
 

@@ -191,7 +191,6 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
                 watchdog: Some(Watchdog {
                     silence: Duration::from_millis(100),
                     stale,
-                    then: Then::Stay,
                 }),
                 ..engaged.lockstep.goal(Target::Pose(home), Then::Hold)
             };

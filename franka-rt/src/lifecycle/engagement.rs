@@ -11,7 +11,7 @@ use crate::driver::Observer;
 use crate::law::Gains;
 use crate::session::check::{check_keep_out, check_silence};
 use crate::session::{
-    Backend, Budget, Chunk, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks, Watchdog,
+    Backend, Budget, Chunk, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks,
 };
 
 /// What a session that goes from goal to goal has beside its goals.
@@ -89,7 +89,6 @@ impl Lifecycle {
         now: Duration,
     ) -> Result<(), MotionError> {
         self.check_engaged(engaged)?;
-        let goal = going_on(goal);
         goal.check(&self.model, state)?;
         if let Some(goals) = self.goals() {
             goals.backend.check(&goal.target)?;
@@ -132,7 +131,7 @@ impl Lifecycle {
         let goal = Goal {
             target: Target::Rest,
             then: Then::Hold,
-            ..going_on(goal)
+            ..goal
         };
         goal.check(&self.model, state)?;
         let ending = self.is_ending();
@@ -274,17 +273,5 @@ impl Lifecycle {
                 _ => MotionError::Disengaged,
             }),
         }
-    }
-}
-
-/// The goal, after whose silence the session goes on.
-fn going_on(goal: Goal) -> Goal {
-    let stays = |watchdog| Watchdog {
-        then: Then::Stay,
-        ..watchdog
-    };
-    Goal {
-        watchdog: goal.watchdog.map(stays),
-        ..goal
     }
 }

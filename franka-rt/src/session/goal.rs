@@ -105,10 +105,8 @@ impl Default for Tolerance {
 pub struct Watchdog {
     /// How long nothing may come, by the robot's clock in whole milliseconds.
     pub silence: Duration,
-    /// What the arm does then.
+    /// What the arm does then. The motion ends once it rests, unless its session goes from goal to goal.
     pub stale: Stale,
-    /// Whether the motion ends once the arm rests. A session that goes from goal to goal goes on.
-    pub then: Then,
 }
 
 /// What an arm does whose targets have stopped coming.
@@ -190,14 +188,10 @@ impl Words for Goal {
         };
         let (watched, silence) = match self.watchdog {
             None => (0, 0),
-            Some(Watchdog {
-                silence,
-                stale,
-                then,
-            }) => {
+            Some(Watchdog { silence, stale }) => {
                 let stale = u64::from(stale == Stale::Brake);
                 let silence = u64::try_from(silence.as_millis()).unwrap_or(u64::MAX);
-                (1 | stale << 1 | then.to_word() << 2, silence)
+                (1 | stale << 1, silence)
             }
         };
         let Budget {
@@ -261,7 +255,6 @@ impl Words for Goal {
                 } else {
                     Stale::Hold
                 },
-                then: Then::from_word(watched >> 2),
             }),
             budget,
             gains: Gains::from_array(core::array::from_fn(|_| number())),
@@ -316,7 +309,6 @@ mod tests {
         let watchdog = Watchdog {
             silence: Duration::from_millis(250),
             stale: Stale::Brake,
-            then: Then::Stay,
         };
         let lead = Lead {
             translation: 0.05,

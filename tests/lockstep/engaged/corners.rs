@@ -82,7 +82,6 @@ fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
             watchdog: Some(Watchdog {
                 silence: Duration::from_millis(50),
                 stale: Stale::Brake,
-                then: Then::Finish,
             }),
             ..lockstep.goal(Target::Joints(turned(0.2)), Then::Hold)
         };

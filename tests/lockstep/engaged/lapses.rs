@@ -16,7 +16,6 @@ fn silent_stream(ready: &dyn Fn() -> Lockstep, stale: Stale) -> (Lockstep, GoalI
         watchdog: Some(Watchdog {
             silence: Duration::from_millis(100),
             stale,
-            then: Then::Stay,
         }),
         ..lockstep.goal(turned(0.01), Then::Hold)
     };

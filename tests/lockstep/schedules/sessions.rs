@@ -388,7 +388,6 @@ impl<'a> Sessions<'a> {
         Watchdog {
             silence: Duration::from_millis(self.random.random_range(20..200)),
             stale: [Stale::Hold, Stale::Brake][self.random.random_range(0..2)],
-            then: [Then::Hold, Then::Stay, Then::Finish][self.random.random_range(0..3)],
         }
     }
 

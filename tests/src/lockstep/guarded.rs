@@ -259,7 +259,6 @@ impl Guarded {
             watchdog: Some(Watchdog {
                 silence: SILENT_STREAM,
                 stale,
-                then: Then::Stay,
             }),
             ..Goal::new(id, target, Then::Hold, limits())
         };

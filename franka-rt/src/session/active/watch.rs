@@ -7,7 +7,7 @@ use franka_model::Model;
 use super::{Active, Measured, Stage};
 use crate::session::course::Course;
 use crate::session::guard::lead::LEAD_FRESH_MS;
-use crate::session::{Lapse, Stale, Target, Then, Watchdog};
+use crate::session::{Lapse, Stale, Target, Then};
 
 impl Active {
     /// Draws a target nearer that is too far ahead of the arm; tells whether it is.
@@ -33,10 +33,15 @@ impl Active {
     pub(super) fn give_up(&mut self, model: &Model, lapse: Lapse) {
         self.goal.target = Target::Rest;
         self.set_out(model);
+        self.lapse(Stale::Brake, lapse);
+    }
+
+    /// Has the goal come to its end where the arm comes to rest.
+    fn lapse(&mut self, stale: Stale, lapse: Lapse) {
         if self.goal.then == Then::Hold {
             self.goal.then = self.afterwards;
         }
-        self.lapse = Some((Stale::Brake, lapse));
+        self.lapse = Some((stale, lapse));
     }
 
     /// Gives up a goal whose arm is being carried off; tells whether it is.
@@ -70,26 +75,20 @@ impl Active {
         {
             return;
         }
+        if !alive {
+            return self.give_up(model, Lapse::Deadman);
+        }
         let silence = Duration::from_millis(now.saturating_sub(self.heard));
-        let lapse = match self.goal.watchdog {
-            _ if !alive => (Stale::Brake, Lapse::Deadman),
-            Some(Watchdog {
-                silence: most,
-                stale,
-                then,
-            }) if self.goal.then == Then::Hold && silence >= most => {
-                self.goal.then = then;
-                (stale, Lapse::Silent { silence })
+        if let Some(watchdog) = self.goal.watchdog
+            && self.goal.then == Then::Hold
+            && silence >= watchdog.silence
+        {
+            let silent = Lapse::Silent { silence };
+            match (watchdog.stale, self.goal.target) {
+                // A hand leads to no last target.
+                (Stale::Brake, _) | (_, Target::Guide(_)) => self.give_up(model, silent),
+                (Stale::Hold, _) => self.lapse(Stale::Hold, silent),
             }
-            _ => return,
-        };
-        if lapse.0 == Stale::Brake {
-            self.goal.target = Target::Rest;
-            self.set_out(model);
         }
-        if self.goal.then == Then::Hold {
-            self.goal.then = Then::Stay;
-        }
-        self.lapse = Some(lapse);
     }
 }
