@@ -2,6 +2,7 @@
 
 mod awkward_poses;
 mod cancelling;
+mod clearance;
 mod diagnosis;
 mod endings;
 mod engaged;

@@ -5,10 +5,10 @@ use franka_model::{EndEffector, JointVector, Model};
 use crate::law::hybrid::Reference;
 use crate::otg::AxisLimits;
 use crate::session::active::Measured;
-use crate::session::chunk::ChunkCourse;
+use crate::session::chunk::{ChunkCourse, ChunkStart};
 use crate::session::course::{self, Course};
 use crate::session::guard::clearance::{Ahead, Clearance};
-use crate::session::{Budget, Goal, Target};
+use crate::session::{Budget, Chunk, Goal, Target};
 
 /// Share of its velocity that a goal keeps where something is near.
 const SLOW: f64 = 0.3;
@@ -30,6 +30,8 @@ pub(super) struct Route {
     pace: Pace,
     /// Cycles for which it still counts as hindered.
     hindered: u32,
+    /// The budget of the brake from which the way to rest was last seen to be clear.
+    judged: Budget,
     /// A chunk that a brake has taken the place of.
     pub(super) left: Option<ChunkCourse>,
 }
@@ -48,12 +50,14 @@ enum Pace {
 const AT_REST: f64 = 1e-4;
 
 impl Route {
-    pub(super) fn new(clearance: Clearance) -> Self {
+    /// For an arm at rest, which begins with this budget.
+    pub(super) fn new(clearance: Clearance, budget: Budget) -> Self {
         Self {
             course: Course::Rest,
             clearance,
             pace: Pace::Full,
             hindered: 0,
+            judged: budget,
             left: None,
         }
     }
@@ -66,19 +70,71 @@ impl Route {
         reference: &Reference,
         goal: &Goal,
     ) {
-        let slow = match self.pace {
-            Pace::Full => false,
-            Pace::Slow(_) => true,
-            Pace::Braked(_) => {
-                self.pace = Pace::Slow(0);
-                true
-            }
+        let paced = self.paced(goal);
+        self.course.head_for(model, ee, reference, &paced);
+    }
+
+    /// Follows a chunk towards its end, `goal`. What was near stays near for now. Gives back the chunk before it.
+    pub(super) fn follow(
+        &mut self,
+        model: &Model,
+        ee: &EndEffector,
+        reference: &Reference,
+        goal: &Goal,
+        chunk: Chunk,
+        now: u64,
+    ) -> Option<ChunkCourse> {
+        let (pose, drift) = self.course.pose(model, ee, reference);
+        let start = ChunkStart {
+            reference,
+            pose,
+            drift,
+            now,
         };
-        if slow && goal.target != Target::Rest {
-            self.course.head_for(model, ee, reference, &slowed(goal));
-        } else {
-            self.course.head_for(model, ee, reference, goal);
+        let budget = self.paced(goal).budget;
+        let next = ChunkCourse::new(model, goal.id, budget, chunk, start);
+        match core::mem::replace(&mut self.course, Course::Chunk(next)) {
+            Course::Chunk(before) => Some(before),
+            _ => None,
         }
+    }
+
+    /// Goes on as before within the changed budget of `goal`.
+    pub(super) fn tune(
+        &mut self,
+        model: &Model,
+        ee: &EndEffector,
+        reference: &Reference,
+        goal: &Goal,
+    ) {
+        let paced = self.paced(goal);
+        match &mut self.course {
+            Course::Chunk(chunk) => chunk.keep_to(model, reference, paced.budget),
+            course => course.head_for(model, ee, reference, &paced),
+        }
+    }
+
+    /// The goal at the pace that what is near allows; one that was braked before something sets out slowly.
+    fn paced(&mut self, goal: &Goal) -> Goal {
+        if matches!(self.pace, Pace::Braked(_)) {
+            self.pace = Pace::Slow(0);
+        }
+        match (goal.target, &self.pace) {
+            (Target::Rest | Target::Guide(_), _) => self.braking(goal),
+            (_, Pace::Full) => *goal,
+            (_, Pace::Slow(_) | Pace::Braked(_)) => slowed(goal),
+        }
+    }
+
+    /// A goal that begins with a brake, which is to be no longer than the one that was seen to be clear.
+    fn braking(&self, goal: &Goal) -> Goal {
+        let mut budget = goal.budget;
+        for (joint, judged) in budget.joints.iter_mut().zip(&self.judged.joints) {
+            joint.velocity = joint.velocity.max(judged.velocity);
+            joint.acceleration = joint.acceleration.max(judged.acceleration);
+            joint.jerk = joint.jerk.max(judged.jerk);
+        }
+        Goal { budget, ..*goal }
     }
 
     /// Heads on for `goal` from a reference that something else has moved, if it is on its way or has been set moving.
@@ -116,6 +172,7 @@ impl Route {
             target: Target::Rest,
             ..*goal
         };
+        let rest = self.braking(&rest);
         self.course.head_for(model, ee, reference, &rest);
     }
 
@@ -169,26 +226,20 @@ impl Route {
             }
             (Ahead::Near, pace @ Pace::Full) => {
                 *pace = Pace::Slow(0);
-                self.change_pace(model, ee, next, &slowed(goal));
+                self.tune(model, ee, next, goal);
             }
             (Ahead::Near, pace) => *pace = Pace::Slow(0),
             (Ahead::Clear, Pace::Slow(clear)) => {
                 *clear += 1;
                 if *clear >= CLEAR {
                     self.pace = Pace::Full;
-                    self.change_pace(model, ee, next, goal);
+                    self.tune(model, ee, next, goal);
                 }
             }
             (Ahead::Clear, Pace::Full | Pace::Braked(_)) => {}
         }
+        self.judged = goal.budget;
         step
-    }
-
-    /// Goes on at the pace of `goal`. A chunk has a time for each of its points, and keeps it.
-    fn change_pace(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
-        if !matches!(self.course, Course::Chunk(_)) {
-            self.course.head_for(model, ee, reference, goal);
-        }
     }
 
     /// Whether something near slows the course down or keeps it from its goal.

@@ -3,9 +3,9 @@
 use franka_model::Model;
 
 use super::{Active, Stage};
-use crate::session::chunk::{ChunkCourse, ChunkReader, ChunkStart};
+use crate::session::chunk::ChunkReader;
 use crate::session::course::Course;
-use crate::session::{Lapse, Stale, Target, Then};
+use crate::session::{Goal, Lapse, Stale, Target, Then};
 
 impl Active {
     /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is over.
@@ -24,17 +24,14 @@ impl Active {
             _ => true,
         };
         if let Some(chunk) = chunks.poll(self.goal.id, now, over) {
-            let (pose, drift) = self.route.course.pose(model, &self.ee, &self.reference);
-            let start = ChunkStart {
-                reference: &self.reference,
-                pose,
-                drift,
-                now,
+            let goal = Goal {
+                target: chunk.target(),
+                ..self.goal
             };
-            let next = ChunkCourse::new(model, self.goal.id, self.goal.budget, chunk, start);
-            if let Course::Chunk(before) =
-                core::mem::replace(&mut self.route.course, Course::Chunk(next))
-            {
+            let before = self
+                .route
+                .follow(model, &self.ee, &self.reference, &goal, chunk, now);
+            if let Some(before) = before {
                 before.end(chunks, now);
             }
             self.aim = self.heading();

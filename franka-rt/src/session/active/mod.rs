@@ -105,7 +105,10 @@ impl Active {
             drive,
             aim: goal.target,
             // Nothing tells which tool is mounted, but that one is: the Hand stands for it.
-            route: Route::new(Clearance::new(model.kind(), state.m_ee > 0.0, keep_out)),
+            route: Route::new(
+                Clearance::new(model.kind(), state.m_ee > 0.0, keep_out),
+                goal.budget,
+            ),
             deviation: Deviation::at(q),
             afterwards,
             stage: Stage::UnderWay,

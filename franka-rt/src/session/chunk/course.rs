@@ -84,8 +84,7 @@ impl ChunkCourse {
                 player: Player::new(curve, origin, blend, reference, now),
             },
             Points::Poses(curve) => {
-                let limits =
-                    budget.able_to_stop(&pose.twist, &pose.acceleration, model.cartesian_limits());
+                let limits = pose_limits(model, &pose, &budget);
                 Play::Poses {
                     player: Player::new(curve, origin, blend, &pose, now),
                     state: pose,
@@ -96,6 +95,32 @@ impl ChunkCourse {
             }
         };
         Self { goal, budget, play }
+    }
+
+    /// Goes on from `reference` within another budget. The chunk keeps its times: what a slower budget leaves it behind by,
+    /// it makes up for.
+    pub(in crate::session) fn keep_to(
+        &mut self,
+        model: &Model,
+        reference: &Reference,
+        changed: Budget,
+    ) {
+        self.budget = changed;
+        match &mut self.play {
+            Play::Joints { player, limits } => {
+                let points = player.curve().states();
+                *limits = joint_limits(model.joint_limits(), points, reference, &changed);
+            }
+            Play::Poses {
+                state,
+                translation,
+                rotation,
+                ..
+            } => {
+                let limits = pose_limits(model, state, &changed);
+                (*translation, *rotation) = (limits.translation, limits.rotation);
+            }
+        }
     }
 
     /// One cycle on, in the answer to the state `now`, from `reference`.
@@ -187,6 +212,11 @@ impl ChunkCourse {
         };
         chunks.give_back(self.goal, chunk, fate);
     }
+}
+
+/// What the end effector may do on its way: its budget, unless it moves and does not keep that.
+fn pose_limits(model: &Model, now: &PoseState, budget: &Budget) -> Budget {
+    budget.able_to_stop(&now.twist, &now.acceleration, model.cartesian_limits())
 }
 
 /// What each joint may do on the way through `points`: its budget, unless it moves and does not keep that, made gentle

@@ -5,7 +5,8 @@
 //! planned, and its posture at rest and half way there are held against the arm's shape. A step from which the arm could
 //! not stop in time is not taken: the reference brakes from where it is, and the step before has shown that this is clear.
 //! So the distance is kept whatever moves the reference, and by the generator's own brake, which keeps the robot's limits;
-//! to less than a tenth of a millimetre, by which the way to rest may sag between the two.
+//! to less than a tenth of a millimetre at the default pace and half a millimetre at a quick one, by which the way to rest
+//! may sag between the two.
 //!
 //! Only what comes nearer is held up. A motion out of a zone is free, also for an arm that begins inside.
 
