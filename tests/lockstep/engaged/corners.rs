@@ -6,7 +6,9 @@ use std::time::Duration;
 use franka_model::READY;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{Chunk, Deadman, Goal, GoalId, Lapse, Stale, Target, Then, Watchdog};
+use franka_rt::session::{
+    Budget, Chunk, Deadman, Free, Goal, GoalId, Lapse, Stale, Target, Then, Watchdog,
+};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 fn turned(by: f64) -> [f64; 7] {
@@ -153,5 +155,77 @@ fn a_stop_that_comes_too_late_for_a_session_ends_it_nevertheless() {
             }
         }
         assert!(late > 10, "{late}");
+    });
+}
+
+#[test]
+fn a_chunk_goes_on_when_its_budget_is_tuned() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        give_chunk(&mut lockstep, engaged, 0.0, 0.2);
+        lockstep.run(200);
+        let slow = lockstep.goal(Target::Rest, Then::Hold).budget.scaled(0.5);
+        let budget = |budget: Budget| Tuning {
+            budget: Some(budget),
+            ..Tuning::default()
+        };
+        assert_eq!(lockstep.tune(engaged, budget(slow)), Ok(()));
+        let most = slow.joints[0].velocity;
+        lockstep.run(150);
+        let dq = lockstep.client.record.dq_ref[0];
+        assert!(dq > 0.9 * most && dq < 1.05 * most, "{dq} of {most} rad/s");
+        // Also on its way to where it ended.
+        lockstep.run(250);
+        assert!(lockstep.robot.q()[0] < turned(0.19)[0], "it is late");
+        assert_eq!(lockstep.tune(engaged, budget(slow.scaled(1.5))), Ok(()));
+        lockstep.run(2000);
+        assert!((lockstep.robot.q()[0] - turned(0.2)[0]).abs() < 2e-3);
+    });
+}
+
+#[test]
+fn a_goal_that_was_given_up_and_rests_is_not_taken_up_again() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = Goal {
+            watchdog: Some(Watchdog {
+                silence: Duration::from_millis(50),
+                stale: Stale::Hold,
+            }),
+            ..lockstep.goal(Target::Joints(turned(0.05)), Then::Hold)
+        };
+        let goal = lockstep.submit_within(engaged, goal).unwrap();
+        // It settles, and the next target leaves before that is known.
+        lockstep.client.is_deaf = true;
+        lockstep.run(2000);
+        let next = Target::Joints(turned(0.2));
+        assert_eq!(lockstep.update(goal, next), Ok(true));
+        lockstep.run(500);
+        lockstep.client.is_deaf = false;
+        let outcome = lockstep.until_resolved(goal, 10);
+        assert!(matches!(outcome, Err(MotionError::Held(_))), "{outcome:?}");
+        assert!((lockstep.robot.q()[0] - turned(0.05)[0]).abs() < 2e-3);
+    });
+}
+
+#[test]
+fn a_hand_that_leads_to_no_last_target_is_braked_and_says_so() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let silence = Duration::from_millis(50);
+        let goal = Goal {
+            watchdog: Some(Watchdog {
+                silence,
+                stale: Stale::Hold,
+            }),
+            ..lockstep.goal(Target::Guide(Free::ALL), Then::Hold)
+        };
+        let goal = lockstep.submit_within(engaged, goal).unwrap();
+        let outcome = lockstep.until_resolved(goal, 2000);
+        let braked = MotionError::Braked(Lapse::Silent { silence });
+        assert_eq!(outcome, Err(braked));
     });
 }

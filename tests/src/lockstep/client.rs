@@ -30,6 +30,8 @@ pub struct Client {
     pub now: Duration,
     /// How long it takes from a state to its answer, and to being ready for the next state.
     pub turnaround: Duration,
+    /// Whether the lifecycle hears nothing of the driver for now, as if its task did not get to run.
+    pub is_deaf: bool,
     /// When it has answered the newest state.
     pub(super) free: Duration,
     session: Session,
@@ -53,6 +55,7 @@ impl Client {
             step: 0,
             now: Duration::ZERO,
             turnaround: Duration::ZERO,
+            is_deaf: false,
             free: Duration::ZERO,
             session: Session::new(version),
             motions: HashMap::new(),
@@ -186,7 +189,9 @@ impl Client {
     /// Passes on what the driver has to tell, watches deadlines, and carries out what follows from both. Returns whether
     /// anything did: the driver may have more to tell then.
     pub fn settle(&mut self) -> bool {
-        while let Some(event) = self.driver.take_event() {
+        while !self.is_deaf
+            && let Some(event) = self.driver.take_event()
+        {
             self.lifecycle.on_event(event, self.now);
         }
         self.lifecycle.on_time(self.now);

@@ -133,26 +133,33 @@ impl Active {
         if matches!(self.stage, Stage::Finished) {
             return;
         }
-        if goal.id == self.goal.id && matches!(self.lapse, Some((_, lapse)) if lapse.is_final()) {
-            return;
-        }
-        self.heard = now;
         if let Drive::Torques(effort) = &mut self.drive {
             effort.take_up(&goal);
         }
-        let same = goal.id == self.goal.id
-            && goal.target == self.goal.target
-            && goal.then == self.goal.then
-            && goal.budget == self.goal.budget;
-        if goal.id != self.goal.id {
+        let named = goal.id == self.goal.id;
+        let taken_back = goal.target == Target::Rest && goal.then != Then::Hold;
+        let over =
+            |(_, lapse): &(Stale, Lapse)| lapse.is_final() || matches!(self.stage, Stage::Staying);
+        if named && !taken_back && self.lapse.as_ref().is_some_and(over) {
+            return; // Whoever asks for more has not heard yet that it was given up.
+        }
+        self.heard = now;
+        let same = named && goal.target == self.goal.target && goal.then == self.goal.then;
+        let tuned = goal.budget != self.goal.budget;
+        if !named {
             self.since = now;
         }
         self.goal = goal;
-        if same && self.lapse.is_none() && !matches!(self.stage, Stage::Releasing(_)) {
-            return; // Tuned, or a sign of life.
+        if !same || self.lapse.is_some() || matches!(self.stage, Stage::Releasing(_)) {
+            self.lapse = None;
+            self.set_out(model);
+        } else if tuned {
+            let aim = Goal {
+                target: self.aim,
+                ..goal
+            };
+            self.route.tune(model, &self.ee, &self.reference, &aim);
         }
-        self.lapse = None;
-        self.set_out(model);
     }
 
     fn set_out(&mut self, model: &Model) {
