@@ -233,6 +233,7 @@ impl Goals {
         self.slot.write(&Goal {
             target: Target::Rest,
             then: Then::Finish,
+            revision: self.current.goal.revision + 1,
             ..self.current.goal
         });
     }
@@ -256,6 +257,11 @@ impl Goals {
         self.current = Waiting {
             goal: Goal {
                 id: engaged,
+                // One that did not arrive is not what the arm is held at.
+                target: match settled.settlement {
+                    Settlement::Arrived(_) => goal.target,
+                    _ => Target::Rest,
+                },
                 then: Then::Hold,
                 watchdog: None,
                 ..goal

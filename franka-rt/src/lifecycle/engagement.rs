@@ -248,6 +248,7 @@ impl Lifecycle {
                 target: Target::Rest,
                 then: Then::Finish,
                 watchdog: None,
+                revision: goals.current.goal.revision + 1,
                 ..goals.current.goal
             };
             let waiting = Waiting {

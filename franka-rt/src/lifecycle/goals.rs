@@ -279,7 +279,10 @@ impl Lifecycle {
         if waiting.cancelled {
             return Ok(false);
         }
-        let goal = change(&waiting.goal);
+        let goal = Goal {
+            revision: waiting.goal.revision + 1,
+            ..change(&waiting.goal)
+        };
         if let Some(state) = state {
             goal.check(&model, state)?;
             backend.check(&goal.target)?;

@@ -140,6 +140,9 @@ pub struct Goal {
     pub force_cap: Option<f64>,
     /// How far ahead of the arm its target may be.
     pub lead: Option<Lead>,
+    /// How often it was asked for something else, or for the same again: a target, an end. One that comes with the same
+    /// number was only tuned, which is no sign of life of a stream.
+    pub revision: u64,
 }
 
 impl Goal {
@@ -167,14 +170,15 @@ impl Goal {
                 Target::Pose(_) | Target::Rest | Target::Guide(_) => Some(DEFAULT_FORCE_CAP),
             },
             lead: None,
+            revision: 0,
         }
     }
 }
 
-/// Name, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of budget, the gains, 2 of
+/// Name, revision, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of budget, the gains, 2 of
 /// tolerance, the force cap (none is no number), 3 of the lead, which are zero where there is none.
 impl Words for Goal {
-    const WORDS: usize = 5 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
+    const WORDS: usize = 6 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
 
     fn store(&self, words: &mut [u64]) {
         let (kind, target) = match self.target {
@@ -209,7 +213,8 @@ impl Words for Goal {
             .chain(self.lead.map_or([0.0; 3], |lead| {
                 [lead.translation, lead.rotation, lead.joints]
             }));
-        let all = [self.id.0, kind, self.then.to_word(), watched, silence]
+        let then = self.then.to_word();
+        let all = [self.id.0, self.revision, kind, then, watched, silence]
             .into_iter()
             .chain(numbers.map(f64::to_bits));
         for (word, value) in words.iter_mut().zip(all) {
@@ -220,7 +225,7 @@ impl Words for Goal {
     fn load(words: &[u64]) -> Self {
         let mut words = words.iter().copied();
         let mut next = || words.next().unwrap_or_default();
-        let [id, kind, then, watched, silence] = core::array::from_fn(|_| next());
+        let [id, revision, kind, then, watched, silence] = core::array::from_fn(|_| next());
         let mut number = || f64::from_bits(next());
         let target = core::array::from_fn(|_| number());
         let mut axis = || AxisLimits {
@@ -269,6 +274,7 @@ impl Words for Goal {
                 joints: number(),
             })
             .filter(|lead| lead.translation > 0.0),
+            revision,
         }
     }
 }
@@ -340,6 +346,7 @@ mod tests {
                 watchdog,
                 force_cap,
                 lead,
+                revision: 5,
             };
             let mut words = [u64::MAX; Goal::WORDS];
             goal.store(&mut words);

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::{assert_stays, turned};
 use franka_model::READY;
-use franka_rt::lifecycle::{Engagement, MotionError};
+use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
 use franka_rt::session::{Deadman, Goal, GoalId, Guard, Lapse, Stale, Then, Watchdog};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
@@ -89,5 +89,59 @@ fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
         drop(token);
         let goal = lockstep.within(engaged, turned(0.0), Then::Stay).unwrap();
         assert_eq!(lockstep.until_resolved(goal, 1000), held);
+    });
+}
+
+/// As stiff as ever, and as fast: what a program that tunes all the time sends.
+fn same_again(lockstep: &mut Lockstep, engaged: GoalId, budget: f64) {
+    let goal = lockstep.goal(turned(0.0), Then::Hold);
+    let tuning = Tuning {
+        gains: Some(goal.gains),
+        budget: Some(goal.budget.scaled(budget)),
+        ..Tuning::default()
+    };
+    lockstep.tune(engaged, tuning).expect("within its bounds");
+}
+
+#[test]
+fn who_tunes_does_not_stand_in_for_a_stream_that_is_silent() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let silence = Duration::from_millis(100);
+        let goal = Goal {
+            watchdog: Some(Watchdog {
+                silence,
+                stale: Stale::Brake,
+            }),
+            ..lockstep.goal(turned(0.8), Then::Hold)
+        };
+        let goal = lockstep.submit_within(engaged, goal).unwrap();
+        let mut tuned = 0;
+        // Also while the arm brakes, when the stream is given up already.
+        while lockstep.client.outcome(goal).is_none() {
+            lockstep.run(20);
+            tuned += 1;
+            same_again(&mut lockstep, engaged, [1.0, 0.9][tuned % 2]);
+            assert!(tuned < 50, "it goes on");
+        }
+        let outcome = lockstep.until_resolved(goal, 1);
+        let braked = MotionError::Braked(Lapse::Silent { silence });
+        assert_eq!(outcome, Err(braked));
+    });
+}
+
+#[test]
+fn who_tunes_does_not_send_the_arm_on_to_what_was_given_up() {
+    for_each_robot(|ready| {
+        let (mut lockstep, engaged, error) = silent_stream(ready, Stale::Brake);
+        assert!(matches!(error, MotionError::Braked(_)));
+        lockstep.run(100);
+        let at = lockstep.robot.q()[0];
+        assert!((READY[0] + 0.66 - at).abs() > 0.02, "short of it");
+        same_again(&mut lockstep, engaged, 0.5);
+        lockstep.run(2000);
+        let now = lockstep.robot.q()[0];
+        assert!((now - at).abs() < 1e-3, "from {at} to {now}");
     });
 }

@@ -137,6 +137,9 @@ impl Active {
             effort.take_up(&goal);
         }
         let named = goal.id == self.goal.id;
+        if named && goal.revision == self.goal.revision {
+            return self.tune(model, goal);
+        }
         let taken_back = goal.target == Target::Rest && goal.then != Then::Hold;
         let over =
             |(_, lapse): &(Stale, Lapse)| lapse.is_final() || matches!(self.stage, Stage::Staying);
@@ -144,19 +147,36 @@ impl Active {
             return; // Whoever asks for more has not heard yet that it was given up.
         }
         self.heard = now;
-        let same = named && goal.target == self.goal.target && goal.then == self.goal.then;
-        let tuned = goal.budget != self.goal.budget;
+        let same = named
+            && self.lapse.is_none()
+            && goal.target == self.goal.target
+            && goal.then == self.goal.then;
+        if same && !matches!(self.stage, Stage::Releasing(_)) {
+            return self.tune(model, goal);
+        }
         if !named {
             self.since = now;
         }
         self.goal = goal;
-        if !same || self.lapse.is_some() || matches!(self.stage, Stage::Releasing(_)) {
-            self.lapse = None;
-            self.set_out(model);
-        } else if tuned {
+        self.lapse = None;
+        self.set_out(model);
+    }
+
+    /// Goes on as before, but as fast, and as it lands, as `goal` says.
+    fn tune(&mut self, model: &Model, goal: Goal) {
+        let Goal { target, then, .. } = self.goal;
+        let before = core::mem::replace(
+            &mut self.goal,
+            Goal {
+                target,
+                then,
+                ..goal
+            },
+        );
+        if goal.budget != before.budget && !matches!(self.stage, Stage::Releasing(_)) {
             let aim = Goal {
                 target: self.aim,
-                ..goal
+                ..self.goal
             };
             self.route.tune(model, &self.ee, &self.reference, &aim);
         }
