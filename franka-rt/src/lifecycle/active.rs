@@ -6,6 +6,7 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 
+use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
 use crate::diagnosis::{Case, Diagnosis};
@@ -19,6 +20,24 @@ use crate::slot::SlotWriter;
 pub(super) struct Waiting {
     pub(super) goal: Goal,
     pub(super) cancelled: bool,
+}
+
+/// What waits for the motion under way to end.
+#[derive(Debug)]
+pub(super) struct Next {
+    pub(super) waiting: Waiting,
+    /// What else there is to the session that it begins, if that goes on from goal to goal.
+    pub(super) engagement: Option<Engagement>,
+}
+
+impl Waiting {
+    /// A goal that its owner wants.
+    pub(super) fn new(goal: Goal) -> Self {
+        Self {
+            goal,
+            cancelled: false,
+        }
+    }
 }
 
 /// What a robot does that starts a motion and shows no state of it.
@@ -183,6 +202,16 @@ impl Active {
     pub(super) fn is_ending(&self) -> bool {
         matches!(self.thread, ThreadSide::Ended(_))
             || matches!(self.command, CommandSide::Ended(_) | CommandSide::Cancelled)
+    }
+
+    /// Whether it is coming to its end, and nobody wants it to go on.
+    pub(super) fn is_letting_go(&self) -> bool {
+        self.is_ending()
+            || match &self.work {
+                Work::Goals(goals) if goals.engaged.is_some() => !goals.goes_on(),
+                Work::Goals(goals) => goals.current.cancelled,
+                Work::Program(program) => program.stopped.is_some(),
+            }
     }
 
     /// Until when a motion under way may go on: without end, unless a stop was asked for.

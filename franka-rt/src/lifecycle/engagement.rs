@@ -42,11 +42,13 @@ pub struct Tuning {
 
 impl Lifecycle {
     /// Starts a session that holds the arm where it is and then goes from goal to goal, with the gains and the budget of
-    /// `goal`, whose `id` becomes the name of the session. It resolves when the session has ended.
+    /// `goal`, whose `id` becomes the name of the session. It resolves when the session has ended. While a motion comes to
+    /// its end that nobody wants any more, the session waits for that.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for gains, a budget or regions that are not accepted, [`MotionError::Busy`] while anything controls the
-    /// arm, [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved then.
+    /// [`MotionError::Goal`] for gains, a budget or regions that are not accepted, [`MotionError::Busy`] while anything
+    /// controls the arm or waits for it, [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved
+    /// then.
     pub fn engage(
         &mut self,
         goal: Goal,
@@ -54,7 +56,14 @@ impl Lifecycle {
         state: &RobotState,
         now: Duration,
     ) -> Result<(), MotionError> {
-        self.check_free(None)?;
+        self.check_open()?;
+        let is_free = match &self.phase {
+            Phase::Active(active) => active.is_letting_go(),
+            Phase::Idle | Phase::Closed(_) => true,
+        };
+        if !is_free || self.next.is_some() {
+            return Err(MotionError::Busy);
+        }
         let goal = Goal {
             target: Target::Rest,
             then: Then::Hold,
@@ -68,11 +77,12 @@ impl Lifecycle {
         if let Some(regions) = &engagement.keep_out {
             check_keep_out(regions)?;
         }
-        let waiting = Waiting {
-            goal,
-            cancelled: false,
-        };
-        self.start_goal(waiting, None, Some(engagement), now);
+        let waiting = Waiting::new(goal);
+        if self.is_idle() {
+            self.start_goal(waiting, None, Some(engagement), now);
+        } else {
+            self.wait(waiting, Some(engagement), MotionError::Superseded);
+        }
         Ok(())
     }
 
@@ -99,10 +109,7 @@ impl Lifecycle {
             }
             return Ok(());
         }
-        let waiting = Waiting {
-            goal,
-            cancelled: false,
-        };
+        let waiting = Waiting::new(goal);
         self.replace(waiting, MotionError::Superseded, now);
         Ok(())
     }
@@ -155,10 +162,7 @@ impl Lifecycle {
             .map_err(|_| GoalError::from(TooManyChunks))?;
         goals.chunk_goal = of;
         if !goes_on {
-            let waiting = Waiting {
-                goal,
-                cancelled: false,
-            };
+            let waiting = Waiting::new(goal);
             self.replace(waiting, MotionError::Superseded, now);
         }
         Ok(())
@@ -251,10 +255,7 @@ impl Lifecycle {
                 revision: goals.current.goal.revision + 1,
                 ..goals.current.goal
             };
-            let waiting = Waiting {
-                goal,
-                cancelled: false,
-            };
+            let waiting = Waiting::new(goal);
             self.replace(waiting, MotionError::Stopped, now);
         }
         true

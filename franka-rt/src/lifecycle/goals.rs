@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use franka_proto::RobotState;
 
-use super::active::{Engaged, Goals, Settled, Waiting, Work};
+use super::active::{Engaged, Goals, Next, Settled, Waiting, Work};
 use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{Lifecycle, MotionError, MotionReport, Phase};
@@ -32,19 +32,18 @@ impl Lifecycle {
         now: Duration,
     ) -> Result<(), MotionError> {
         self.check_open()?;
-        if self.runs_program() || self.is_engaged_for_more() {
+        let engages = |next: &Next| next.engagement.is_some();
+        if self.runs_program()
+            || self.is_engaged_for_more()
+            || self.next.as_ref().is_some_and(engages)
+        {
             return Err(MotionError::Busy);
         }
         goal.check(&self.model, state)?;
-        let waiting = Waiting {
-            goal,
-            cancelled: false,
-        };
+        let waiting = Waiting::new(goal);
         if self.is_engaged() {
             // The session is about to let the arm go.
-            if let Some(before) = self.next.replace(waiting) {
-                self.resolve(before.goal.id, Err(MotionError::Superseded));
-            }
+            self.wait(waiting, None, MotionError::Superseded);
         } else {
             self.replace(waiting, MotionError::Superseded, now);
         }
@@ -66,10 +65,7 @@ impl Lifecycle {
     ) -> Result<(), MotionError> {
         self.check_free(Some(&ticket))?;
         goal.check(&self.model, state)?;
-        let waiting = Waiting {
-            goal,
-            cancelled: false,
-        };
+        let waiting = Waiting::new(goal);
         self.start_goal(waiting, Some(ticket), None, now);
         Ok(())
     }
@@ -100,8 +96,8 @@ impl Lifecycle {
     /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest. A program is taken back in the
     /// same way, by having the robot stop.
     pub fn cancel(&mut self, id: GoalId, now: Duration) {
-        if let Some(next) = self.next.take_if(|next| next.goal.id == id) {
-            return self.resolve(next.goal.id, Err(MotionError::Stopped));
+        if let Some(next) = self.next.take_if(|next| next.waiting.goal.id == id) {
+            return self.resolve(next.waiting.goal.id, Err(MotionError::Stopped));
         }
         if self.cancel_program(id, now) || self.release(id, now) {
             return;
@@ -139,14 +135,7 @@ impl Lifecycle {
             then: Then::Finish,
             ..goals.current.goal
         };
-        self.replace(
-            Waiting {
-                goal,
-                cancelled: false,
-            },
-            MotionError::Stopped,
-            now,
-        );
+        self.replace(Waiting::new(goal), MotionError::Stopped, now);
         true
     }
 
@@ -191,17 +180,20 @@ impl Lifecycle {
         }
     }
 
-    /// Takes up a goal that waited for the motion before it, which has ended with `before`. If rest is all that it asks
+    /// Takes up what waited for the motion before it, which has ended with `before`. If rest is all that it asks
     /// for, the end of that motion has brought it, and no motion is started to brake nothing.
     pub(super) fn follow(
         &mut self,
-        waiting: Waiting,
+        Next {
+            waiting,
+            engagement,
+        }: Next,
         before: &Result<(), MotionError>,
         counted: &Counted,
         now: Duration,
     ) {
         if waiting.goal.target != Target::Rest || waiting.goal.then != Then::Finish {
-            return self.start_goal(waiting, None, None, now);
+            return self.start_goal(waiting, None, engagement, now);
         }
         let result = match before {
             // Nobody knows, or the robot sees to it, whether the arm rests.
@@ -230,7 +222,7 @@ impl Lifecycle {
     /// Puts a goal in the place of all others, which resolve with `reason`. No program may be running.
     pub(super) fn replace(&mut self, waiting: Waiting, reason: MotionError, now: Duration) {
         if let Some(next) = self.next.take() {
-            self.resolve(next.goal.id, Err(reason.clone()));
+            self.resolve(next.waiting.goal.id, Err(reason.clone()));
         }
         let Phase::Active(active) = &mut self.phase else {
             return self.start_goal(waiting, None, None, now);
@@ -255,7 +247,23 @@ impl Lifecycle {
                     self.resolve(previous.goal.id, result);
                 }
             }
-            Work::Goals(_) | Work::Program(_) => self.next = Some(waiting),
+            Work::Goals(_) | Work::Program(_) => self.wait(waiting, None, reason),
+        }
+    }
+
+    /// Has a goal wait until the motion under way has ended. One that waited before it resolves with `reason`.
+    pub(super) fn wait(
+        &mut self,
+        waiting: Waiting,
+        engagement: Option<Engagement>,
+        reason: MotionError,
+    ) {
+        let next = Next {
+            waiting,
+            engagement,
+        };
+        if let Some(before) = self.next.replace(next) {
+            self.resolve(before.waiting.goal.id, Err(reason));
         }
     }
 
@@ -268,7 +276,7 @@ impl Lifecycle {
     ) -> Result<bool, GoalError> {
         let model = self.model.clone();
         let (waiting, slot, backend) = match &mut self.next {
-            Some(next) if next.goal.id == id => (next, None, Backend::Torques),
+            Some(next) if next.waiting.goal.id == id => (&mut next.waiting, None, Backend::Torques),
             _ => match self.goals() {
                 Some(goals) if goals.current.goal.id == id => {
                     (&mut goals.current, Some(&mut goals.slot), goals.backend)

@@ -35,7 +35,7 @@ use crate::driver::{
 use crate::session::{GoalId, KeepOut};
 use crate::together::StartTicket;
 
-use active::{Active, CommandSide, NEVER_SHOWN, ThreadSide, Waiting, Work};
+use active::{Active, CommandSide, NEVER_SHOWN, Next, ThreadSide, Work};
 pub use engagement::{Engagement, Tuning};
 use outcome::Counted;
 pub use outcome::{ControlError, MotionError, MotionReport, Party, Stage};
@@ -79,8 +79,8 @@ pub struct Lifecycle {
     model: Arc<Model>,
     version: Version,
     phase: Phase,
-    /// A goal that waits for the running motion to end.
-    next: Option<Waiting>,
+    /// What waits for the running motion to end.
+    next: Option<Next>,
     /// The last session that goes from goal to goal, if it did not end as asked, and how it ended.
     ended: Option<(GoalId, MotionError)>,
     motions: u64,
@@ -222,7 +222,7 @@ impl Lifecycle {
             self.resolve_work(active.work, &Err(error.clone()), &Err(error.clone()));
         }
         if let Some(next) = self.next.take() {
-            self.resolve(next.goal.id, Err(error));
+            self.resolve(next.waiting.goal.id, Err(error));
         }
     }
 
@@ -429,17 +429,24 @@ impl Lifecycle {
                     && goals.came_too_late(active.command, ended)
                 {
                     // The session had let go before it saw this goal: the goal gets a motion of its own.
-                    debug_assert!(
-                        self.next.is_none(),
-                        "a newer goal would have taken its place"
-                    );
                     let (current, counted) = (goals.current, Counted::of(ended));
                     let well = Ok(MotionReport::new(&counted, 0, None));
                     let end = goals.end_of_engagement(&well);
                     // The end of a session, as of its own goal, is told below.
                     let end = end.filter(|(engaged, _)| *engaged != current.goal.id);
                     self.resolve_session(goals.late.clone(), end);
-                    return self.follow(current, &Ok(()), &counted, now);
+                    let current = Next {
+                        waiting: current,
+                        engagement: None,
+                    };
+                    self.follow(current, &Ok(()), &counted, now);
+                    // One that was taken back asked for nothing more.
+                    if let Phase::Idle = self.phase
+                        && let Some(next) = self.next.take()
+                    {
+                        self.follow(next, &Ok(()), &counted, now);
+                    }
+                    return;
                 }
                 (active.verdict(ended, &self.model), Counted::of(ended))
             }

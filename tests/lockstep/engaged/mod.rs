@@ -1,12 +1,14 @@
 //! Sessions that go from goal to goal.
 //!
 //! * `lapses`: silent streams and deadmen. `options`: gains, force cap and regions. `backends`: the robot's own controller, and
-//!   observers. `corners`: what meets a goal that was taken back, and a session without its deadman.
+//!   observers. `corners`: what meets a goal that was taken back, and a session without its deadman. `waiting`: sessions that
+//!   begin while the arm is let go.
 
 mod backends;
 mod corners;
 mod lapses;
 mod options;
+mod waiting;
 
 use std::time::Duration;
 

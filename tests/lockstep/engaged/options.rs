@@ -113,10 +113,7 @@ fn a_session_keeps_out_of_its_regions_and_refuses_what_is_none() {
                 keep_out: Some(regions),
                 ..Engagement::default()
             };
-            let goal = lockstep.goal(Target::Rest, Then::Hold);
-            let client = &mut lockstep.client;
-            let (state, now) = (&client.state, client.now);
-            let refused = client.lifecycle.engage(goal, engagement, state, now);
+            let refused = lockstep.try_engage(engagement);
             assert!(
                 matches!(refused, Err(MotionError::Goal(GoalError::KeepOut { .. }))),
                 "{refused:?}"

@@ -23,14 +23,7 @@ impl Lockstep {
         // The robot is the judge of its setpoints.
         self.guard = (engagement.backend == Backend::Torques)
             .then(|| CommandGuard::new(self.model.joint_limits()));
-        let goal = self.goal(Target::Rest, Then::Hold);
-        let id = goal.id;
-        let client = &mut self.client;
-        client
-            .lifecycle
-            .engage(goal, engagement, &client.state, client.now)
-            .expect("nothing else moves");
-        self.client.carry_out();
+        let id = self.try_engage(engagement).expect("nothing else moves");
         for _ in 0..1000 {
             self.tick();
             if self.client.record.goal == id.0 {
@@ -38,6 +31,17 @@ impl Lockstep {
             }
         }
         panic!("no session after a second: {:?}", self.client.lifecycle);
+    }
+
+    /// Asks for a session.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn try_engage(&mut self, engagement: Engagement) -> Result<GoalId, MotionError> {
+        let goal = self.goal(Target::Rest, Then::Hold);
+        self.submit_by(goal, |lifecycle, goal, state, now| {
+            lifecycle.engage(goal, engagement, state, now)
+        })
     }
 
     /// Hands a goal to the session `engaged`: one that is awaited, or one that is held until the next.

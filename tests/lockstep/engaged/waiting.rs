@@ -1,0 +1,82 @@
+//! Sessions that begin while the motion before them lets go of the arm.
+
+use super::{assert_stays, turned};
+use franka_rt::lifecycle::{Engagement, MotionError};
+use franka_rt::session::{GoalId, Then};
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+
+fn ask(lockstep: &mut Lockstep) -> Result<GoalId, MotionError> {
+    lockstep.try_engage(Engagement::default())
+}
+
+/// An arm on its way, and the goal of its motion: of a session's own if it is to be engaged.
+fn moving(ready: &dyn Fn() -> Lockstep, engaged: bool) -> (Lockstep, GoalId) {
+    let mut lockstep = ready();
+    let motion = if engaged {
+        let engaged = lockstep.engage();
+        lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        engaged
+    } else {
+        lockstep.begin(turned(0.3))
+    };
+    lockstep.run(400);
+    (lockstep, motion)
+}
+
+#[test]
+fn a_session_waits_for_the_end_of_what_was_dropped() {
+    for_each_robot(|ready| {
+        for engaged in [false, true] {
+            let (mut lockstep, motion) = moving(ready, engaged);
+            assert_eq!(ask(&mut lockstep), Err(MotionError::Busy), "it moves");
+            lockstep.cancel(motion);
+            let session = ask(&mut lockstep).expect("the arm is let go");
+            // It has the arm already, as far as others are concerned.
+            assert_eq!(ask(&mut lockstep), Err(MotionError::Busy));
+            let goal = lockstep.goal(turned(0.0), Then::Finish);
+            assert_eq!(lockstep.submit(goal), Err(MotionError::Busy));
+            while lockstep.client.record.goal != session.0 {
+                lockstep.tick();
+                assert!(lockstep.now() < 3000, "{:?}", lockstep.client.lifecycle);
+            }
+            assert!(lockstep.client.outcome(motion).is_some());
+            assert_stays(&mut lockstep, session);
+        }
+    });
+}
+
+#[test]
+fn a_session_that_waits_can_be_taken_back_and_stopped() {
+    for_each_robot(|ready| {
+        for engaged in [false, true] {
+            for stopped in [false, true] {
+                let (mut lockstep, motion) = moving(ready, engaged);
+                lockstep.cancel(motion);
+                let session = ask(&mut lockstep).expect("the arm is let go");
+                if stopped {
+                    let stop = lockstep.stop().expect("it moves");
+                    lockstep.until_resolved(stop, 1000).unwrap();
+                } else {
+                    lockstep.cancel(session);
+                }
+                let outcome = lockstep.until_resolved(session, 1);
+                assert_eq!(outcome, Err(MotionError::Stopped));
+                lockstep.until_idle(2000);
+                assert!(lockstep.client.outcome(motion).is_some());
+            }
+        }
+    });
+}
+
+#[test]
+fn a_session_is_refused_while_a_stop_is_awaited() {
+    for_each_robot(|ready| {
+        let (mut lockstep, _) = moving(ready, false);
+        let stop = lockstep.stop().expect("it moves");
+        assert_eq!(ask(&mut lockstep), Err(MotionError::Busy));
+        lockstep.until_resolved(stop, 1000).unwrap();
+        let session = ask(&mut lockstep).expect("nothing moves");
+        lockstep.run(100);
+        assert_stays(&mut lockstep, session);
+    });
+}
