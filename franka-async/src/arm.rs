@@ -117,7 +117,8 @@ impl Drop for Session {
 }
 
 impl Robot {
-    /// Begins a session that holds the arm where it is and then goes from goal to goal; resolves when it has begun.
+    /// Begins a session that holds the arm where it is and then goes from goal to goal; resolves when it has begun. After a
+    /// motion or a session that was dropped it begins when that has let the arm go.
     ///
     /// # Errors
     /// [`MotionError`]: [`MotionError::Busy`] while anything else controls the arm, [`MotionError::Goal`] for gains or
@@ -131,19 +132,13 @@ impl Robot {
             speed,
             engagement,
         } = engage;
-        let mut goal = Goal::new(
-            self.next_goal(),
-            Target::Rest,
-            Then::Hold,
-            self.model().joint_limits(),
-        );
-        goal.budget = tuning.budget.unwrap_or(goal.budget);
+        let limits = self.model().joint_limits();
         if let Some(factor) = speed {
-            goal.budget = goal.budget.scaled(factor);
-            tuning.budget = Some(goal.budget);
+            let budget = tuning.budget.unwrap_or_else(|| Budget::of(limits));
+            tuning.budget = Some(budget.scaled(factor));
         }
-        goal.gains = tuning.gains.unwrap_or(goal.gains);
-        goal.force_cap = tuning.force_cap.unwrap_or(goal.force_cap);
+        let goal = Goal::new(self.next_goal(), Target::Rest, Then::Hold, limits);
+        let goal = tuning.apply(goal);
         let (begin, began) = oneshot::channel();
         let (done, ended) = watch::channel(None);
         let arm = Arm {
@@ -259,8 +254,7 @@ impl Arm {
         &self,
         targets: watch::Receiver<T>,
     ) -> Follow {
-        let goal = self.goal(Target::Rest, Then::Hold);
-        Follow::watch(self.robot().clone(), Some(self.clone()), goal, targets)
+        Follow::watch(self.robot().clone(), Some(self.clone()), targets)
     }
 
     /// Follows the newest of the targets that a stream yields, poses or joint positions, until it ends, and then comes to
@@ -269,9 +263,8 @@ impl Arm {
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
     ) -> Follow {
-        let goal = self.goal(Target::Rest, Then::Hold);
         let targets = Box::pin(targets.map(Into::into).fuse());
-        Follow::new(self.robot().clone(), Some(self.clone()), goal, targets)
+        Follow::new(self.robot().clone(), Some(self.clone()), targets)
     }
 
     /// Changes gains, limits and force cap, of the goal under way and of those to come. Gains fade over 0.3 s: the torques do not step.
@@ -334,7 +327,7 @@ impl Arm {
         self.session.id
     }
 
-    fn tuning(&self) -> std::sync::MutexGuard<'_, Tuning> {
+    pub(crate) fn tuning(&self) -> std::sync::MutexGuard<'_, Tuning> {
         // Nothing can panic while it is held.
         let tuning = self.session.tuning.lock();
         tuning.unwrap_or_else(PoisonError::into_inner)
@@ -342,23 +335,9 @@ impl Arm {
 
     fn goal(&self, target: Target, then: Then) -> Goal {
         let robot = self.robot();
-        let goal = Goal::new(
-            robot.next_goal(),
-            target,
-            then,
-            robot.model().joint_limits(),
-        );
-        let tuning = *self.tuning();
-        Goal {
-            budget: tuning.budget.unwrap_or(goal.budget),
-            force_cap: tuning.force_cap.unwrap_or(goal.force_cap),
-            gains: match target {
-                // The axes that are free are free of springs, whatever the others have.
-                Target::Guide(_) => goal.gains,
-                _ => tuning.gains.unwrap_or(goal.gains),
-            },
-            ..goal
-        }
+        let limits = robot.model().joint_limits();
+        let goal = Goal::new(robot.next_goal(), target, then, limits);
+        self.tuning().apply(goal)
     }
 
     fn motion(&self, target: Target, then: Then) -> Motion {

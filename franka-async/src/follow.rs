@@ -6,9 +6,10 @@ use std::pin::Pin;
 use std::task::{Context, Poll};
 use std::time::Duration;
 
+use franka_model::limits::JointLimits;
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{MotionError, MotionReport};
-use franka_rt::session::{Budget, Goal, Lead, Stale, Target, Tolerance, Watchdog};
+use franka_rt::lifecycle::{MotionError, MotionReport, Tuning};
+use franka_rt::session::{Budget, Goal, Lead, Stale, Target, Then, Tolerance, Watchdog};
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::wrappers::WatchStream;
@@ -26,19 +27,25 @@ type Targets = Pin<Box<dyn Stream<Item = Target> + Send>>;
 pub struct Follow {
     robot: Robot,
     arm: Option<Arm>,
+    /// But for its target, of whose kind the defaults are that are not tuned.
     goal: Goal,
-    gains: Option<Gains>,
+    tuning: Tuning,
+    stiffness: Option<[f64; 6]>,
     targets: Targets,
     ticket: Option<StartTicket>,
 }
 
 impl Follow {
-    pub(crate) fn new(robot: Robot, arm: Option<Arm>, goal: Goal, targets: Targets) -> Self {
+    pub(crate) fn new(robot: Robot, arm: Option<Arm>, targets: Targets) -> Self {
+        let tuning = arm.as_ref().map(|arm| *arm.tuning()).unwrap_or_default();
+        let limits = robot.model().joint_limits();
+        let goal = Goal::new(robot.next_goal(), Target::Rest, Then::Hold, limits);
         Self {
+            goal: tuning.apply(goal),
+            tuning,
+            stiffness: None,
             robot,
             arm,
-            goal,
-            gains: None,
             targets,
             ticket: None,
         }
@@ -47,11 +54,10 @@ impl Follow {
     pub(crate) fn watch<T: Into<Target> + Clone + Send + Sync + 'static>(
         robot: Robot,
         arm: Option<Arm>,
-        goal: Goal,
         targets: watch::Receiver<T>,
     ) -> Self {
         let targets = WatchStream::new(targets).map(Into::into).fuse();
-        Self::new(robot, arm, goal, Box::pin(targets))
+        Self::new(robot, arm, Box::pin(targets))
     }
 
     /// See [`Motion::speed`](crate::Motion::speed).
@@ -68,26 +74,26 @@ impl Follow {
 
     /// See [`Motion::stiffness`](crate::Motion::stiffness).
     pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
-        let gains = self.gains.unwrap_or(self.goal.gains);
-        self.gains = Some(gains.with_cartesian_stiffness(stiffness));
+        self.stiffness = Some(stiffness);
         self
     }
 
     /// See [`Motion::gains`](crate::Motion::gains). Without it, the kind of the first target decides.
     pub fn gains(mut self, gains: Gains) -> Self {
-        self.gains = Some(gains);
+        self.tuning.gains = Some(gains);
+        self.stiffness = None;
         self
     }
 
     /// See [`Motion::force_cap`](crate::Motion::force_cap).
     pub fn force_cap(mut self, newtons: f64) -> Self {
-        self.goal.force_cap = Some(newtons);
+        self.tuning.force_cap = Some(Some(newtons));
         self
     }
 
     /// See [`Motion::without_force_cap`](crate::Motion::without_force_cap).
     pub fn without_force_cap(mut self) -> Self {
-        self.goal.force_cap = None;
+        self.tuning.force_cap = Some(None);
         self
     }
 
@@ -125,7 +131,8 @@ impl Follow {
             robot,
             arm,
             goal,
-            gains,
+            tuning,
+            stiffness,
             mut targets,
             ticket,
         } = self;
@@ -133,12 +140,13 @@ impl Follow {
             // Nothing to follow: the arm stays where it is.
             return Err(MotionError::Stopped);
         };
-        let of_kind = Goal::new(goal.id, first, goal.then, robot.model().joint_limits()).gains;
-        let goal = Goal {
-            target: first,
-            gains: gains.unwrap_or(of_kind),
-            ..goal
-        };
+        let goal = towards(
+            first,
+            &goal,
+            &tuning,
+            stiffness,
+            robot.model().joint_limits(),
+        );
         let work = Work::goal(goal, ticket, arm.as_ref());
         let mut moving = Moving::new(robot.clone(), arm, work);
         loop {
@@ -168,6 +176,27 @@ impl Follow {
                 };
             }
         }
+    }
+}
+
+/// The goal `common` with the first of its targets, whose kind decides what is not tuned.
+fn towards(
+    first: Target,
+    common: &Goal,
+    tuning: &Tuning,
+    stiffness: Option<[f64; 6]>,
+    limits: &JointLimits,
+) -> Goal {
+    let of_kind = Goal::new(common.id, first, common.then, limits);
+    let Goal {
+        gains, force_cap, ..
+    } = tuning.apply(of_kind);
+    let softened = |stiffness| gains.with_cartesian_stiffness(stiffness);
+    Goal {
+        target: first,
+        gains: stiffness.map_or(gains, softened),
+        force_cap,
+        ..*common
     }
 }
 
@@ -206,5 +235,32 @@ impl fmt::Debug for Follow {
             .field("robot", &self.robot)
             .field("goal", &self.goal)
             .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_rt::session::{DEFAULT_FORCE_CAP, GoalId};
+
+    #[test]
+    fn what_is_tuned_holds_for_a_stream_and_its_kind_decides_the_rest() {
+        let limits = franka_model::Model::fr3().joint_limits();
+        let common = Goal::new(GoalId(7), Target::Rest, Then::Hold, limits);
+        let joints = Target::Joints(franka_model::READY.into());
+        let goal = |tuning, stiffness| towards(joints, &common, &tuning, stiffness, limits);
+        let plain = goal(Tuning::default(), None);
+        assert_eq!(plain, Goal::new(common.id, joints, Then::Hold, limits));
+        let tuning = Tuning {
+            gains: Some(Gains::droid()),
+            force_cap: Some(Some(0.5 * DEFAULT_FORCE_CAP)),
+            ..Tuning::default()
+        };
+        let tuned = goal(tuning, None);
+        assert_eq!(tuned.gains, Gains::droid());
+        assert_eq!(tuned.force_cap, Some(0.5 * DEFAULT_FORCE_CAP));
+        let stiffness = [200.0, 200.0, 200.0, 10.0, 10.0, 10.0];
+        let soft = goal(tuning, Some(stiffness)).gains;
+        assert_eq!(soft, Gains::droid().with_cartesian_stiffness(stiffness));
     }
 }

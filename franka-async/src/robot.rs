@@ -173,9 +173,7 @@ impl Robot {
         &self,
         targets: watch::Receiver<T>,
     ) -> Follow {
-        let limits = self.model().joint_limits();
-        let goal = Goal::new(self.next_goal(), Target::Rest, Then::Hold, limits);
-        Follow::watch(self.clone(), None, goal, targets)
+        Follow::watch(self.clone(), None, targets)
     }
 
     /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if nothing moves. The

@@ -40,6 +40,22 @@ pub struct Tuning {
     pub force_cap: Option<Option<f64>>,
 }
 
+impl Tuning {
+    /// The goal with these changes. One that guides keeps its gains: the axes that are free are free of springs.
+    #[must_use]
+    pub fn apply(&self, goal: Goal) -> Goal {
+        Goal {
+            gains: match goal.target {
+                Target::Guide(_) => goal.gains,
+                _ => self.gains.unwrap_or(goal.gains),
+            },
+            budget: self.budget.unwrap_or(goal.budget),
+            force_cap: self.force_cap.unwrap_or(goal.force_cap),
+            ..goal
+        }
+    }
+}
+
 impl Lifecycle {
     /// Starts a session that holds the arm where it is and then goes from goal to goal, with the gains and the budget of
     /// `goal`, whose `id` becomes the name of the session. It resolves when the session has ended. While a motion comes to
@@ -182,13 +198,7 @@ impl Lifecycle {
         let Some(goals) = self.goals() else {
             return Err(MotionError::Disengaged);
         };
-        let current = goals.current.goal;
-        let tuned = Goal {
-            gains: tuning.gains.unwrap_or(current.gains),
-            budget: tuning.budget.unwrap_or(current.budget),
-            force_cap: tuning.force_cap.unwrap_or(current.force_cap),
-            ..current
-        };
+        let tuned = tuning.apply(goals.current.goal);
         tuned.check(&self.model, state)?;
         // Also a goal that was taken back: it is held until the next one comes.
         if let Some(goals) = self.goals() {
