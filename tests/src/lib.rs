@@ -5,12 +5,14 @@
 //! | [`mod@bench`] | what the work of one control cycle costs |
 //! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
 //! | [`mishaps`] | networks under which one thing happens to datagrams |
+//! | [`push`] | a hand that pushes an arm |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
 pub mod bench;
 pub mod golden;
 pub mod lockstep;
 pub mod mishaps;
+pub mod push;
 
 /// Holds the programs of the README and the book to what there is.
 #[cfg(doctest)]

@@ -16,11 +16,16 @@ use crate::python::{Python, Version};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
-/// Runs the scripts of `tests/peers` that check something against a simulator of its own.
+/// Runs our client beside another one, and the scripts of `tests/peers` that check something against a simulator of their
+/// own.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let mut summaries = vec![beside_franka_rs(workspace)?];
     let interpreter = match interpreter(workspace)? {
         Ok(interpreter) => interpreter,
-        Err(why) => return Outcome::without(why),
+        Err(why) => {
+            summarise(&summaries)?;
+            return Outcome::without(why);
+        }
     };
     let peers = directory(workspace);
     let mut build = workspace.cargo();
@@ -28,7 +33,6 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     workspace.run(&mut build)?;
 
     let address = loopback_address(std::process::id());
-    let mut summaries = Vec::new();
     for (name, arguments) in SCRIPTS {
         let mut simulator = real_time(&workspace.target().join("debug").join("franka-sim"));
         simulator.args(["--bind", &address, "--port", PORT]);
@@ -38,15 +42,40 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
         let mut script = workspace.program(&interpreter);
         script.arg(peers.join(name)).arg(&address);
         println!("$ python tests/peers/{name} {address}");
-        let start = Instant::now();
-        let (steps, result) = count(script, SCRIPT_TIME_MAX);
-        summaries.push((name, steps, start.elapsed(), result));
+        summaries.push(summary(name, script));
     }
     summarise(&summaries)
 }
 
+/// What became of a script, how long it took, and its name.
+type Summary = (&'static str, Steps, Duration, anyhow::Result<()>);
+
+fn summary(name: &'static str, script: Command) -> Summary {
+    let start = Instant::now();
+    let (steps, result) = count(script, SCRIPT_TIME_MAX);
+    (name, steps, start.elapsed(), result)
+}
+
+/// Builds franka-rs, in a workspace of its own, and holds our target control against its own on the same robots.
+fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Summary> {
+    let target = workspace.target().join("peers");
+    let mut build = workspace.cargo();
+    build.args(["build", "--locked", "--manifest-path"]);
+    build.arg(directory(workspace).join("franka_rs").join("Cargo.toml"));
+    build.arg("--target-dir").arg(&target);
+    workspace.run(&mut build)?;
+    let mut build = workspace.cargo();
+    build.args(["build", "--package", "franka-tests", "--bin", BESIDE]);
+    workspace.run(&mut build)?;
+
+    let mut beside = workspace.program(workspace.target().join("debug").join(BESIDE));
+    beside.arg(target.join("debug").join("franka-rs-peer"));
+    println!("$ {BESIDE}");
+    Ok(summary(BESIDE, beside))
+}
+
 /// Prints what became of each script; fails if one did.
-fn summarise(summaries: &[(&str, Steps, Duration, anyhow::Result<()>)]) -> anyhow::Result<Outcome> {
+fn summarise(summaries: &[Summary]) -> anyhow::Result<Outcome> {
     let mut total = Steps::default();
     println!();
     for (name, steps, time, result) in summaries {
@@ -249,6 +278,9 @@ fn kill(child: &mut Child) {
         eprintln!("could not end process {}", child.id());
     }
 }
+
+/// The binary of the tests package that runs our client beside franka-rs.
+const BESIDE: &str = "beside_franka_rs";
 
 /// The scripts, and what their simulators are like.
 const SCRIPTS: [(&str, &[&str]); 11] = [

@@ -1,0 +1,184 @@
+//! Our target control beside that of franka-rs, each with its defaults, on the same simulated robots:
+//! `beside_franka_rs PROGRAM`, where `PROGRAM` is that of `tests/peers/franka_rs`.
+//!
+//! A step of 5 cm, and a hand that pushes an arm which is to stay where it is. One line each says what came out.
+
+mod ours;
+mod theirs;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, bail, ensure};
+use clap::Parser;
+use franka_rt::session::DEFAULT_FORCE_CAP;
+use franka_sim::{Running, Sim, Tool, Touch};
+use franka_tests::push::{PACE, PUSH, START, STIFFNESS, hand};
+use nalgebra::Vector3;
+
+use ours::Ours;
+use theirs::Theirs;
+
+/// Compares two clients on simulated robots.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// The program of `tests/peers/franka_rs`.
+    program: PathBuf,
+}
+
+/// Makes a simulated robot of a kind.
+type Kind = fn() -> Sim;
+
+/// How a step came out.
+#[derive(Clone, Copy, Debug)]
+struct Stepped {
+    /// When the arm was within 1 mm of the target for good, `[s]` from the first cycle that knew of it.
+    within: f64,
+    /// How far off it was in the end, `[m]`.
+    off: f64,
+    /// The greatest distance from what was commanded, `[m]`.
+    lag: f64,
+}
+
+/// How long a step is watched, `[s]`.
+const WATCHED: f64 = 2.5;
+
+/// The step, `[m]`, base frame.
+const STEP: [f64; 3] = [0.0, 0.0, 0.05];
+
+/// Time of the hand at its pace that is left out of what it feels, `[ms]`: contact and arm still swing then.
+const SWING: u64 = 100;
+
+/// How long a client may take for anything.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+#[tokio::main]
+async fn main() -> ExitCode {
+    match run(Arguments::parse()).await {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+async fn run(arguments: Arguments) -> anyhow::Result<()> {
+    let mut failed = 0;
+    let kinds: [(&str, Kind); 2] = [("FR3", Sim::fr3), ("FER", Sim::fer)];
+    for (robot, kind) in kinds {
+        let start = Instant::now();
+        let stepped = step(kind, &arguments).await;
+        failed += u32::from(!told(&format!("{robot}: a step of 5 cm"), start, stepped));
+        for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
+            let start = Instant::now();
+            let pushed = push(kind, way, &arguments).await;
+            let name = format!("{robot}: a push along {:?}", way.as_slice());
+            failed += u32::from(!told(&name, start, pushed));
+        }
+    }
+    ensure!(failed == 0, "{failed} steps failed");
+    Ok(())
+}
+
+/// Prints what came of a step; tells whether it passed.
+fn told(name: &str, start: Instant, outcome: anyhow::Result<String>) -> bool {
+    match outcome {
+        Ok(summary) => {
+            let seconds = start.elapsed().as_secs_f64();
+            println!("ok    {name} ({seconds:.1} s): {summary}");
+            true
+        }
+        Err(error) => {
+            println!("FAIL  {name}: {error:#}");
+            false
+        }
+    }
+}
+
+/// A robot whose time goes on as its client answers: no command is late, however busy the machine is.
+async fn simulated(kind: Kind) -> anyhow::Result<Running> {
+    let sim = kind().tool(Tool::hand()).virtual_time(PATIENCE);
+    Ok(sim.start().await?)
+}
+
+async fn step(kind: Kind, arguments: &Arguments) -> anyhow::Result<String> {
+    let sim = simulated(kind).await?;
+    let mut theirs = Theirs::hold(&arguments.program, sim.addr())?;
+    let peer = theirs.step(STEP, WATCHED)?;
+    theirs.end()?;
+    sim.stop().await;
+
+    let sim = simulated(kind).await?;
+    let ours = Ours::hold(sim.addr()).await?;
+    let own = ours.step(STEP, WATCHED).await?;
+    ours.end().await?;
+    sim.stop().await;
+
+    let summary = |name, stepped: Stepped| {
+        let (off, lag) = (stepped.off * 1e3, stepped.lag * 1e3);
+        format!(
+            "{name} within 1 mm after {:.3} s, {off:.3} mm off, lag {lag:.2} mm",
+            stepped.within
+        )
+    };
+    let summary = format!("{}; {}", summary("own", own), summary("franka-rs", peer));
+    let good = own.off <= 0.3e-3 && own.within <= 0.90 && own.lag <= 2.5e-3;
+    let better = own.off < peer.off && own.within < peer.within && own.lag < peer.lag;
+    ensure!(good && better, "{summary}");
+    Ok(summary)
+}
+
+async fn push(kind: Kind, way: Vector3<f64>, arguments: &Arguments) -> anyhow::Result<String> {
+    let sim = simulated(kind).await?;
+    let theirs = Theirs::hold(&arguments.program, sim.addr())?;
+    let peer = felt(&sim, way).await?;
+    theirs.end()?;
+    sim.stop().await;
+
+    let sim = simulated(kind).await?;
+    let ours = Ours::hold(sim.addr()).await?;
+    let own = felt(&sim, way).await?;
+    ours.end().await?;
+    sim.stop().await;
+
+    let most = 1.1 * DEFAULT_FORCE_CAP;
+    let summary =
+        format!("own {own:.1} N, franka-rs {peer:.1} N, cap {DEFAULT_FORCE_CAP} N, at {PACE} m/s");
+    ensure!(own <= most && peer > most, "{summary}");
+    Ok(summary)
+}
+
+/// The force that a hand meets at its pace, `[N]`, along `way`: the mean, to which what accelerates the arm adds nothing.
+async fn felt(sim: &Running, way: Vector3<f64>) -> anyhow::Result<f64> {
+    let begin = sim.state().await?;
+    let pose = begin.O_T_EE;
+    let from = Vector3::new(pose[12], pose[13], pose[14]);
+    let push = sim
+        .touch(Touch::carry(move |t| from + way * hand(t), STIFFNESS))
+        .await?;
+    let deadline = Instant::now() + PATIENCE;
+    let (mut sum, mut seen, mut last) = (0.0, 0.0, 0);
+    loop {
+        let (now, force) = sim
+            .with(move |robot| (robot.state().message_id, robot.felt(push)))
+            .await?;
+        let force = force.context("the push has ended")?;
+        let time = now - begin.message_id;
+        if time >= PUSH {
+            break;
+        }
+        if time > last && time as f64 >= START * 1e3 + SWING as f64 {
+            sum += force.fixed_rows::<3>(0).norm();
+            seen += 1.0;
+            last = time;
+        }
+        if Instant::now() > deadline {
+            bail!("after {time} ms of the robot's time nothing answers");
+        }
+    }
+    ensure!(seen > 10.0, "only {seen} looks at the contact");
+    sim.release(push).await?;
+    Ok(sum / seen)
+}

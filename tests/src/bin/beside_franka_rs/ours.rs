@@ -1,0 +1,101 @@
+//! Our own client.
+
+use std::net::SocketAddr;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use anyhow::Context as _;
+use franka_async::{Arm, CollisionBehavior, Engage, Pose, Realtime, Robot};
+use nalgebra::Translation3;
+
+use crate::Stepped;
+
+/// What one cycle knew.
+#[derive(Clone, Copy)]
+struct Cycle {
+    /// Robot's time, `[ms]`.
+    time: u64,
+    goal: u64,
+    q: [f64; 7],
+    q_ref: [f64; 7],
+}
+
+/// Cycles that a recording holds: a minute.
+const CYCLES: usize = 60_000;
+
+/// An engaged arm, which is held.
+pub(crate) struct Ours {
+    robot: Robot,
+    arm: Arm,
+    cycles: Arc<Mutex<Vec<Cycle>>>,
+}
+
+impl Ours {
+    /// Connects to `robot`, and holds the arm where it is.
+    pub(crate) async fn hold(robot: SocketAddr) -> anyhow::Result<Self> {
+        let builder = Robot::builder(robot).realtime(Realtime::Ignore);
+        let robot = builder.connect().await?;
+        // Anybody may push.
+        let (joints, forces) = ([100.0; 7], [500.0; 6]);
+        let behavior = CollisionBehavior::uniform(joints, joints, forces, forces);
+        robot.set_collision_behavior(behavior).await?;
+        let cycles = Arc::new(Mutex::new(Vec::with_capacity(CYCLES)));
+        let recorded = cycles.clone();
+        // A lock is for a robot whose time waits: see the rules of an observer.
+        let engage = Engage::default().observer(move |record, _| {
+            let mut cycles = recorded.lock().unwrap_or_else(PoisonError::into_inner);
+            if cycles.len() < CYCLES {
+                cycles.push(Cycle {
+                    time: record.time,
+                    goal: record.goal,
+                    q: record.q,
+                    q_ref: record.q_ref,
+                });
+            }
+        });
+        let arm = robot.engage(engage).await?;
+        Ok(Self { robot, arm, cycles })
+    }
+
+    /// Steps the target, `[m]`, and watches for so many seconds.
+    pub(crate) async fn step(&self, by: [f64; 3], seconds: f64) -> anyhow::Result<Stepped> {
+        let target: Pose = Translation3::from(by) * self.robot.pose();
+        let recorded = || self.cycles.lock().unwrap_or_else(PoisonError::into_inner);
+        let held = recorded().last().context("no cycle was seen")?.goal;
+        recorded().clear();
+        let begin = self.robot.state().message_id;
+        self.arm.set(target).await?;
+        while ((self.robot.state().message_id - begin) as f64) < seconds * 1e3 {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+        let cycles = recorded().clone();
+        let mut under_way = cycles
+            .iter()
+            .skip_while(|cycle| cycle.goal == held)
+            .peekable();
+        let begin = under_way.peek().context("no cycle saw the target")?.time;
+        let position = |q: &[f64; 7]| self.robot.pose_at(*q).translation.vector;
+        let mut stepped = Stepped {
+            within: 0.0,
+            off: 0.0,
+            lag: 0.0,
+        };
+        for cycle in under_way {
+            let measured = position(&cycle.q);
+            stepped.off = (measured - target.translation.vector).norm();
+            let lag = (measured - position(&cycle.q_ref)).norm();
+            stepped.lag = stepped.lag.max(lag);
+            if stepped.off > 1e-3 {
+                stepped.within = (cycle.time - begin) as f64 * 1e-3;
+            }
+        }
+        Ok(stepped)
+    }
+
+    /// Lets go and disconnects.
+    pub(crate) async fn end(self) -> anyhow::Result<()> {
+        self.arm.disengage().await?;
+        self.robot.shutdown().await;
+        Ok(())
+    }
+}
