@@ -2,10 +2,10 @@
 
 use franka_model::Wrench;
 use franka_proto::{CollisionBehavior, Request};
-use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Guard, LEAD_FRESH_MS, Lapse, Lead, Target, Then};
+use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::session::{Guard, LEAD_FRESH_MS, Lapse, Lead, PoseError, Target, Then};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
-use nalgebra::Translation3;
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// A robot whose collision thresholds let anybody push.
 fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
@@ -102,5 +102,41 @@ fn a_wild_target_sends_the_arm_no_further_than_the_lead_once_the_stream_stops() 
             aside(&lockstep)
         );
         assert!(!lockstep.client.record.bindings.contains(Guard::Lead));
+    });
+}
+
+#[test]
+fn a_lead_that_leaves_some_of_the_ways_free_binds_the_others() {
+    for_each_robot(|ready| {
+        let free = f64::INFINITY;
+        for (translation, rotation) in [(0.05, free), (free, 0.2)] {
+            let mut lockstep = ready();
+            let start = lockstep.true_pose();
+            let mut goal = lockstep.goal(Target::Pose(start), Then::Hold);
+            goal.lead = Some(Lead {
+                translation,
+                rotation,
+                joints: free,
+            });
+            let id = lockstep.submit(goal).expect("it is there already");
+            lockstep.run(100);
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, 0.5));
+            let wild = if rotation == free {
+                Translation3::new(0.0, 0.2, 0.0) * start
+            } else {
+                Isometry3::from_parts(start.translation, turn * start.rotation)
+            };
+            assert_eq!(lockstep.update(id, Target::Pose(wild)), Ok(true));
+            lockstep.run(3000);
+            let moved = PoseError::between(&lockstep.true_pose(), &start);
+            let (moved, most) = if rotation == free {
+                (moved.translation, 0.2)
+            } else {
+                (moved.rotation, 0.5)
+            };
+            let lead = translation.min(rotation);
+            assert!(moved > 0.9 * lead && moved < most - 0.5 * lead, "{moved}");
+            assert!(lockstep.client.record.bindings.contains(Guard::Lead));
+        }
     });
 }

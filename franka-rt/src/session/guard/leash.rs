@@ -105,8 +105,10 @@ pub(crate) fn within(
     if distance <= translation && turn <= angle {
         return None;
     }
-    let ahead = ahead * (translation / distance.max(translation));
-    let turned = turned * (angle / turn.max(angle));
+    // A leash may be endless.
+    let share = |length: f64, most: f64| if length > most { most / length } else { 1.0 };
+    let ahead = ahead * share(distance, translation);
+    let turned = turned * share(turn, angle);
     Some(Isometry3::from_parts(
         Translation3::from(anchor.translation.vector + ahead),
         rotation::exp(&turned) * anchor.rotation,
