@@ -140,3 +140,25 @@ fn a_lead_that_leaves_some_of_the_ways_free_binds_the_others() {
         }
     });
 }
+
+#[test]
+fn who_tunes_does_not_send_an_arm_back_that_was_carried_off_where_it_had_arrived() {
+    for_each_robot(|ready| {
+        let mut lockstep = tolerant(ready);
+        let engaged = lockstep.engage();
+        let start = lockstep.true_pose();
+        let goal = lockstep
+            .within(engaged, Target::Pose(start), Then::Stay)
+            .expect("it is there already");
+        lockstep.until_resolved(goal, 3000).expect("it is there");
+        let off = pull_aside(&mut lockstep);
+        assert!(off > 0.2, "{off} m aside");
+        lockstep.run(3000);
+        let at = lockstep.true_pose();
+        assert!(at.translation.y - start.translation.y > 0.2, "it is held");
+        assert_eq!(lockstep.tune(engaged, Tuning::default()), Ok(()));
+        lockstep.run(3000);
+        let moved = PoseError::between(&lockstep.true_pose(), &at);
+        assert!(moved.translation < 5e-3, "{moved:?}");
+    });
+}

@@ -280,7 +280,14 @@ impl Goals {
         settled: &Settled,
     ) -> Option<Result<MotionReport, MotionError>> {
         let Waiting { goal, cancelled } = self.current;
-        if settled.goal != goal.id || goal.id == engaged {
+        if goal.id == engaged {
+            // Given up after it had arrived: it is not to be taken back there.
+            if !matches!(settled.settlement, Settlement::Arrived(_)) {
+                self.current.goal.target = Target::Rest;
+            }
+            return None;
+        }
+        if settled.goal != goal.id {
             return None;
         }
         self.current = Waiting {
