@@ -216,13 +216,13 @@ impl Lifecycle {
         }
     }
 
-    /// What follows the end of a goal under way.
-    pub(super) fn end_of_goals(&mut self) -> Then {
-        if self.is_engaged() {
-            Then::Stay
-        } else {
-            Then::Finish
-        }
+    /// What follows the end of a goal: more goals, if it is one of a session that goes from goal to goal.
+    pub(super) fn end_of(&mut self, id: GoalId) -> Then {
+        let engaged = match &self.next {
+            Some(next) if next.waiting.goal.id == id => next.engagement.is_some(),
+            _ => self.is_engaged(),
+        };
+        if engaged { Then::Stay } else { Then::Finish }
     }
 
     /// Whether the motion under way has ended on one side.

@@ -87,7 +87,7 @@ impl Lifecycle {
     /// Lets a goal that is held come to its end: the motion settles at the newest target and finishes, unless its session
     /// goes on from goal to goal.
     pub fn close(&mut self, id: GoalId) {
-        let then = self.end_of_goals();
+        let then = self.end_of(id);
         let amended = self.amend(id, |goal| Goal { then, ..*goal }, None);
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
@@ -102,7 +102,7 @@ impl Lifecycle {
         if self.cancel_program(id, now) || self.release(id, now) {
             return;
         }
-        let then = self.end_of_goals();
+        let then = self.end_of(id);
         let amended = self.amend(
             id,
             |goal| Goal {

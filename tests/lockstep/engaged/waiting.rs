@@ -1,6 +1,9 @@
 //! Sessions that begin while the motion before them lets go of the arm.
 
 use super::{assert_stays, turned};
+use franka_proto::MoveControllerMode;
+use franka_rt::control::{Callback, Torques};
+use franka_rt::driver::Program;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{GoalId, Then};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
@@ -78,5 +81,20 @@ fn a_session_is_refused_while_a_stop_is_awaited() {
         let session = ask(&mut lockstep).expect("nothing moves");
         lockstep.run(100);
         assert_stays(&mut lockstep, session);
+    });
+}
+
+#[test]
+fn a_stream_that_ends_while_it_waits_for_the_end_of_a_session_ends_its_own_motion() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        lockstep.disengage(engaged);
+        let goal = lockstep.goal(turned(0.1), Then::Hold);
+        let goal = lockstep.submit(goal).expect("the arm is let go");
+        lockstep.client.lifecycle.close(goal);
+        assert!(lockstep.client.outcome(engaged).is_none(), "it waited");
+        lockstep.until_resolved(goal, 6000).unwrap();
+        assert!(lockstep.client.lifecycle.is_idle());
     });
 }
