@@ -124,6 +124,10 @@ impl Lifecycle {
     /// The goals before it resolve as [`MotionError::Stopped`]. Returns false, and does nothing, if there is no motion.
     pub fn stop(&mut self, id: GoalId, now: Duration) -> bool {
         if self.stop_program(id, now) {
+            // A session that waits for the program's end.
+            if let Some(next) = self.next.take() {
+                self.resolve(next.waiting.goal.id, Err(MotionError::Stopped));
+            }
             return true;
         }
         let Some(goals) = self.goals() else {

@@ -98,3 +98,24 @@ fn a_stream_that_ends_while_it_waits_for_the_end_of_a_session_ends_its_own_motio
         assert!(lockstep.client.lifecycle.is_idle());
     });
 }
+
+#[test]
+fn a_session_that_waits_for_the_end_of_a_program_is_stopped_with_it() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let version = lockstep.client.version();
+        let still = Callback::torques(version, |_, _| Torques([0.0; 7]));
+        let request = still.request(version, MoveControllerMode::JointImpedance);
+        let program = Program::Callback(Box::new(still));
+        let program = lockstep.control(program, request).expect("nothing moves");
+        lockstep.run(100);
+        lockstep.cancel(program);
+        let session = ask(&mut lockstep).expect("the arm is let go");
+        let stop = lockstep.stop().expect("it moves");
+        let outcome = lockstep.until_resolved(session, 1);
+        assert_eq!(outcome, Err(MotionError::Stopped));
+        lockstep.until_resolved(stop, 1000).unwrap();
+        assert!(lockstep.client.outcome(program).is_some());
+        assert!(lockstep.client.lifecycle.is_idle());
+    });
+}
