@@ -12,7 +12,7 @@ use franka_rt::control::{
 };
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalId, Target, Then};
+use franka_rt::session::{Goal, GoalId, Stale, Target, Then, Watchdog};
 use franka_rt::together::{StartBarrier, StartFault, StartTicket};
 use franka_tests::lockstep::Lockstep;
 use nalgebra::Translation3;
@@ -278,6 +278,25 @@ fn a_target_that_moves_while_it_waits_is_followed_from_the_start() {
     assert!((turn + 0.1).abs() < 2e-3, "{turn}");
     two.left.client.lifecycle.close(goal);
     two.left.until_resolved(goal, 3000).expect("it settles");
+}
+
+#[test]
+fn a_wait_for_the_others_is_no_silence_of_a_stream() {
+    let mut two = Two::new();
+    let [left, mut right] = StartBarrier::new().tickets();
+    let goal = Goal {
+        watchdog: Some(Watchdog {
+            silence: Duration::from_millis(100),
+            stale: Stale::Brake,
+        }),
+        ..two.left.goal(turned(0.1), Then::Hold)
+    };
+    let goal = two.left.submit_together(goal, left).expect("it is free");
+    two.run(2000);
+    assert_eq!(two.left.client.outcome(goal), None, "it waits");
+    right.pass(0);
+    two.run(20);
+    assert_eq!(two.left.client.record.goal, goal.0, "it has begun");
 }
 
 /// A control function of each kind that swings a little for half a second, and notes when it was first called.

@@ -266,6 +266,7 @@ impl TargetSession {
             id: GoalId::default(), // no goal's
             target: Target::Rest,
             then: Then::Hold,
+            watchdog: None, // Who waits for others may be silent.
             ..held
         });
         self.follow(rest, state, record)
