@@ -121,7 +121,7 @@ pub enum Lapse {
 impl Lapse {
     /// Whether no update brings the goal back.
     fn is_final(self) -> bool {
-        matches!(self, Self::CarriedOff | Self::Blocked)
+        matches!(self, Self::Deadman | Self::CarriedOff | Self::Blocked)
     }
 }
 

@@ -92,6 +92,39 @@ fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
     });
 }
 
+#[test]
+fn a_stream_does_not_outlive_the_deadman_however_often_its_targets_come() {
+    for_each_robot(|ready| {
+        for period in [1, 20, 90] {
+            let (token, grip) = Deadman::new(Duration::from_millis(50));
+            let mut lockstep = ready();
+            let engaged = lockstep.engage_with(Engagement {
+                deadman: Some(grip),
+                ..Engagement::default()
+            });
+            let goal = lockstep.within(engaged, turned(0.3), Then::Hold).unwrap();
+            for _ in 0..10 {
+                token.keep_alive();
+                lockstep.run(40);
+            }
+            let mut updates = 0_u32;
+            while lockstep.client.outcome(goal).is_none() {
+                lockstep.run(period);
+                updates += 1;
+                let target = turned(0.3 + 1e-3 * f64::from(updates % 2));
+                lockstep.update(goal, target).expect("near the ready pose");
+                let waited = period * u64::from(updates);
+                assert!(waited < 2000, "{period} ms: it goes on");
+            }
+            let outcome = lockstep.until_resolved(goal, 1);
+            assert_eq!(outcome, Err(MotionError::Held(Lapse::Deadman)));
+            token.keep_alive();
+            assert_eq!(lockstep.update(goal, turned(0.3)), Ok(false));
+            assert_stays(&mut lockstep, engaged);
+        }
+    });
+}
+
 /// As stiff as ever, and as fast: what a program that tunes all the time sends.
 fn same_again(lockstep: &mut Lockstep, engaged: GoalId, budget: f64) {
     let goal = lockstep.goal(turned(0.0), Then::Hold);

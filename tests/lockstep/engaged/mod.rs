@@ -1,10 +1,11 @@
 //! Sessions that go from goal to goal.
 //!
 //! * `lapses`: silent streams and deadmen. `options`: gains, force cap and regions. `backends`: the robot's own controller, and
-//!   observers. `corners`: what meets a goal that was taken back, and a session without its deadman. `waiting`: sessions that
+//!   observers. `chunks`: what ends them. `corners`: what meets a goal that was taken back, and a session without its deadman. `waiting`: sessions that
 //!   begin while the arm is let go.
 
 mod backends;
+mod chunks;
 mod corners;
 mod lapses;
 mod options;

@@ -5,7 +5,7 @@ use franka_model::Model;
 use super::{Active, Stage};
 use crate::session::chunk::ChunkReader;
 use crate::session::course::Course;
-use crate::session::{Goal, Lapse, Stale, Target, Then};
+use crate::session::{Goal, Target, Then};
 
 impl Active {
     /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is over.
@@ -14,8 +14,7 @@ impl Active {
             left.end(chunks, now);
         }
         let gone = matches!(self.stage, Stage::Releasing(_) | Stage::Finished);
-        let given_up = |(_, lapse): &(Stale, Lapse)| *lapse == Lapse::Deadman || lapse.is_final();
-        if gone || self.lapse.as_ref().is_some_and(given_up) {
+        if gone || self.taken_back || self.is_given_up_for_good() {
             chunks.discard(self.goal.id);
             return;
         }

@@ -49,6 +49,8 @@ pub(super) struct Active {
     heard: u64,
     /// Why the goal was given up, and what the arm does since.
     lapse: Option<(Stale, Lapse)>,
+    /// Whether the goal was changed to one of coming to rest: chunks that waited for their time are none of it.
+    taken_back: bool,
     /// Cycles in which the course was held back, less those since in which it was not.
     held_back: u64,
     /// Where the goal's last chunk has ended, if none runs.
@@ -117,6 +119,7 @@ impl Active {
             since: state.message_id,
             heard: state.message_id,
             lapse: None,
+            taken_back: false,
             chunk_end: None,
             left: None,
             posture: q,
@@ -141,9 +144,7 @@ impl Active {
             return self.tune(model, goal);
         }
         let taken_back = goal.target == Target::Rest && goal.then != Then::Hold;
-        let over =
-            |(_, lapse): &(Stale, Lapse)| lapse.is_final() || matches!(self.stage, Stage::Staying);
-        if named && !taken_back && self.lapse.as_ref().is_some_and(over) {
+        if named && !taken_back && self.is_given_up_for_good() {
             return; // Whoever asks for more has not heard yet that it was given up.
         }
         self.heard = now;
@@ -159,6 +160,7 @@ impl Active {
         }
         self.goal = goal;
         self.lapse = None;
+        self.taken_back = named && taken_back;
         self.set_out(model);
     }
 

@@ -36,6 +36,14 @@ impl Active {
         self.lapse(Stale::Brake, lapse);
     }
 
+    /// Whether neither an update nor a chunk brings back a goal that was given up.
+    pub(super) fn is_given_up_for_good(&self) -> bool {
+        let rests = matches!(self.stage, Stage::Staying);
+        self.lapse
+            .as_ref()
+            .is_some_and(|(_, lapse)| rests || lapse.is_final())
+    }
+
     /// Has the goal come to its end where the arm comes to rest.
     fn lapse(&mut self, stale: Stale, lapse: Lapse) {
         if self.goal.then == Then::Hold {

@@ -1,0 +1,90 @@
+//! What ends chunks: a goal that is taken back or given up follows none any more, and one that is followed goes through its
+//! points.
+
+use std::time::Duration;
+
+use super::assert_stays;
+use franka_model::READY;
+use franka_rt::lifecycle::{Engagement, MotionError};
+use franka_rt::session::{
+    Backend, Chunk, ChunkError, Deadman, Goal, GoalId, Lapse, Setpoints, Stale, Target, Then,
+    Watchdog,
+};
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+use nalgebra::Translation3;
+
+fn turned(by: f64) -> [f64; 7] {
+    let mut q: [f64; 7] = READY.into();
+    q[0] += by;
+    q
+}
+
+/// Ten points from one angle of joint 1 to another, in half a second.
+fn chunk(from: f64, to: f64) -> Chunk {
+    let point = |k: u32| {
+        let way = from + (to - from) * f64::from(k) / 10.0;
+        (Duration::from_millis(50) * k, turned(way))
+    };
+    Chunk::joints((0..=10).map(point)).expect("points 50 ms apart")
+}
+
+fn give(lockstep: &mut Lockstep, engaged: GoalId, goal: Goal, chunk: Chunk) -> GoalId {
+    lockstep
+        .submit_chunk(engaged, goal, chunk)
+        .expect("near the ready pose")
+}
+
+/// A goal of chunks that may be silent for so long.
+fn watched(lockstep: &mut Lockstep, milliseconds: u64) -> Goal {
+    Goal {
+        watchdog: Some(Watchdog {
+            silence: Duration::from_millis(milliseconds),
+            stale: Stale::Hold,
+        }),
+        ..lockstep.goal(Target::Rest, Then::Hold)
+    }
+}
+
+#[test]
+fn a_chunk_that_waits_for_its_time_is_taken_back_with_the_one_before_it() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = lockstep.goal(Target::Rest, Then::Hold);
+        let first = give(&mut lockstep, engaged, goal, chunk(0.0, 0.2));
+        lockstep.run(200);
+        let later = lockstep.client.state.message_id + 300;
+        let goal = lockstep.goal(Target::Rest, Then::Hold);
+        let waiting = chunk(0.2, 0.6).observed_at(later);
+        give(&mut lockstep, engaged, goal, waiting);
+        lockstep.run(20);
+        lockstep.cancel(first);
+        let outcome = lockstep.until_resolved(first, 2000);
+        assert_eq!(outcome, Err(MotionError::Stopped));
+        assert!(lockstep.robot.q()[0] < turned(0.2)[0]);
+        assert_stays(&mut lockstep, engaged);
+    });
+}
+
+#[test]
+fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = watched(&mut lockstep, 50);
+        let goal = give(&mut lockstep, engaged, goal, chunk(0.0, 0.05));
+        // It settles, and the next chunk leaves before that is known.
+        lockstep.client.is_deaf = true;
+        lockstep.run(2000);
+        lockstep.chunk(engaged, chunk(0.05, 0.2)).unwrap();
+        lockstep.run(500);
+        lockstep.client.is_deaf = false;
+        let outcome = lockstep.until_resolved(goal, 10);
+        assert!(matches!(outcome, Err(MotionError::Held(_))), "{outcome:?}");
+        assert!((lockstep.robot.q()[0] - turned(0.05)[0]).abs() < 2e-3);
+        // The one after it is followed.
+        lockstep.chunk(engaged, chunk(0.05, 0.1)).unwrap();
+        lockstep.run(2000);
+        assert!((lockstep.robot.q()[0] - turned(0.1)[0]).abs() < 2e-3);
+    });
+}
