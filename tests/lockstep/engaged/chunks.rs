@@ -67,6 +67,31 @@ fn a_chunk_that_waits_for_its_time_is_taken_back_with_the_one_before_it() {
 }
 
 #[test]
+fn a_chunk_that_is_followed_to_its_end_after_silence_still_needs_its_deadman() {
+    for_each_robot(|ready| {
+        let (token, grip) = Deadman::new(Duration::from_millis(50));
+        let mut lockstep = ready();
+        let engaged = lockstep.engage_with(Engagement {
+            deadman: Some(grip),
+            ..Engagement::default()
+        });
+        let goal = watched(&mut lockstep, 100);
+        let point = |k: u32| (Duration::from_secs(1) * k, turned(0.2 * f64::from(k)));
+        let long = Chunk::joints((0..=3).map(point)).expect("points a second apart");
+        let goal = give(&mut lockstep, engaged, goal, long);
+        for _ in 0..20 {
+            token.keep_alive();
+            lockstep.run(40);
+        }
+        drop(token);
+        let outcome = lockstep.until_resolved(goal, 1000);
+        assert_eq!(outcome, Err(MotionError::Held(Lapse::Deadman)));
+        assert!(lockstep.robot.q()[0] < turned(0.3)[0], "half way at most");
+        assert_stays(&mut lockstep, engaged);
+    });
+}
+
+#[test]
 fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
     for_each_robot(|ready| {
         let mut lockstep = ready();

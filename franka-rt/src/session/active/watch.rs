@@ -78,7 +78,7 @@ impl Active {
     pub(super) fn watch(&mut self, model: &Model, alive: bool, now: u64) {
         let given_up = matches!(self.lapse, Some((Stale::Brake, _)));
         // Whoever asks for rest gets it, with or without a deadman.
-        let comes_to_rest = self.goal.target == Target::Rest && self.goal.then != Then::Hold;
+        let comes_to_rest = self.heading() == Target::Rest && self.goal.then != Then::Hold;
         if given_up || comes_to_rest || matches!(self.stage, Stage::Releasing(_) | Stage::Finished)
         {
             return;
