@@ -113,3 +113,31 @@ fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
         assert!((lockstep.robot.q()[0] - turned(0.1)[0]).abs() < 2e-3);
     });
 }
+
+#[test]
+fn a_first_point_far_in_the_future_does_not_let_the_arm_run_on_until_then() {
+    for_each_robot(|ready| {
+        for joints in [true, false] {
+            let mut lockstep = ready();
+            let engaged = lockstep.engage();
+            let target = Target::Joints(turned(0.8));
+            lockstep.within(engaged, target, Then::Hold).unwrap();
+            lockstep.run(400);
+            let at = lockstep.client.record.q_ref;
+            assert!(lockstep.client.record.dq_ref[0] > 0.3, "it is under way");
+            let begin = Duration::from_secs(5);
+            let chunk = if joints {
+                Chunk::joints([(begin, at)])
+            } else {
+                Chunk::poses([(begin, lockstep.reference_pose())])
+            };
+            lockstep.chunk(engaged, chunk.unwrap()).unwrap();
+            let mut farthest = 0.0_f64;
+            for _ in 0..5000 {
+                lockstep.tick();
+                farthest = farthest.max((lockstep.client.record.q_ref[0] - at[0]).abs());
+            }
+            assert!(farthest < 0.3, "{farthest} rad on");
+        }
+    });
+}

@@ -9,6 +9,10 @@ use super::value::{Chunk, Origin, milliseconds};
 /// One cycle, `[s]`.
 const CYCLE: f64 = 1e-3;
 
+/// Time, `[s]`, in which the motion before is let go on the way to a first point that lies later than this: the motion
+/// would go on until half of the way there is over.
+const LET_GO: f64 = 1.0;
+
 /// A chunk that has been taken up.
 #[derive(Debug)]
 pub(super) struct Player<M: Motion> {
@@ -73,7 +77,7 @@ impl<M: Motion> Player<M> {
     pub(super) fn at(&self, now: u64) -> M {
         let t = milliseconds(now, self.origin);
         match &self.entry {
-            Entry::Lead { from, since } if t < self.curve.begin() => M::between(
+            Entry::Lead { from, since } if t < self.curve.begin() => lead(
                 from,
                 self.curve.first(),
                 self.curve.begin() - since,
@@ -112,6 +116,20 @@ impl<M: Motion> Player<M> {
             origin,
             blend,
         }
+    }
+}
+
+/// On the way from one state to another, `t` after its begin.
+fn lead<M: Motion>(from: &M, to: &M, duration: f64, t: f64) -> M {
+    if duration <= LET_GO {
+        return M::between(from, to, duration, t);
+    }
+    let rest = from.resting();
+    let way = M::between(&rest, to, duration, t);
+    if t < LET_GO {
+        way.displaced(&from.gap_from(&rest), LET_GO, t)
+    } else {
+        way
     }
 }
 
