@@ -242,7 +242,7 @@ pub(super) fn limits_of_joint(
 }
 
 /// The end effector of a moving reference.
-fn end_effector(model: &Model, ee: &EndEffector, reference: &Reference) -> PoseState {
+pub(super) fn end_effector(model: &Model, ee: &EndEffector, reference: &Reference) -> PoseState {
     let dynamics = model.dynamics(&reference.q, &reference.dq, ee, &Load::NONE, &GRAVITY_EARTH);
     PoseState {
         pose: rigid(&dynamics.pose),

@@ -148,7 +148,10 @@ impl Route {
         if self.course.is_done() && reference.dq.amax() < AT_REST {
             return;
         }
-        self.lay_aside();
+        if let Course::Chunk(chunk) = &mut self.course {
+            let pose = course::end_effector(model, ee, reference);
+            return chunk.begin_again(model, reference, pose);
+        }
         self.course = Course::Rest;
         if matches!(self.pace, Pace::Braked(_)) {
             self.brake(model, ee, reference, goal);

@@ -141,3 +141,42 @@ fn a_first_point_far_in_the_future_does_not_let_the_arm_run_on_until_then() {
         }
     });
 }
+
+#[test]
+fn lost_commands_do_not_lead_past_the_points_of_a_chunk() {
+    for_each_robot(|ready| {
+        for (joints, after) in [(true, 30), (true, 60), (false, 30), (false, 60)] {
+            let mut lockstep = ready();
+            let engaged = lockstep.engage_with(Engagement {
+                backend: Backend::RobotController(Setpoints::Joints),
+                ..Engagement::default()
+            });
+            let start = lockstep.reference_pose();
+            // There and back: the end alone leads nowhere.
+            let there = |k: u32| 0.06 * (1.0 - (f64::from(k) * 0.3).cos());
+            let count = 0..=21;
+            let apart = Duration::from_millis(100);
+            let chunk = if joints {
+                Chunk::joints(count.map(|k| (apart * k, turned(there(k)))))
+            } else {
+                let moved = |k| Translation3::new(0.0, there(k), 0.0) * start;
+                Chunk::poses(count.map(|k| (apart * k, moved(k))))
+            };
+            lockstep.chunk(engaged, chunk.unwrap()).unwrap();
+            lockstep.run(after);
+            lockstep.link.drop_commands(12);
+            let mut farthest = 0.0_f64;
+            for _ in 0..2500 {
+                lockstep.tick();
+                let off = if joints {
+                    lockstep.client.record.q_ref[0] - READY[0]
+                } else {
+                    lockstep.reference_pose().translation.y - start.translation.y
+                };
+                farthest = farthest.max(off);
+            }
+            assert!(farthest > 0.115, "{farthest} of 0.12");
+            assert_eq!(lockstep.client.outcome(engaged), None, "it goes on");
+        }
+    });
+}

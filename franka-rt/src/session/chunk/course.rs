@@ -123,6 +123,19 @@ impl ChunkCourse {
         }
     }
 
+    /// Goes on from `reference`, and the `pose` of its end effector, which something else has moved.
+    pub(in crate::session) fn begin_again(
+        &mut self,
+        model: &Model,
+        reference: &Reference,
+        pose: PoseState,
+    ) {
+        if let Play::Poses { state, drift, .. } = &mut self.play {
+            (*state, *drift) = (pose, Drift::of(reference.dq));
+        }
+        self.keep_to(model, reference, self.budget);
+    }
+
     /// One cycle on, in the answer to the state `now`, from `reference`.
     pub(in crate::session) fn step(
         &mut self,
