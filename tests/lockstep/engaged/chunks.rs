@@ -180,3 +180,19 @@ fn lost_commands_do_not_lead_past_the_points_of_a_chunk() {
         }
     });
 }
+
+#[test]
+fn points_that_no_arm_could_mean_are_refused() {
+    let lockstep = Lockstep::ready();
+    let start = lockstep.true_pose();
+    let apart = Duration::from_millis(50);
+    for far in [1e12, 1e200, -1e300] {
+        let wild = Translation3::new(far, 0.0, 0.0) * start;
+        let poses = Chunk::poses([(apart, start), (apart * 2, wild), (apart * 3, start)]);
+        assert_eq!(poses, Err(ChunkError::NotFinite { point: 1 }));
+        let (at, still) = (READY.into(), [0.0; 7]);
+        let fast = [far; 7];
+        let joints = Chunk::joints_with_velocities([(apart, at, still), (apart * 2, at, fast)]);
+        assert_eq!(joints, Err(ChunkError::NotFinite { point: 1 }));
+    }
+}

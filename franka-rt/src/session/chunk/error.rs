@@ -13,8 +13,10 @@ pub enum ChunkError {
         /// The most that a chunk may have, [`POINTS_MAX`](super::POINTS_MAX).
         most: usize,
     },
-    /// A number of a point is not finite, or its quaternion is not of length one.
-    #[error("point {point} holds a number that is not finite, or a rotation that is none")]
+    /// A number of a point is not finite, or larger than 1e6, or its quaternion is not of length one.
+    #[error(
+        "point {point} holds a number that is not finite or far too large, or a rotation that is none"
+    )]
     NotFinite {
         /// The point, from 0.
         point: usize,

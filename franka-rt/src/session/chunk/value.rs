@@ -27,6 +27,10 @@ pub const BLEND: Duration = Duration::from_millis(100);
 /// The least time between two points, `[s]`: one cycle, less the rounding of a conversion.
 const SPACING_MIN: f64 = 1e-3 - 1e-9;
 
+/// The largest number of a point, in its unit. None of an arm comes near it, and what becomes of it on the way still is a
+/// number.
+const NUMBER_MAX: f64 = 1e6;
+
 /// The largest angle between two points, `[rad]`.
 const TURN_MAX: f64 = 170.0 * core::f64::consts::PI / 180.0;
 
@@ -89,7 +93,7 @@ impl Chunk {
     pub fn joints(
         points: impl IntoIterator<Item = (Duration, [f64; 7])>,
     ) -> Result<Self, ChunkError> {
-        let (times, q) = collect(points, |q| q.iter().all(|x| x.is_finite()))?;
+        let (times, q) = collect(points, |q| are_numbers(q))?;
         let state = |i| {
             let [dq, ddq] = derivatives::at(&times, i, |k| JointVector::from(q[k]));
             Reference {
@@ -112,7 +116,7 @@ impl Chunk {
         points: impl IntoIterator<Item = (Duration, [f64; 7], [f64; 7])>,
     ) -> Result<Self, ChunkError> {
         let points = points.into_iter().map(|(time, q, dq)| (time, (q, dq)));
-        let (times, points) = collect(points, |(q, dq)| q.iter().chain(dq).all(|x| x.is_finite()))?;
+        let (times, points) = collect(points, |(q, dq)| are_numbers(q.iter().chain(dq)))?;
         let state = |i: usize| {
             let [ddq, _] = derivatives::at(&times, i, |k| JointVector::from(points[k].1));
             Reference {
@@ -167,9 +171,7 @@ impl Chunk {
         let points = points
             .into_iter()
             .map(|(time, pose, twist)| (time, (pose, twist)));
-        let (times, points) = collect(points, |(pose, twist)| {
-            is_pose(pose) && twist.iter().all(|x| x.is_finite())
-        })?;
+        let (times, points) = collect(points, |(pose, twist)| is_pose(pose) && are_numbers(twist))?;
         check_turns(points.iter().map(|(pose, _)| pose))?;
         let state = |i: usize| {
             let [acceleration, _] = derivatives::at(&times, i, |k| Twist::from(points[k].1));
@@ -324,11 +326,15 @@ fn collect<T>(
     Ok((times, values))
 }
 
-/// Whether all numbers are finite and the rotation is one.
+fn are_numbers<'a>(values: impl IntoIterator<Item = &'a f64>) -> bool {
+    values.into_iter().all(|x| x.abs() <= NUMBER_MAX)
+}
+
+/// Whether all numbers are some and the rotation is one.
 fn is_pose(pose: &Isometry3<f64>) -> bool {
     let position: &Vector3<f64> = &pose.translation.vector;
     // A quaternion of finite length 1 has no other numbers than finite ones.
-    position.iter().all(|x| x.is_finite()) && (pose.rotation.coords.norm() - 1.0).abs() < 1e-6
+    are_numbers(position) && (pose.rotation.coords.norm() - 1.0).abs() < 1e-6
 }
 
 fn check_turns<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Result<(), ChunkError> {
