@@ -233,3 +233,26 @@ fn goals_are_held_against_the_ranges_of_the_connected_robot() {
         "{error:?}"
     );
 }
+
+#[test]
+fn a_goal_is_planned_however_slow_it_is_or_refused() {
+    for_each_robot(|ready| {
+        for pace in [1e-2, 1e-3, 1e-4, 1e-6, 1e-12, 1e-60] {
+            let mut lockstep = ready();
+            let up = Translation3::new(0.0, 0.0, 0.05) * lockstep.true_pose();
+            let mut q: [f64; 7] = READY.into();
+            q[0] += 0.1;
+            for target in [Target::Pose(up), Target::Joints(q)] {
+                let mut goal = lockstep.goal(target, Then::Hold);
+                goal.budget = goal.budget.scaled(pace);
+                match lockstep.submit(goal) {
+                    Ok(_) => lockstep.run(300),
+                    Err(error) => assert!(matches!(error, MotionError::Goal(_)), "{error}"),
+                }
+            }
+            if let Some(stop) = lockstep.stop() {
+                lockstep.until_resolved(stop, 1000).expect("it rests");
+            }
+        }
+    });
+}

@@ -41,7 +41,7 @@ pub enum GoalError {
         /// See `x`.
         z: f64,
     },
-    /// A limit of the budget is not positive or exceeds the robot's.
+    /// A limit of the budget is not positive, or as good as zero, or exceeds the robot's.
     #[error("{what} limit {got}, expected above 0 and at most {most}")]
     Budget {
         /// Which limit.
@@ -247,11 +247,14 @@ fn check_reach(
         .map_err(|_| ())
 }
 
+/// Limits below this are none: plans within them are too long to be made.
+const LIMIT_MIN: f64 = 1e-20;
+
 fn check_budget(budget: &Budget, model: &Model) -> Result<(), GoalError> {
     let joints = model.joint_limits();
     let cartesian = model.cartesian_limits();
     let check = |what, got: f64, most: f64| {
-        if got > 0.0 && got <= most {
+        if (LIMIT_MIN..=most).contains(&got) {
             Ok(())
         } else {
             Err(GoalError::Budget { what, got, most })
