@@ -52,11 +52,13 @@ mod capsules;
 mod obstacle;
 mod segment;
 mod shape;
+mod spacing;
 #[cfg(test)]
 mod tests;
 
 pub use obstacle::Obstacle;
 pub use shape::{Capsule, Shape, ToolError};
+pub use spacing::{Arrangement, Item, Leeway, REGIONS_MAX, Spacing};
 
 use nalgebra::Vector3;
 
@@ -139,12 +141,21 @@ impl<'a> Shape<'a> {
             segments,
         }
     }
+
+    /// Indices of the capsules that can meet, inner one first.
+    fn indices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let (arm, tool) = (self.arm, self.arm.len()..self.len());
+        let within = self.pairs.iter().map(|&(a, b)| (a.into(), b.into()));
+        let inner = arm.iter().take_while(|c| c.link <= capsules::TOOL_MEETS);
+        let beyond = move |(a, _)| tool.clone().map(move |b| (a, b));
+        within.chain(inner.enumerate().flat_map(beyond))
+    }
 }
 
 impl Placed<'_> {
     /// Every pair that can meet.
     pub fn pairs(&self) -> impl Iterator<Item = Proximity<(Body, Body)>> + '_ {
-        self.indices().map(|(a, b)| {
+        self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
             self.pair_proximity(a, b, &nearest)
         })
@@ -153,7 +164,7 @@ impl Placed<'_> {
     /// The distance of every pair that can meet, `[m]`, in the order of [`pairs`](Self::pairs). Costs less: there are no
     /// gradients.
     pub fn distances(&self) -> impl Iterator<Item = ((Body, Body), f64)> + '_ {
-        self.indices().map(|(a, b)| {
+        self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
             ((self.body(a), self.body(b)), nearest.distance)
         })
@@ -161,7 +172,7 @@ impl Placed<'_> {
 
     /// The pair with the least distance. Costs less than [`pairs`](Self::pairs): there is one gradient.
     pub fn nearest_pair(&self) -> Proximity<(Body, Body)> {
-        let distances = self.indices().map(|(a, b)| {
+        let distances = self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
             (nearest.distance, (a, b, nearest))
         });
@@ -174,19 +185,6 @@ impl Placed<'_> {
         self.moving().map(move |i| {
             let nearest = obstacle.nearest(&self.segments[i]);
             self.obstacle_proximity(i, &nearest)
-        })
-    }
-
-    /// The same capsules in the same order: what the distance, `[m]`, is at least, and how to get it in full. Most capsules
-    /// are further from most obstacles than anybody needs to know, and the bound takes a fraction of the time.
-    pub fn bounds_to<'o>(
-        &'o self,
-        obstacle: &'o Obstacle,
-    ) -> impl Iterator<Item = (f64, impl FnOnce() -> f64 + 'o)> + 'o {
-        self.moving().map(move |i| {
-            let segment = &self.segments[i];
-            let distance = move || obstacle.nearest(segment).distance;
-            (obstacle.at_least(segment), distance)
         })
     }
 
@@ -216,15 +214,6 @@ impl Placed<'_> {
     fn moving(&self) -> impl Iterator<Item = usize> + '_ {
         let base = self.shape.arm.iter().take_while(|c| c.link == 0).count();
         base..self.shape.len()
-    }
-
-    /// Indices of the capsules that can meet, inner one first.
-    fn indices(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let (arm, tool) = (self.shape.arm, self.shape.arm.len()..self.shape.len());
-        let within = self.shape.pairs.iter().map(|&(a, b)| (a.into(), b.into()));
-        let inner = arm.iter().take_while(|c| c.link <= capsules::TOOL_MEETS);
-        let beyond = move |(a, _)| tool.clone().map(move |b| (a, b));
-        within.chain(inner.enumerate().flat_map(beyond))
     }
 
     #[inline(always)]

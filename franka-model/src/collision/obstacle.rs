@@ -46,32 +46,6 @@ impl Obstacle {
     }
 }
 
-impl Obstacle {
-    /// What the distance from a capsule is at least: that from the ball around it to a box. Cheap; no bound at all where
-    /// those meet, and for a plane, whose distance is as cheap.
-    #[inline(always)]
-    pub(super) fn at_least(&self, segment: &Segment) -> f64 {
-        match self {
-            Self::Plane { .. } => f64::NEG_INFINITY,
-            Self::Box { pose, half } => {
-                let centre = pose.translation.vector - Vector3::new(0.0, 0.0, SHOULDER);
-                let middle = pose
-                    .rotation
-                    .inverse_transform_vector(&(segment.at(0.5) - centre));
-                let beyond = (middle.abs() - half).map(|x| x.max(0.0));
-                let bound = sqrt(beyond.norm_squared())
-                    - 0.5 * sqrt(segment.along.norm_squared())
-                    - segment.radius;
-                if bound <= 0.0 {
-                    f64::NEG_INFINITY
-                } else {
-                    bound
-                }
-            }
-        }
-    }
-}
-
 #[inline(always)]
 fn nearest_to_plane(normal: &UnitVector3<f64>, offset: f64, segment: &Segment) -> Nearest {
     // The segment counts from the shoulder.
@@ -125,13 +99,27 @@ fn nearest_to_box(pose: &Isometry3<f64>, half: &Vector3<f64>, segment: &Segment)
 const TOUCHING: f64 = 1e-12;
 
 /// The axis of a capsule in the axes of a box.
-struct Axis {
-    start: Vector3<f64>,
-    along: Vector3<f64>,
-    half: Vector3<f64>,
+pub(super) struct Axis {
+    pub(super) start: Vector3<f64>,
+    /// End less start.
+    pub(super) along: Vector3<f64>,
+    /// Half of the box's sides.
+    pub(super) half: Vector3<f64>,
 }
 
 impl Axis {
+    /// How far it is from the box; negative where it meets the box, the length of the shortest way out.
+    pub(super) fn distance(&self) -> f64 {
+        let t = self.nearest_outside();
+        let gap = self.at(t) - self.clamped(t);
+        let length = sqrt(gap.norm_squared());
+        if length > TOUCHING {
+            length
+        } else {
+            self.shortest_way_out().2
+        }
+    }
+
     fn at(&self, t: f64) -> Vector3<f64> {
         self.start + self.along * t
     }

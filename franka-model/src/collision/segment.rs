@@ -50,6 +50,17 @@ impl Segment {
         }
     }
 
+    /// The capsule with this radius whose axis goes `half` either way from its middle.
+    #[inline(always)]
+    pub(super) fn around(middle: &Vector3<f64>, half: &Vector3<f64>, radius: f64) -> Self {
+        Self {
+            start: middle - half,
+            along: half * 2.0,
+            square: 4.0 * dot(half, half),
+            radius,
+        }
+    }
+
     /// The capsule in the base frame.
     pub(super) fn capsule(&self) -> Capsule {
         let start = self.start + Vector3::new(0.0, 0.0, SHOULDER);

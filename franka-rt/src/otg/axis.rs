@@ -196,21 +196,48 @@ fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
 }
 
 fn append_stop(limits: AxisLimits, profile: &mut Profile) {
-    let front = profile.front();
+    for (jerk, t) in stop_pieces(profile.front(), limits) {
+        profile.push(jerk, t);
+    }
+    profile.finish_here();
+}
+
+/// Where the least-time stop from `start` ends, without its profile.
+pub(crate) fn rest_of(start: AxisState, limits: AxisLimits) -> f64 {
+    if start.is_at_rest() {
+        return start.position;
+    }
+    let front = AxisState {
+        position: 0.0,
+        ..start
+    };
+    let pieces = stop_pieces(front, limits).into_iter();
+    let way = pieces.fold(
+        front,
+        |state, (jerk, t)| {
+            if t > 0.0 { state.after(jerk, t) } else { state }
+        },
+    );
+    start.position + way.position
+}
+
+/// The jerks of the least-time stop and how long each lasts, in seconds: back into the acceleration limit first.
+fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
     let (task, unit) = Task::unchecked(front, front.position, limits);
     let excess = task.a.abs() - 1.0;
     let ramp = -1_f64.copysign(task.a);
     let task = if excess > 0.0 {
-        profile.push(ramp * limits.jerk, excess * unit);
         task.after(ramp, excess)
     } else {
         task
     };
     let (sign, [t1, t2, t3]) = stop(task.v, task.a);
-    profile.push(sign * limits.jerk, t1 * unit);
-    profile.push(0.0, t2 * unit);
-    profile.push(-sign * limits.jerk, t3 * unit);
-    profile.finish_here();
+    [
+        (ramp * limits.jerk, excess * unit),
+        (sign * limits.jerk, t1 * unit),
+        (0.0, t2 * unit),
+        (-sign * limits.jerk, t3 * unit),
+    ]
 }
 
 /// Times, in seconds, that count as together where an axis would need a detour to lose the difference.

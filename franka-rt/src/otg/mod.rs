@@ -102,6 +102,7 @@ mod transfer;
 mod turn;
 mod velocity_change;
 
+pub(crate) use axis::rest_of;
 pub use error::{PlanError, Quantity};
 pub use generator::{CYCLE, Generator};
 pub use limits::{AxisLimits, Limits};

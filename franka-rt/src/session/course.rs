@@ -4,7 +4,7 @@ use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 
 use crate::law::hybrid::Reference;
-use crate::otg::{AxisLimits, Generator, Limits, PlanError, State};
+use crate::otg::{self, AxisLimits, AxisState, Generator, Limits, PlanError, State};
 use crate::session::active::Measured;
 use crate::session::chunk::ChunkCourse;
 use crate::session::guard::leash;
@@ -170,13 +170,16 @@ impl Course {
 
 /// Where the joints of a moving reference come to rest, `[rad]`, if it is braked now.
 pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget) -> JointVector {
-    match joints(model, reference, None, budget) {
-        Ok(brake) => (*brake.end()).into(),
-        Err(error) => {
-            debug_assert!(false, "{error}");
-            reference.q
-        }
-    }
+    let robot = model.joint_limits();
+    JointVector::from_fn(|i, _| {
+        let state = AxisState {
+            position: reference.q[i],
+            velocity: reference.dq[i],
+            acceleration: reference.ddq[i],
+        };
+        let limits = limits_of_joint(i, robot, reference, budget.joints[i], true);
+        otg::rest_of(state, limits)
+    })
 }
 
 /// A plan for the joints from the reference to `target`, or to rest.
@@ -248,5 +251,36 @@ pub(super) fn end_effector(model: &Model, ee: &EndEffector, reference: &Referenc
         pose: rigid(&dynamics.pose),
         twist: dynamics.jacobian * reference.dq,
         acceleration: dynamics.jacobian * reference.ddq + dynamics.jdot_dq,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_model::READY;
+    use rand::rngs::SmallRng;
+    use rand::{Rng, SeedableRng};
+
+    #[test]
+    fn a_brake_ends_where_its_plan_does() {
+        let mut random = SmallRng::seed_from_u64(33);
+        for model in [Model::fr3(), Model::fer()] {
+            let robot = model.joint_limits();
+            for case in 0..10_000 {
+                let mut share = |most: f64| {
+                    JointVector::from_fn(|_, _| most * random.random_range(-1.0..1.0_f64).powi(3))
+                };
+                let reference = Reference {
+                    q: READY,
+                    dq: robot.velocity.component_mul(&share(1.0)),
+                    // Some states are outside the limits.
+                    ddq: robot.acceleration.component_mul(&share(1.2)) * f64::from(case % 2),
+                };
+                let budget = Budget::of(robot).scaled(random.random_range(0.05..2.0));
+                let plan = joints(model, &reference, None, &budget).unwrap();
+                let end = end_of_brake(model, &reference, &budget);
+                assert_eq!(end, JointVector::from(*plan.end()), "{reference:?}");
+            }
+        }
     }
 }

@@ -214,11 +214,9 @@ impl Route {
             return step;
         }
         let next = &step.reference;
-        let end = || course::end_of_brake(model, next, &goal.budget);
-        match (
-            self.clearance.ahead(&reference.q, next, end),
-            &mut self.pace,
-        ) {
+        let end = course::end_of_brake(model, next, &goal.budget);
+        let ahead = self.clearance.ahead(&reference.q, &next.q, &end);
+        match (ahead, &mut self.pace) {
             (Ahead::TooNear, _) => {
                 self.pace = Pace::Braked(0);
                 self.hindered = HINDERED;

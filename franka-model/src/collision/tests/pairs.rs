@@ -10,7 +10,7 @@ fn distances_of_all_pairs_meet_an_independent_minimiser() {
             let q = random.posture(model);
             let (placed, capsules) = (shape.at(&q), placed_by_poses(&shape, &q));
             let mut least = f64::INFINITY;
-            for ((a, b), pair) in placed.indices().zip(placed.pairs()) {
+            for ((a, b), pair) in placed.shape.indices().zip(placed.pairs()) {
                 let want = oracle(&capsules[a].1, &capsules[b].1);
                 least = least.min(want);
                 assert_eq!(pair.bodies, (capsules[a].0, capsules[b].0));

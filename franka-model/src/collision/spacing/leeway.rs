@@ -1,0 +1,74 @@
+//! How far joints may turn before anything comes near.
+//!
+//! A body moves against another by the joints between them, and by no more than the length of the lever with which each of
+//! these moves it. What moves by the same joints is kept together in a group.
+
+use super::mounted::Mounted;
+use crate::JointVector;
+
+/// How far the joints may turn from a posture before anything is near: from each posture within, everything has more room
+/// than the limit for which it was made.
+#[derive(Debug, Clone)]
+pub struct Leeway {
+    q: JointVector,
+    /// What each group has left above that limit, `[m]`.
+    spare: [f64; GROUPS_MAX],
+}
+
+impl Leeway {
+    pub(super) const fn new(q: JointVector, spare: [f64; GROUPS_MAX]) -> Self {
+        Self { q, spare }
+    }
+
+    /// Whether nothing can be near at any posture that is within `turns`, `[rad]`, none of them negative, of `q`.
+    pub fn covers(&self, spacing: &super::Spacing, q: &JointVector, turns: &JointVector) -> bool {
+        let groups = &spacing.groups;
+        let mut moved = [0.0; GROUPS_MAX];
+        for (i, levers) in groups.levers.iter().enumerate() {
+            let turn = (q[i] - self.q[i]).abs() + turns[i];
+            for (moved, lever) in moved.iter_mut().zip(levers).take(groups.count) {
+                *moved += lever * turn;
+            }
+        }
+        let all = moved.iter().zip(&self.spare).take(groups.count);
+        all.fold(true, |clear, (moved, spare)| clear & (moved <= spare))
+    }
+}
+
+/// Groups of pairs of bodies.
+#[derive(Debug, Clone)]
+pub(super) struct Groups {
+    /// Numbers of the bodies, the inner one first; of two regions and the base alike 0.
+    numbers: [(u8, u8); GROUPS_MAX],
+    count: usize,
+    /// By joint, and by group, how far a turn moves the outer body against the inner one, `[m/rad]`.
+    levers: [[f64; GROUPS_MAX]; 7],
+}
+
+impl Groups {
+    pub(super) const NONE: Self = Self {
+        numbers: [(0, 0); GROUPS_MAX],
+        count: 0,
+        levers: [[0.0; GROUPS_MAX]; 7],
+    };
+
+    /// Adds a capsule that keeps from something on the body with the number `inner`, and gives its group.
+    pub(super) fn join(&mut self, inner: u8, outer: &Mounted) -> usize {
+        let numbers = (inner, outer.number);
+        let known = self.numbers[..self.count].iter();
+        let group = known.clone().position(|known| *known == numbers);
+        let group = group.unwrap_or_else(|| {
+            self.numbers[self.count] = numbers;
+            self.count += 1;
+            self.count - 1
+        });
+        for joint in usize::from(inner) + 1..=outer.joints() {
+            let lever = &mut self.levers[joint - 1][group];
+            *lever = lever.max(outer.lever(joint));
+        }
+        group
+    }
+}
+
+/// All pairs of the base, seven links and a tool.
+pub(super) const GROUPS_MAX: usize = 36;

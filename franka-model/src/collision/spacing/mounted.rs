@@ -1,0 +1,143 @@
+//! A capsule in the frame of its link, with what does not depend on the posture.
+
+use nalgebra::Vector3;
+
+use crate::chain::Chain;
+use crate::collision::{Body, Capsule};
+use crate::geometry::{ELBOW, FLANGE, FOREARM, SHOULDER, UPPER_ARM, WRIST};
+use crate::inertia::dot;
+use crate::scalar::sqrt;
+
+/// A capsule on a link or on the flange.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mounted {
+    /// Of the link, counted from the base; that of a tool is 8.
+    pub(super) number: u8,
+    /// Middle of the axis, `[m]`: in the frame of the link that it moves with; of the base, from the shoulder.
+    middle: Vector3<f64>,
+    /// From there to the end of the axis, `[m]`.
+    half: Vector3<f64>,
+    /// Length of `half`, `[m]`.
+    pub(super) reach: f64,
+    /// `[m]`.
+    pub(super) radius: f64,
+    /// Group of what keeps from regions.
+    pub(super) group: usize,
+}
+
+/// Where a capsule is, from the shoulder, in base axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spot {
+    pub(super) middle: Vector3<f64>,
+    pub(super) half: Vector3<f64>,
+}
+
+impl Spot {
+    pub(super) const NOWHERE: Self = Self {
+        middle: Vector3::new(0.0, 0.0, 0.0),
+        half: Vector3::new(0.0, 0.0, 0.0),
+    };
+}
+
+impl Mounted {
+    pub(super) const NONE: Self = Self {
+        number: 0,
+        middle: Vector3::new(0.0, 0.0, 0.0),
+        half: Vector3::new(0.0, 0.0, 0.0),
+        reach: 0.0,
+        radius: 0.0,
+        group: 0,
+    };
+
+    pub(super) fn on_link(link: u8, capsule: &Capsule) -> Self {
+        let origin = match link {
+            0 => Vector3::new(0.0, 0.0, -SHOULDER),
+            _ => Vector3::zeros(),
+        };
+        Self::on(link, origin, capsule)
+    }
+
+    pub(super) fn on_flange(capsule: &Capsule) -> Self {
+        Self::on(TOOL, Vector3::new(0.0, 0.0, FLANGE), capsule)
+    }
+
+    fn on(number: u8, origin: Vector3<f64>, capsule: &Capsule) -> Self {
+        let half = (capsule.end - capsule.start) * 0.5;
+        Self {
+            number,
+            middle: origin + capsule.start + half,
+            half,
+            reach: sqrt(dot(&half, &half)),
+            radius: capsule.radius,
+            group: 0,
+        }
+    }
+
+    /// How many joints move it.
+    pub(super) fn joints(&self) -> usize {
+        match self.number {
+            TOOL => Body::Tool.joints(),
+            link => Body::Link(link).joints(),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn at(&self, chain: &Chain) -> Spot {
+        match self.joints() {
+            0 => Spot {
+                middle: self.middle,
+                half: self.half,
+            },
+            joints => {
+                let (turn, origin) = (&chain.rotation[joints - 1], &chain.origin[joints - 1]);
+                Spot {
+                    middle: origin + turn * self.middle,
+                    half: turn * self.half,
+                }
+            }
+        }
+    }
+
+    /// How far the axis moves at most, `[m/rad]`, if joint number `joint` of those that move it turns, at any posture.
+    pub(super) fn lever(&self, joint: usize) -> f64 {
+        let ends = [self.middle - self.half, self.middle + self.half];
+        let levers = ends.map(|end| lever(self.joints(), &end, joint));
+        levers[0].max(levers[1])
+    }
+}
+
+/// How far `point`, in the frame of a link, is at most from the axis of a joint before it, or of its own.
+///
+/// A point stays at its distance from every point of a joint's axis. So from the axis that is named here on to that of the
+/// joint it is that much further away at most as the points on them are apart.
+fn lever(link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
+    let aside = length(point.x, point.y);
+    let (away, axis) = match (link, joint) {
+        _ if link == joint => return aside,
+        (3, _) => (length(aside, point.z + UPPER_ARM), 3),
+        // Each of these axes is at right angles with the one before, and with the line between them.
+        (4, 3) => return length(ELBOW + aside, point.z),
+        (4, _) => (length(length(UPPER_ARM, ELBOW) + aside, point.z), 3),
+        (5, _) => (length(ELBOW + aside, FOREARM + point.z), 4),
+        (7, _) => (length(WRIST + aside, point.z), 6),
+        _ => (length(aside, point.z), link),
+    };
+    away + (joint..axis).map(step).sum::<f64>()
+}
+
+/// From the point on the axis of joint number `joint` to that on the next: the shoulder on the first three, the elbow on the
+/// fourth, the wrist on the fifth and the sixth.
+fn step(joint: usize) -> f64 {
+    match joint {
+        3 => length(UPPER_ARM, ELBOW),
+        4 => length(FOREARM, ELBOW),
+        _ => 0.0,
+    }
+}
+
+fn length(a: f64, b: f64) -> f64 {
+    sqrt(a * a + b * b)
+}
+
+/// What is mounted on the flange comes after the last link.
+const TOOL: u8 = 8;

@@ -1,0 +1,106 @@
+//! A region, prepared for many capsules at many postures.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::mounted::{Mounted, Spot};
+use crate::collision::Obstacle;
+use crate::collision::obstacle::Axis;
+use crate::geometry::SHOULDER;
+use crate::inertia::dot;
+use crate::scalar::sqrt;
+
+/// What is to be kept out of, from the shoulder, in base axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Region {
+    Plane {
+        normal: Vector3<f64>,
+        offset: f64,
+    },
+    Box {
+        /// From base axes to those of the box.
+        turn: Matrix3<f64>,
+        centre: Vector3<f64>,
+        half: Vector3<f64>,
+    },
+}
+
+impl Region {
+    /// What nothing can come near to.
+    pub(super) const NOWHERE: Self = Self::Plane {
+        normal: Vector3::new(0.0, 0.0, 0.0),
+        offset: f64::NEG_INFINITY,
+    };
+
+    pub(super) fn of(obstacle: &Obstacle) -> Self {
+        let shoulder = Vector3::new(0.0, 0.0, SHOULDER);
+        match obstacle {
+            Obstacle::Plane { normal, offset } => Self::Plane {
+                normal: normal.into_inner(),
+                offset: offset - normal.dot(&shoulder),
+            },
+            Obstacle::Box { pose, half } => Self::Box {
+                turn: pose.rotation.inverse().to_rotation_matrix().into_inner(),
+                centre: pose.translation.vector - shoulder,
+                half: *half,
+            },
+        }
+    }
+
+    /// The distance of a capsule, `[m]`, if that may be less than `limit`.
+    #[inline(always)]
+    pub(super) fn distance_below(&self, spot: &Spot, capsule: &Mounted, limit: f64) -> Option<f64> {
+        match self {
+            Self::Plane { normal, offset } => Some(from_plane(normal, *offset, spot, capsule)),
+            Self::Box { turn, centre, half } => {
+                let middle = turn * (spot.middle - centre);
+                let near = limit + capsule.radius;
+                let ball = near + capsule.reach;
+                if ball > 0.0 && beyond(&(middle.abs() - half)) >= ball * ball {
+                    return None;
+                }
+                let along = turn * spot.half;
+                if near > 0.0 && beyond(&(middle.abs() - along.abs() - half)) >= near * near {
+                    return None;
+                }
+                let axis = Axis {
+                    start: middle - along,
+                    along: along * 2.0,
+                    half: *half,
+                };
+                Some(axis.distance() - capsule.radius)
+            }
+        }
+    }
+
+    /// What the distance of a capsule is at least, `[m]`. No bound at all where a box around its axis meets the region.
+    #[inline(always)]
+    pub(super) fn distance_at_least(&self, spot: &Spot, capsule: &Mounted) -> f64 {
+        match self {
+            Self::Plane { normal, offset } => from_plane(normal, *offset, spot, capsule),
+            Self::Box { turn, centre, half } => {
+                let middle = turn * (spot.middle - centre);
+                let along = turn * spot.half;
+                let beyond = beyond(&(middle.abs() - along.abs() - half));
+                if beyond > 0.0 {
+                    sqrt(beyond) - capsule.radius
+                } else {
+                    f64::NEG_INFINITY
+                }
+            }
+        }
+    }
+}
+
+/// The lower end counts, whichever it is.
+#[inline(always)]
+fn from_plane(normal: &Vector3<f64>, offset: f64, spot: &Spot, capsule: &Mounted) -> f64 {
+    dot(normal, &spot.middle) - dot(normal, &spot.half).abs() - offset - capsule.radius
+}
+
+/// Square of the distance of a box from another one with the same axes, between which `gaps` are left along these, negative
+/// where they lie side by side.
+#[inline(always)]
+fn beyond(gaps: &Vector3<f64>) -> f64 {
+    let gaps = gaps.map(|x| if x > 0.0 { x } else { 0.0 });
+    dot(&gaps, &gaps)
+}

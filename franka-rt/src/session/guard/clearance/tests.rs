@@ -1,0 +1,188 @@
+use super::*;
+use crate::law::hybrid::Reference;
+use franka_model::collision::Body;
+use franka_model::{Model, READY};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+use crate::session::{Budget, course};
+
+fn of(keep_out: KeepOut) -> Clearance {
+    Clearance::new(RobotKind::Fr3, true, keep_out)
+}
+
+/// What is left at a posture of every distance that is to be kept.
+fn rooms(keep_out: &KeepOut, q: &JointVector) -> Vec<f64> {
+    let number = |body| match body {
+        Body::Link(link) => link,
+        Body::Tool => 8,
+    };
+    let arm = Shape::vendor().with_hand().at(q);
+    let far = |(a, b)| number(b) - number(a) >= APART;
+    let pairs = arm.distances().filter(|(bodies, _)| far(*bodies));
+    let mut rooms: Vec<f64> = pairs.map(|(_, distance)| distance - SELF_STOP).collect();
+    let cover = Shape::covering(RobotKind::Fr3).with_hand().at(q);
+    for region in keep_out.iter().flatten() {
+        rooms.extend(cover.to(region).map(|near| near.distance - KEEP_OUT_STOP));
+    }
+    rooms
+}
+
+fn least(q: &JointVector) -> f64 {
+    let rooms = rooms(&KeepOut::default(), q);
+    rooms.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// What [`Clearance::ahead`] is to say, by all distances at all three postures.
+fn plain(keep_out: &KeepOut, now: &JointVector, next: &JointVector, end: &JointVector) -> Ahead {
+    let now = rooms(keep_out, now);
+    let judged = [(next + end) * 0.5, *end].map(|there| {
+        let there = rooms(keep_out, &there);
+        let all = now.iter().zip(&there);
+        all.map(|(&now, &then)| judge(now, then)).max()
+    });
+    judged[0].max(judged[1]).expect("an arm has pairs")
+}
+
+fn random_regions(random: &mut SmallRng) -> KeepOut {
+    let mut vector = |most: f64| Vector3::from_fn(|_, _| random.random_range(-most..most));
+    let (at, turn, half) = (vector(0.6), vector(2.0), vector(0.3).abs());
+    let normal = UnitVector3::new_normalize(vector(1.0));
+    let at = Translation3::from(at + Vector3::new(0.4, 0.0, 0.4));
+    let tilted = Obstacle::Box {
+        pose: Isometry3::from_parts(at, UnitQuaternion::from_scaled_axis(turn)),
+        half,
+    };
+    let wall = Obstacle::Plane {
+        normal,
+        offset: random.random_range(-0.9..-0.3),
+    };
+    let all = [Obstacle::floor(-0.05), tilted, wall, block(0.3)];
+    all.map(|region| random.random_bool(0.4).then_some(region))
+}
+
+#[test]
+fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
+    let (model, mut random) = (Model::fr3(), SmallRng::seed_from_u64(31));
+    let limits = model.joint_limits();
+    let budget = Budget::of(limits);
+    let mut seen = [0; 3];
+    let mut known = 0;
+    for _ in 0..400 {
+        let keep_out = random_regions(&mut random);
+        let mut clearance = of(keep_out);
+        let mut reference = Reference::at_rest(JointVector::from_fn(|i, _| {
+            random.random_range(limits.lower[i]..limits.upper[i])
+        }));
+        let pace = random.random_range(0.02_f64..1.0).powi(2);
+        let mut acceleration = JointVector::zeros();
+        for cycle in 0..150 {
+            if cycle % 30 == 0 {
+                acceleration = JointVector::from_fn(|_, _| random.random_range(-3.0..3.0)) * pace;
+            }
+            // Ten cycles at once: the way matters here, and not how smooth it is.
+            let dq = reference.dq + acceleration * 0.01;
+            let next = Reference {
+                q: reference.q + dq * 0.01,
+                dq,
+                ddq: acceleration,
+            };
+            let end = course::end_of_brake(model, &next, &budget);
+            let half = (next.q + end) * 0.5;
+            known += usize::from(clearance.is_clear(&half, &(end - half).abs()));
+            let ahead = clearance.ahead(&reference.q, &next.q, &end);
+            let expected = plain(&keep_out, &reference.q, &next.q, &end);
+            assert_eq!(ahead, expected, "cycle {cycle} of {keep_out:?}, {next:?}");
+            seen[ahead as usize] += 1;
+            reference = next;
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 1500), "{seen:?}");
+    assert!(known > 10_000, "{known}");
+}
+
+/// The arm bent forwards at joint 2 until it has this much room to itself.
+fn bent(room: f64) -> JointVector {
+    let at = |angle: f64| {
+        let mut q = READY;
+        q[1] += angle;
+        q
+    };
+    let (mut far, mut near) = (1.1, 1.9);
+    assert!(least(&at(far)) > room);
+    assert!(least(&at(near)) < room);
+    for _ in 0..60 {
+        let middle = 0.5 * (near + far);
+        if least(&at(middle)) < room {
+            near = middle;
+        } else {
+            far = middle;
+        }
+    }
+    at(far)
+}
+
+#[test]
+fn what_could_not_stop_in_time_is_too_near_and_what_could_is_slow() {
+    let mut clearance = of(KeepOut::default());
+    let mut ahead = |from: f64, to: f64| {
+        let (now, end) = (bent(from), bent(to));
+        clearance.ahead(&now, &now, &end)
+    };
+    assert_eq!(ahead(0.065, 0.061), Ahead::Clear);
+    assert_eq!(ahead(0.065, 0.059), Ahead::Near);
+    assert_eq!(ahead(0.01, 0.001), Ahead::Near);
+    assert_eq!(ahead(0.01, -0.001), Ahead::TooNear);
+    assert_eq!(ahead(0.001, 0.01), Ahead::Clear);
+    // From inside only outwards.
+    assert_eq!(ahead(-0.03, -0.02), Ahead::Clear);
+    assert_eq!(ahead(-0.03, -0.031), Ahead::TooNear);
+}
+
+#[test]
+fn what_is_clear_is_not_looked_at_again_before_the_joints_have_turned() {
+    let mut clearance = of(KeepOut::default());
+    let still = JointVector::zeros();
+    assert!(!clearance.is_clear(&READY, &still));
+    assert_eq!(clearance.ahead(&READY, &READY, &READY), Ahead::Clear);
+    assert!(clearance.is_clear(&READY, &JointVector::repeat(0.02)));
+    assert!(!clearance.is_clear(&READY, &JointVector::repeat(0.5)));
+    // Joint 1 moves nothing of the arm against the rest but the base.
+    let mut turned = still;
+    turned[0] = 0.2;
+    assert!(clearance.is_clear(&READY, &turned));
+}
+
+/// A block below the hand of the ready posture, this high.
+fn block(height: f64) -> Obstacle {
+    Obstacle::Box {
+        pose: Isometry3::translation(0.31, 0.0, height - 0.05),
+        half: Vector3::new(0.06, 0.1, 0.05),
+    }
+}
+
+#[test]
+fn regions_are_kept_out_of_by_their_own_distance() {
+    let mut lower = READY;
+    lower[1] += 0.02;
+    let arm = Shape::covering(RobotKind::Fr3).with_hand().at(&lower);
+    // The block that is as near to the lower posture as it may be.
+    let (mut low, mut high) = (0.2, 0.5);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if arm.nearest_to(&block(middle)).distance > KEEP_OUT_STOP {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    assert!(low > 0.25 && low < 0.45, "{low}");
+    for (height, expected) in [(low - 0.001, Ahead::Near), (low + 0.001, Ahead::TooNear)] {
+        let mut keep_out = KeepOut::default();
+        keep_out[1] = Some(block(height));
+        let mut clearance = of(keep_out);
+        assert_eq!(clearance.ahead(&READY, &READY, &lower), expected);
+        assert_eq!(clearance.ahead(&lower, &lower, &READY), Ahead::Clear);
+    }
+}
