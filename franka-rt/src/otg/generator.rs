@@ -68,6 +68,15 @@ impl<const N: usize> Generator<N> {
     /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it lies more than 100 decades
     /// from the limits.
     pub fn new(state: State<N>, limits: Limits<N>) -> Result<Self, PlanError> {
+        Self::towards(state, limits, None)
+    }
+
+    /// [`new`](Self::new), with a target if there is one.
+    pub(crate) fn towards(
+        state: State<N>,
+        limits: Limits<N>,
+        target: Option<&[f64; N]>,
+    ) -> Result<Self, PlanError> {
         let mut generator = Self {
             limits,
             synchronisation: Synchronisation::default(),
@@ -76,8 +85,53 @@ impl<const N: usize> Generator<N> {
             cycle: 0,
             state,
         };
-        generator.set_state(state)?;
+        generator.restart(state, limits, target)?;
         Ok(generator)
+    }
+
+    /// Becomes a generator at `state` that moves to rest at `target`, or comes to rest in the least time: what a new one
+    /// would be, in place. A generator is some kilobytes large.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) and [`set_target`](Self::set_target); the motion in progress goes on.
+    pub(crate) fn restart(
+        &mut self,
+        state: State<N>,
+        limits: Limits<N>,
+        target: Option<&[f64; N]>,
+    ) -> Result<(), PlanError> {
+        let goal = match target {
+            None => Goal::Rest,
+            Some(target) => {
+                check_finite(target, Quantity::Target)?;
+                Goal::Target(State::at_rest(*target))
+            }
+        };
+        self.begin(state, limits, goal)
+    }
+
+    fn begin(
+        &mut self,
+        state: State<N>,
+        limits: Limits<N>,
+        goal: Goal<N>,
+    ) -> Result<(), PlanError> {
+        state.check()?;
+        check_range(&state, &limits)?;
+        let start = Start {
+            state,
+            line: None,
+            limits: &limits,
+        };
+        match &goal {
+            Goal::Target(target) => self.plan.go_to(target, &start, self.synchronisation)?,
+            Goal::Rest => self.plan.stop(&start),
+        }
+        self.limits = limits;
+        self.goal = goal;
+        self.cycle = 0;
+        self.state = state;
+        Ok(())
     }
 
     /// The same generator with another way of moving the axes together, from the next plan on.
@@ -175,20 +229,7 @@ impl<const N: usize> Generator<N> {
     /// a straight line along which the target moves faster than its axes may on their own; the motion in progress goes
     /// on.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
-        state.check()?;
-        check_range(&state, &self.limits)?;
-        let start = Start {
-            state,
-            line: None,
-            limits: &self.limits,
-        };
-        match self.goal {
-            Goal::Target(target) => self.plan.go_to(&target, &start, self.synchronisation)?,
-            Goal::Rest => self.plan.stop(&start),
-        }
-        self.cycle = 0;
-        self.state = state;
-        Ok(())
+        self.begin(state, self.limits, self.goal)
     }
 
     /// Re-anchors the position and keeps velocity and acceleration: [`set_state`](Self::set_state) for a motion that

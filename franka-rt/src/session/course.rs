@@ -60,35 +60,57 @@ impl Course {
         reference: &Reference,
         goal: &Goal,
     ) {
-        let planned = match (goal.target, &mut *self) {
+        let planned = self.plan(model, ee, reference, goal);
+        debug_assert!(planned.is_ok(), "{planned:?}");
+    }
+
+    /// Courses are some kilobytes large: one of the same kind is planned anew in place.
+    fn plan(
+        &mut self,
+        model: &Model,
+        ee: &EndEffector,
+        reference: &Reference,
+        goal: &Goal,
+    ) -> Result<(), PlanError> {
+        let over_joints = |target| joints(model, reference, target, &goal.budget);
+        match (goal.target, &mut *self) {
             (Target::Pose(pose), Self::Pose(generator, _)) => {
-                let retargeted = generator.retarget(pose, goal.budget);
-                debug_assert!(retargeted.is_ok(), "{retargeted:?}");
-                return;
+                generator.retarget(pose, goal.budget)?;
             }
             (
                 Target::Pose(pose),
                 Self::Rest | Self::Joints(_) | Self::Guide(_) | Self::Chunk(_),
             ) => {
                 let start = end_effector(model, ee, reference);
-                PoseGenerator::new(&start, pose, goal.budget, model.cartesian_limits())
-                    .map(|generator| Self::Pose(generator, Drift::of(reference.dq)))
+                let most = model.cartesian_limits();
+                *self = Self::Pose(
+                    PoseGenerator::new(&start, pose, goal.budget, most)?,
+                    Drift::of(reference.dq),
+                );
             }
-            (Target::Joints(target), _) => {
-                joints(model, reference, Some(target), &goal.budget).map(Self::Joints)
+            (Target::Joints(_) | Target::Rest, course) => {
+                let target = match goal.target {
+                    Target::Joints(target) => Some(target),
+                    _ => None,
+                };
+                let (state, limits) = over_joints(target)?;
+                match course {
+                    Self::Joints(generator) => generator.restart(state, limits, target.as_ref())?,
+                    Self::Rest | Self::Pose(..) | Self::Guide(_) | Self::Chunk(_) => {
+                        *self = Self::Joints(Generator::towards(state, limits, target.as_ref())?);
+                    }
+                }
             }
-            (Target::Rest, _) => joints(model, reference, None, &goal.budget).map(Self::Joints),
-            (Target::Guide(free), Self::Guide(guide)) => return guide.free(free),
+            (Target::Guide(free), Self::Guide(guide)) => guide.free(free),
             (
                 Target::Guide(free),
                 Self::Rest | Self::Joints(_) | Self::Pose(..) | Self::Chunk(_),
-            ) => joints(model, reference, None, &goal.budget)
-                .map(|brake| Self::Guide(Guide::new(free, brake))),
-        };
-        match planned {
-            Ok(course) => *self = course,
-            Err(error) => debug_assert!(false, "{error}"),
+            ) => {
+                let (state, limits) = over_joints(None)?;
+                *self = Self::Guide(Guide::new(free, Generator::new(state, limits)?));
+            }
         }
+        Ok(())
     }
 
     /// How the pose moves, and what is left of motions before it: what a course begins with that goes on over poses.
@@ -182,13 +204,13 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
     })
 }
 
-/// A plan for the joints from the reference to `target`, or to rest.
+/// What a plan for the joints from the reference to `target`, or to rest in the least time, begins with, and its limits.
 fn joints(
     model: &Model,
     reference: &Reference,
     target: Option<[f64; 7]>,
     budget: &Budget,
-) -> Result<Generator<7>, PlanError> {
+) -> Result<(State<7>, Limits<7>), PlanError> {
     let state = State {
         position: reference.q.into(),
         velocity: reference.dq.into(),
@@ -202,12 +224,7 @@ fn joints(
             None => limits,
         }
     });
-    // Without a target a generator comes to rest in the least time.
-    let mut generator = Generator::new(state, Limits::per_axis(limits)?)?;
-    if let Some(target) = target {
-        generator.set_target(&target)?;
-    }
-    Ok(generator)
+    Ok((state, Limits::per_axis(limits)?))
 }
 
 /// The limits of one joint's plan: those of the budget, unless the joint moves and is only to stop, keeps another budget
@@ -277,7 +294,8 @@ mod tests {
                     ddq: robot.acceleration.component_mul(&share(1.2)) * f64::from(case % 2),
                 };
                 let budget = Budget::of(robot).scaled(random.random_range(0.05..2.0));
-                let plan = joints(model, &reference, None, &budget).unwrap();
+                let (state, limits) = joints(model, &reference, None, &budget).unwrap();
+                let plan = Generator::new(state, limits).unwrap();
                 let end = end_of_brake(model, &reference, &budget);
                 assert_eq!(end, JointVector::from(*plan.end()), "{reference:?}");
             }

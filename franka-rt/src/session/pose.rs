@@ -48,13 +48,9 @@ impl PoseGenerator {
         budget: Budget,
         most: &'static CartesianLimits,
     ) -> Result<Self, PlanError> {
-        let axes = plan(
-            start,
-            &target,
-            &budget.able_to_stop(&start.twist, &start.acceleration, most),
-        )?;
+        let (state, limits, to) = plan(start, &target, &budget, most)?;
         Ok(Self {
-            axes,
+            axes: Generator::towards(state, limits, Some(&to))?,
             anchor: start.pose.rotation,
             target,
             budget,
@@ -72,7 +68,7 @@ impl PoseGenerator {
         budget: Budget,
     ) -> Result<(), PlanError> {
         if target != self.target || budget != self.budget {
-            *self = Self::new(&self.state(), target, budget, self.most)?;
+            self.begin_again(&self.state(), target, budget)?;
         }
         Ok(())
     }
@@ -82,15 +78,24 @@ impl PoseGenerator {
     /// # Errors
     /// See [`Self::new`]; the motion in progress goes on.
     pub(crate) fn reanchor(&mut self, pose: Isometry3<f64>) -> Result<(), PlanError> {
-        *self = Self::new(
-            &PoseState {
-                pose,
-                ..self.state()
-            },
-            self.target,
-            self.budget,
-            self.most,
-        )?;
+        let start = PoseState {
+            pose,
+            ..self.state()
+        };
+        self.begin_again(&start, self.target, self.budget)
+    }
+
+    fn begin_again(
+        &mut self,
+        start: &PoseState,
+        target: Isometry3<f64>,
+        budget: Budget,
+    ) -> Result<(), PlanError> {
+        let (state, limits, to) = plan(start, &target, &budget, self.most)?;
+        self.axes.restart(state, limits, Some(&to))?;
+        self.anchor = start.pose.rotation;
+        self.target = target;
+        self.budget = budget;
         Ok(())
     }
 
@@ -102,7 +107,11 @@ impl PoseGenerator {
 
     /// The pose now.
     pub(crate) fn pose(&self) -> Isometry3<f64> {
-        self.state().pose
+        let position = &self.axes.state().position;
+        Isometry3::from_parts(
+            Translation3::from(translational(position)),
+            rotation::exp(&rotational(position)) * self.anchor,
+        )
     }
 
     /// How fast the target may be approached.
@@ -128,22 +137,22 @@ impl PoseGenerator {
         let alpha = rotation::angular_acceleration(&phi, &phi_dot, &phi_ddot);
         let (v, a) = (translational(&velocity), translational(&acceleration));
         PoseState {
-            pose: Isometry3::from_parts(
-                Translation3::from(translational(&position)),
-                rotation::exp(&phi) * self.anchor,
-            ),
+            pose: self.pose(),
             twist: Twist::new(v.x, v.y, v.z, omega.x, omega.y, omega.z),
             acceleration: Twist::new(a.x, a.y, a.z, alpha.x, alpha.y, alpha.z),
         }
     }
 }
 
-/// A plan for the six axes, with the chart anchored at the orientation of `start`.
+/// What a plan for the six axes begins with, its limits and its target, with the chart anchored at the orientation of
+/// `start`.
 fn plan(
     start: &PoseState,
     target: &Isometry3<f64>,
     budget: &Budget,
-) -> Result<Generator<6>, PlanError> {
+    most: &CartesianLimits,
+) -> Result<(State<6>, Limits<6>, [f64; 6]), PlanError> {
+    let budget = budget.able_to_stop(&start.twist, &start.acceleration, most);
     let from = start.pose.translation.vector;
     let way = target.translation.vector - from;
     let turn = rotation::error(&target.rotation, &start.pose.rotation);
@@ -165,9 +174,8 @@ fn plan(
         },
     );
     let to = target.translation.vector;
-    let mut axes = Generator::new(state, Limits::per_axis(limits)?)?;
-    axes.set_target(&[to.x, to.y, to.z, turn.x, turn.y, turn.z])?;
-    Ok(axes)
+    let to = [to.x, to.y, to.z, turn.x, turn.y, turn.z];
+    Ok((state, Limits::per_axis(limits)?, to))
 }
 
 fn translational(axes: &[f64; 6]) -> Vector3<f64> {
