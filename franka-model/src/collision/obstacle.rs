@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, UnitVector3, Vector3};
 
 use super::segment::{Nearest, Segment};
 use crate::geometry::SHOULDER;
-use crate::inertia::cross;
+use crate::inertia::{cross, dot};
 use crate::scalar::sqrt;
 
 /// A region that the arm has to keep out of, in the base frame.
@@ -110,14 +110,41 @@ pub(super) struct Axis {
 impl Axis {
     /// How far it is from the box; negative where it meets the box, the length of the shortest way out.
     pub(super) fn distance(&self) -> f64 {
-        let t = self.nearest_outside();
+        let t = self.one_nearest_outside();
         let gap = self.at(t) - self.clamped(t);
-        let length = sqrt(gap.norm_squared());
+        let length = sqrt(dot(&gap, &gap));
         if length > TOUCHING {
             length
         } else {
             self.shortest_way_out().2
         }
+    }
+
+    /// Some parameter with the least distance to the box; see [`nearest_outside`](Self::nearest_outside). Between the ends
+    /// only the bends matter that lie where the slope has not been found to fall yet, or to rise already.
+    fn one_nearest_outside(&self) -> f64 {
+        let mut low = (0.0, self.slope(0.0));
+        if low.1 >= 0.0 {
+            return 0.0;
+        }
+        let mut high = (1.0, self.slope(1.0));
+        if high.1 <= 0.0 {
+            return 1.0;
+        }
+        for i in 0..3 {
+            for face in [self.half[i], -self.half[i]] {
+                let t = (face - self.start[i]) / self.along[i];
+                if t > low.0 && t < high.0 {
+                    let slope = self.slope(t);
+                    if slope <= 0.0 {
+                        low = (t, slope);
+                    } else {
+                        high = (t, slope);
+                    }
+                }
+            }
+        }
+        low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1))
     }
 
     fn at(&self, t: f64) -> Vector3<f64> {

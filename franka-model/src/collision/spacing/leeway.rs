@@ -20,8 +20,9 @@ impl Leeway {
         Self { q, spare }
     }
 
-    /// Whether nothing can be near at any posture that is within `turns`, `[rad]`, none of them negative, of `q`.
-    pub fn covers(&self, spacing: &super::Spacing, q: &JointVector, turns: &JointVector) -> bool {
+    /// What may be near at a posture that is within `turns`, `[rad]`, none of them negative, of `q`.
+    #[must_use]
+    pub fn open(&self, spacing: &super::Spacing, q: &JointVector, turns: &JointVector) -> Open {
         let groups = &spacing.groups;
         let mut moved = [0.0; GROUPS_MAX];
         for (i, levers) in groups.levers.iter().enumerate() {
@@ -31,7 +32,30 @@ impl Leeway {
             }
         }
         let all = moved.iter().zip(&self.spare).take(groups.count);
-        all.fold(true, |clear, (moved, spare)| clear & (moved <= spare))
+        let open = all.enumerate().fold(0, |open, (i, (moved, spare))| {
+            open | u64::from(!(moved <= spare)) << i
+        });
+        Open(open)
+    }
+}
+
+/// Some of the distances that are kept: those that may be near.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Open(u64);
+
+impl Open {
+    /// All of them.
+    pub const ALL: Self = Self(u64::MAX);
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    #[inline(always)]
+    pub(super) const fn has(self, group: usize) -> bool {
+        self.0 >> group & 1 == 1
     }
 }
 

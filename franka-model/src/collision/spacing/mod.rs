@@ -5,12 +5,12 @@
 //!    │ at(q)
 //!    v
 //! Arrangement ──> room_below(item, limit)    what is near, and only that is measured
-//!             ──> leeway(limit)              how far the joints may turn before anything is near
+//!             ──> leeway(limit)              how far the joints may turn before what is near
 //! ```
 //!
 //! Nearly all that could meet is far apart nearly always. One pass places the capsules; balls and boxes around them tell
-//! what is far, and what may be near is measured. Of a posture that is clear everywhere the [`Leeway`] remains, which saves
-//! looking at the next ones at all.
+//! what is far, and what may be near is measured. What they tell at one posture remains as its [`Leeway`], which saves looking
+//! at most of it, or at all of it, at the next ones.
 
 mod leeway;
 mod mounted;
@@ -18,7 +18,7 @@ mod region;
 #[cfg(test)]
 mod tests;
 
-pub use leeway::Leeway;
+pub use leeway::{Leeway, Open};
 
 use leeway::{GROUPS_MAX, Groups};
 use mounted::{Mounted, Spot};
@@ -38,7 +38,7 @@ pub const REGIONS_MAX: usize = 4;
 const PAIRS_MAX: usize = capsules::COVERING_PAIRS.len() + capsules::ARM_MAX * shape::TOOL_MAX;
 
 /// Room, `[m]`, beyond which a bound stands for what is left of a distance. Joints take a while to turn that far.
-const AMPLE: f64 = 0.3;
+const AMPLE: f64 = 0.15;
 
 /// Who keeps what distance from whom: an arm from itself, and from regions.
 ///
@@ -186,13 +186,19 @@ impl Spacing {
         self
     }
 
-    /// All distances that are kept.
+    /// The distances that are kept, of those that are `open`.
     #[inline]
-    pub fn items(&self) -> impl Iterator<Item = Item> + use<> {
-        let (regions, bodies) = (self.region_count, self.cover.count);
-        let of_region = move |region| (0..bodies).map(move |body| Kind::Region(region, body));
-        let pairs = (0..self.pair_count).map(Kind::Pair);
-        pairs.chain((0..regions).flat_map(of_region)).map(Item)
+    pub fn items(&self, open: Open) -> impl Iterator<Item = Item> + '_ {
+        let pairs = self.pairs[..self.pair_count].iter().enumerate();
+        let pairs = pairs.filter(move |(_, pair)| open.has(pair.group));
+        let of_region = move |region| {
+            let bodies = self.cover.each().iter().enumerate();
+            let bodies = bodies.filter(move |(_, capsule)| open.has(capsule.group));
+            bodies.map(move |(body, _)| Kind::Region(region, body))
+        };
+        let regions = (0..self.region_count).flat_map(of_region);
+        let pairs = pairs.map(|(pair, _)| Kind::Pair(pair));
+        pairs.chain(regions).map(Item)
     }
 
     /// Where everything is at the joint positions `q`, `[rad]`.

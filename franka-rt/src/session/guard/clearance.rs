@@ -10,7 +10,7 @@
 //!
 //! Only what comes nearer is held up. A motion out of a zone is free, also for an arm that begins inside.
 
-use franka_model::collision::{Arrangement, Leeway, Obstacle, REGIONS_MAX, Shape, Spacing};
+use franka_model::collision::{Arrangement, Leeway, Obstacle, Open, REGIONS_MAX, Shape, Spacing};
 use franka_model::{JointVector, RobotKind};
 
 /// Distance, `[m]`, that two links keep that have two others between them: what the robot's self-collision avoidance
@@ -42,8 +42,16 @@ const NEARER: f64 = 1e-9;
 pub(crate) struct Clearance {
     /// The arm from itself, and what covers it from regions.
     spacing: Spacing,
-    /// How far the joints may turn before anything is near, from where that was last asked.
-    leeway: Option<Leeway>,
+    known: Option<Known>,
+}
+
+/// What is known from a posture that the arm was about to pass.
+#[derive(Debug)]
+struct Known {
+    /// How far the joints may turn from there before anything is near.
+    leeway: Leeway,
+    /// What could be near on the way to rest when it was passed.
+    open: Open,
 }
 
 /// What lies on the way to rest.
@@ -69,7 +77,7 @@ impl Clearance {
         let within = Spacing::within(&arm, SELF_STOP, APART);
         Self {
             spacing: within.out_of(&cover, KEEP_OUT_STOP, &keep_out),
-            leeway: None,
+            known: None,
         }
     }
 
@@ -81,35 +89,44 @@ impl Clearance {
         end: &JointVector,
     ) -> Ahead {
         let half = (next + end) * 0.5;
-        // Nearly always the arm has not come far enough since it was looked at last.
-        if self.is_clear(&half, &(end - half).abs()) {
-            return Ahead::Clear;
+        // Nearly always the arm has not come far enough since it was looked at last for anything else to be near.
+        let way = (end - half).abs();
+        let known = self.known.as_ref();
+        let known = known.map(|known| (known.leeway.open(&self.spacing, &half, &way), known.open));
+        match known {
+            Some((open, _)) if open.is_empty() => return Ahead::Clear,
+            Some((open, before)) if open == before => {
+                return self.on_the_way(now, &self.spacing.at(&half), end, open);
+            }
+            _ => {}
         }
         let middle = self.spacing.at(&half);
-        let ahead = self.on_the_way(now, &middle, end);
-        if ahead == Ahead::Clear {
-            self.leeway = Some(middle.leeway(SLOW_ZONE));
+        let leeway = middle.leeway(SLOW_ZONE);
+        let open = leeway.open(&self.spacing, &half, &way);
+        self.known = Some(Known { leeway, open });
+        if open.is_empty() {
+            return Ahead::Clear;
         }
-        ahead
+        self.on_the_way(now, &middle, end, open)
     }
 
-    /// Whether nothing is near anywhere within `turns` of `q`, as far as is known without looking there.
-    fn is_clear(&self, q: &JointVector, turns: &JointVector) -> bool {
-        let covers = |leeway: &Leeway| leeway.covers(&self.spacing, q, turns);
-        self.leeway.as_ref().is_some_and(covers)
-    }
-
-    /// What it means to go from `now` to `half` and to `end`.
+    /// What it means to go from `now` to `half` and to `end`, if only what is `open` may be near there.
     ///
     /// Only what is near there is compared with where it is now. Once something is known to be near, what could still make a
     /// difference is what would be too near.
-    fn on_the_way(&self, now: &JointVector, half: &Arrangement<'_>, end: &JointVector) -> Ahead {
+    fn on_the_way(
+        &self,
+        now: &JointVector,
+        half: &Arrangement<'_>,
+        end: &JointVector,
+        open: Open,
+    ) -> Ahead {
         let mut ahead = Ahead::Clear;
         let mut limit = SLOW_ZONE;
         let mut here = None;
         let end = self.spacing.at(end);
         for there in [half, &end] {
-            for item in self.spacing.items() {
+            for item in self.spacing.items(open) {
                 let Some(then) = there.room_below(item, limit) else {
                     continue;
                 };
