@@ -367,6 +367,10 @@ fn one_pass_gives_what_the_separate_calls_give() {
         assert!((all.mass - model.mass(q, load)).amax() < 1e-13);
         assert!((all.coriolis - model.coriolis(q, dq, load)).amax() < 1e-13);
         assert!((all.gravity - model.gravity(q, load, gravity)).amax() < 1e-13);
+        for frame in Frame::ALL {
+            let both = (model.pose(frame, q, ee), model.zero_jacobian(frame, q, ee));
+            assert_eq!(model.pose_and_jacobian(frame, q, ee), both);
+        }
     });
 }
 

@@ -102,6 +102,19 @@ impl Model {
         jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin)
     }
 
+    /// [`pose`](Self::pose) and [`zero_jacobian`](Self::zero_jacobian), from one pass along the chain.
+    pub fn pose_and_jacobian(
+        &self,
+        frame: Frame,
+        q: &JointVector,
+        ee: &EndEffector,
+    ) -> (Matrix4<f64>, Jacobian) {
+        let chain = Chain::at(q);
+        let placement = Placement::of(&chain, frame, ee);
+        let jacobian = jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin);
+        (placement.pose(), jacobian)
+    }
+
     /// [`zero_jacobian`](Self::zero_jacobian) in the frame's own axes.
     pub fn body_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         let chain = Chain::at(q);

@@ -5,7 +5,7 @@ use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation};
 
 use crate::law::hybrid::Reference;
-use crate::session::pose::PoseState;
+use crate::session::pose::MovingPose;
 use crate::session::{Budget, rigid};
 
 /// Nominal length of a cycle, `[s]`.
@@ -94,11 +94,11 @@ pub(super) fn follow(
     posture: &JointVector,
     drift: &mut Drift,
     reference: &Reference,
-    pose: &PoseState,
+    pose: &MovingPose,
     budget: &Budget,
 ) -> (Reference, Held) {
-    let now = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
-    let jacobian = model.zero_jacobian(Frame::EndEffector, &reference.q, ee);
+    let (now, jacobian) = model.pose_and_jacobian(Frame::EndEffector, &reference.q, ee);
+    let now = rigid(&now);
     let offset = pose.pose.translation.vector - now.translation.vector;
     let turn = rotation::error(&pose.pose.rotation, &now.rotation);
     let twist =

@@ -25,6 +25,25 @@ pub(crate) struct PoseState {
     pub(crate) acceleration: Twist,
 }
 
+/// Where a pose is and how fast it moves: what joints need to know that follow it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MovingPose {
+    /// `O_T_EE`, `[m]`.
+    pub(crate) pose: Isometry3<f64>,
+    /// Velocity of the frame's origin and angular velocity, base axes.
+    pub(crate) twist: Twist,
+}
+
+impl PoseState {
+    /// All but the acceleration.
+    pub(crate) fn moving(&self) -> MovingPose {
+        MovingPose {
+            pose: self.pose,
+            twist: self.twist,
+        }
+    }
+}
+
 /// Walks the pose to its target, one nominal millisecond a step.
 #[derive(Debug)]
 pub(crate) struct PoseGenerator {
@@ -100,9 +119,15 @@ impl PoseGenerator {
     }
 
     /// Advances by one nominal millisecond.
-    pub(crate) fn step(&mut self) -> PoseState {
-        self.axes.step();
-        self.state()
+    pub(crate) fn step(&mut self) -> MovingPose {
+        let state = self.axes.step();
+        let v = translational(&state.velocity);
+        let [phi, phi_dot] = [state.position, state.velocity].map(|axes| rotational(&axes));
+        let omega = rotation::angular_velocity(&phi, &phi_dot);
+        MovingPose {
+            pose: self.pose(),
+            twist: Twist::new(v.x, v.y, v.z, omega.x, omega.y, omega.z),
+        }
     }
 
     /// The pose now.

@@ -24,18 +24,20 @@ impl Leeway {
     #[must_use]
     pub fn open(&self, spacing: &super::Spacing, q: &JointVector, turns: &JointVector) -> Open {
         let groups = &spacing.groups;
+        // All groups that there could be: whole rows are added in a few instructions.
         let mut moved = [0.0; GROUPS_MAX];
         for (i, levers) in groups.levers.iter().enumerate() {
             let turn = (q[i] - self.q[i]).abs() + turns[i];
-            for (moved, lever) in moved.iter_mut().zip(levers).take(groups.count) {
+            for (moved, lever) in moved.iter_mut().zip(levers) {
                 *moved += lever * turn;
             }
         }
-        let all = moved.iter().zip(&self.spare).take(groups.count);
-        let open = all.enumerate().fold(0, |open, (i, (moved, spare))| {
+        let all = moved.iter().zip(&self.spare).enumerate();
+        let open = all.fold(0, |open, (i, (moved, spare))| {
+            // Also what is not a number.
             open | u64::from(!(moved <= spare)) << i
         });
-        Open(open)
+        Open(open & groups.mask())
     }
 }
 
@@ -75,6 +77,11 @@ impl Groups {
         count: 0,
         levers: [[0.0; GROUPS_MAX]; 7],
     };
+
+    /// A bit for each of them.
+    const fn mask(&self) -> u64 {
+        (1 << self.count) - 1
+    }
 
     /// Adds a capsule that keeps from something on the body with the number `inner`, and gives its group.
     pub(super) fn join(&mut self, inner: u8, outer: &Mounted) -> usize {

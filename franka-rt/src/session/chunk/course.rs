@@ -160,8 +160,9 @@ impl ChunkCourse {
                 rotation,
             } => {
                 *state = follow_pose(translation, rotation, state, &player.at(now));
+                let next = state.moving();
                 let (reference, bounds) =
-                    kinematics::follow(model, ee, posture, drift, reference, state, &self.budget);
+                    kinematics::follow(model, ee, posture, drift, reference, &next, &self.budget);
                 let mut held = false;
                 if bounds.any() {
                     let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));

@@ -89,43 +89,46 @@ impl Clearance {
         end: &JointVector,
     ) -> Ahead {
         let half = (next + end) * 0.5;
-        // Nearly always the arm has not come far enough since it was looked at last for anything else to be near.
         let way = (end - half).abs();
-        let known = self.known.as_ref();
-        let known = known.map(|known| (known.leeway.open(&self.spacing, &half, &way), known.open));
-        match known {
-            Some((open, _)) if open.is_empty() => return Ahead::Clear,
-            Some((open, before)) if open == before => {
-                return self.on_the_way(now, &self.spacing.at(&half), end, open);
+        let still = JointVector::zeros();
+        // Nearly always the arm has not come far enough since it was looked at last for anything else to be near.
+        if let Some(known) = &self.known {
+            let open = known.leeway.open(&self.spacing, &half, &way);
+            if open.is_empty() {
+                return Ahead::Clear;
             }
-            _ => {}
+            if open == known.open {
+                let there = known.leeway.open(&self.spacing, &half, &still);
+                let half = self.spacing.at(&half);
+                return self.on_the_way(now, (&half, there), (end, open));
+            }
         }
         let middle = self.spacing.at(&half);
         let leeway = middle.leeway(SLOW_ZONE);
         let open = leeway.open(&self.spacing, &half, &way);
+        let there = leeway.open(&self.spacing, &half, &still);
         self.known = Some(Known { leeway, open });
         if open.is_empty() {
             return Ahead::Clear;
         }
-        self.on_the_way(now, &middle, end, open)
+        self.on_the_way(now, (&middle, there), (end, open))
     }
 
-    /// What it means to go from `now` to `half` and to `end`, if only what is `open` may be near there.
+    /// What it means to go from `now` to `half` and to `end`, if no more than what is open may be near there.
     ///
     /// Only what is near there is compared with where it is now. Once something is known to be near, what could still make a
     /// difference is what would be too near.
     fn on_the_way(
         &self,
         now: &JointVector,
-        half: &Arrangement<'_>,
-        end: &JointVector,
-        open: Open,
+        half: (&Arrangement<'_>, Open),
+        end: (&JointVector, Open),
     ) -> Ahead {
         let mut ahead = Ahead::Clear;
         let mut limit = SLOW_ZONE;
         let mut here = None;
-        let end = self.spacing.at(end);
-        for there in [half, &end] {
+        let (end, open) = (self.spacing.at(end.0), end.1);
+        for (there, open) in [half, (&end, open)] {
             for item in self.spacing.items(open) {
                 let Some(then) = there.room_below(item, limit) else {
                     continue;
