@@ -33,11 +33,11 @@ impl Leeway {
             }
         }
         let all = moved.iter().zip(&self.spare).enumerate();
-        let open = all.fold(0, |open, (i, (moved, spare))| {
-            // Also what is not a number.
-            open | u64::from(!(moved <= spare)) << i
+        // What is not a number is not clear.
+        let clear = all.fold(0, |clear, (i, (moved, spare))| {
+            clear | u64::from(moved <= spare) << i
         });
-        Open(open & groups.mask())
+        Open(!clear & groups.mask())
     }
 }
 
