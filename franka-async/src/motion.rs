@@ -136,9 +136,8 @@ impl Motion {
     }
 
     /// Bounds the force with which springs and dampers press at the end effector, `[N]`, between 5 and 200; by default
-    /// [`DEFAULT_FORCE_CAP`](crate::DEFAULT_FORCE_CAP) for poses and none for joint positions, whose torques the cap may
-    /// take away where the arm is stretched out. What the arm carries without having been told counts: it sinks under
-    /// more weight than the cap, and the motion does not arrive.
+    /// [`DEFAULT_FORCE_CAP`](crate::DEFAULT_FORCE_CAP). What the arm carries without having been told counts: it sinks
+    /// under more weight than the cap, and the motion does not arrive.
     pub fn force_cap(mut self, newtons: f64) -> Self {
         self.goal.force_cap = Some(newtons);
         self

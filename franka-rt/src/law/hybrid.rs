@@ -12,10 +12,7 @@
 //! [`Gains::project_joint_gains`](crate::law::Gains::project_joint_gains) the torques of `Kq` and `Kqd` pass through
 //! the null-space projection of the [operational-space law](crate::law::operational) first.
 
-use franka_model::{JointVector, Wrench};
-
-use crate::law::interaction::Errors;
-use crate::law::tuning::Tuning;
+use franka_model::JointVector;
 
 /// Where the law wants the joints to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,12 +34,4 @@ impl Reference {
             ddq: JointVector::zeros(),
         }
     }
-}
-
-/// Of springs and dampers at the end effector, base axes: `Kx J (q_ref - q) + Kxd J (g dq_ref - dq)`.
-pub(crate) fn wrench(tuning: &Tuning, errors: &Errors) -> Wrench {
-    Wrench::from_fn(|axis, _| {
-        tuning.cartesian_stiffness[axis] * errors.pose[axis]
-            + tuning.cartesian_damping[axis] * errors.twist[axis]
-    })
 }

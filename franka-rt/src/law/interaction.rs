@@ -1,93 +1,102 @@
 //! Both laws as one: what the springs and dampers do about how far the arm is from its reference.
 
-use franka_model::{Jacobian, JointVector, Twist, Wrench};
+use franka_model::{Jacobian, JointVector};
+use nalgebra::Matrix6;
 
-use crate::law::hybrid::{self, Reference};
 use crate::law::operational;
 use crate::law::task_space::TaskSpace;
 use crate::law::tuning::Tuning;
 
-/// How far the arm is from its reference, at the joints and at the end effector.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Errors {
-    /// Of the positions, `[rad]`.
-    pub(crate) q: JointVector,
-    /// Of the velocities that the dampers see, `[rad/s]`.
-    pub(crate) dq: JointVector,
-    /// Of the pose, to first order, `[m]` and `[rad]`.
-    pub(crate) pose: Twist,
-    /// Of the twist, `[m/s]` and `[rad/s]`.
-    pub(crate) twist: Twist,
+/// The springs of a law, or its dampers, in one cycle: at the posture in which the arm was measured.
+#[derive(Debug)]
+pub(crate) struct Interaction<'a> {
+    /// At the end effector, base axes.
+    cartesian: Matrix6<f64>,
+    /// At the joints.
+    joint: JointVector,
+    /// How much of the null-space projection applies to those at the joints.
+    projection: f64,
+    jacobian: &'a Jacobian,
+    space: Option<&'a TaskSpace>,
 }
 
-impl Errors {
-    /// At the measured `q` and `dq`; `feedforward` is the velocity that the dampers let pass.
-    pub(crate) fn new(
-        reference: &Reference,
-        feedforward: &JointVector,
-        q: &JointVector,
-        dq: &JointVector,
-        jacobian: &Jacobian,
+impl<'a> Interaction<'a> {
+    /// The springs: errors are positions, `[rad]`.
+    ///
+    /// `space` has to be there if the tuning [needs](Tuning::needs_task_space) it; without it the law is the hybrid one.
+    pub(crate) fn springs(
+        tuning: &Tuning,
+        jacobian: &'a Jacobian,
+        space: Option<&'a TaskSpace>,
     ) -> Self {
-        let q = reference.q - q;
-        let dq = feedforward - dq;
+        let gains = (&tuning.cartesian_stiffness, &tuning.joint_stiffness);
+        Self::new(gains, tuning, jacobian, space)
+    }
+
+    /// The dampers: errors are velocities, `[rad/s]`. `space` as for the springs.
+    pub(crate) fn dampers(
+        tuning: &Tuning,
+        jacobian: &'a Jacobian,
+        space: Option<&'a TaskSpace>,
+    ) -> Self {
+        let gains = (&tuning.cartesian_damping, &tuning.joint_damping);
+        Self::new(gains, tuning, jacobian, space)
+    }
+
+    fn new(
+        (cartesian, joint): (&[f64; 6], &[f64; 7]),
+        tuning: &Tuning,
+        jacobian: &'a Jacobian,
+        space: Option<&'a TaskSpace>,
+    ) -> Self {
+        let plain = Matrix6::from_diagonal(&(*cartesian).into());
+        let cartesian = match space {
+            Some(space) if tuning.operational > 0.0 => {
+                plain + (operational::coupled(cartesian, space) - plain) * tuning.operational
+            }
+            _ => plain,
+        };
         Self {
-            q,
-            dq,
-            pose: jacobian * q,
-            twist: jacobian * dq,
+            cartesian,
+            joint: (*joint).into(),
+            projection: tuning.projection,
+            jacobian,
+            space,
         }
     }
-}
 
-/// Torques of springs and dampers, before shaping.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Interaction {
-    /// Of those at the end effector alone, base axes, `[N]` and `[N m]`.
-    pub(crate) wrench: Wrench,
-    /// Of all of them, `[N m]`.
-    pub(crate) tau: JointVector,
-}
-
-impl Interaction {
-    /// `space` has to be there if the tuning [needs](Tuning::needs_task_space) it; without it the law is the hybrid one.
-    pub(crate) fn new(
-        tuning: &Tuning,
-        errors: &Errors,
-        jacobian: &Jacobian,
-        space: Option<&TaskSpace>,
-    ) -> Self {
-        let joints = JointVector::from_fn(|i, _| {
-            tuning.joint_stiffness[i] * errors.q[i] + tuning.joint_damping[i] * errors.dq[i]
-        });
-        let mut wrench = hybrid::wrench(tuning, errors);
-        let mut at_end_effector = wrench;
-        if let Some(space) = space {
-            if tuning.operational > 0.0 {
-                let other = operational::wrench(tuning, errors, space);
-                wrench += (other - wrench) * tuning.operational;
-            }
-            at_end_effector = wrench;
-            if tuning.projection > 0.0 {
-                at_end_effector -= space.reaction(&joints) * tuning.projection;
-            }
+    /// What they do about an error of the joints, `[N m]`.
+    pub(crate) fn torques(&self, error: &JointVector) -> JointVector {
+        let at_joints = self.joint.component_mul(error);
+        let mut at_end_effector = self.cartesian * (self.jacobian * error);
+        if let Some(space) = self.space.filter(|_| self.projection > 0.0) {
+            at_end_effector -= space.reaction(&at_joints) * self.projection;
         }
-        Self {
-            wrench,
-            tau: joints + jacobian.tr_mul(&at_end_effector),
-        }
+        at_joints + self.jacobian.tr_mul(&at_end_effector)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Gains, Law};
-    use franka_model::{Dynamics, EndEffector, GRAVITY_EARTH, Load, Model, READY};
-    use nalgebra::{Matrix3, Matrix6, SMatrix};
+    use crate::law::{Gains, Law, task_space};
+    use franka_model::{
+        Dynamics, EndEffector, GRAVITY_EARTH, Load, MassMatrix, Model, READY, Twist, Wrench,
+    };
+    use nalgebra::Matrix3;
     use proptest::prelude::*;
 
-    type Matrix7 = SMatrix<f64, 7, 7>;
+    /// How far the arm is from its reference, `[rad]`, and how much slower than the dampers let pass, `[rad/s]`.
+    struct Errors {
+        q: JointVector,
+        dq: JointVector,
+    }
+
+    /// Inverse of the inertia of links and rotors.
+    fn mobility(dynamics: &Dynamics) -> MassMatrix {
+        let mass = dynamics.mass + MassMatrix::from_diagonal(&task_space::ROTORS.into());
+        mass.try_inverse().expect("a physical arm")
+    }
 
     fn dynamics_at(q: &JointVector, dq: &JointVector) -> Dynamics {
         let load = Load {
@@ -107,7 +116,7 @@ mod tests {
     /// The law as its definition has it, every matrix formed in full.
     fn definition(gains: &Gains, errors: &Errors, dynamics: &Dynamics) -> JointVector {
         let jacobian = &dynamics.jacobian;
-        let inverse = dynamics.mass.try_inverse().expect("a physical arm");
+        let inverse = mobility(dynamics);
         let mobility = jacobian * inverse * jacobian.transpose();
         let at_end_effector = |diagonal: &[f64; 6]| {
             if gains.law == Law::Hybrid {
@@ -124,29 +133,30 @@ mod tests {
         let projected = gains.project_joint_gains || gains.law == Law::OperationalSpace;
         let null_space = if projected {
             let inertia = mobility.try_inverse().expect("regular");
-            Matrix7::identity() - jacobian.transpose() * inertia * jacobian * inverse
+            MassMatrix::identity() - jacobian.transpose() * inertia * jacobian * inverse
         } else {
-            Matrix7::identity()
+            MassMatrix::identity()
         };
         let matrix = |cartesian: &[f64; 6], joint: &[f64; 7]| {
-            let joint = Matrix7::from_diagonal(&(*joint).into());
+            let joint = MassMatrix::from_diagonal(&(*joint).into());
             jacobian.transpose() * at_end_effector(cartesian) * jacobian + null_space * joint
         };
         matrix(&gains.cartesian_stiffness, &gains.joint_stiffness) * errors.q
             + matrix(&gains.cartesian_damping, &gains.joint_damping) * errors.dq
     }
 
-    fn of(gains: &Gains, errors: &Errors, dynamics: &Dynamics) -> Interaction {
-        let space = TaskSpace::of(dynamics);
-        let tuning = Tuning::new(gains, None);
-        Interaction::new(&tuning, errors, &dynamics.jacobian, Some(&space))
+    fn of(tuning: &Tuning, errors: &Errors, dynamics: &Dynamics) -> JointVector {
+        let (jacobian, space) = (&dynamics.jacobian, TaskSpace::of(dynamics));
+        let springs = Interaction::springs(tuning, jacobian, Some(&space));
+        let dampers = Interaction::dampers(tuning, jacobian, Some(&space));
+        springs.torques(&errors.q) + dampers.torques(&errors.dq)
     }
 
-    fn errors_at(q: &JointVector, dynamics: &Dynamics) -> Errors {
-        let reference = Reference::at_rest(q + JointVector::from_fn(|i, _| 0.03 - 0.01 * i as f64));
-        let dq = JointVector::from_fn(|i, _| 0.1 * i as f64 - 0.3);
-        let feedforward = JointVector::from_fn(|i, _| 0.05 * i as f64);
-        Errors::new(&reference, &feedforward, q, &dq, &dynamics.jacobian)
+    fn errors() -> Errors {
+        Errors {
+            q: JointVector::from_fn(|i, _| 0.03 - 0.01 * i as f64),
+            dq: JointVector::from_fn(|i, _| 0.3 - 0.05 * i as f64),
+        }
     }
 
     fn laws(gains: Gains) -> [Gains; 3] {
@@ -181,11 +191,11 @@ mod tests {
         fn equals_the_matrices_of_the_definition(offset in joints(0.4)) {
             let q = READY + offset;
             let dynamics = dynamics_at(&q, &JointVector::zeros());
-            let errors = errors_at(&q, &dynamics);
+            let errors = errors();
             for gains in [Gains::cartesian(), Gains::joint(), Gains::droid()] {
                 for gains in laws(gains) {
                     let expected = definition(&gains, &errors, &dynamics);
-                    let got = of(&gains, &errors, &dynamics).tau;
+                    let got = of(&Tuning::new(&gains, None), &errors, &dynamics);
                     // The inverse of the inertia has a condition of 10^5.
                     let error = (got - expected).amax();
                     prop_assert!(error < 1e-8 * (1.0 + expected.amax()), "{gains:?}: {error}");
@@ -198,10 +208,10 @@ mod tests {
         fn projected_joint_gains_do_not_move_the_end_effector(offset in joints(0.4)) {
             let q = READY + offset;
             let dynamics = dynamics_at(&q, &JointVector::zeros());
-            let errors = errors_at(&q, &dynamics);
+            let errors = errors();
             let gains = Gains { project_joint_gains: true, ..Gains::joint() };
-            let tau = of(&gains, &errors, &dynamics).tau;
-            let inverse = dynamics.mass.try_inverse().expect("a physical arm");
+            let tau = of(&Tuning::new(&gains, None), &errors, &dynamics);
+            let inverse = mobility(&dynamics);
             let free = dynamics.jacobian * inverse * JointVector::from_fn(|i, _| 600.0 * errors.q[i]);
             let moved = dynamics.jacobian * inverse * tau;
             prop_assert!(moved.amax() < 1e-8 * (1.0 + free.amax()), "{moved} of {free}");
@@ -216,29 +226,20 @@ mod tests {
             q[3] *= stretch.powi(8);
             q[5] = (q[5] - core::f64::consts::PI) * stretch.powi(8) + core::f64::consts::PI;
             let dynamics = dynamics_at(&q, &JointVector::zeros());
-            let errors = Errors {
-                q: error,
-                dq: error * 10.0,
-                pose: dynamics.jacobian * error,
-                twist: dynamics.jacobian * error * 10.0,
-            };
+            let pose = dynamics.jacobian * error;
+            let space = TaskSpace::of(&dynamics);
             for gains in laws(Gains::cartesian()) {
-                let interaction = of(&gains, &errors, &dynamics);
-                prop_assert!(interaction.tau.iter().all(|tau| tau.is_finite()));
+                let tuning = Tuning::new(&gains, None);
+                let springs = Interaction::springs(&tuning, &dynamics.jacobian, Some(&space));
+                let tau = springs.torques(&error);
+                prop_assert!(tau.iter().all(|tau| tau.is_finite()));
                 // Correlations are at most one: each axis adds at most the geometric mean of its gain and the other's.
-                let most: f64 = (0..6)
-                    .map(|i| 90.0_f64.max(750.0) * (errors.pose[i].abs() + errors.twist[i].abs()))
-                    .sum();
-                prop_assert!(interaction.wrench.amax() <= most * 1.01);
+                let wrench = springs.cartesian * pose;
+                prop_assert!(wrench.amax() <= 750.0 * pose.abs().sum() * 1.01);
                 // In the metric of the inertia a projection is no longer than what is projected.
-                let length = |tau: &JointVector| {
-                    let inverse = dynamics.mass.try_inverse().expect("a physical arm");
-                    (tau.dot(&(inverse * tau))).sqrt()
-                };
-                let joints = JointVector::from_fn(|i, _| {
-                    gains.joint_stiffness[i] * errors.q[i] + gains.joint_damping[i] * errors.dq[i]
-                });
-                let rest = interaction.tau - dynamics.jacobian.tr_mul(&interaction.wrench);
+                let length = |tau: &JointVector| (tau.dot(&(mobility(&dynamics) * tau))).sqrt();
+                let joints = JointVector::from(gains.joint_stiffness).component_mul(&error);
+                let rest = tau - dynamics.jacobian.tr_mul(&wrench);
                 prop_assert!(length(&rest) <= length(&joints) * (1.0 + 1e-6));
             }
         }
@@ -248,15 +249,13 @@ mod tests {
         #[test]
         fn the_dampers_at_the_end_effector_only_take_energy(q in anywhere(), dq in joints(1.0)) {
             let dynamics = dynamics_at(&q, &dq);
-            let errors = Errors {
-                q: JointVector::zeros(),
-                dq: -dq,
-                pose: Twist::zeros(),
-                twist: dynamics.jacobian * -dq,
-            };
+            let space = TaskSpace::of(&dynamics);
             for gains in laws(Gains::cartesian()) {
-                let wrench = of(&gains, &errors, &dynamics).wrench;
-                prop_assert!(wrench.dot(&errors.twist) >= -1e-9);
+                let tuning = Tuning::new(&gains, None);
+                let dampers = Interaction::dampers(&tuning, &dynamics.jacobian, Some(&space));
+                let twist: Twist = dynamics.jacobian * dq;
+                let wrench: Wrench = dampers.cartesian * -twist;
+                prop_assert!(wrench.dot(&twist) <= 1e-9);
             }
         }
     }
@@ -265,15 +264,9 @@ mod tests {
     fn every_law_is_silent_at_rest_on_the_reference() {
         let dynamics = dynamics_at(&READY, &JointVector::zeros());
         let zero = JointVector::zeros();
-        let errors = Errors::new(
-            &Reference::at_rest(READY),
-            &zero,
-            &READY,
-            &zero,
-            &dynamics.jacobian,
-        );
+        let errors = Errors { q: zero, dq: zero };
         for gains in laws(Gains::cartesian()) {
-            assert_eq!(of(&gains, &errors, &dynamics).tau, zero);
+            assert_eq!(of(&Tuning::new(&gains, None), &errors, &dynamics), zero);
         }
     }
 
@@ -281,11 +274,10 @@ mod tests {
     #[test]
     fn a_change_of_law_goes_evenly_from_torque_to_torque() {
         let dynamics = dynamics_at(&READY, &JointVector::zeros());
-        let errors = errors_at(&READY, &dynamics);
-        let space = TaskSpace::of(&dynamics);
+        let errors = errors();
         let [plain, projected, operational] =
             laws(Gains::cartesian()).map(|gains| Tuning::new(&gains, None));
-        let at = |tuning| Interaction::new(&tuning, &errors, &dynamics.jacobian, Some(&space)).tau;
+        let at = |tuning| of(&tuning, &errors, &dynamics);
         for (from, to) in [(plain, projected), (plain, operational)] {
             assert!((at(from) - at(to)).amax() > 0.1);
             let mut fade = crate::law::tuning::Fade::at(from);

@@ -25,32 +25,22 @@
 //! `Lambda6` is the full one, damped near singularities: there the springs of the joints act also on what the end
 //! effector has lost.
 //!
-//! There is no feedforward of the reference's acceleration. The inertia is that of the links, without rotors, as the
-//! robot's model has it.
+//! A wall on which nothing holds the arm by friction is met with forces across as well: the arm slides along it until they
+//! are balanced, about two thirds as far as its goal is deep behind the wall (simulated, ready pose, downwards).
+//!
+//! There is no feedforward of the reference's acceleration. The inertia is that of the links and, nominally, of the rotors.
 
-use franka_model::Wrench;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix6};
 
-use crate::law::interaction::Errors;
 use crate::law::task_space::TaskSpace;
-use crate::law::tuning::Tuning;
 
-/// Of springs and dampers at the end effector, base axes.
-pub(crate) fn wrench(tuning: &Tuning, errors: &Errors, space: &TaskSpace) -> Wrench {
-    let mut wrench = Wrench::zeros();
+/// `S Lambda S` of springs or dampers at the end effector, base axes: what an error there is met with.
+pub(crate) fn coupled(gains: &[f64; 6], space: &TaskSpace) -> Matrix6<f64> {
+    let mut coupled = Matrix6::zeros();
     for (at, inertia) in [(0, space.translational()), (3, space.rotational())] {
-        let coupled = |gains: &[f64; 6], error: &Wrench| {
-            let root = Vector3::from_fn(|i, _| (gains[at + i] / inertia[(i, i)]).sqrt());
-            between(&inertia, &root, &error.fixed_rows::<3>(at).into_owned())
-        };
-        let block = coupled(&tuning.cartesian_stiffness, &errors.pose)
-            + coupled(&tuning.cartesian_damping, &errors.twist);
-        wrench.fixed_rows_mut::<3>(at).copy_from(&block);
+        let root = |i: usize| (gains[at + i] / inertia[(i, i)]).sqrt();
+        let block = Matrix3::from_fn(|i, j| root(i) * inertia[(i, j)] * root(j));
+        coupled.fixed_view_mut::<3, 3>(at, at).copy_from(&block);
     }
-    wrench
-}
-
-/// `S Lambda S e`.
-fn between(inertia: &Matrix3<f64>, root: &Vector3<f64>, error: &Vector3<f64>) -> Vector3<f64> {
-    (inertia * error.component_mul(root)).component_mul(root)
+    coupled
 }

@@ -4,16 +4,21 @@
 //! `Lambda = W^-1` its inertia (Khatib, IEEE Journal on Robotics and Automation 3(1), 1987). The torques `tau` press with
 //! the wrench `Lambda J M^-1 tau` on whoever holds the end effector still.
 //!
-//! `W` is taken as it is where the arm can move in all directions. Near a singularity it is damped: each pivot of its
-//! factorisation that falls below a bound, one over the greatest inertia in [`GREATEST_INERTIA`], lets the damping grow
-//! from zero, smoothly, to that bound. So nothing jumps and nothing divides by zero.
+//! `W` is taken as it is where the arm can move in all directions. Near a singularity it is damped: as the inertia along
+//! any axis goes beyond that in [`GREATEST_INERTIA`], damping grows from zero, smoothly, to one over it. So nothing
+//! jumps and nothing divides by zero, and no inertia along an axis exceeds four thirds of the greatest.
 
 use franka_model::{Dynamics, Jacobian, JointVector, MassMatrix, Wrench};
-use nalgebra::{Cholesky, Const, Matrix3, Matrix6, SMatrix};
+use nalgebra::{Cholesky, Const, Matrix3, SMatrix};
 
 /// Inertia, x y z `[kg]` and about x y z `[kg m^2]`, from which on a direction counts as lost. At the ready pose the
 /// arm has 11 kg and 0.5 kg m^2 with all other directions held.
 const GREATEST_INERTIA: [f64; 6] = [100.0, 100.0, 100.0, 5.0, 5.0, 5.0];
+
+/// Inertia of the rotors, felt at the joints, `[kg m^2]`, which is not in the robot's model. About the mean of what
+/// `mujoco_menagerie` has for both arms: 0.195 (joints 1 to 4) and 0.074 (5 to 7) of `franka_fr3`, 0.1 of
+/// `franka_emika_panda`. Not measured on a robot.
+pub(crate) const ROTORS: [f64; 7] = [0.15, 0.15, 0.15, 0.15, 0.09, 0.09, 0.09];
 
 /// Inertia at the end effector, in base axes.
 #[derive(Debug)]
@@ -22,14 +27,16 @@ pub(crate) struct TaskSpace {
     mass: Cholesky<f64, Const<7>>,
     /// `L^-1 J'`.
     root: SMatrix<f64, 7, 6>,
-    /// Of the mobility.
-    mobility: Matrix6<f64>,
     inertia: Cholesky<f64, Const<6>>,
+    /// Of position and of rotation, each with the other left free.
+    blocks: [Matrix3<f64>; 2],
 }
 
 impl TaskSpace {
+    /// Of the links and the rotors together.
     pub(crate) fn of(dynamics: &Dynamics) -> Self {
-        Self::new(&dynamics.jacobian, &dynamics.mass)
+        let rotors = MassMatrix::from_diagonal(&ROTORS.into());
+        Self::new(&dynamics.jacobian, &(dynamics.mass + rotors))
     }
 
     /// A `mass` that is no physical arm's, as of a load that cannot be, counts as the identity: the geometry remains.
@@ -40,11 +47,16 @@ impl TaskSpace {
         mass.l_dirty()
             .solve_lower_triangular_unchecked_mut(&mut root);
         let mobility = root.tr_mul(&root);
+        let block = |at: usize| {
+            let block = mobility.fixed_view::<3, 3>(at, at).into_owned();
+            let greatest = core::array::from_fn(|i| GREATEST_INERTIA[at + i]);
+            damped(&block, &greatest).inverse()
+        };
         Self {
             mass,
             root,
-            mobility,
             inertia: damped(&mobility, &GREATEST_INERTIA),
+            blocks: [block(0), block(3)],
         }
     }
 
@@ -57,20 +69,26 @@ impl TaskSpace {
         self.inertia.solve(&self.root.tr_mul(&half))
     }
 
+    /// How the joints move of themselves when the end effector is moved and its rotation left free, `M^-1 J' Lambda` of the
+    /// position alone, `[rad/m]`: of all motions that do it the one of the least kinetic energy.
+    ///
+    /// Its transpose gives the force, `[N]`, with which torques press on whoever holds the end effector at a point.
+    pub(crate) fn yielding(&self) -> SMatrix<f64, 7, 3> {
+        let mut yielding = self.root.fixed_columns::<3>(0) * self.blocks[0];
+        self.mass
+            .l_dirty()
+            .tr_solve_lower_triangular_mut(&mut yielding);
+        yielding
+    }
+
     /// Inertia of the end effector's position, its rotation left free.
-    pub(crate) fn translational(&self) -> Matrix3<f64> {
-        self.block(0)
+    pub(crate) fn translational(&self) -> &Matrix3<f64> {
+        &self.blocks[0]
     }
 
     /// Inertia about the end effector, its position left free.
-    pub(crate) fn rotational(&self) -> Matrix3<f64> {
-        self.block(3)
-    }
-
-    fn block(&self, at: usize) -> Matrix3<f64> {
-        let block = self.mobility.fixed_view::<3, 3>(at, at).into_owned();
-        let greatest = core::array::from_fn(|i| GREATEST_INERTIA[at + i]);
-        damped(&block, &greatest).inverse()
+    pub(crate) fn rotational(&self) -> &Matrix3<f64> {
+        &self.blocks[1]
     }
 }
 
@@ -80,10 +98,15 @@ fn damped<const N: usize>(
     greatest: &[f64; N],
 ) -> Cholesky<f64, Const<N>> {
     let factor = Cholesky::new(*mobility);
-    // The least pivot against its bound: no mobility is singular while this is above zero.
+    // The greatest against the inertia along each axis, all others held: above zero where the mobility is not singular. A
+    // pivot of the factorisation holds only the axes before it, and does not see what is lost along several at once.
     let room = factor.as_ref().map_or(0.0, |factor| {
-        let pivot = |i: usize| factor.l_dirty()[(i, i)].powi(2) * greatest[i];
-        (0..N).map(pivot).fold(1.0, f64::min)
+        let mut root = SMatrix::<f64, N, N>::identity();
+        factor
+            .l_dirty()
+            .solve_lower_triangular_unchecked_mut(&mut root);
+        let along = |i: usize| greatest[i] / root.column(i).norm_squared();
+        (0..N).map(along).fold(1.0, f64::min)
     });
     match factor {
         Some(factor) if room >= 1.0 => factor,
@@ -102,6 +125,8 @@ fn damped<const N: usize>(
 mod tests {
     use super::*;
     use franka_model::{EndEffector, Frame, Load, Model, READY};
+
+    const OBLIQUE: [f64; 7] = [0.0286, 1.3625, 2.5929, -0.4261, -2.2731, 2.3005, -2.0489];
 
     fn space_at(q: &JointVector) -> (TaskSpace, Jacobian, MassMatrix) {
         let jacobian = Model::fr3().zero_jacobian(Frame::EndEffector, q, &EndEffector::default());
@@ -156,6 +181,32 @@ mod tests {
         }
         assert!(steps < 0.02 * greatest, "{steps} of {greatest}");
         assert!(greatest < 1e3, "{greatest}");
+    }
+
+    /// On a way between two postures of the joints, where no pivot of the factorisation tells that a direction is lost.
+    #[test]
+    fn a_direction_that_is_lost_along_several_axes_is_damped() {
+        let q = JointVector::from(OBLIQUE);
+        let (space, jacobian, _) = space_at(&q);
+        let least = jacobian.svd(false, false).singular_values.min();
+        assert!(least < 5e-3, "{least}: it is all but lost");
+        let inertia = space.inertia.inverse();
+        for (axis, greatest) in GREATEST_INERTIA.into_iter().enumerate() {
+            let along = inertia[(axis, axis)];
+            assert!(along <= greatest * 4.0 / 3.0 + 1e-9, "axis {axis}: {along}");
+        }
+    }
+
+    #[test]
+    fn torques_press_on_a_point_as_on_a_wall_that_they_lean_on() {
+        let (space, jacobian, mass) = space_at(&READY);
+        let yielding = space.yielding();
+        let position = jacobian.fixed_rows::<3>(0).into_owned();
+        assert!((position * yielding - Matrix3::identity()).amax() < 1e-12);
+        let tau = JointVector::from([5.0, -3.0, 2.0, 7.0, 1.0, -0.5, 0.3]);
+        let inverse = mass.try_inverse().expect("a physical arm");
+        let held = tau - position.tr_mul(&yielding.tr_mul(&tau));
+        assert!((position * inverse * held).amax() < 1e-10);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use franka_model::{Dynamics, JointVector};
 use franka_proto::RobotState;
 
 use crate::law::hybrid::Reference;
-use crate::law::interaction::{Errors, Interaction};
+use crate::law::interaction::Interaction;
 use crate::law::shaping;
 use crate::law::task_space::TaskSpace;
 use crate::law::tuning::{Fade, Tuning};
@@ -97,12 +97,17 @@ impl Effort {
         let jacobian = &dynamics.jacobian;
         let space = tuning.needs_task_space().then(|| TaskSpace::of(dynamics));
         let feedforward = self.feedforward * tuning.feedforward;
-        let errors = Errors::new(reference, &feedforward, &q, &dq, jacobian);
-        let free = Interaction::new(&tuning, &errors, jacobian, space.as_ref());
-        let (tau, clamped) = shaping::clamp(&free.tau, &most);
-        let clipped = Interaction { tau, ..free };
+        let springs = Interaction::springs(&tuning, jacobian, space.as_ref());
+        let dampers = Interaction::dampers(&tuning, jacobian, space.as_ref());
+        let springs = springs.torques(&(reference.q - q));
+        let dampers = dampers.torques(&(feedforward - dq));
+        let (tau, clamped) = shaping::clamp(&(springs + dampers), &most);
         let (tau, capped) = match (tuning.force_cap(), &space) {
-            (Some(cap), Some(space)) => force_cap::hold(&clipped, cap, jacobian, space),
+            (Some(cap), Some(space)) => {
+                // The clamp leaves the dampers what the springs do not take.
+                let (springs, _) = shaping::clamp(&springs, &most);
+                force_cap::hold(&springs, &(tau - springs), cap, jacobian, space)
+            }
             _ => (tau, false),
         };
         // What the motion itself takes stays outside the clamp and the cap, which are for the interaction.

@@ -150,8 +150,7 @@ impl Goal {
     pub const SILENCE_MIN: Duration = Duration::from_millis(10);
 
     /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on the way to joint
-    /// positions and the end effector compliant otherwise, the default tolerance, and [`DEFAULT_FORCE_CAP`] unless it leads to
-    /// joint positions.
+    /// positions and the end effector compliant otherwise, the default tolerance, and [`DEFAULT_FORCE_CAP`].
     pub fn new(id: GoalId, target: Target, then: Then, limits: &JointLimits) -> Self {
         Self {
             id,
@@ -165,10 +164,7 @@ impl Goal {
             },
             tolerance: Tolerance::default(),
             watchdog: None,
-            force_cap: match target {
-                Target::Joints(_) => None,
-                Target::Pose(_) | Target::Rest | Target::Guide(_) => Some(DEFAULT_FORCE_CAP),
-            },
+            force_cap: Some(DEFAULT_FORCE_CAP),
             lead: None,
             revision: 0,
         }

@@ -12,7 +12,7 @@ pub enum Guard {
     InverseKinematics,
     /// A spring and damper torque reached its clamp.
     TorqueClamp,
-    /// Spring and damper would have pressed with more force than the goal allows, and were scaled down.
+    /// Spring and damper would have pressed with more force than the goal allows, and what was beyond it was taken off.
     ForceCap,
     /// A joint came near the robot's velocity limit and was braked.
     VelocityBarrier,
