@@ -14,9 +14,7 @@ use franka_model::{EndEffector, JointVector, Load, Model, transform};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{
-    DEFAULT_FORCE_CAP, Goal, GoalId, Guard, Lapse, Target, Then, Tolerance,
-};
+use franka_rt::session::{DEFAULT_FORCE_CAP, Goal, GoalId, Guard, Lapse, Target, Then, Tolerance};
 use franka_sim::plant::ArmParameters;
 use franka_sim::{Touch, TouchId};
 use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
