@@ -1,9 +1,13 @@
 //! What a goal does when nothing goes wrong.
 
+use std::time::Duration;
+
 use franka_model::{EndEffector, Model, READY, RobotKind};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalError, PoseError, SELF_STOP, Target, Then};
+use franka_rt::session::{
+    Free, Goal, GoalError, PoseError, SELF_STOP, Stale, Target, Then, Watchdog,
+};
 use franka_tests::lockstep::{Lockstep, for_each_robot, pose_of, self_distance};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -254,5 +258,17 @@ fn a_goal_is_planned_however_slow_it_is_or_refused() {
                 lockstep.until_resolved(stop, 1000).expect("it rests");
             }
         }
+    });
+}
+
+#[test]
+fn a_stream_that_ends_with_a_guiding_hand_comes_to_rest() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let goal = lockstep.goal(Target::Guide(Free::ALL), Then::Hold);
+        let goal = lockstep.submit(goal).expect("nothing moves");
+        lockstep.run(500);
+        lockstep.client.lifecycle.close(goal);
+        lockstep.until_resolved(goal, 3000).expect("it rests");
     });
 }

@@ -88,7 +88,15 @@ impl Lifecycle {
     /// goes on from goal to goal.
     pub fn close(&mut self, id: GoalId) {
         let then = self.end_of(id);
-        let amended = self.amend(id, |goal| Goal { then, ..*goal }, None);
+        let end = |goal: &Goal| Goal {
+            target: match goal.target {
+                Target::Guide(_) => Target::Rest, // A hand leads to no last target.
+                target => target,
+            },
+            then,
+            ..*goal
+        };
+        let amended = self.amend(id, end, None);
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
 
