@@ -272,3 +272,38 @@ fn a_stream_that_ends_with_a_guiding_hand_comes_to_rest() {
         lockstep.until_resolved(goal, 3000).expect("it rests");
     });
 }
+
+#[test]
+fn a_goal_that_goes_on_is_not_said_to_have_been_held() {
+    for_each_robot(|ready| {
+        let (mut gone_on, mut held) = (0, 0);
+        for wait in (0..400).step_by(10) {
+            let mut lockstep = ready();
+            let mut q: [f64; 7] = READY.into();
+            let goal = Goal {
+                watchdog: Some(Watchdog {
+                    silence: Duration::from_millis(50),
+                    stale: Stale::Hold,
+                }),
+                ..lockstep.goal(Target::Joints(q), Then::Hold)
+            };
+            let goal = lockstep.submit(goal).expect("it is there already");
+            lockstep.run(50 + wait);
+            q[0] += 0.2;
+            if lockstep.update(goal, Target::Joints(q)) != Ok(true) {
+                continue;
+            }
+            lockstep.run(100);
+            let moves = lockstep.client.record.dq_ref[0] > 0.01;
+            if let Some(stop) = lockstep.stop() {
+                lockstep.until_resolved(stop, 2000).expect("it rests");
+            }
+            let outcome = lockstep.until_resolved(goal, 2000);
+            let was_held = matches!(outcome, Err(MotionError::Held(_)));
+            assert!(!(moves && was_held), "{wait} ms: {outcome:?}");
+            gone_on += u32::from(moves);
+            held += u32::from(was_held);
+        }
+        assert!(gone_on > 5 && held > 5, "{gone_on}, {held}");
+    });
+}

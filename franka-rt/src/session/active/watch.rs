@@ -38,10 +38,10 @@ impl Active {
 
     /// Whether neither an update nor a chunk brings back a goal that was given up.
     pub(super) fn is_given_up_for_good(&self) -> bool {
-        let rests = matches!(self.stage, Stage::Staying);
+        let settled = matches!(self.stage, Stage::Staying | Stage::Releasing(_));
         self.lapse
             .as_ref()
-            .is_some_and(|(_, lapse)| rests || lapse.is_final())
+            .is_some_and(|(_, lapse)| settled || lapse.is_final())
     }
 
     /// Has the goal come to its end where the arm comes to rest.
