@@ -239,6 +239,7 @@ impl Guarded {
         let alike = core::mem::discriminant(&target) == core::mem::discriminant(&self.goal.target);
         if alike && self.random.random_bool(0.5) {
             self.goal.target = target;
+            self.goal.revision += 1;
             self.goals.write(&self.goal);
         } else {
             self.submit(target);
