@@ -9,7 +9,7 @@ use franka_proto::{
     ControllerMode, MotionGeneratorMode, RobotCommand, RobotError, RobotMode, RobotState, Version,
 };
 use franka_rt::control::{Callback, Finish, TargetStatus, Torques};
-use franka_rt::diagnosis::{Case, Diagnosis};
+use franka_rt::diagnosis::{Case, Commander, Diagnosis};
 use franka_rt::driver::{Activity, ControlLog, Driver, Modes, MotionId, Order, Program, Record};
 use franka_rt::lifecycle::{MotionReport, Party};
 use franka_rt::session::{Bindings, PoseError};
@@ -163,12 +163,14 @@ fn a_diagnosis_names_its_parts() {
     ]))
     .unwrap();
     let diagnosis = Diagnosis::of(&Case {
+        commander: Commander::Function,
         errors: RobotError::JointVelocityViolation.into(),
         log: &log,
         model: Model::fer(),
         statistics: None,
     });
     let value = round_trip(&diagnosis);
+    assert_eq!(value["commander"], "Function");
     assert_eq!(value["error"], "joint_velocity_violation");
     assert_eq!(value["finding"]["subject"], json!({ "Joint": 4 }));
     assert_eq!(value["finding"]["bound"], json!({ "AtMost": 2.175 }));

@@ -1,8 +1,8 @@
 //! Which setting to change.
 
-use core::fmt;
+use super::commander::Commander;
 
-/// What to change, so that the next motion does not end likewise. Names of settings are those of this driver.
+/// What to change, so that the next motion does not end likewise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -35,30 +35,65 @@ pub enum Advice {
     Desk,
 }
 
-impl fmt::Display for Advice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Smooth => {
+impl Advice {
+    /// The advice in words, with the settings of this driver that there are where `commander` commands.
+    pub fn text(self, commander: Commander) -> &'static str {
+        use Commander::{Active, Asynchronous, Function, Goals};
+        match (self, commander) {
+            (Self::Smooth, Function) => {
                 "limit_rate(true) for the control function, or targets that go on in position, velocity and acceleration"
             }
-            Self::SlowDown => "less speed and acceleration",
-            Self::StartWhereItIs => {
+            (Self::Smooth, Active) => {
+                "commands that go on in position, velocity and acceleration: nothing limits what is written"
+            }
+            (Self::Smooth | Self::SlowDown, Goals) => {
+                "speed below 1 or limits with less velocity and acceleration, or softer gains"
+            }
+            (Self::Smooth | Self::SlowDown, Asynchronous) => "lower maximum_joint_velocities",
+            (Self::SlowDown, Function | Active) => "less speed and acceleration",
+            (Self::StartWhereItIs, Function | Active) => {
                 "begin with what the first state has: q_d, O_T_EE_c, elbow_c, and zero velocity and torque"
             }
-            Self::FinishAtRest => "bring the command to rest before it says that it is finished",
-            Self::Network => "a direct cable to the robot, nothing else on it, and no power saving of the network card",
-            Self::Host => {
+            (Self::StartWhereItIs, Goals | Asynchronous) => {
+                "begin when the arm rests and nothing pushes it"
+            }
+            (Self::FinishAtRest, Function | Active) => {
+                "bring the command to rest before it says that it is finished"
+            }
+            (Self::FinishAtRest, Goals | Asynchronous) => {
+                "end the motion when the arm rests and nothing pushes it"
+            }
+            (Self::Network, _) => {
+                "a direct cable to the robot, nothing else on it, and no power saving of the network card"
+            }
+            (Self::Host, Function) => {
                 "Realtime::Enforce, a processor of its own for the control thread, and less work in the control function"
             }
-            Self::Thresholds => {
+            (Self::Host, Active) => {
+                "Realtime::Enforce, a processor of its own for the thread that writes, and less work between reading and \
+                 writing"
+            }
+            (Self::Host, Goals | Asynchronous) => {
+                "Realtime::Enforce, and a processor of its own for the control thread"
+            }
+            (Self::Thresholds, Goals) => {
+                "set_collision_behavior or a lower force_cap if the contact is meant; set_load and less acceleration if \
+                 nothing was touched"
+            }
+            (Self::Thresholds, _) => {
                 "set_collision_behavior if the contact is meant; set_load and less acceleration if nothing was touched"
             }
-            Self::AvoidSingularity => "go there by joint positions, or by another elbow",
-            Self::StayInRange => "a target further inside the joint's range, or another elbow",
-            Self::StayClearOfItself => "a way on which the links stay further apart",
-            Self::LessEffort => "less acceleration, less load, or the load declared by set_load",
-            Self::SofterGains => "lower stiffness, more damping, or cutoff_frequency for the torques",
-            Self::Desk => "walls, load and tasks in Desk",
-        })
+            (Self::AvoidSingularity, _) => "go there by joint positions, or by another elbow",
+            (Self::StayInRange, _) => "a target further inside the joint's range, or another elbow",
+            (Self::StayClearOfItself, _) => "a way on which the links stay further apart",
+            (Self::LessEffort, _) => {
+                "less acceleration, less load, or the load declared by set_load"
+            }
+            (Self::SofterGains, Function) => {
+                "lower stiffness, more damping, or cutoff_frequency for the torques"
+            }
+            (Self::SofterGains, _) => "lower stiffness, or more damping",
+            (Self::Desk, _) => "walls, load and tasks in Desk",
+        }
     }
 }

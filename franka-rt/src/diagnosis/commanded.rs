@@ -192,6 +192,9 @@ fn of_joints(
 ) -> Vec<Reading> {
     let limits = evidence.model.joint_limits();
     let mut readings = Vec::new();
+    if !evidence.commander.commands_every_cycle() {
+        return readings;
+    }
     for sample in evidence.samples() {
         let Some((_, asked)) = derive(&sample) else {
             continue;

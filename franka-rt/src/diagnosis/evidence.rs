@@ -3,6 +3,7 @@
 use franka_model::{JointVector, Model};
 use franka_proto::{MotionGeneratorMode, RobotCommand, RobotError, RobotState};
 
+use super::commander::Commander;
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 use crate::driver::{LogEntry, MotionStatistics};
 
@@ -11,6 +12,7 @@ pub(super) const CYCLE: f64 = 1e-3;
 
 /// What there is to judge by.
 pub(super) struct Evidence<'a> {
+    pub(super) commander: Commander,
     /// Oldest first.
     pub(super) entries: Vec<&'a LogEntry>,
     pub(super) model: &'a Model,

@@ -40,8 +40,11 @@ impl Losses {
             if command.message_id == 0 {
                 // The robot waits for the first command.
             } else if command.message_id != id {
-                losses.unanswered += 1;
-                losses.cycles.push(id);
+                // Between two targets that the robot plans to, there is nothing to send.
+                if evidence.commander.commands_every_cycle() {
+                    losses.unanswered += 1;
+                    losses.cycles.push(id);
+                }
             } else if is_lost(before, after) || (ends && starved && missing == 0) {
                 losses.commands += 1;
                 losses.cycles.push(id);

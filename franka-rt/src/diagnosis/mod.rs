@@ -16,6 +16,7 @@
 mod advice;
 mod cause;
 mod commanded;
+mod commander;
 mod evidence;
 mod finding;
 mod judge;
@@ -32,11 +33,12 @@ use core::fmt;
 use franka_model::Model;
 use franka_proto::{Errors, RobotError};
 
-use crate::driver::{ControlLog, LogEntry, MotionStatistics};
+use crate::driver::{ControlLog, MotionStatistics};
 use evidence::Evidence;
 
 pub use advice::Advice;
 pub use cause::Cause;
+pub use commander::Commander;
 pub use finding::{Axis, Bound, Finding, Origin, Quantity, Subject};
 
 /// Why the robot ended a motion, as far as its last cycles show.
@@ -46,6 +48,8 @@ pub use finding::{Axis, Bound, Finding, Origin, Quantity, Subject};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Diagnosis {
+    /// Who commanded the motion.
+    pub commander: Commander,
     /// The errors that the robot named.
     pub errors: Errors,
     /// Of them, the one that explains the others; `None` if it named none.
@@ -54,7 +58,7 @@ pub struct Diagnosis {
     pub finding: Option<Finding>,
     /// What led up to it, the most likely first. Empty if the log shows nothing.
     pub causes: Vec<Cause>,
-    /// What to change, the most promising first.
+    /// What to change, the most promising first; [`Advice::text`] has the settings of this commander.
     pub advice: Vec<Advice>,
     /// The state that shows the end of the motion, by its `message_id`; `None` without a log.
     pub end: Option<u64>,
@@ -65,6 +69,8 @@ pub struct Diagnosis {
 /// What a diagnosis is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct Case<'a> {
+    /// Who commanded the motion.
+    pub commander: Commander,
     /// `reflex_reason` of the state that ended the motion.
     pub errors: Errors,
     /// The last cycles of the motion.
@@ -79,26 +85,22 @@ impl Diagnosis {
     /// Reads a case. This allocates, and takes up to a few milliseconds for fifty cycles of a Cartesian motion: not for the
     /// control thread.
     pub fn of(case: &Case<'_>) -> Self {
-        let entries = case.log.iter().collect();
-        Self::of_entries(case.errors, entries, case.model, case.statistics)
+        let evidence = Evidence {
+            commander: case.commander,
+            entries: case.log.iter().collect(),
+            model: case.model,
+            statistics: case.statistics,
+        };
+        Self::of_evidence(case.errors, &evidence)
     }
 
-    fn of_entries(
-        errors: Errors,
-        entries: Vec<&LogEntry>,
-        model: &Model,
-        statistics: Option<&MotionStatistics>,
-    ) -> Self {
-        let evidence = Evidence {
-            entries,
-            model,
-            statistics,
-        };
-        let (error, finding) = judge::explaining(&evidence, errors);
+    fn of_evidence(errors: Errors, evidence: &Evidence<'_>) -> Self {
+        let (error, finding) = judge::explaining(evidence, errors);
         let causes = error.map_or_else(Vec::new, |error| {
-            judge::causes(&evidence, error, finding.as_ref())
+            judge::causes(evidence, error, finding.as_ref())
         });
         Self {
+            commander: evidence.commander,
             errors,
             error,
             advice: error.map_or_else(Vec::new, |error| judge::advice(error, &causes)),
@@ -141,7 +143,7 @@ impl fmt::Display for Diagnosis {
             }
             _ if self.cycles == 0 => write!(
                 f,
-                "{error}: there is no log (its size is 0) that would show why"
+                "{error}: no cycle of the motion is in the log, which would show why"
             )?,
             _ => write!(
                 f,
@@ -161,7 +163,8 @@ impl fmt::Display for Diagnosis {
             }
         }
         for (i, advice) in self.advice.iter().enumerate() {
-            write!(f, "{} {advice}", if i == 0 { "\nchange:" } else { "; or" })?;
+            let lead = if i == 0 { "\nchange:" } else { "; or" };
+            write!(f, "{lead} {}", advice.text(self.commander))?;
         }
         Ok(())
     }

@@ -57,6 +57,9 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
 
 /// How the command leaps that a finding is about, if it does.
 pub(super) fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
+    if !evidence.commander.commands_every_cycle() {
+        return None;
+    }
     let sample = evidence.sample(finding.since)?;
     let cycle = sample.cycle();
     let step = |subject, quantity, size| {
@@ -174,7 +177,11 @@ fn leap_of(
 
 /// Whether the finding is about a last command that moves: standing still would have had to follow it.
 pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
-    let sample = evidence.sample(finding.since).filter(Sample::is_finished)?;
+    let every_cycle = evidence.commander.commands_every_cycle();
+    let sample = evidence.sample(finding.since)?;
+    if !every_cycle || !sample.is_finished() {
+        return None;
+    }
     let cycle = sample.cycle();
     let moves = |subject, velocity: f64| {
         (velocity != 0.0).then_some(Cause::FinishedMoving {

@@ -387,6 +387,7 @@ impl ControlError {
     /// A robot of this model ended a motion with `refusal`.
     fn new(refusal: Refusal, ended: &Ended, model: &Model) -> Box<Self> {
         let case = Case {
+            commander: (&ended.program).into(),
             errors: ended.reflex_reason,
             log: &ended.log,
             model,

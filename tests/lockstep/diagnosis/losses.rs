@@ -133,6 +133,10 @@ fn without_a_log_the_diagnosis_says_so() {
         );
         assert_eq!((diagnosis.finding, diagnosis.end), (None, None));
         assert!(diagnosis.causes.is_empty());
-        assert!(diagnosis.to_string().contains("there is no log"));
+        assert!(
+            diagnosis
+                .to_string()
+                .contains("no cycle of the motion is in the log")
+        );
     });
 }

@@ -154,6 +154,7 @@ fn power_torque_and_shaking_are_read_off_the_sensors() {
 
 fn story_of(story: &Story) -> Story {
     Story {
+        commander: story.commander,
         model: story.model,
         entries: story.entries.clone(),
     }

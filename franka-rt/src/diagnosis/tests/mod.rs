@@ -1,6 +1,7 @@
 //! Diagnoses of logs that show one thing each.
 
 mod arm;
+mod commander;
 mod commands;
 mod nothing;
 
@@ -9,11 +10,13 @@ use franka_proto::{
     ControllerMode, Errors, MotionGeneratorMode, RobotCommand, RobotError, RobotMode, RobotState,
 };
 
-use super::{Diagnosis, Finding};
+use super::evidence::Evidence;
+use super::{Commander, Diagnosis, Finding};
 use crate::driver::{LogEntry, MotionStatistics};
 
 /// A log in the making: a state, then pairs of a command and the state after it.
 struct Story {
+    commander: Commander,
     model: &'static Model,
     entries: Vec<LogEntry>,
 }
@@ -51,9 +54,15 @@ impl Story {
             command: RobotCommand::default(),
         };
         Self {
+            commander: Commander::Function,
             model,
             entries: vec![entry],
         }
+    }
+
+    /// The same under another commander.
+    fn by(self, commander: Commander) -> Self {
+        Self { commander, ..self }
     }
 
     fn newest(&self) -> &RobotState {
@@ -134,12 +143,21 @@ impl Story {
             state.reflex_reason = errors;
             then(state);
         });
-        let entries = self.entries.iter().collect();
-        let diagnosis = Diagnosis::of_entries(errors, entries, self.model, statistics);
+        let diagnosis = self.diagnosis(errors, statistics);
         let text = diagnosis.to_string();
         println!("{text}\n");
         assert!(text.lines().count() <= 6, "{text}");
         diagnosis
+    }
+
+    fn diagnosis(&self, errors: Errors, statistics: Option<&MotionStatistics>) -> Diagnosis {
+        let evidence = Evidence {
+            commander: self.commander,
+            entries: self.entries.iter().collect(),
+            model: self.model,
+            statistics,
+        };
+        Diagnosis::of_evidence(errors, &evidence)
     }
 }
 

@@ -44,16 +44,21 @@ fn an_error_that_shows_comes_before_one_that_does_not() {
 #[test]
 fn neither_an_empty_log_nor_one_cycle_of_it_is_too_little_to_say_so() {
     for error in E::ALL {
-        let empty = Diagnosis::of_entries(error.into(), Vec::new(), Model::fr3(), None);
+        let mut story = Story::unbegun(Model::fr3(), Generator::CartesianPosition);
+        let one = story.diagnosis(error.into(), None);
+        story.entries.clear();
+        let empty = story.diagnosis(error.into(), None);
         assert_eq!((empty.finding, empty.end, empty.cycles), (None, None, 0));
-        assert!(empty.to_string().contains("there is no log"));
-        let story = Story::unbegun(Model::fr3(), Generator::CartesianPosition);
-        let entries = story.entries.iter().collect();
-        let one = Diagnosis::of_entries(error.into(), entries, Model::fr3(), None);
+        assert!(
+            empty
+                .to_string()
+                .contains("no cycle of the motion is in the log")
+        );
         assert_eq!(one.error, Some(error));
         assert_eq!(one.end, Some(BEGIN));
     }
-    let none = Diagnosis::of_entries(Errors::NONE, Vec::new(), Model::fr3(), None);
+    let story = Story::of(Model::fr3(), Generator::None);
+    let none = story.diagnosis(Errors::NONE, None);
     assert_eq!(none.to_string(), "the robot named no error");
 }
 
