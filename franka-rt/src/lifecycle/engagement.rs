@@ -200,6 +200,16 @@ impl Lifecycle {
         };
         let tuned = tuning.apply(goals.current.goal);
         tuned.check(&self.model, state)?;
+        // Gains that a guiding hand has no use for have to be fit for the goals after it.
+        if let Some(gains) = tuning.gains {
+            let target = Target::Rest;
+            let later = Goal {
+                target,
+                gains,
+                ..tuned
+            };
+            later.check(&self.model, state)?;
+        }
         // Also a goal that was taken back: it is held until the next one comes.
         if let Some(goals) = self.goals() {
             goals.current.goal = tuned;

@@ -5,7 +5,7 @@ use franka_model::Wrench;
 use franka_model::collision::Obstacle;
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{Goal, GoalError, Guard, Lapse, Target, Then};
+use franka_rt::session::{Free, Goal, GoalError, Guard, Lapse, Target, Then};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 #[test]
@@ -56,6 +56,35 @@ fn gains_are_tuned_without_a_step_and_only_within_their_bounds() {
             refused,
             Err(MotionError::Goal(GoalError::Gains(_)))
         ));
+    });
+}
+
+#[test]
+fn gains_that_do_not_hold_for_a_guiding_hand_are_checked_for_what_comes_after() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        lockstep
+            .within(engaged, Target::Guide(Free::ALL), Then::Hold)
+            .expect("it is held");
+        lockstep.run(300);
+        let mut hard = Gains::cartesian();
+        hard.cartesian_stiffness[0] = 1e5;
+        let mut nowhere = Gains::cartesian().with_cartesian_stiffness([0.0; 6]);
+        nowhere.project_joint_gains = true;
+        for refused in [hard, nowhere] {
+            let tuning = Tuning {
+                gains: Some(refused),
+                ..Tuning::default()
+            };
+            let outcome = lockstep.tune(engaged, tuning);
+            assert!(matches!(outcome, Err(MotionError::Goal(_))), "{outcome:?}");
+        }
+        let cap = Tuning {
+            force_cap: Some(Some(8.0)),
+            ..Tuning::default()
+        };
+        assert_eq!(lockstep.tune(engaged, cap), Ok(()));
     });
 }
 
