@@ -93,7 +93,7 @@ impl Engage {
 /// A session of target control: the arm is held, and goes from goal to goal without a stop in between, whatever their
 /// kinds. Made by [`Robot::engage`].
 ///
-/// A cheap handle: clones share the session, motions in progress are handles too. Dropping the last one brakes the arm and
+/// A cheap handle: clones share the session, motions that are awaited are handles too. Dropping the last one brakes the arm and
 /// ends the session, in the background; [`Self::disengage`] does the same and can be awaited. [`Robot::stop`] ends it from
 /// outside, as does the robot by a reflex: whatever is asked of the session afterwards is answered with the reason.
 ///
@@ -358,7 +358,17 @@ impl Arm {
         let (taken, answer) = oneshot::channel();
         self.robot().send(input(taken));
         let closed = || self.robot().closed().map(drop);
-        answer.await.unwrap_or_else(|_| closed())
+        let answer = answer.await.unwrap_or_else(|_| closed());
+        answer.map_err(|error| self.explain(error))
+    }
+
+    /// What ended the session, in the place of an error that says no more than that it has: the lifecycle knows how the last
+    /// session ended, and of an older one only that it did.
+    pub(crate) fn explain(&self, error: MotionError) -> MotionError {
+        match (&*self.session.ended.borrow(), error) {
+            (Some(Err(ended)), MotionError::Disengaged) => ended.clone(),
+            (_, error) => error,
+        }
     }
 }
 

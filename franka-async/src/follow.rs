@@ -136,8 +136,13 @@ impl Follow {
             mut targets,
             ticket,
         } = self;
-        let Some(first) = newest(&mut targets).await else {
-            // Nothing to follow: the arm stays where it is.
+        let first = tokio::select! {
+            biased;
+            ended = end_of(arm.as_ref()) => return Err(ended),
+            first = newest(&mut targets) => first,
+        };
+        let Some(first) = first else {
+            // Nothing to follow: the arm goes on with what it does.
             return Err(MotionError::Stopped);
         };
         let goal = towards(
@@ -176,6 +181,14 @@ impl Follow {
                 };
             }
         }
+    }
+}
+
+/// Why the session of `arm` takes no goals any more, once it has ended.
+async fn end_of(arm: Option<&Arm>) -> MotionError {
+    match arm {
+        Some(arm) => arm.ended().await.err().unwrap_or(MotionError::Disengaged),
+        None => std::future::pending().await,
     }
 }
 
@@ -220,7 +233,8 @@ impl IntoFuture for Follow {
     type IntoFuture = Pin<Box<dyn Future<Output = Self::Output> + Send>>;
 
     /// Resolves when the targets have ended and the arm rests at the last one, or with the reason why not. A target that is
-    /// not accepted brakes the arm and ends the motion with [`MotionError::Goal`].
+    /// not accepted brakes the arm and ends the motion with [`MotionError::Goal`]. Before the first target nothing begins,
+    /// and no watchdog counts; a stream that ends without any resolves as [`MotionError::Stopped`].
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, in the background.

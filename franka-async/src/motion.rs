@@ -167,7 +167,8 @@ impl Motion {
         self
     }
 
-    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log.
+    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log. It is no handle: the
+    /// last handle of its session or robot, dropped, still brakes it.
     pub fn detach(self) {
         let work = Work::goal(self.goal, self.ticket.0, self.arm.as_ref());
         self.robot.begin(work);
@@ -221,7 +222,7 @@ impl Canceller {
 pub struct Moving {
     robot: Robot,
     /// Keeps the session of the goal.
-    _arm: Option<Arm>,
+    arm: Option<Arm>,
     stage: Stage,
     goal: GoalId,
 }
@@ -237,7 +238,7 @@ impl Moving {
     pub(crate) fn new(robot: Robot, arm: Option<Arm>, work: Work) -> Self {
         Self {
             robot,
-            _arm: arm,
+            arm,
             goal: work.id(),
             stage: Stage::Ready(work),
         }
@@ -261,7 +262,11 @@ impl Future for Moving {
             self.stage = Stage::Begun(outcome);
             return Poll::Pending;
         };
-        Poll::Ready(outcome.unwrap_or_else(|_| self.robot.closed()))
+        let outcome = outcome.unwrap_or_else(|_| self.robot.closed());
+        Poll::Ready(match &self.arm {
+            Some(arm) => outcome.map_err(|error| arm.explain(error)),
+            None => outcome,
+        })
     }
 }
 

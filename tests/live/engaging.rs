@@ -1,9 +1,11 @@
 //! Engaged sessions over sockets: what a program sees of them.
 
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use franka_async::{
-    Chunk, Deadman, Engage, Free, GoalError, Lapse, MotionError, Pose, PoseError, Stale, Tuning,
+    Activity, Chunk, Deadman, Engage, Free, GoalError, Lapse, MotionError, Pose, PoseError, Record,
+    Stale, Tuning,
 };
 use tokio::sync::watch;
 
@@ -108,4 +110,73 @@ async fn silence_of_a_stream_and_of_a_deadman_hold_the_arm_under_their_names() {
     assert_eq!(arm.move_to(start).await, held);
     arm.disengage().await.unwrap();
     robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_stream_that_has_no_target_yet_ends_with_its_session() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    let nothing = || tokio_stream::pending::<Pose>();
+    let waiting = tokio::spawn(arm.follow_stream(nothing()).into_future());
+    tokio::time::sleep(Duration::from_millis(50)).await;
+    assert!(!waiting.is_finished());
+    robot.stop().await.unwrap();
+    let outcome = tokio::time::timeout(Duration::from_secs(5), waiting).await;
+    let outcome = outcome.expect("its session has ended").unwrap();
+    assert_eq!(outcome, Err(MotionError::Stopped));
+
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    arm.clone().disengage().await.unwrap();
+    let outcome = arm.follow_stream(nothing()).await;
+    assert_eq!(outcome, Err(MotionError::Disengaged));
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_session_says_why_it_ended_after_another_one_has() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let start = robot.pose();
+    let stopped = robot.engage(Engage::default()).await.unwrap();
+    robot.stop().await.unwrap();
+    let newer = robot.engage(Engage::default()).await.unwrap();
+    robot.stop().await.unwrap();
+    for arm in [stopped, newer] {
+        assert_eq!(arm.set(start).await, Err(MotionError::Stopped));
+        assert_eq!(arm.move_to(start).await, Err(MotionError::Stopped));
+    }
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_observer_sees_the_records_that_the_stream_has() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let mut records = robot.records();
+    let streamed = tokio::spawn(async move {
+        let mut streamed = Vec::new();
+        while let Ok(record) = records.recv().await {
+            streamed.push(record);
+        }
+        streamed
+    });
+    let observed = Arc::new(Mutex::new(Vec::with_capacity(10_000)));
+    let noted = observed.clone();
+    let engage = Engage::default().observer(move |record, state| {
+        assert_eq!(record.q, state.q);
+        noted.lock().unwrap().push(*record);
+    });
+    let arm = robot.engage(engage).await.unwrap();
+    let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();
+    arm.move_to(up).await.unwrap();
+    arm.disengage().await.unwrap();
+    robot.shutdown().await;
+    let of_motion =
+        |record: &Record| matches!(record.activity, Activity::Running | Activity::Finishing);
+    let mut streamed = streamed.await.unwrap();
+    streamed.retain(of_motion);
+    let observed = observed.lock().unwrap();
+    assert!(observed.len() > 500, "{}", observed.len());
+    assert_eq!(streamed, *observed);
 }
