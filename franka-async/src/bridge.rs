@@ -21,7 +21,7 @@ use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use crate::channel::{CLOSED_BY_US, Channel, Connection, Report};
-use crate::input::{Done, Input, Inputs, Waiting};
+use crate::input::{Done, Input, Inputs, Outcome, Waiting};
 use crate::motion::Work;
 use crate::publish::Publisher;
 use crate::telemetry::{self, Telemetry};
@@ -189,9 +189,7 @@ impl Bridge {
                     }
                 }
                 Output::Resolve { goal, result } => {
-                    if let Err(error) = &result {
-                        tracing::info!(goal = goal.0, %error, "motion ended");
-                    }
+                    log(goal, &result);
                     if let Some(waiting) = self.waiting.remove(&goal) {
                         waiting.done.tell(result);
                     }
@@ -291,7 +289,9 @@ impl Bridge {
                         self.waiting.insert(id, waiting);
                     }
                     Err(error) => {
-                        waiting.done.tell(Err(error));
+                        let refused = Err(error);
+                        log(id, &refused);
+                        waiting.done.tell(refused);
                     }
                 }
             }
@@ -380,6 +380,14 @@ impl Bridge {
                 Err(error) => tracing::error!(%error, "control thread"),
             }
         }
+    }
+}
+
+/// Notes how something ended, which may have been detached.
+fn log(goal: GoalId, outcome: &Outcome) {
+    match outcome {
+        Ok(report) => tracing::info!(goal = goal.0, duration = ?report.duration, "motion ended"),
+        Err(error) => tracing::info!(goal = goal.0, %error, "motion ended"),
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use std::sync::{Mutex, Once, PoisonError};
 use std::time::Duration;
 
-use franka_async::{Finish, MotionReport, Phase, Robot, Torques};
+use franka_async::{Finish, MotionReport, Phase, Pose, Robot, Torques};
 use franka_sim::{Sim, Tool};
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};
@@ -160,4 +160,23 @@ async fn an_event_on_the_control_thread_would_be_seen() {
     let events = told("misplaced");
     let threads: Vec<_> = events.iter().map(|told| told.thread.as_str()).collect();
     assert_eq!(threads, ["franka-rt"]);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn how_a_detached_motion_ends_is_told_even_if_it_does_not_begin() {
+    let _alone = alone();
+    listen();
+    let (robot, _sim) = crate::simulated().await;
+    let here = robot.pose();
+    robot
+        .move_to(Pose::translation(5.0, 0.0, 0.0) * here)
+        .detach();
+    robot.move_to(here).await.unwrap();
+    robot.shutdown().await;
+    let told = told("goal");
+    let errors: Vec<_> = told.iter().map(|told| told.fields.get("error")).collect();
+    let [Some(refused), None] = errors[..] else {
+        panic!("{errors:?}")
+    };
+    assert!(refused.contains("no joint positions"), "{refused}");
 }
