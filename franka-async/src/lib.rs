@@ -9,6 +9,8 @@
 //!
 //! * [`Robot`]: a cheap, cloneable handle, fit for the state of a web service. [`Builder`] connects it.
 //! * [`Motion`]: `move_to`, `move_joints`: built, then awaited. [`Follow`]: targets from a `watch` at their own rate.
+//! * [`Robot::engage`], [`Arm`]: one session, many goals of any kind; [`Chunk`], [`Deadman`], [`Tuning`] for it.
+//! * [`Diagnosis`]: why the robot ended a motion, and what to change. [`Robot::records`], [`Engage::observer`]: every cycle.
 //! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`Active`]: the same from a thread of
 //!   the user's, which reads states and writes commands. [`AsynchronousControl`]: sparse joint
 //!   targets between which the robot plans.
@@ -111,9 +113,9 @@ pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{
-    Backend, Budget, Chunk, ChunkError, DEFAULT_FORCE_CAP, Deadman, FORCE_CAP, Free, GoalError,
-    Grip, KEEP_OUT_MAX, KEEP_OUT_STOP, LEAD_FRESH_MS, Lapse, Lead, PoseError, Setpoints, Stale,
-    Target, Tolerance,
+    Backend, Bindings, Budget, Chunk, ChunkError, DEFAULT_FORCE_CAP, Deadman, FORCE_CAP, Free,
+    GoalError, Grip, Guard, KEEP_OUT_MAX, KEEP_OUT_STOP, LEAD_FRESH_MS, Lapse, Lead, PoseError,
+    Setpoints, Stale, Target, Tolerance,
 };
 pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
 pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};

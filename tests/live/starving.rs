@@ -8,9 +8,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
-use franka_async::{Engage, Lapse, MotionError, MotionReport, Pose, Realtime, Stale};
+use franka_async::{Engage, Guard, Lapse, MotionError, MotionReport, Pose, Realtime, Stale};
 use franka_rt::sched::Scheduling;
-use franka_rt::session::Guard;
 use franka_sim::{Sim, Tool};
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::watch;
