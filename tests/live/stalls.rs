@@ -13,31 +13,10 @@ use std::sync::{Arc, Mutex};
 
 use franka_async::{Finish as _, Robot, Torques};
 use franka_sim::{Network, Pace, Sim};
+use franka_tests::tally::Tally;
 
 use crate::starving::prefer_the_simulator;
 use crate::{alone, connect};
-
-/// What a control function notes, as libfranka's example `communication_test` does.
-#[derive(Clone, Copy, Debug, Default)]
-struct Tally {
-    /// Cycles of the robot, by the time that has passed.
-    cycles: u64,
-    calls: u64,
-    /// Most of the cycles without a call that followed each other.
-    row: u64,
-    /// Sum of the success rates.
-    rates: f64,
-}
-
-impl Tally {
-    fn lost(&self) -> u64 {
-        self.cycles - self.calls
-    }
-
-    fn rate(&self) -> f64 {
-        self.rates / self.calls as f64
-    }
-}
 
 /// Commands no torque to an FER for so many seconds, over `network`. Beside what was noted, how well this machine has kept the
 /// robot's millisecond.
@@ -51,14 +30,7 @@ async fn communicate(network: Network, seconds: u64) -> (Tally, Pace) {
     let before = sim.pace().await.expect("it runs");
     let motion = robot.control_torques(move |state, step| {
         let mut tally = noted.lock().expect("no panic");
-        let passed = step.as_millis() as u64;
-        // The first call is told that no time has passed.
-        if passed > 0 {
-            tally.cycles += passed;
-            tally.calls += 1;
-            tally.row = tally.row.max(passed - 1);
-            tally.rates += state.control_command_success_rate;
-        }
+        tally.note(state, step);
         Torques([0.0; 7]).finish_if(tally.cycles >= 1000 * seconds)
     });
     let report = motion.await.expect("the robot bridges such gaps");

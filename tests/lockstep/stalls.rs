@@ -15,27 +15,7 @@ use franka_rt::driver::Program;
 use franka_sim::Network;
 use franka_sim::network::Conditions;
 use franka_tests::lockstep::{Link, Lockstep};
-
-/// What a program notes.
-#[derive(Clone, Copy, Debug, Default)]
-struct Tally {
-    /// Cycles of the robot, by the time that has passed.
-    cycles: u64,
-    calls: u64,
-    /// Most of the cycles without a call that followed each other.
-    row: u64,
-    rates: f64,
-}
-
-impl Tally {
-    fn lost(&self) -> u64 {
-        self.cycles - self.calls
-    }
-
-    fn rate(&self) -> f64 {
-        self.rates / self.calls as f64
-    }
-}
+use franka_tests::tally::Tally;
 
 /// Commands no torque to an FER for so many cycles, over `network`.
 fn communicate(network: Network, turnaround: Duration, cycles: u64) -> Tally {
@@ -46,14 +26,7 @@ fn communicate(network: Network, turnaround: Duration, cycles: u64) -> Tally {
     let noted = Arc::clone(&tally);
     let callback = Callback::torques(Version::V5, move |state, step| {
         let mut tally = noted.lock().expect("no panic");
-        let passed = step.as_millis() as u64;
-        // The first call is told that no time has passed.
-        if passed > 0 {
-            tally.cycles += passed;
-            tally.calls += 1;
-            tally.row = tally.row.max(passed - 1);
-            tally.rates += state.control_command_success_rate;
-        }
+        tally.note(state, step);
         Torques([0.0; 7]).finish_if(tally.cycles >= cycles)
     });
     let request = callback.request(Version::V5, MoveControllerMode::JointImpedance);

@@ -6,6 +6,7 @@
 //! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
 //! | [`mishaps`] | networks under which one thing happens to datagrams |
 //! | [`push`] | a hand that pushes an arm |
+//! | [`tally`] | what a control function notes of its cycles |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
 pub mod bench;
@@ -13,6 +14,7 @@ pub mod golden;
 pub mod lockstep;
 pub mod mishaps;
 pub mod push;
+pub mod tally;
 
 /// Holds the programs of the README and the book to what there is.
 #[cfg(doctest)]
@@ -28,6 +30,9 @@ mod programs {
 
     #[doc = include_str!("../../docs/src/model.md")]
     struct Model;
+
+    #[doc = include_str!("../../docs/src/sessions.md")]
+    struct Sessions;
 
     #[doc = include_str!("../../docs/src/simulated-robot.md")]
     struct SimulatedRobot;
