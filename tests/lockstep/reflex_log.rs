@@ -1,22 +1,15 @@
 //! A reflex that a control function provokes, and the log that shows how.
 
-use franka_proto::{Errors, MoveControllerMode, RobotError};
+use crate::diagnosis::{begin, stepping};
+use franka_proto::{Errors, RobotError};
 use franka_rt::control::{Callback, JointVelocities, Torques};
-use franka_rt::driver::{ControlLog, LogEntry, Program};
+use franka_rt::driver::{ControlLog, LogEntry};
 use franka_rt::lifecycle::ControlError;
-use franka_rt::shaping::Shaper;
 use franka_tests::lockstep::{Lockstep, for_each_robot};
-
-/// Cycles before the command steps: enough for a success rate over a hundred of them, and for a log that has turned over.
-const QUIET: u32 = 150;
 
 /// Runs `callback` until a reflex ends it.
 fn provoke(lockstep: &mut Lockstep, callback: Callback) -> ControlError {
-    let version = lockstep.client.version();
-    let callback = callback.with_shaper(Shaper::new(version, false, 1000.0));
-    let request = callback.request(version, MoveControllerMode::JointImpedance);
-    let program = Program::Callback(Box::new(callback));
-    let work = lockstep.control(program, request).expect("nothing moves");
+    let work = begin(lockstep, callback);
     let error = lockstep.until_resolved(work, 1000).expect_err("a reflex");
     error.control().expect("the robot's doing").clone()
 }
@@ -49,13 +42,8 @@ fn assert_shown(error: &ControlError, errors: Errors, stepped: impl Fn(&LogEntry
 fn a_torque_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let mut cycle = 0;
-        let callback = Callback::torques(lockstep.client.version(), move |_, _| {
-            cycle += 1;
-            let mut tau = [0.0; 7];
-            tau[0] = if cycle > QUIET { 10.0 } else { 0.0 };
-            Torques(tau)
-        });
+        let mut torques = stepping(0, 10.0);
+        let callback = Callback::torques(lockstep.client.version(), move |_, _| Torques(torques()));
         let error = provoke(&mut lockstep, callback);
         assert_eq!(
             error.to_string(),
@@ -72,13 +60,9 @@ fn a_torque_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
 fn a_velocity_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let mut cycle = 0;
-        let callback = Callback::motion(lockstep.client.version(), move |_, _| {
-            cycle += 1;
-            let mut dq = [0.0; 7];
-            dq[3] = if cycle > QUIET { 0.25 } else { 0.0 };
-            JointVelocities(dq)
-        });
+        let mut dq = stepping(3, 0.25);
+        let callback =
+            Callback::motion(lockstep.client.version(), move |_, _| JointVelocities(dq()));
         let error = provoke(&mut lockstep, callback);
         assert_eq!(
             error.to_string(),
@@ -98,9 +82,7 @@ fn a_reflex_for_want_of_commands_tells_how_many_states_were_lost_at_the_end() {
         let mut lockstep = ready();
         let version = lockstep.client.version();
         let callback = Callback::torques(version, |_, _| Torques([0.0; 7]));
-        let request = callback.request(version, MoveControllerMode::JointImpedance);
-        let program = Program::Callback(Box::new(callback));
-        let work = lockstep.control(program, request).expect("nothing moves");
+        let work = begin(&mut lockstep, callback);
         lockstep.run(200);
         lockstep.link.drop_states(30);
         let error = lockstep.until_resolved(work, 1000).expect_err("a reflex");

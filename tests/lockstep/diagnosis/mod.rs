@@ -12,10 +12,11 @@ use franka_rt::session::GoalId;
 use franka_rt::shaping::Shaper;
 use franka_tests::lockstep::Lockstep;
 
-/// Cycles before something happens.
+/// Cycles before something happens: enough for a success rate over a hundred of them, and for a log that has turned over.
 const QUIET: u32 = 150;
 
-fn begin(lockstep: &mut Lockstep, callback: Callback) -> GoalId {
+/// Begins a motion under `callback`, whose commands are sent as they are.
+pub(crate) fn begin(lockstep: &mut Lockstep, callback: Callback) -> GoalId {
     let version = lockstep.client.version();
     let callback = callback.with_shaper(Shaper::new(version, false, 1000.0));
     let request = callback.request(version, MoveControllerMode::JointImpedance);
@@ -63,7 +64,7 @@ fn limit(diagnosis: &Diagnosis) -> f64 {
 }
 
 /// A function that returns zeros, and after [`QUIET`] cycles `value` for joint `index`.
-fn stepping(index: usize, value: f64) -> impl FnMut() -> [f64; 7] + Send {
+pub(crate) fn stepping(index: usize, value: f64) -> impl FnMut() -> [f64; 7] + Send {
     let mut cycle = 0;
     move || {
         cycle += 1;
