@@ -1,0 +1,106 @@
+//! The end of a session, of a schedule, and what comes after a reflex.
+
+use franka_model::READY;
+use franka_proto::{Request, RobotMode};
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::{GoalId, Lapse, Target, Then};
+use franka_tests::lockstep::Link;
+use rand::Rng;
+
+use super::super::given::{Given, Work};
+use super::{PATIENCE, Sessions};
+
+impl Sessions<'_> {
+    /// Ends the session in one of the ways that there are.
+    pub(super) fn end(&mut self) {
+        let Some(session) = &mut self.session else {
+            return;
+        };
+        let (id, over) = (session.id, session.over);
+        let way = self.random.random_range(0..3);
+        session.over = true;
+        if way == 2 {
+            if let Some(stop) = self.lockstep.stop() {
+                let now = self.lockstep.now();
+                for given in &mut self.open {
+                    given.stopped = true;
+                }
+                self.add(Given::new(stop, Work::Stop, Then::Finish, now));
+            }
+            return;
+        }
+        if !over {
+            for given in &mut self.open {
+                given.released = true;
+                given.stopped |= given.id != id;
+            }
+        }
+        match way {
+            0 => self.lockstep.disengage(id),
+            _ => self.lockstep.cancel(id),
+        }
+    }
+
+    pub(super) fn end_by_stop(&mut self) {
+        let now = self.lockstep.now();
+        if let Some(stop) = self.lockstep.stop() {
+            for given in &mut self.open {
+                given.stopped = true;
+            }
+            self.add(Given::new(stop, Work::Stop, Then::Finish, now));
+        }
+    }
+
+    /// Lets everything come to its end, and checks it.
+    pub(super) fn finish(&mut self) {
+        self.lockstep.robot.press_user_stop(false);
+        if self.random.random_bool(0.8) {
+            self.end();
+        }
+        let begin = self.lockstep.now();
+        while !self.lockstep.client.lifecycle.is_idle() {
+            let waited = self.lockstep.now() - begin;
+            // Nobody ends it who was to.
+            if waited == 1000 {
+                self.end_by_stop();
+            }
+            assert!(waited < PATIENCE, "{:?}", self.lockstep.client.lifecycle);
+            self.tick();
+        }
+        self.tick();
+        assert!(self.open.is_empty(), "{:?}", self.open);
+        let late = |id: &&GoalId| self.lockstep.client.outcome(**id).is_some();
+        let late = self.chunks.iter().filter(late).count();
+        assert_eq!(self.given + late, self.lockstep.client.resolved());
+        self.lockstep.robot.let_go();
+        self.lockstep.link = Link::perfect();
+        self.run(400);
+        let dq = self.lockstep.robot.dq();
+        assert!(dq.amax() < 0.02, "the arm still moves: {dq}");
+        assert!(self.lockstep.client.driver.is_watching());
+        // Whatever happened, the next motion works.
+        let stopped_itself = self.lockstep.client.state.robot_mode != RobotMode::Idle;
+        if stopped_itself {
+            assert!(!self.calm);
+            self.recover();
+        }
+        if stopped_itself || self.random.random_bool(0.2) {
+            let again = self.lockstep.begin(Target::Joints(READY.into()));
+            let outcome = self.lockstep.until_resolved(again, PATIENCE);
+            // An arm that was pushed into itself has no way out that begins there.
+            let pushed_together =
+                self.causes.pushed() && outcome == Err(MotionError::Braked(Lapse::Blocked));
+            assert!(outcome.is_ok() || pushed_together, "{outcome:?}");
+        }
+        self.tally.robot_time += self.lockstep.now();
+    }
+
+    pub(super) fn recover(&mut self) {
+        self.lockstep.request(&Request::AutomaticErrorRecovery);
+        let begin = self.lockstep.now();
+        while self.lockstep.client.state.robot_mode != RobotMode::Idle {
+            self.tick();
+            assert!(self.lockstep.now() < begin + 2000, "it recovers");
+        }
+    }
+}

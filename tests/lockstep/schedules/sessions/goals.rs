@@ -1,0 +1,189 @@
+//! Goals that are given, changed and taken back.
+
+use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::session::{Backend, Budget, Free, Goal, GoalId, Target, Then};
+use rand::Rng;
+
+use super::super::draw;
+use super::super::given::{Given, Work};
+use super::{PATIENCE, Sessions};
+
+impl Sessions<'_> {
+    /// Gives the session a goal of any kind.
+    pub(super) fn give(&mut self) {
+        let backend = self.session.as_ref().map(|session| session.backend);
+        let kinds = match backend {
+            Some(Backend::RobotController(_)) => 8,
+            _ => 10,
+        };
+        let target = match self.random.random_range(0..kinds) {
+            0..=3 => draw::pose(&mut self.random, &self.home, 0.1, 0.3),
+            4 => Target::Rest,
+            5..=7 => Target::Joints(draw::joints(&mut self.random, 0.3)),
+            _ => Target::Guide(Free {
+                axes: core::array::from_fn(|_| self.random.random_bool(0.5)),
+                elbow: self.random.random_bool(0.5),
+            }),
+        };
+        let then = match self.random.random_range(0..20) {
+            0 if !matches!(target, Target::Guide(_)) => Then::Finish,
+            1..=9 if !matches!(target, Target::Guide(_)) => Then::Stay,
+            _ => Then::Hold,
+        };
+        self.submit(target, then);
+    }
+
+    /// Submits a goal that goes about it in any way. Returns whether it was taken.
+    pub(super) fn submit(&mut self, target: Target, then: Then) -> bool {
+        let mut goal = self.lockstep.goal(target, then);
+        goal.budget = self.budget();
+        let mut soft = false;
+        if !matches!(target, Target::Guide(_)) && self.random.random_bool(0.3) {
+            goal.gains = draw::gains(&mut self.random);
+            soft = true;
+        }
+        if self.random.random_bool(0.2) {
+            goal.force_cap = Some(self.random.random_range(10.0..100.0));
+            soft = true;
+        }
+        // Nothing streams to a hand.
+        let streams = then == Then::Hold && !matches!(target, Target::Guide(_));
+        if streams && self.random.random_bool(0.5) {
+            goal.watchdog = Some(self.watchdog());
+        }
+        let Some(session) = &self.session else {
+            return false;
+        };
+        let taken = self.lockstep.submit_within(session.id, goal);
+        self.note(goal, Work::Goal(target), soft, taken)
+    }
+
+    /// Takes note of a goal that was submitted.
+    pub(super) fn note(
+        &mut self,
+        goal: Goal,
+        work: Work,
+        soft: bool,
+        taken: Result<GoalId, MotionError>,
+    ) -> bool {
+        let now = self.lockstep.now();
+        let causes = self.causes.any();
+        let Some(session) = &mut self.session else {
+            return false;
+        };
+        match taken {
+            Ok(id) => {
+                assert!(!session.over, "no goal is taken after the last");
+                session.over = goal.then == Then::Finish;
+                let before = session.current.replace(id);
+                let current = session.id;
+                for given in &mut self.open {
+                    if Some(given.id) == before {
+                        given.superseded = true;
+                        let told = self.lockstep.client.outcome(given.id).is_some();
+                        // Of a session that is ending, everybody hears its end.
+                        assert!(told || causes, "{given:?} is superseded");
+                    }
+                    given.finishing |= given.id == current && goal.then == Then::Finish;
+                }
+                let mut given = Given::new(id, work, goal.then, now);
+                given.watchdog = goal.watchdog;
+                given.soft = soft;
+                self.add(given);
+                true
+            }
+            // From where the arm is, the search may not find a way to a pose.
+            Err(MotionError::Goal(_)) => false,
+            Err(error) => {
+                let ended = self.lockstep.client.outcome(session.id);
+                let fits = match ended {
+                    Some(Err(ended)) => error == *ended,
+                    Some(Ok(_)) => error == MotionError::Disengaged,
+                    None => session.over && error == MotionError::Disengaged,
+                };
+                assert!(fits, "{error:?} of a session that ended as {ended:?}");
+                session.over = true;
+                false
+            }
+        }
+    }
+
+    pub(super) fn budget(&mut self) -> Budget {
+        let goal = self.lockstep.goal(Target::Rest, Then::Hold);
+        let speeds = [0.3, 0.6, 1.0, 1.0, 1.4, 1.7];
+        goal.budget
+            .scaled(speeds[self.random.random_range(0..speeds.len())])
+    }
+
+    pub(super) fn tune(&mut self) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        let id = session.id;
+        let tuning = Tuning {
+            gains: self
+                .random
+                .random_bool(0.7)
+                .then(|| draw::gains(&mut self.random)),
+            budget: None,
+            ..Tuning::default()
+        };
+        let budget = self.random.random_bool(0.5).then(|| self.budget());
+        let tuned = self.lockstep.tune(id, Tuning { budget, ..tuning });
+        match tuned {
+            Ok(()) => {
+                for given in &mut self.open {
+                    given.soft = true;
+                }
+            }
+            Err(MotionError::Goal(_)) => {}
+            Err(error) => {
+                let over = self.session.as_ref().is_some_and(|session| session.over);
+                let ended = self.lockstep.client.outcome(id).is_some();
+                assert!(over || ended, "{error:?}");
+            }
+        }
+    }
+
+    pub(super) fn cancel(&mut self) {
+        let sessions = |given: &&mut Given| matches!(given.work, Work::Goal(_) | Work::Chunks);
+        if let Some(given) = self.open.iter_mut().rev().find(sessions) {
+            given.cancelled = true;
+            let (id, finishes) = (given.id, given.then == Then::Finish);
+            self.lockstep.cancel(id);
+            // A session that a goal was to end goes on without it.
+            if let Some(session) = self.session.as_mut().filter(|_| finishes) {
+                session.over = false;
+                let named = |given: &&mut Given| given.id == session.id;
+                for given in self.open.iter_mut().filter(named) {
+                    given.finishing = false;
+                }
+            }
+        }
+    }
+
+    pub(super) fn close(&mut self) {
+        if let Some(id) = self.held() {
+            self.lockstep.client.lifecycle.close(id);
+            let given = self.open.iter_mut().find(|given| given.id == id);
+            given.expect("it is open").then = Then::Stay;
+        }
+    }
+
+    /// Until the newest goal has come to its end, if it has one.
+    pub(super) fn wait(&mut self) {
+        let Some(current) = self.session.as_ref().and_then(|session| session.current) else {
+            return;
+        };
+        let begin = self.lockstep.now();
+        let ends = |given: &Given| {
+            let watched = given.watchdog.is_some() && given.then == Then::Hold;
+            given.id == current && (given.then != Then::Hold || given.cancelled || watched)
+        };
+        while self.open.iter().any(ends) {
+            self.run(1);
+            let waited = self.lockstep.now() - begin;
+            assert!(waited < PATIENCE, "{:?}", self.lockstep.client.lifecycle);
+        }
+    }
+}

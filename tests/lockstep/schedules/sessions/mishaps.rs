@@ -1,0 +1,93 @@
+//! What befalls a session from outside.
+
+use franka_model::Wrench;
+use franka_proto::RobotError;
+use franka_rt::driver::Activity;
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::{Backend, Target, Then};
+use nalgebra::Vector3;
+use rand::Rng;
+
+use super::Sessions;
+
+impl Sessions<'_> {
+    /// The hand on the deadman keeps still.
+    pub(super) fn fall_silent(&mut self) {
+        let now = self.lockstep.now();
+        let pause = self.random.random_range(20..300);
+        let for_good = self.random.random_bool(0.1);
+        let Some(hand) = self
+            .session
+            .as_mut()
+            .and_then(|session| session.deadman.as_mut())
+        else {
+            return;
+        };
+        hand.silent = now + pause;
+        if for_good {
+            hand.token = None;
+        }
+        self.run(pause);
+    }
+
+    /// Somebody else wants the arm.
+    pub(super) fn interfere(&mut self) {
+        let goal = self.lockstep.goal(Target::Rest, Then::Finish);
+        let has_it = self.session.as_ref().is_some_and(|session| {
+            let ended = self.lockstep.client.outcome(session.id).is_some();
+            let of_it = self.open.iter().find(|given| given.id == session.id);
+            // One that lets go lets others wait for the arm.
+            let lets_go = of_it.is_none_or(|given| given.released || given.stopped);
+            !(ended || lets_go || session.over)
+        });
+        if has_it {
+            assert_eq!(self.lockstep.submit(goal), Err(MotionError::Busy));
+        }
+    }
+
+    pub(super) fn lose(&mut self) {
+        if self.lockstep.client.record.activity != Activity::Running {
+            return;
+        }
+        let count = match self.random.random_range(0..4) {
+            0 => self.random.random_range(18..30),
+            _ => self.random.random_range(1..17),
+        };
+        self.causes.lose(self.lockstep.now(), count);
+        if self.random.random_bool(0.5) {
+            self.lockstep.link.drop_states(count);
+        } else {
+            self.lockstep.link.drop_commands(count);
+        }
+    }
+
+    /// Only while torques are ours: how stiffly the robot itself holds is not what is tested here.
+    pub(super) fn push(&mut self) {
+        let ours = self
+            .session
+            .as_ref()
+            .is_some_and(|session| session.backend == Backend::Torques);
+        if !ours || self.lockstep.client.record.activity != Activity::Running {
+            return;
+        }
+        self.causes.push();
+        let force = Vector3::from_fn(|_, _| self.random.random_range(-25.0..25.0));
+        let duration = self.random.random_range(20..400);
+        let wrench = Wrench::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
+        self.lockstep.robot.push_end_effector(wrench, duration);
+    }
+
+    pub(super) fn trip(&mut self) {
+        let error = RobotError::CartesianReflex;
+        self.causes.trip(error);
+        self.lockstep.robot.trip(error);
+    }
+
+    pub(super) fn press_user_stop(&mut self) {
+        self.causes.stopped = true;
+        self.lockstep.robot.press_user_stop(true);
+        let pause = self.random.random_range(1..300);
+        self.run(pause);
+        self.lockstep.robot.press_user_stop(false);
+    }
+}
