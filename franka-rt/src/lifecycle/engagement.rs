@@ -226,13 +226,14 @@ impl Lifecycle {
         }
     }
 
-    /// What follows the end of a goal: more goals, if it is one of a session that goes from goal to goal.
+    /// What follows the end of a goal: more goals, if it is one of a session that goes from goal to goal. A session that is to
+    /// end ends, also if the goal that ends it is taken back: its owner may have been told that it takes no more goals.
     pub(super) fn end_of(&mut self, id: GoalId) -> Then {
-        let engaged = match &self.next {
+        let goes_on = match &self.next {
             Some(next) if next.waiting.goal.id == id => next.engagement.is_some(),
-            _ => self.is_engaged(),
+            _ => self.is_engaged_for_more(),
         };
-        if engaged { Then::Stay } else { Then::Finish }
+        if goes_on { Then::Stay } else { Then::Finish }
     }
 
     /// Whether the motion under way has ended on one side.

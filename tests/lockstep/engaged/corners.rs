@@ -132,6 +132,28 @@ fn a_stop_and_the_end_of_a_session_come_well_without_its_deadman() {
 }
 
 #[test]
+fn a_session_that_is_to_end_ends_though_its_last_goal_is_taken_back() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let last = lockstep
+            .within(engaged, Target::Joints(turned(0.2)), Then::Finish)
+            .expect("near the ready pose");
+        lockstep.run(100);
+        let more = lockstep.within(engaged, Target::Rest, Then::Stay);
+        assert_eq!(more, Err(MotionError::Disengaged));
+        lockstep.cancel(last);
+        lockstep.client.lifecycle.close(last);
+        let more = lockstep.within(engaged, Target::Rest, Then::Stay);
+        assert_eq!(more, Err(MotionError::Disengaged), "as it was told before");
+        for ended in [last, engaged] {
+            let outcome = lockstep.until_resolved(ended, 1500);
+            assert_eq!(outcome, Err(MotionError::Stopped));
+        }
+    });
+}
+
+#[test]
 fn a_stop_that_comes_too_late_for_a_session_ends_it_nevertheless() {
     for_each_robot(|ready| {
         let mut late = 0;

@@ -149,16 +149,8 @@ impl Sessions<'_> {
         let sessions = |given: &&mut Given| matches!(given.work, Work::Goal(_) | Work::Chunks);
         if let Some(given) = self.open.iter_mut().rev().find(sessions) {
             given.cancelled = true;
-            let (id, finishes) = (given.id, given.then == Then::Finish);
+            let id = given.id;
             self.lockstep.cancel(id);
-            // A session that a goal was to end goes on without it.
-            if let Some(session) = self.session.as_mut().filter(|_| finishes) {
-                session.over = false;
-                let named = |given: &&mut Given| given.id == session.id;
-                for given in self.open.iter_mut().filter(named) {
-                    given.finishing = false;
-                }
-            }
         }
     }
 
