@@ -20,10 +20,7 @@ impl Lockstep {
     /// # Panics
     /// As [`Self::engage`].
     pub fn engage_with(&mut self, engagement: Engagement) -> GoalId {
-        // The robot is the judge of its setpoints.
-        self.guard = (engagement.backend == Backend::Torques)
-            .then(|| CommandGuard::new(self.model.joint_limits()));
-        let id = self.try_engage(engagement).expect("nothing else moves");
+        let id = self.begin_session(engagement);
         for _ in 0..1000 {
             self.tick();
             if self.client.record.goal == id.0 {
@@ -31,6 +28,17 @@ impl Lockstep {
             }
         }
         panic!("no session after a second: {:?}", self.client.lifecycle);
+    }
+
+    /// Asks for a session, and does not wait until it holds the arm.
+    ///
+    /// # Panics
+    /// If it is refused at once.
+    pub fn begin_session(&mut self, engagement: Engagement) -> GoalId {
+        // The robot is the judge of its setpoints.
+        self.guard = (engagement.backend == Backend::Torques)
+            .then(|| CommandGuard::new(self.model.joint_limits()));
+        self.try_engage(engagement).expect("nothing else moves")
     }
 
     /// Asks for a session.

@@ -119,7 +119,7 @@ impl<'a> Sessions<'a> {
         let bound = self.random.random_bool(0.5);
         let silence = self.random.random_range(30..80);
         let (token, grip) = Deadman::new(Duration::from_millis(silence));
-        let id = self.lockstep.engage_with(Engagement {
+        let id = self.lockstep.begin_session(Engagement {
             deadman: bound.then_some(grip),
             backend,
             ..Engagement::default()
@@ -138,6 +138,13 @@ impl<'a> Sessions<'a> {
             over: false,
         });
         self.add(Given::new(id, Work::Session, Then::Hold, now));
+        // It holds the arm, or the robot has refused: one that was pushed may trip after it has shown itself idle.
+        while self.lockstep.client.record.goal != id.0 && self.lockstep.client.outcome(id).is_none()
+        {
+            self.tick();
+            let waited = self.lockstep.now() - now;
+            assert!(waited < 1000, "{:?}", self.lockstep.client.lifecycle);
+        }
     }
 
     fn add(&mut self, given: Given) {
