@@ -158,6 +158,8 @@ pub(crate) struct ElbowSignal {
     pub(crate) velocity: f64,
     /// `[rad/s²]`
     pub(crate) acceleration: f64,
+    /// Whether the client commands it, or the robot chooses it.
+    pub(crate) commanded: bool,
 }
 
 impl ElbowSignal {
@@ -177,6 +179,7 @@ impl ElbowSignal {
             angle,
             velocity,
             acceleration,
+            commanded: true,
         };
         (next, (acceleration - self.acceleration) / CYCLE)
     }
@@ -187,7 +190,7 @@ impl ElbowSignal {
         Self {
             angle: self.angle + velocity * CYCLE,
             velocity,
-            acceleration: self.acceleration,
+            ..self
         }
     }
 
@@ -198,6 +201,7 @@ impl ElbowSignal {
             angle: read(self.angle),
             velocity: read(self.velocity),
             acceleration: read(self.acceleration),
+            ..self
         }
     }
 }

@@ -311,7 +311,8 @@ fn complete(
             }
             Some(elbow)
         }
-        None if matches!(input, Input::Lost) && before.elbow.velocity != 0.0 => {
+        // Also one that rests: lost commands leave it as it was commanded.
+        None if matches!(input, Input::Lost) && before.elbow.commanded => {
             Some(before.elbow.extrapolated())
         }
         None => None,

@@ -70,6 +70,34 @@ fn twists_and_accelerations_of_the_command_are_told() {
 }
 
 #[test]
+fn lost_commands_leave_an_elbow_that_rests_where_it_is() {
+    let mut pair = Pair::fr3();
+    pair.start(
+        MoveControllerMode::JointImpedance,
+        MoveGeneratorMode::CartesianPosition,
+    );
+    let start = pair.state;
+    for cycle in 0..400 {
+        let mut command = RobotCommand {
+            O_T_EE_c: start.O_T_EE_c,
+            elbow_c: Some(start.elbow_c),
+            ..RobotCommand::default()
+        };
+        command.O_T_EE_c[13] += 0.05 * ramp(f64::from(cycle) * 1e-3, 1.0);
+        let lost = cycle >= 200 && cycle % 50 < 3;
+        pair.tick((!lost).then_some(command));
+        assert_eq!(
+            pair.state.robot_mode,
+            RobotMode::Move,
+            "{}",
+            pair.state.errors
+        );
+        let turned = (pair.state.q_d[2] - start.elbow_c[0]).abs();
+        assert!(turned < 1e-6, "{cycle}: by {turned} rad");
+    }
+}
+
+#[test]
 fn o_t_ee_d_outside_a_cartesian_motion_is_that_of_the_desired_joints() {
     let mut pair = Pair::fr3();
     pair.start_joints();
