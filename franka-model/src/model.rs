@@ -84,6 +84,15 @@ impl Model {
         &self.joints
     }
 
+    /// The same robot whose joints are allowed what `limits` say.
+    #[must_use]
+    pub fn with_joint_limits(self, limits: JointLimits) -> Self {
+        Self {
+            joints: limits,
+            ..self
+        }
+    }
+
     /// What its end effector and elbow may do.
     pub fn cartesian_limits(&self) -> &'static CartesianLimits {
         CartesianLimits::of(self.kind)

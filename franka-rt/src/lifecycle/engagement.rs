@@ -62,9 +62,9 @@ impl Lifecycle {
     /// its end that nobody wants any more, the session waits for that.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for gains, a budget or regions that are not accepted, [`MotionError::Busy`] while anything
-    /// controls the arm or waits for it, [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved
-    /// then.
+    /// [`MotionError::Goal`] for gains, a budget, regions or a posture that are not accepted, [`MotionError::Busy`] while
+    /// anything controls the arm or waits for it, [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is
+    /// resolved then.
     pub fn engage(
         &mut self,
         goal: Goal,
@@ -87,6 +87,7 @@ impl Lifecycle {
             ..goal
         };
         goal.check(&self.model, state)?;
+        engagement.backend.check_start(&state.q_d.into())?;
         if let Some(deadman) = &engagement.deadman {
             check_silence(deadman.silence())?;
         }

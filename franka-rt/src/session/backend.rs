@@ -1,8 +1,10 @@
 //! Who turns the setpoints of a session into torques: its own law, or the robot's controller.
 
+use franka_model::elbow::FLIP_ANGLE;
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model, transform};
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, RobotState, Version};
+use nalgebra::Vector3;
 
 use crate::control::{CartesianPose, JointPositions, MotionCommand, Torques};
 use crate::law::hybrid::Reference;
@@ -30,9 +32,11 @@ pub enum Setpoints {
     Joints,
     /// Poses of the end effector, for its Cartesian impedance controller. Poses only.
     ///
-    /// The robot moves its joints by an inverse kinematics of its own. Where that accelerates a joint by more than the
-    /// reference does here, in particular after lost commands, it may stop itself with a joint discontinuity; slower limits
-    /// make that rarer, [`Self::Joints`] does not have it.
+    /// Each goes with its elbow, the angle of joint 3, which leaves the robot's own inverse kinematics nothing to choose: its
+    /// joints are those of the reference, and keep their limits. A stretched arm is refused, and joint 4 stays on its side of
+    /// [`FLIP_ANGLE`]: the robot takes the elbow's side for that of the beginning. Where joint 3 rests while the arm moves about
+    /// its pose, which takes wide turns of the joints 3 and 5, an elbow tells little about the others: there the robot is the
+    /// judge, and [`Self::Joints`] the better choice.
     Poses,
 }
 
@@ -69,6 +73,35 @@ impl Backend {
         Err(GoalError::Backend { why })
     }
 
+    /// Whether it can take over an arm at these joint positions.
+    ///
+    /// # Errors
+    /// [`GoalError::Backend`].
+    pub(crate) fn check_start(self, q: &JointVector) -> Result<(), GoalError> {
+        if self == Self::RobotController(Setpoints::Poses) && side(q) > 0.0 {
+            let why = "takes no stretched arm";
+            return Err(GoalError::Backend { why });
+        }
+        Ok(())
+    }
+
+    /// What it allows the joints of `model`: the elbow that goes with poses has limits of its own, and no backstop stands between
+    /// these joints and the robot.
+    pub(super) fn limited(self, model: &Model) -> Option<Model> {
+        if self != Self::RobotController(Setpoints::Poses) {
+            return None;
+        }
+        let elbow = &model.cartesian_limits().elbow;
+        let mut limits = *model.joint_limits();
+        limits.velocity[2] = limits.velocity[2].min(ELBOW * elbow.velocity);
+        limits.acceleration[2] = limits.acceleration[2].min(elbow.acceleration);
+        limits.jerk[2] = limits.jerk[2].min(elbow.jerk);
+        limits.acceleration *= BACKSTOP;
+        limits.jerk *= BACKSTOP;
+        limits.upper[3] = limits.upper[3].min(FLIP_ANGLE);
+        Some(model.clone().with_joint_limits(limits))
+    }
+
     /// The answer that holds the arm: what the robot desires already, or no torques beside its gravity compensation.
     pub(super) fn holding(self, state: &RobotState) -> Answer {
         match self {
@@ -79,7 +112,7 @@ impl Backend {
             Self::RobotController(Setpoints::Poses) => Answer::Setpoint(
                 CartesianPose {
                     O_T_EE: state.O_T_EE_c,
-                    elbow: None,
+                    elbow: Some(elbow(&state.q_d.into())),
                 }
                 .into(),
             ),
@@ -87,9 +120,39 @@ impl Backend {
     }
 }
 
+/// The elbow at these joint positions, as a command has it.
+fn elbow(q: &JointVector) -> [f64; 2] {
+    [q[2], side(q)]
+}
+
+/// On which side of the stretched arm joint 4 is: as [`franka_model::elbow::elbow`], but never neither.
+fn side(q: &JointVector) -> f64 {
+    if q[3] < FLIP_ANGLE { -1.0 } else { 1.0 }
+}
+
+/// Share of the elbow's velocity that joint 3 may take, where that is less than its own.
+const ELBOW: f64 = 0.95;
+
 /// How far the robot's setpoint may be from the one that it was sent, `[rad]`, for the two to count as the same: more than
 /// its echo is rounded by, and less than any cycle of a motion that matters.
 const ECHO: f64 = 2e-6;
+
+/// The same of a pose and an elbow, `[m, rad]`. No backstop limits the joints behind a pose: what is overlooked here comes back
+/// in them as a jerk, at most a fifth of what the gentlest joint may have.
+const POSE_ECHO: f64 = 3e-7;
+
+/// How little the limiter may change a pose and an elbow, `[m, rad]`, for them to count as unchanged: the joints behind them feel
+/// some ten times as much, a jerk of 100 rad/s^3.
+const SAME: f64 = 1e-8;
+
+/// Share that is kept of what the limiter lets pass when joints are held back: it is found along a straight line.
+const EASE: f64 = 0.95;
+
+/// Times that joints are held back anew in a cycle.
+const EASINGS: usize = 3;
+
+/// Nominal length of a cycle, `[s]`.
+const CYCLE: f64 = 1e-3;
 
 /// Share of the robot's acceleration and jerk that the backstop lets pass: the echo that it limits against is rounded to
 /// `f32` by a Franka Research 3, by up to 0.25 rad/s^2 of what it makes of two positions.
@@ -128,10 +191,8 @@ impl Stream {
         }
     }
 
-    /// Where the robot takes its setpoint to be, if that is not where `reference` is.
-    ///
-    /// Under Cartesian setpoints the robot moves its joints by an inverse kinematics of its own, so only what they mean
-    /// for the end effector is compared.
+    /// Where the robot takes its setpoint to be, if that is not where `reference` is. Of Cartesian setpoints it is what was
+    /// commanded that is compared, and the robot's own joints that are taken over.
     pub(super) fn echo(
         &self,
         model: &Model,
@@ -143,18 +204,19 @@ impl Stream {
             _ if self.first => true,
             Setpoints::Joints => (JointVector::from(state.q_d) - reference.q).amax() > ECHO,
             Setpoints::Poses => {
-                let pose =
-                    transform::array(&rigid(&model.pose(Frame::EndEffector, &reference.q, ee)));
-                let both = pose.iter().zip(&state.O_T_EE_c);
-                both.map(|(sent, echo)| (sent - echo).abs())
-                    .fold(0.0, f64::max)
-                    > ECHO
+                let echo = CartesianPose {
+                    O_T_EE: state.O_T_EE_c,
+                    elbow: Some(state.elbow_c),
+                };
+                apart(&pose_at(model, ee, &reference.q), &echo).amax() > POSE_ECHO
             }
         };
+        let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
+        // The robot's velocity is the mean of its last cycle, the reference's that at the end of it.
         differs.then(|| Reference {
-            q: state.q_d.into(),
-            dq: state.dq_d.into(),
-            ddq: state.ddq_d.into(),
+            q,
+            dq: dq + ddq * (0.5 * CYCLE),
+            ddq,
         })
     }
 
@@ -176,26 +238,78 @@ impl Stream {
                 let changed = (JointVector::from(shaped.0) - reference.q).amax() > ECHO;
                 (shaped.into(), changed)
             }
-            Setpoints::Poses => {
-                let pose = if first {
-                    state.O_T_EE_c
-                } else {
-                    let pose = model.pose(Frame::EndEffector, &reference.q, ee);
-                    transform::array(&rigid(&pose))
-                };
-                let wish = CartesianPose {
-                    O_T_EE: pose,
-                    elbow: None,
-                };
-                let shaped = self.shaper.cartesian_pose(&wish, state, first);
-                let shaped = shaped.unwrap_or(CartesianPose {
+            Setpoints::Poses if first => {
+                let start = CartesianPose {
                     O_T_EE: state.O_T_EE_c,
-                    elbow: None,
-                });
-                let both = shaped.O_T_EE.iter().zip(&pose);
-                let changed = both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) > ECHO;
-                (shaped.into(), changed)
+                    elbow: Some(elbow(&reference.q)),
+                };
+                let shaped = self.shaper.cartesian_pose(&start, state, true);
+                (shaped.unwrap_or(start).into(), false)
+            }
+            Setpoints::Poses => {
+                let pose = |q: &JointVector| pose_at(model, ee, q);
+                let (command, changed) = self.eased(pose, reference, state);
+                (command.into(), changed)
             }
         }
     }
+
+    /// The pose and elbow of `reference` within the limits of both, and whether that took a change.
+    ///
+    /// What the limiter makes of a pose is another one, for which the robot finds other joints, within no limits. So it is the joints
+    /// that are held back, towards where they get without a jerk, by as much as the limiter held back their pose.
+    fn eased(
+        &self,
+        pose: impl Fn(&JointVector) -> CartesianPose,
+        reference: &Reference,
+        state: &RobotState,
+    ) -> (CartesianPose, bool) {
+        let shape = |asked: &CartesianPose| {
+            let shaped = self.shaper.cartesian_pose(asked, state, false);
+            shaped.unwrap_or(CartesianPose {
+                O_T_EE: state.O_T_EE_c,
+                ..*asked
+            })
+        };
+        let mut asked = pose(&reference.q);
+        let mut shaped = shape(&asked);
+        if apart(&shaped, &asked).amax() <= SAME {
+            return (shaped, false);
+        }
+        let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
+        let coasting = q + (dq + ddq * CYCLE) * CYCLE;
+        let base = pose(&coasting);
+        let mut share = 1.0;
+        for _ in 0..EASINGS {
+            let (left, all) = (apart(&shaped, &base), apart(&asked, &base));
+            share *= EASE * left.zip_map(&all, |left, all| (left / all).min(1.0)).min();
+            asked = pose(&(coasting + (reference.q - coasting) * share));
+            shaped = shape(&asked);
+            if apart(&shaped, &asked).amax() <= SAME {
+                break;
+            }
+        }
+        (shaped, true)
+    }
+}
+
+/// The pose and the elbow at these joint positions.
+fn pose_at(model: &Model, ee: &EndEffector, q: &JointVector) -> CartesianPose {
+    CartesianPose {
+        O_T_EE: transform::array(&rigid(&model.pose(Frame::EndEffector, q, ee))),
+        elbow: Some(elbow(q)),
+    }
+}
+
+/// How far two poses are apart: in translation, in the elements of their rotation, in the elbow.
+fn apart(a: &CartesianPose, b: &CartesianPose) -> Vector3<f64> {
+    let squares = |elements: core::ops::Range<usize>| -> f64 {
+        elements.map(|i| (a.O_T_EE[i] - b.O_T_EE[i]).powi(2)).sum()
+    };
+    let [ours, theirs] = [a, b].map(|pose| pose.elbow.map_or(0.0, |[angle, _]| angle));
+    Vector3::new(
+        squares(12..15).sqrt(),
+        squares(0..11).sqrt(),
+        (ours - theirs).abs(),
+    )
 }

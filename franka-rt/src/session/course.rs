@@ -227,7 +227,8 @@ fn joints(
     Ok((state, Limits::per_axis(limits)?))
 }
 
-/// The limits of one joint's plan: those of the budget, unless the joint moves and is only to stop, keeps another budget
+/// The limits of one joint's plan: those of the budget (and of `robot`, if they are narrower: a backend may allow less than the
+/// robot does), unless the joint moves and is only to stop, keeps another budget
 /// than this one, or would stop too late for the end of its range.
 pub(super) fn limits_of_joint(
     i: usize,
@@ -241,6 +242,11 @@ pub(super) fn limits_of_joint(
         velocity: robot.velocity[i],
         acceleration: robot.acceleration[i],
         jerk: robot.jerk[i],
+    };
+    let limits = AxisLimits {
+        velocity: limits.velocity.min(most.velocity),
+        acceleration: limits.acceleration.min(most.acceleration),
+        jerk: limits.jerk.min(most.jerk),
     };
     let room = if dq > 0.0 {
         robot.upper[i] - q

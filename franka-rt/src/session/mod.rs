@@ -216,6 +216,9 @@ impl TargetSession {
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
         self.backend = backend;
+        if let Some(limited) = backend.limited(&self.model) {
+            self.model = Arc::new(limited);
+        }
         self
     }
 

@@ -4,12 +4,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::{turned, up};
-use franka_model::READY;
+use franka_model::{READY, RobotKind};
 use franka_rt::driver::Observer;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{Backend, Free, GoalError, Setpoints, Target, Then};
-use franka_tests::lockstep::for_each_robot;
-use nalgebra::Translation3;
+use franka_sim::Config;
+use franka_tests::lockstep::{Lockstep, for_each_robot};
+use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
 #[test]
 fn the_robot_controller_takes_joints_through_every_kind_of_goal() {
@@ -70,6 +71,64 @@ fn the_robot_controller_takes_poses() {
         lockstep.disengage(engaged);
         lockstep.until_resolved(engaged, 1000).unwrap();
     });
+}
+
+#[test]
+fn poses_with_their_elbow_move_the_joints_of_the_robot_as_the_reference() {
+    for_each_robot(|ready| {
+        for lost in [0, 1, 2, 5, 12] {
+            let mut lockstep = ready();
+            let engaged = lockstep.engage_with(Engagement {
+                backend: Backend::RobotController(Setpoints::Poses),
+                ..Engagement::default()
+            });
+            let aside = Translation3::new(0.0, 0.1, 0.05) * up(&lockstep, 0.05);
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.2, -0.1, 0.3));
+            let goal = Target::Pose(aside * turn);
+            let goal = lockstep.within(engaged, goal, Then::Stay).unwrap();
+            let (mut sent, mut off) = ([0.0; 7], 0.0_f64);
+            for cycle in 0..900 {
+                if cycle % 200 == 150 {
+                    lockstep.link.drop_commands(lost);
+                }
+                lockstep.tick();
+                if cycle > 0 && lost == 0 {
+                    let q_d = lockstep.client.state.q_d;
+                    let apart = (0..7).map(|i| (q_d[i] - sent[i]).abs());
+                    off = apart.fold(off, f64::max);
+                }
+                sent = lockstep.client.record.q_ref;
+            }
+            // What a robot's state is rounded by.
+            assert!(off < 3e-7, "{off} rad");
+            lockstep.until_resolved(goal, 6000).unwrap();
+        }
+    });
+}
+
+#[test]
+fn poses_are_refused_to_a_stretched_arm() {
+    for kind in RobotKind::ALL {
+        let mut q = READY;
+        q[3] = -0.3;
+        let mut lockstep = Lockstep::new(Config {
+            q,
+            ..Lockstep::config_of(kind)
+        });
+        let goal = lockstep.goal(Target::Rest, Then::Hold);
+        let engagement = Engagement {
+            backend: Backend::RobotController(Setpoints::Poses),
+            ..Engagement::default()
+        };
+        let client = &mut lockstep.client;
+        let begun = client
+            .lifecycle
+            .engage(goal, engagement, &client.state, client.now);
+        let refused = MotionError::Goal(GoalError::Backend {
+            why: "takes no stretched arm",
+        });
+        assert_eq!(begun, Err(refused));
+    }
 }
 
 #[test]
