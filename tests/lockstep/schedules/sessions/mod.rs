@@ -110,10 +110,9 @@ impl<'a> Sessions<'a> {
     }
 
     fn engage(&mut self) {
-        // Poses for the robot's controller are left out: its own inverse kinematics may accelerate joints by more than
-        // the reference does, and beyond the robot's limits.
-        let backend = match self.random.random_range(0..4) {
+        let backend = match self.random.random_range(0..6) {
             0 => Backend::RobotController(Setpoints::Joints),
+            1 => Backend::RobotController(Setpoints::Poses),
             _ => Backend::Torques,
         };
         let bound = self.random.random_bool(0.5);
