@@ -53,6 +53,8 @@ pub(super) struct Active {
     pub(super) deadline: Option<Duration>,
     /// What the robot had not done by a deadline, so that it was told to stop.
     pub(super) given_up: Option<&'static str>,
+    /// Since when its last command is out.
+    pub(super) finishing: Option<Duration>,
     /// Where the thread counts the times of its cycles.
     pub(super) times: Arc<MotionTimes>,
 }
@@ -214,9 +216,10 @@ impl Active {
             }
     }
 
-    /// Until when a motion under way may go on: without end, unless a stop was asked for.
+    /// Until when a motion under way may go on: without end, unless its last command is out or a stop was asked for.
     pub(super) fn running_deadline(&self) -> Option<Duration> {
-        self.work.stopped_since().map(|since| since + END_TIMEOUT)
+        let since = self.finishing.or(self.work.stopped_since());
+        since.map(|since| since + END_TIMEOUT)
     }
 
     /// Has the thread end the motion by what is in its hands, and returns the order that this takes: nobody waits for it
@@ -260,10 +263,8 @@ impl Work {
 impl Goals {
     fn brake(&mut self) {
         self.slot.write(&Goal {
-            target: Target::Rest,
-            then: Then::Finish,
             revision: self.current.goal.revision + 1,
-            ..self.current.goal
+            ..self.current.goal.at_rest(Then::Finish)
         });
     }
 
@@ -290,20 +291,19 @@ impl Goals {
         if settled.goal != goal.id {
             return None;
         }
-        self.current = Waiting {
-            goal: Goal {
-                id: engaged,
-                // One that did not arrive is not what the arm is held at.
-                target: match settled.settlement {
-                    Settlement::Arrived(_) => goal.target,
-                    _ => Target::Rest,
-                },
+        let held = match settled.settlement {
+            Settlement::Arrived(_) => Goal {
                 then: Then::Hold,
-                watchdog: None,
                 ..goal
             },
-            cancelled: false,
+            // One that did not arrive is not what the arm is held at.
+            _ => goal.at_rest(Then::Hold),
         };
+        self.current = Waiting::new(Goal {
+            id: engaged,
+            watchdog: None,
+            ..held
+        });
         Some(settled.result(&settled.counted, cancelled))
     }
 

@@ -271,11 +271,9 @@ impl Lifecycle {
             session.disengaged = true;
             let goal = Goal {
                 id: engaged,
-                target: Target::Rest,
-                then: Then::Finish,
                 watchdog: None,
                 revision: goals.current.goal.revision + 1,
-                ..goals.current.goal
+                ..goals.current.goal.at_rest(Then::Finish)
             };
             let waiting = Waiting::new(goal);
             self.replace(waiting, MotionError::Stopped, now);

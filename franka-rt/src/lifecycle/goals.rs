@@ -111,15 +111,7 @@ impl Lifecycle {
             return;
         }
         let then = self.end_of(id);
-        let amended = self.amend(
-            id,
-            |goal| Goal {
-                target: Target::Rest,
-                then,
-                ..*goal
-            },
-            None,
-        );
+        let amended = self.amend(id, |goal| goal.at_rest(then), None);
         debug_assert!(amended.is_ok(), "only targets are checked");
         if let Some(goals) = self.goals()
             && goals.current.goal.id == id
@@ -143,9 +135,7 @@ impl Lifecycle {
         };
         let goal = Goal {
             id,
-            target: Target::Rest,
-            then: Then::Finish,
-            ..goals.current.goal
+            ..goals.current.goal.at_rest(Then::Finish)
         };
         self.replace(Waiting::new(goal), MotionError::Stopped, now);
         true

@@ -190,10 +190,11 @@ impl Lifecycle {
             } => self.on_session_event(motion, event, statistics),
             Event::Failed { motion, failure } => self.on_failure(motion, failure, now),
             Event::Finishing { motion } => {
-                if let Some(active) = self.active(motion)
-                    && active.command == CommandSide::Started
-                {
-                    active.deadline = Some(now + END_TIMEOUT);
+                if let Some(active) = self.active(motion) {
+                    active.finishing = Some(now);
+                    if active.command == CommandSide::Started {
+                        active.deadline = active.running_deadline();
+                    }
                 }
             }
             Event::Ended(ended) => {
@@ -382,6 +383,7 @@ impl Lifecycle {
             thread: ThreadSide::Armed,
             deadline: Some(now + START_TIMEOUT),
             given_up: None,
+            finishing: None,
             times,
         }));
     }

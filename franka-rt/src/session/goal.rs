@@ -169,6 +169,20 @@ impl Goal {
             revision: 0,
         }
     }
+
+    /// The goal, taken back: the arm comes to rest. One that a hand has guided is held as others are.
+    pub(crate) fn at_rest(&self, then: Then) -> Self {
+        let gains = match self.target {
+            Target::Guide(_) => Gains::cartesian(),
+            Target::Rest | Target::Joints(_) | Target::Pose(_) => self.gains,
+        };
+        Self {
+            target: Target::Rest,
+            then,
+            gains,
+            ..*self
+        }
+    }
 }
 
 /// Name, revision, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of budget, the gains, 2 of

@@ -267,10 +267,8 @@ impl TargetSession {
         let nothing = self.active.is_none();
         let rest = self.held.filter(|_| nothing).map(|held| Goal {
             id: GoalId::default(), // no goal's
-            target: Target::Rest,
-            then: Then::Hold,
-            watchdog: None, // Who waits for others may be silent.
-            ..held
+            watchdog: None,        // Who waits for others may be silent.
+            ..held.at_rest(Then::Hold)
         });
         self.follow(rest, state, record)
     }
@@ -288,11 +286,7 @@ impl TargetSession {
             if goal.id != unstarted {
                 return goal;
             }
-            Goal {
-                target: Target::Rest,
-                then: Then::Finish,
-                ..goal
-            }
+            goal.at_rest(Then::Finish)
         });
         self.follow(newer, state, record)
     }

@@ -3,9 +3,11 @@
 use std::time::Duration;
 
 use super::{assert_stays, turned};
-use franka_model::READY;
+use franka_model::{READY, Wrench};
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{Deadman, Goal, GoalId, Guard, Lapse, Stale, Then, Watchdog};
+use franka_rt::session::{
+    Deadman, Free, Goal, GoalId, Guard, Lapse, Stale, Target, Then, Watchdog,
+};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 /// A session that follows a stream which falls silent, and how that ends.
@@ -176,5 +178,30 @@ fn who_tunes_does_not_send_the_arm_on_to_what_was_given_up() {
         lockstep.run(2000);
         let now = lockstep.robot.q()[0];
         assert!((now - at).abs() < 1e-3, "from {at} to {now}");
+    });
+}
+
+#[test]
+fn an_arm_that_was_guided_is_held_firmly_once_its_deadman_is_dropped() {
+    for_each_robot(|ready| {
+        let (token, grip) = Deadman::new(Duration::from_millis(5000));
+        let mut lockstep = ready();
+        let engaged = lockstep.engage_with(Engagement {
+            deadman: Some(grip),
+            ..Engagement::default()
+        });
+        let guided = Target::Guide(Free::ALL);
+        let goal = lockstep.within(engaged, guided, Then::Hold).unwrap();
+        lockstep.run(1000);
+        drop(token);
+        let held = Err(MotionError::Held(Lapse::Deadman));
+        assert_eq!(lockstep.until_resolved(goal, 1000), held);
+        lockstep.run(500);
+        let before = lockstep.true_pose();
+        let push = Wrench::new(0.0, 8.0, 0.0, 0.0, 0.0, 0.0);
+        lockstep.robot.push_end_effector(push, 1500);
+        lockstep.run(1500);
+        let moved = lockstep.true_pose().translation.y - before.translation.y;
+        assert!(moved < 0.012, "{moved} m");
     });
 }

@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use franka_model::Model;
 
-use super::{Active, Measured, Stage};
+use super::{Active, Drive, Measured, Stage};
 use crate::session::course::Course;
 use crate::session::guard::lead::LEAD_FRESH_MS;
 use crate::session::{Lapse, Stale, Target, Then};
@@ -31,7 +31,10 @@ impl Active {
 
     /// Gives the goal up, and brakes.
     pub(super) fn give_up(&mut self, model: &Model, lapse: Lapse) {
-        self.goal.target = Target::Rest;
+        self.goal = self.goal.at_rest(self.goal.then);
+        if let Drive::Torques(effort) = &mut self.drive {
+            effort.take_up(&self.goal);
+        }
         self.set_out(model);
         self.lapse(Stale::Brake, lapse);
     }
