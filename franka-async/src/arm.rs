@@ -69,7 +69,7 @@ impl Engage {
     }
 
     /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes and holds, and every goal
-    /// resolves as [`MotionError::Held`]. See [`Deadman::new`](crate::Deadman::new).
+    /// resolves as [`MotionError::Held`]. Its silence has to be 10 ms or more. See [`Deadman::new`](crate::Deadman::new).
     pub fn deadman(mut self, grip: Grip) -> Self {
         self.engagement.deadman = Some(grip);
         self

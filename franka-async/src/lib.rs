@@ -108,14 +108,17 @@ pub use franka_rt::control::{
 };
 pub use franka_rt::diagnosis::{self, Diagnosis};
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
-pub use franka_rt::law::{Gains, Law};
+pub use franka_rt::law::{GainError, Gains, Law};
 pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
 pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{
-    Backend, Bindings, Budget, Chunk, ChunkError, DEFAULT_FORCE_CAP, Deadman, FORCE_CAP, Free,
-    GoalError, Grip, Guard, KEEP_OUT_MAX, KEEP_OUT_STOP, LEAD_FRESH_MS, Lapse, Lead, PoseError,
-    Setpoints, Stale, Target, Tolerance,
+    BLEND, Backend, Bindings, Budget, CHUNKS_MAX, Chunk, ChunkError, DEFAULT_FORCE_CAP, Deadman,
+    FORCE_CAP, Free, GoalError, Grip, Guard, JOINT_DEVIATION, JOINT_LEASH, KEEP_OUT_MAX,
+    KEEP_OUT_STOP, LEAD_FRESH_MS, Lapse, Lead, OFFSET_MAX, POINTS_MAX, PoseError,
+    ROTATION_DEVIATION, ROTATION_LEASH, SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints, Stale,
+    TRANSLATION_DEVIATION, TRANSLATION_LEASH, Target, Tolerance, TooManyChunks,
+    VELOCITY_BARRIER_ONSET,
 };
 pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
 pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};

@@ -96,7 +96,8 @@ pub enum MotionError {
     /// Caller: the goal was given up, and the arm holds: at the last target, or where it came to rest.
     #[error("held: {0}")]
     Held(Lapse),
-    /// Caller: the goal was given up and the arm braked, as its watchdog was told to. It holds where it came to rest.
+    /// The goal was given up and the arm braked, for this reason. It holds where it came to rest. Caller: its targets stopped
+    /// coming, or lead too near to the arm itself or to a region to keep out of; or somebody carried the arm off.
     #[error("braked: {0}")]
     Braked(Lapse),
     /// Caller: the session that the goal is for has ended, or is about to. Nothing was sent.
