@@ -28,6 +28,8 @@ pub(super) struct Route {
     pub(super) course: Course,
     clearance: Clearance,
     pace: Pace,
+    /// Whether the pace is another one since the last step. The plan for it is made in the cycle after.
+    repaced: bool,
     /// Cycles for which it still counts as hindered.
     hindered: u32,
     /// The budget of the brake from which the way to rest was last seen to be clear.
@@ -56,6 +58,7 @@ impl Route {
             course: Course::Rest,
             clearance,
             pace: Pace::Full,
+            repaced: false,
             hindered: 0,
             judged: budget,
             left: None,
@@ -116,6 +119,7 @@ impl Route {
 
     /// The goal at the pace that what is near allows; one that was braked before something sets out slowly.
     fn paced(&mut self, goal: &Goal) -> Goal {
+        self.repaced = false;
         if matches!(self.pace, Pace::Braked(_)) {
             self.pace = Pace::Slow(0);
         }
@@ -185,6 +189,14 @@ impl Route {
         self.pace = Pace::Full;
     }
 
+    /// Stays for a cycle, and looks around: the first step has less to do then.
+    pub(super) fn stay(&mut self, reference: &Reference) -> course::Step {
+        let Reference { q, .. } = reference;
+        // Nothing comes nearer to an arm that stays.
+        let _ = self.clearance.ahead(q, q, q);
+        course::Step::free(*reference)
+    }
+
     /// One nominal millisecond on towards `goal`, or away from what is too near.
     pub(super) fn step(
         &mut self,
@@ -205,6 +217,9 @@ impl Route {
                     .step(model, ee, posture, reference, arm, arm.time);
             }
             self.head_for(model, ee, reference, goal);
+        }
+        if self.repaced {
+            self.tune(model, ee, reference, goal);
         }
         let step = self
             .course
@@ -227,14 +242,14 @@ impl Route {
             }
             (Ahead::Near, pace @ Pace::Full) => {
                 *pace = Pace::Slow(0);
-                self.tune(model, ee, next, goal);
+                self.repaced = true;
             }
             (Ahead::Near, pace) => *pace = Pace::Slow(0),
             (Ahead::Clear, Pace::Slow(clear)) => {
                 *clear += 1;
                 if *clear >= CLEAR {
                     self.pace = Pace::Full;
-                    self.tune(model, ee, next, goal);
+                    self.repaced = true;
                 }
             }
             (Ahead::Clear, Pace::Full | Pace::Braked(_)) => {}

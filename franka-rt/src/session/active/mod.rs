@@ -32,8 +32,11 @@ pub(super) struct Active {
     load: Load,
     posture: JointVector,
     pub(super) goal: Goal,
-    /// Whether no state has been answered: the first answer holds the arm, and begins with no torque.
-    first: bool,
+    /// Whether the reference stays for this cycle: the first answer begins with no torque, and a course that begins at rest
+    /// has its plan to make.
+    waits: bool,
+    /// Whether it stayed for the last one. Plans that come in each cycle are not to keep it for ever.
+    waited: bool,
     /// When the goal was first seen, `message_id` of the state.
     since: u64,
     /// What the reference heads for: the goal's target, or one nearer, or rest.
@@ -115,7 +118,8 @@ impl Active {
             afterwards,
             stage: Stage::UnderWay,
             held_back: 0,
-            first: true,
+            waits: true,
+            waited: false,
             since: state.message_id,
             heard: state.message_id,
             lapse: None,
@@ -203,6 +207,15 @@ impl Active {
             ..self.goal
         };
         self.route.head_for(model, &self.ee, &self.reference, &goal);
+        if matches!(target, Target::Pose(_) | Target::Joints(_)) {
+            self.plan_first();
+        }
+    }
+
+    /// A plan takes as long as a step. A reference that rests makes its first step in the cycle after.
+    fn plan_first(&mut self) {
+        let at_rest = self.reference == Reference::at_rest(self.reference.q);
+        self.waits |= at_rest && !self.waited;
     }
 
     /// Answers one state; `alive` is whether nobody has let go of the deadman that it is bound to.
@@ -247,12 +260,13 @@ impl Active {
             bounds,
             held,
             leashed: guided,
-        } = if core::mem::take(&mut self.first) {
-            course::Step::free(self.reference)
+        } = if self.waits {
+            self.route.stay(&self.reference)
         } else {
             self.route
                 .step(model, &self.ee, &self.posture, &self.reference, &arm, &aim)
         };
+        self.waited = core::mem::take(&mut self.waits);
         if let Some(chunk) = self.route.left.take() {
             self.chunk_end = Some(chunk.target());
             self.left = Some(chunk);
