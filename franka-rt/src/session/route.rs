@@ -218,7 +218,8 @@ impl Route {
             }
             self.head_for(model, ee, reference, goal);
         }
-        if self.repaced {
+        let repaced = self.repaced;
+        if repaced {
             self.tune(model, ee, reference, goal);
         }
         let step = self
@@ -230,6 +231,11 @@ impl Route {
         }
         let next = &step.reference;
         let end = course::end_of_brake(model, next, &goal.budget);
+        if repaced && self.clearance.is_known_safe(&next.q, &end) {
+            // What is near has just been looked at, and the plan took its time.
+            self.judged = goal.budget;
+            return step;
+        }
         let ahead = self.clearance.ahead(&reference.q, &next.q, &end);
         match (ahead, &mut self.pace) {
             (Ahead::TooNear, _) => {

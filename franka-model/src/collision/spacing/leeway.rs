@@ -23,6 +23,18 @@ impl Leeway {
     /// What may be near at a posture that is within `turns`, `[rad]`, none of them negative, of `q`.
     #[must_use]
     pub fn open(&self, spacing: &super::Spacing, q: &JointVector, turns: &JointVector) -> Open {
+        self.open_below(0.0, spacing, q, turns)
+    }
+
+    /// What may have so much less room there than the limit for which this was made, `[m]`.
+    #[must_use]
+    pub fn open_below(
+        &self,
+        less: f64,
+        spacing: &super::Spacing,
+        q: &JointVector,
+        turns: &JointVector,
+    ) -> Open {
         let groups = &spacing.groups;
         // All groups that there could be: whole rows are added in a few instructions.
         let mut moved = [0.0; GROUPS_MAX];
@@ -35,7 +47,7 @@ impl Leeway {
         let all = moved.iter().zip(&self.spare).enumerate();
         // What is not a number is not clear.
         let clear = all.fold(0, |clear, (i, (moved, spare))| {
-            clear | u64::from(moved <= spare) << i
+            clear | u64::from(*moved <= spare + less) << i
         });
         Open(!clear & groups.mask())
     }

@@ -114,6 +114,19 @@ impl Clearance {
         self.on_the_way(now, (&middle, there), (end, open))
     }
 
+    /// Whether it is known without another look that nothing is too near ahead of `next`, if the reference came to rest at
+    /// `end` from there.
+    pub(crate) fn is_known_safe(&self, next: &JointVector, end: &JointVector) -> bool {
+        let half = (next + end) * 0.5;
+        let way = (end - half).abs();
+        self.known.as_ref().is_some_and(|known| {
+            let open = known
+                .leeway
+                .open_below(SLOW_ZONE, &self.spacing, &half, &way);
+            open.is_empty()
+        })
+    }
+
     /// What it means to go from `now` to `half` and to `end`, if no more than what is open may be near there.
     ///
     /// Only what is near there is compared with where it is now. Once something is known to be near, what could still make a
