@@ -18,6 +18,7 @@ use franka_rt::session::{DEFAULT_FORCE_CAP, Goal, GoalId, Guard, Lapse, Target, 
 use franka_sim::plant::ArmParameters;
 use franka_sim::{Touch, TouchId};
 use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
+use franka_tests::push::{PUSH, STIFFNESS, hand};
 use nalgebra::{SMatrix, Translation3, Vector3};
 
 /// A robot whose collision thresholds let anybody push.
@@ -169,26 +170,7 @@ struct Felt {
     capped: u32,
 }
 
-/// Pace of the hand, `[m/s]`.
-const PACE: f64 = 0.25;
-
-/// How long it takes to come to that pace, `[s]`.
-const START: f64 = 0.1;
-
-/// How long it pushes, `[ms]`: over 16 cm.
-const PUSH: u64 = 700;
-
-/// Where the hand is after so many seconds, `[m]`.
-fn hand(t: f64) -> f64 {
-    if t < START {
-        let turn = core::f64::consts::PI / START;
-        PACE / 2.0 * (t - (turn * t).sin() / turn)
-    } else {
-        PACE * (t - START / 2.0)
-    }
-}
-
-/// A hand as stiff as 5000 N/m pushes the end effector of an arm that is to stay where it is.
+/// A hand pushes the end effector of an arm that is to stay where it is.
 fn pushed(
     ready: &dyn Fn() -> Lockstep,
     way: Vector3<f64>,
@@ -202,7 +184,7 @@ fn pushed(
     head_for(&mut lockstep, engaged, start.into(), gains, force_cap);
     lockstep.run(500);
     let from = lockstep.true_pose().translation.vector;
-    let push = Touch::carry(move |t| from + way * hand(t), 5000.0);
+    let push = Touch::carry(move |t| from + way * hand(t), STIFFNESS);
     let push = lockstep.robot.touch(push);
     let mut felt = Felt::default();
     for cycle in 0..PUSH {

@@ -3,46 +3,19 @@
 
 use std::time::Duration;
 
-use super::assert_stays;
+use super::{assert_stays, chunk, guarded, turned, turned_q, watched};
 use franka_model::READY;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{
-    Backend, Chunk, ChunkError, Deadman, Goal, GoalId, Lapse, Setpoints, Stale, Target, Then,
-    Watchdog,
+    Backend, Chunk, ChunkError, Goal, GoalId, Lapse, Setpoints, Stale, Target, Then,
 };
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
-
-fn turned(by: f64) -> [f64; 7] {
-    let mut q: [f64; 7] = READY.into();
-    q[0] += by;
-    q
-}
-
-/// Ten points from one angle of joint 1 to another, in half a second.
-fn chunk(from: f64, to: f64) -> Chunk {
-    let point = |k: u32| {
-        let way = from + (to - from) * f64::from(k) / 10.0;
-        (Duration::from_millis(50) * k, turned(way))
-    };
-    Chunk::joints((0..=10).map(point)).expect("points 50 ms apart")
-}
 
 fn give(lockstep: &mut Lockstep, engaged: GoalId, goal: Goal, chunk: Chunk) -> GoalId {
     lockstep
         .submit_chunk(engaged, goal, chunk)
         .expect("near the ready pose")
-}
-
-/// A goal of chunks that may be silent for so long.
-fn watched(lockstep: &mut Lockstep, milliseconds: u64) -> Goal {
-    Goal {
-        watchdog: Some(Watchdog {
-            silence: Duration::from_millis(milliseconds),
-            stale: Stale::Hold,
-        }),
-        ..lockstep.goal(Target::Rest, Then::Hold)
-    }
 }
 
 #[test]
@@ -61,7 +34,7 @@ fn a_chunk_that_waits_for_its_time_is_taken_back_with_the_one_before_it() {
         lockstep.cancel(first);
         let outcome = lockstep.until_resolved(first, 2000);
         assert_eq!(outcome, Err(MotionError::Stopped));
-        assert!(lockstep.robot.q()[0] < turned(0.2)[0]);
+        assert!(lockstep.robot.q()[0] < turned_q(0.2)[0]);
         assert_stays(&mut lockstep, engaged);
     });
 }
@@ -69,14 +42,9 @@ fn a_chunk_that_waits_for_its_time_is_taken_back_with_the_one_before_it() {
 #[test]
 fn a_chunk_that_is_followed_to_its_end_after_silence_still_needs_its_deadman() {
     for_each_robot(|ready| {
-        let (token, grip) = Deadman::new(Duration::from_millis(50));
-        let mut lockstep = ready();
-        let engaged = lockstep.engage_with(Engagement {
-            deadman: Some(grip),
-            ..Engagement::default()
-        });
-        let goal = watched(&mut lockstep, 100);
-        let point = |k: u32| (Duration::from_secs(1) * k, turned(0.2 * f64::from(k)));
+        let (mut lockstep, engaged, token) = guarded(ready, 50);
+        let goal = watched(&mut lockstep, Target::Rest, 100, Stale::Hold);
+        let point = |k: u32| (Duration::from_secs(1) * k, turned_q(0.2 * f64::from(k)));
         let long = Chunk::joints((0..=3).map(point)).expect("points a second apart");
         let goal = give(&mut lockstep, engaged, goal, long);
         for _ in 0..20 {
@@ -86,7 +54,7 @@ fn a_chunk_that_is_followed_to_its_end_after_silence_still_needs_its_deadman() {
         drop(token);
         let outcome = lockstep.until_resolved(goal, 1000);
         assert_eq!(outcome, Err(MotionError::Held(Lapse::Deadman)));
-        assert!(lockstep.robot.q()[0] < turned(0.3)[0], "half way at most");
+        assert!(lockstep.robot.q()[0] < turned_q(0.3)[0], "half way at most");
         assert_stays(&mut lockstep, engaged);
     });
 }
@@ -96,7 +64,7 @@ fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = watched(&mut lockstep, 50);
+        let goal = watched(&mut lockstep, Target::Rest, 50, Stale::Hold);
         let goal = give(&mut lockstep, engaged, goal, chunk(0.0, 0.05));
         // It settles, and the next chunk leaves before that is known.
         lockstep.client.is_deaf = true;
@@ -106,11 +74,11 @@ fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
         lockstep.client.is_deaf = false;
         let outcome = lockstep.until_resolved(goal, 10);
         assert!(matches!(outcome, Err(MotionError::Held(_))), "{outcome:?}");
-        assert!((lockstep.robot.q()[0] - turned(0.05)[0]).abs() < 2e-3);
+        assert!((lockstep.robot.q()[0] - turned_q(0.05)[0]).abs() < 2e-3);
         // The one after it is followed.
         lockstep.chunk(engaged, chunk(0.05, 0.1)).unwrap();
         lockstep.run(2000);
-        assert!((lockstep.robot.q()[0] - turned(0.1)[0]).abs() < 2e-3);
+        assert!((lockstep.robot.q()[0] - turned_q(0.1)[0]).abs() < 2e-3);
     });
 }
 
@@ -120,7 +88,7 @@ fn a_first_point_far_in_the_future_does_not_let_the_arm_run_on_until_then() {
         for joints in [true, false] {
             let mut lockstep = ready();
             let engaged = lockstep.engage();
-            let target = Target::Joints(turned(0.8));
+            let target = turned(0.8);
             lockstep.within(engaged, target, Then::Hold).unwrap();
             lockstep.run(400);
             let at = lockstep.client.record.q_ref;
@@ -157,7 +125,7 @@ fn lost_commands_do_not_lead_past_the_points_of_a_chunk() {
             let count = 0..=21;
             let apart = Duration::from_millis(100);
             let chunk = if joints {
-                Chunk::joints(count.map(|k| (apart * k, turned(there(k)))))
+                Chunk::joints(count.map(|k| (apart * k, turned_q(there(k)))))
             } else {
                 let moved = |k| Translation3::new(0.0, there(k), 0.0) * start;
                 Chunk::poses(count.map(|k| (apart * k, moved(k))))

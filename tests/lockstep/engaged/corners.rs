@@ -3,27 +3,11 @@
 
 use std::time::Duration;
 
-use franka_model::READY;
+use super::{chunk, guarded, turned, turned_q, watched};
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{
-    Budget, Chunk, Deadman, Free, Goal, GoalId, Lapse, Stale, Target, Then, Watchdog,
-};
+use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::session::{Budget, Free, GoalId, Lapse, Stale, Target, Then};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
-
-fn turned(by: f64) -> [f64; 7] {
-    let mut q: [f64; 7] = READY.into();
-    q[0] += by;
-    q
-}
-
-fn chunk(from: f64, to: f64) -> Chunk {
-    let point = |k: u32| {
-        let way = from + (to - from) * f64::from(k) / 10.0;
-        (Duration::from_millis(50) * k, turned(way))
-    };
-    Chunk::joints((0..=10).map(point)).expect("points 50 ms apart")
-}
 
 fn give_chunk(lockstep: &mut Lockstep, engaged: GoalId, from: f64, to: f64) -> GoalId {
     let goal = lockstep.goal(Target::Rest, Then::Hold);
@@ -46,7 +30,7 @@ fn a_chunk_after_chunks_that_were_taken_back_is_a_goal_of_its_own() {
         assert_eq!(superseded, Err(MotionError::Superseded));
         lockstep.run(2000);
         assert_eq!(lockstep.client.outcome(second), None);
-        assert!((lockstep.robot.q()[0] - turned(0.1)[0]).abs() < 2e-3);
+        assert!((lockstep.robot.q()[0] - turned_q(0.1)[0]).abs() < 2e-3);
     });
 }
 
@@ -56,7 +40,7 @@ fn a_session_is_tuned_also_while_a_goal_is_taken_back() {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let goal = lockstep
-            .within(engaged, Target::Joints(turned(0.3)), Then::Stay)
+            .within(engaged, turned(0.3), Then::Stay)
             .expect("near the ready pose");
         lockstep.run(300);
         lockstep.cancel(goal);
@@ -80,13 +64,7 @@ fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = Goal {
-            watchdog: Some(Watchdog {
-                silence: Duration::from_millis(50),
-                stale: Stale::Brake,
-            }),
-            ..lockstep.goal(Target::Joints(turned(0.2)), Then::Hold)
-        };
+        let goal = watched(&mut lockstep, turned(0.2), 50, Stale::Brake);
         let goal = lockstep.submit_within(engaged, goal).expect("it is near");
         let outcome = lockstep.until_resolved(goal, 3000);
         assert!(
@@ -96,7 +74,7 @@ fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
         lockstep.run(1000);
         assert_eq!(lockstep.client.outcome(engaged), None);
         let back = lockstep
-            .within(engaged, Target::Joints(turned(0.0)), Then::Stay)
+            .within(engaged, turned(0.0), Then::Stay)
             .expect("the session goes on");
         lockstep
             .until_resolved(back, 5000)
@@ -110,12 +88,7 @@ fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
 fn a_stop_and_the_end_of_a_session_come_well_without_its_deadman() {
     for_each_robot(|ready| {
         for stops in [true, false] {
-            let (token, grip) = Deadman::new(Duration::from_millis(50));
-            let mut lockstep = ready();
-            let engaged = lockstep.engage_with(Engagement {
-                deadman: Some(grip),
-                ..Engagement::default()
-            });
+            let (mut lockstep, engaged, token) = guarded(ready, 50);
             drop(token);
             lockstep.run(500);
             if stops {
@@ -137,7 +110,7 @@ fn a_session_that_is_to_end_ends_though_its_last_goal_is_taken_back() {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let last = lockstep
-            .within(engaged, Target::Joints(turned(0.2)), Then::Finish)
+            .within(engaged, turned(0.2), Then::Finish)
             .expect("near the ready pose");
         lockstep.run(100);
         let more = lockstep.within(engaged, Target::Rest, Then::Stay);
@@ -199,10 +172,10 @@ fn a_chunk_goes_on_when_its_budget_is_tuned() {
         assert!(dq > 0.9 * most && dq < 1.05 * most, "{dq} of {most} rad/s");
         // Also on its way to where it ended.
         lockstep.run(250);
-        assert!(lockstep.robot.q()[0] < turned(0.19)[0], "it is late");
+        assert!(lockstep.robot.q()[0] < turned_q(0.19)[0], "it is late");
         assert_eq!(lockstep.tune(engaged, budget(slow.scaled(1.5))), Ok(()));
         lockstep.run(2000);
-        assert!((lockstep.robot.q()[0] - turned(0.2)[0]).abs() < 2e-3);
+        assert!((lockstep.robot.q()[0] - turned_q(0.2)[0]).abs() < 2e-3);
     });
 }
 
@@ -211,24 +184,18 @@ fn a_goal_that_was_given_up_and_rests_is_not_taken_up_again() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = Goal {
-            watchdog: Some(Watchdog {
-                silence: Duration::from_millis(50),
-                stale: Stale::Hold,
-            }),
-            ..lockstep.goal(Target::Joints(turned(0.05)), Then::Hold)
-        };
+        let goal = watched(&mut lockstep, turned(0.05), 50, Stale::Hold);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         // It settles, and the next target leaves before that is known.
         lockstep.client.is_deaf = true;
         lockstep.run(2000);
-        let next = Target::Joints(turned(0.2));
+        let next = turned(0.2);
         assert_eq!(lockstep.update(goal, next), Ok(true));
         lockstep.run(500);
         lockstep.client.is_deaf = false;
         let outcome = lockstep.until_resolved(goal, 10);
         assert!(matches!(outcome, Err(MotionError::Held(_))), "{outcome:?}");
-        assert!((lockstep.robot.q()[0] - turned(0.05)[0]).abs() < 2e-3);
+        assert!((lockstep.robot.q()[0] - turned_q(0.05)[0]).abs() < 2e-3);
     });
 }
 
@@ -238,13 +205,7 @@ fn a_hand_that_leads_to_no_last_target_is_braked_and_says_so() {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let silence = Duration::from_millis(50);
-        let goal = Goal {
-            watchdog: Some(Watchdog {
-                silence,
-                stale: Stale::Hold,
-            }),
-            ..lockstep.goal(Target::Guide(Free::ALL), Then::Hold)
-        };
+        let goal = watched(&mut lockstep, Target::Guide(Free::ALL), 50, Stale::Hold);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         let outcome = lockstep.until_resolved(goal, 2000);
         let braked = MotionError::Braked(Lapse::Silent { silence });

@@ -2,25 +2,17 @@
 
 use std::time::Duration;
 
-use super::{assert_stays, turned};
+use super::{assert_stays, guarded, turned, watched};
 use franka_model::{READY, Wrench};
-use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{
-    Deadman, Free, Goal, GoalId, Guard, Lapse, Stale, Target, Then, Watchdog,
-};
+use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::session::{Free, GoalId, Guard, Lapse, Stale, Target, Then};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 /// A session that follows a stream which falls silent, and how that ends.
 fn silent_stream(ready: &dyn Fn() -> Lockstep, stale: Stale) -> (Lockstep, GoalId, MotionError) {
     let mut lockstep = ready();
     let engaged = lockstep.engage();
-    let goal = Goal {
-        watchdog: Some(Watchdog {
-            silence: Duration::from_millis(100),
-            stale,
-        }),
-        ..lockstep.goal(turned(0.01), Then::Hold)
-    };
+    let goal = watched(&mut lockstep, turned(0.01), 100, stale);
     let goal = lockstep.submit_within(engaged, goal).unwrap();
     for step in 2..12 {
         lockstep.run(90);
@@ -62,12 +54,7 @@ fn a_stream_that_falls_silent_is_held_or_braked_and_the_outcome_says_which() {
 #[test]
 fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
     for_each_robot(|ready| {
-        let (token, grip) = Deadman::new(Duration::from_millis(50));
-        let mut lockstep = ready();
-        let engaged = lockstep.engage_with(Engagement {
-            deadman: Some(grip),
-            ..Engagement::default()
-        });
+        let (mut lockstep, engaged, token) = guarded(ready, 50);
         let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
         for _ in 0..10 {
             lockstep.run(40);
@@ -98,12 +85,7 @@ fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
 fn a_stream_does_not_outlive_the_deadman_however_often_its_targets_come() {
     for_each_robot(|ready| {
         for period in [1, 20, 90] {
-            let (token, grip) = Deadman::new(Duration::from_millis(50));
-            let mut lockstep = ready();
-            let engaged = lockstep.engage_with(Engagement {
-                deadman: Some(grip),
-                ..Engagement::default()
-            });
+            let (mut lockstep, engaged, token) = guarded(ready, 50);
             let goal = lockstep.within(engaged, turned(0.3), Then::Hold).unwrap();
             for _ in 0..10 {
                 token.keep_alive();
@@ -144,13 +126,7 @@ fn who_tunes_does_not_stand_in_for_a_stream_that_is_silent() {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let silence = Duration::from_millis(100);
-        let goal = Goal {
-            watchdog: Some(Watchdog {
-                silence,
-                stale: Stale::Brake,
-            }),
-            ..lockstep.goal(turned(0.8), Then::Hold)
-        };
+        let goal = watched(&mut lockstep, turned(0.8), 100, Stale::Brake);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         let mut tuned = 0;
         // Also while the arm brakes, when the stream is given up already.
@@ -184,12 +160,7 @@ fn who_tunes_does_not_send_the_arm_on_to_what_was_given_up() {
 #[test]
 fn an_arm_that_was_guided_is_held_firmly_once_its_deadman_is_dropped() {
     for_each_robot(|ready| {
-        let (token, grip) = Deadman::new(Duration::from_millis(5000));
-        let mut lockstep = ready();
-        let engaged = lockstep.engage_with(Engagement {
-            deadman: Some(grip),
-            ..Engagement::default()
-        });
+        let (mut lockstep, engaged, token) = guarded(ready, 5000);
         let guided = Target::Guide(Free::ALL);
         let goal = lockstep.within(engaged, guided, Then::Hold).unwrap();
         lockstep.run(1000);

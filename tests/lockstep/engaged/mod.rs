@@ -14,8 +14,10 @@ mod waiting;
 use std::time::Duration;
 
 use franka_model::{READY, Wrench};
-use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Chunk, Free, GoalError, GoalId, PoseError, Target, Then};
+use franka_rt::lifecycle::{Engagement, MotionError};
+use franka_rt::session::{
+    Chunk, Deadman, Free, Goal, GoalError, GoalId, PoseError, Stale, Target, Then, Watchdog,
+};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3};
 
@@ -24,9 +26,45 @@ fn up(lockstep: &Lockstep, metres: f64) -> Isometry3<f64> {
 }
 
 fn turned(by: f64) -> Target {
-    let mut q = READY;
+    Target::Joints(turned_q(by))
+}
+
+/// The ready posture with joint 1 turned.
+fn turned_q(by: f64) -> [f64; 7] {
+    let mut q: [f64; 7] = READY.into();
     q[0] += by;
-    Target::Joints(q.into())
+    q
+}
+
+/// Eleven points from one angle of joint 1 to another, in half a second.
+fn chunk(from: f64, to: f64) -> Chunk {
+    let point = |k: u32| {
+        let way = from + (to - from) * f64::from(k) / 10.0;
+        (Duration::from_millis(50) * k, turned_q(way))
+    };
+    Chunk::joints((0..=10).map(point)).expect("points 50 ms apart")
+}
+
+/// A goal that is to be held, and may be silent for so many milliseconds.
+fn watched(lockstep: &mut Lockstep, target: Target, milliseconds: u64, stale: Stale) -> Goal {
+    Goal {
+        watchdog: Some(Watchdog {
+            silence: Duration::from_millis(milliseconds),
+            stale,
+        }),
+        ..lockstep.goal(target, Then::Hold)
+    }
+}
+
+/// An arm engaged by a session that is bound to a deadman, which may be silent for so many milliseconds.
+fn guarded(ready: &dyn Fn() -> Lockstep, milliseconds: u64) -> (Lockstep, GoalId, Deadman) {
+    let (token, grip) = Deadman::new(Duration::from_millis(milliseconds));
+    let mut lockstep = ready();
+    let engaged = lockstep.engage_with(Engagement {
+        deadman: Some(grip),
+        ..Engagement::default()
+    });
+    (lockstep, engaged, token)
 }
 
 fn assert_stays(lockstep: &mut Lockstep, engaged: GoalId) {
