@@ -34,7 +34,7 @@ impl Active {
                 before.end(chunks, now);
             }
             self.aim = self.heading();
-            self.plan_first();
+            self.planned = true;
             // A goal that had fallen silent was to be held until a newer one.
             if self.lapse.take().is_some() {
                 self.goal.then = Then::Hold;

@@ -32,11 +32,10 @@ pub(super) struct Active {
     load: Load,
     posture: JointVector,
     pub(super) goal: Goal,
-    /// Whether the reference stays for this cycle: the first answer begins with no torque, and a course that begins at rest
-    /// has its plan to make.
-    waits: bool,
-    /// Whether it stayed for the last one. Plans that come in each cycle are not to keep it for ever.
-    waited: bool,
+    /// Whether a course has been planned since the last answer, as before the first one.
+    planned: bool,
+    /// Whether the reference stayed for a plan in the last cycle. Plans that come in each cycle are not to keep it for ever.
+    stayed: bool,
     /// When the goal was first seen, `message_id` of the state.
     since: u64,
     /// What the reference heads for: the goal's target, or one nearer, or rest.
@@ -118,8 +117,8 @@ impl Active {
             afterwards,
             stage: Stage::UnderWay,
             held_back: 0,
-            waits: true,
-            waited: false,
+            planned: true,
+            stayed: false,
             since: state.message_id,
             heard: state.message_id,
             lapse: None,
@@ -207,15 +206,7 @@ impl Active {
             ..self.goal
         };
         self.route.head_for(model, &self.ee, &self.reference, &goal);
-        if matches!(target, Target::Pose(_) | Target::Joints(_)) {
-            self.plan_first();
-        }
-    }
-
-    /// A plan takes as long as a step. A reference that rests makes its first step in the cycle after.
-    fn plan_first(&mut self) {
-        let at_rest = self.reference == Reference::at_rest(self.reference.q);
-        self.waits |= at_rest && !self.waited;
+        self.planned |= matches!(target, Target::Pose(_) | Target::Joints(_));
     }
 
     /// Answers one state; `alive` is whether nobody has let go of the deadman that it is bound to.
@@ -255,18 +246,21 @@ impl Active {
             target: self.aim,
             ..self.goal
         };
+        // A plan takes as long as a step: a reference that rests, and has not been moved meanwhile, makes its first one in the
+        // cycle after. So the first answer begins with no torque.
+        let at_rest = self.reference == Reference::at_rest(self.reference.q);
+        self.stayed = core::mem::take(&mut self.planned) && at_rest && !self.stayed;
         let course::Step {
             reference,
             bounds,
             held,
             leashed: guided,
-        } = if self.waits {
+        } = if self.stayed {
             self.route.stay(&self.reference)
         } else {
             self.route
                 .step(model, &self.ee, &self.posture, &self.reference, &arm, &aim)
         };
-        self.waited = core::mem::take(&mut self.waits);
         if let Some(chunk) = self.route.left.take() {
             self.chunk_end = Some(chunk.target());
             self.left = Some(chunk);

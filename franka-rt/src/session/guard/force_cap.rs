@@ -33,8 +33,8 @@ pub const FORCE_CAP: RangeInclusive<f64> = 5.0..=200.0;
 ///
 /// Just above the weight of the robot's whole payload of 3 kg, and above what the default gains come to when the arm is held
 /// back without a push. Motions within the default budget do not meet it (simulated: none of their cycles, also with 3 kg
-/// declared and with 0.5 kg undeclared; of ways between random postures of the joints, 1 cycle in 10^4), while a hand that pushes
-/// against a held arm at 0.25 m/s would meet 40 to 54 N without it, and 67 to 115 N if the joints are stiff.
+/// declared and with 0.5 kg undeclared), while a hand that pushes against a held arm at 0.25 m/s would meet 40 to 54 N without
+/// it, and 67 to 115 N if the joints are stiff.
 pub const DEFAULT_FORCE_CAP: f64 = 30.0;
 
 /// Holds the force of the torques of `springs` and of `dampers`, `[N m]`, under `cap`, `[N]`; gives their sum, and tells
