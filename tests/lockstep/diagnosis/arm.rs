@@ -1,6 +1,6 @@
 //! What the arm met: hands, limits, singular postures.
 
-use super::{begin, diagnosis, found, limit};
+use super::{begin, diagnosis, found, limit, velocities};
 use franka_model::RobotKind;
 use franka_proto::{CollisionBehavior, Request, RobotError};
 use franka_rt::control::{Callback, CartesianVelocities, JointVelocities, Torques};
@@ -132,14 +132,11 @@ fn a_way_into_the_stretched_arm_is_named_singular() {
 fn a_joint_that_runs_into_its_limit_is_named_with_what_was_left() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let mut cycle = 0;
-        let callback = Callback::motion(lockstep.client.version(), move |_, _| {
-            cycle += 1;
+        let work = velocities(&mut lockstep, move |cycle| {
             let mut dq = [0.0; 7];
             dq[3] = 0.6 * (f64::from(cycle) / 500.0).min(1.0);
-            JointVelocities(dq)
+            dq
         });
-        let work = begin(&mut lockstep, callback);
         let diagnosis = diagnosis(&mut lockstep, work);
         assert_eq!(found(&diagnosis).1, Subject::Joint(4));
         let Some(Cause::Limit {

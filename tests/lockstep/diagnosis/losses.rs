@@ -1,8 +1,8 @@
 //! Packets that were lost, and cycles that were not noted.
 
-use super::{begin, diagnosis, found, stepping};
+use super::{begin, diagnosis, found, stepping, velocities};
 use franka_proto::RobotError;
-use franka_rt::control::{Callback, JointVelocities, Torques};
+use franka_rt::control::{Callback, Torques};
 use franka_rt::diagnosis::{Advice, Bound, Cause, Diagnosis, Quantity, Subject};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
@@ -74,16 +74,13 @@ fn commands_that_did_not_arrive_are_counted() {
 fn a_leap_after_a_loss_is_laid_to_the_loss() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let mut cycle = 0;
         // Accelerates, so that what the robot makes up for the lost cycles goes on accelerating; the function does not
         // know, and lets the velocity swing.
-        let callback = Callback::motion(lockstep.client.version(), move |_, _| {
-            cycle += 1;
+        let work = velocities(&mut lockstep, move |cycle| {
             let mut dq = [0.0; 7];
             dq[0] = 0.2 * (0.03 * f64::from(cycle)).sin() * (f64::from(cycle) / 500.0).min(1.0);
-            JointVelocities(dq)
+            dq
         });
-        let work = begin(&mut lockstep, callback);
         lockstep.run(700);
         lockstep.link.drop_commands(12);
         let diagnosis = diagnosis(&mut lockstep, work);

@@ -5,7 +5,7 @@ mod losses;
 mod steps;
 
 use franka_proto::{MoveControllerMode, RobotError};
-use franka_rt::control::Callback;
+use franka_rt::control::{Callback, JointVelocities};
 use franka_rt::diagnosis::{Diagnosis, Origin, Quantity, Subject};
 use franka_rt::driver::Program;
 use franka_rt::session::GoalId;
@@ -22,6 +22,19 @@ pub(crate) fn begin(lockstep: &mut Lockstep, callback: Callback) -> GoalId {
     let request = callback.request(version, MoveControllerMode::JointImpedance);
     let program = Program::Callback(Box::new(callback));
     lockstep.control(program, request).expect("nothing moves")
+}
+
+/// The same under a function that returns the joint velocities, `[rad/s]`, of each cycle, which count from 1.
+fn velocities(
+    lockstep: &mut Lockstep,
+    mut at: impl FnMut(u32) -> [f64; 7] + Send + 'static,
+) -> GoalId {
+    let mut cycle = 0;
+    let callback = Callback::motion(lockstep.client.version(), move |_, _| {
+        cycle += 1;
+        JointVelocities(at(cycle))
+    });
+    begin(lockstep, callback)
 }
 
 /// Runs until a reflex ends the motion; prints what is said of it, and checks its shape.

@@ -1,6 +1,6 @@
 //! Commands that step.
 
-use super::{QUIET, begin, diagnosis, found, limit, stepping};
+use super::{QUIET, begin, diagnosis, found, limit, stepping, velocities};
 use franka_proto::RobotError;
 use franka_rt::control::{
     Callback, CartesianPose, Finish, JointPositions, JointVelocities, Torques,
@@ -115,15 +115,12 @@ fn a_velocity_that_steps_names_the_joint_and_what_it_was_asked_for() {
 fn a_jerk_alone_names_the_step_in_acceleration() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let mut cycle = 0;
         // 0.007 rad/s more in every cycle are 7 rad/s², less than any joint may have, at once.
-        let callback = Callback::motion(lockstep.client.version(), move |_, _| {
-            cycle += 1;
+        let work = velocities(&mut lockstep, move |cycle| {
             let mut dq = [0.0; 7];
             dq[1] = 0.007 * f64::from(cycle.max(QUIET) - QUIET);
-            JointVelocities(dq)
+            dq
         });
-        let work = begin(&mut lockstep, callback);
         let diagnosis = diagnosis(&mut lockstep, work);
         let error = RobotError::JointMotionGeneratorAccelerationDiscontinuity;
         let expected = (error, Subject::Joint(2), Quantity::Jerk, Origin::Commanded);
