@@ -1,4 +1,5 @@
-//! Connects, prints the state, moves the hand 5 cm up and back, then the joints. Exit code 0 only if all arrived.
+//! Connects, prints the state, moves the hand 5 cm up and back, then the joints. Exit code 0 only
+//! if all arrived.
 //!
 //! `cargo run --release --example quickstart [ADDRESS]`
 

@@ -1,4 +1,5 @@
-//! Reads states, ten a second, while nothing moves. The robot sends a thousand; a `watch` always holds the newest.
+//! Reads states, ten a second, while nothing moves. The robot sends a thousand; a `watch` always
+//! holds the newest.
 //!
 //! `cargo run --release --example read_state [ADDRESS]`
 

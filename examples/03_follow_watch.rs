@@ -18,7 +18,8 @@ async fn main() -> anyhow::Result<()> {
     let start = robot.pose();
     let (sender, targets) = watch::channel(start);
 
-    // A planner, a policy, a person: whatever has a target now and then. This one walks a circle of 8 cm.
+    // A planner, a policy, a person: whatever has a target now and then. This one walks a circle of
+    // 8 cm.
     let planner = tokio::spawn(async move {
         let mut clock = tokio::time::interval(Duration::from_millis(100));
         for step in 0..=60 {

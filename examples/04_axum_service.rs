@@ -1,4 +1,5 @@
-//! A web service that holds a robot: POST /move_to, POST /stop, GET /state, GET /events (server-sent events).
+//! A web service that holds a robot: POST /move_to, POST /stop, GET /state, GET /events
+//! (server-sent events).
 //!
 //! `cargo run --release --example axum_service -- [ADDRESS] [--listen 127.0.0.1:8080]`, then
 //! `curl -X POST -H 'content-type: application/json' -d '[0, 0, 0.05]' localhost:8080/move_to`
@@ -50,8 +51,8 @@ async fn main() -> anyhow::Result<()> {
     Ok(serving.await?)
 }
 
-/// Takes a step along the axes of the base, `[m]`, and answers when the arm has arrived. A client that hangs up drops
-/// the motion, which brakes the arm.
+/// Takes a step along the axes of the base, `[m]`, and answers when the arm has arrived. A client
+/// that hangs up drops the motion, which brakes the arm.
 async fn move_to(robot: State<Robot>, Json([x, y, z]): Json<[f64; 3]>) -> Result<String, Refused> {
     let moving = robot.move_to(Pose::translation(x, y, z) * robot.pose());
     let report = moving.await.map_err(refuse)?;

@@ -31,8 +31,8 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What a program asks for in a cycle, if it does: steps, then bursts of noisy targets, then something that moves and
-/// whose last sight is followed by silence.
+/// What a program asks for in a cycle, if it does: steps, then bursts of noisy targets, then
+/// something that moves and whose last sight is followed by silence.
 fn target(cycle: usize) -> Option<State<1>> {
     let t = cycle as f64 * CYCLE;
     let at = |position: f64, velocity: f64| State {
@@ -106,7 +106,8 @@ const JERK: f64 = 200.0;
 const END: f64 = 3.8;
 /// Height of a panel.
 const PANEL: f64 = 120.0;
-/// Title, columns to draw and the value at the upper line, which for all but the position is the limit.
+/// Title, columns to draw and the value at the upper line, which for all but the position is the
+/// limit.
 const PANELS: [(&str, &[usize], f64); 4] = [
     ("position, m", &[1, 0], 0.8),
     ("velocity, m/s", &[2], VELOCITY),

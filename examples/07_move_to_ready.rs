@@ -1,4 +1,5 @@
-//! Moves the joints to the ready pose: hand in front of the arm and pointing down, far from limits and singularities.
+//! Moves the joints to the ready pose: hand in front of the arm and pointing down, far from limits
+//! and singularities.
 //!
 //! `cargo run --release --example move_to_ready -- [ADDRESS] [--speed FACTOR]`
 

@@ -1,7 +1,8 @@
-//! The robot's four motion generators, each under a control function: a small motion there and back, at rest at both ends.
+//! The robot's four motion generators, each under a control function: a small motion there and
+//! back, at rest at both ends.
 //!
-//! `cargo run --release --example generators -- joint-positions [ADDRESS]`, likewise `joint-velocities`, `cartesian-pose` and
-//! `cartesian-velocities`
+//! `cargo run --release --example generators -- joint-positions [ADDRESS]`, likewise
+//! `joint-velocities`, `cartesian-pose` and `cartesian-velocities`
 
 use clap::{Parser, ValueEnum};
 use franka_async::{
@@ -40,7 +41,8 @@ async fn main() -> anyhow::Result<()> {
     let what = format!("{what}, and back");
     let (robot, _sim) = arguments.connection.open_ready(&what).await?;
     let start = robot.pose();
-    // Where commands get lost, the robot goes on as before, and the next one may not fit on: the limiter makes it fit.
+    // Where commands get lost, the robot goes on as before, and the next one may not fit on: the
+    // limiter makes it fit.
     let report = begin(&robot).limit_rate(true).await?;
     let moved = robot.pose().translation.vector - start.translation.vector;
     robot.shutdown().await;
@@ -86,7 +88,8 @@ fn cartesian_pose(robot: &Robot) -> Control {
         };
         command.finish_if(time >= DURATION)
     });
-    // Which of the robot's own controllers follows is a choice with every generator; here the one that is stiff in space.
+    // Which of the robot's own controllers follows is a choice with every generator; here the one
+    // that is stiff in space.
     control.controller(MoveControllerMode::CartesianImpedance)
 }
 

@@ -1,5 +1,6 @@
-//! A joint impedance law of one's own: the robot's generator turns a circle of the hand into joint references, and a
-//! second control function turns these into torques, in the place of the robot's own controller.
+//! A joint impedance law of one's own: the robot's generator turns a circle of the hand into joint
+//! references, and a second control function turns these into torques, in the place of the robot's
+//! own controller.
 //!
 //! `cargo run --release --example joint_impedance -- [ADDRESS]`
 
@@ -15,9 +16,11 @@ const RADIUS: f64 = 0.05;
 /// Of one turn, `[s]`.
 const DURATION: f64 = 5.0;
 
-/// Springs of the joints, `[N m/rad]`: stiff enough for some millimetres at the hand, soft enough to be pushed aside.
+/// Springs of the joints, `[N m/rad]`: stiff enough for some millimetres at the hand, soft enough
+/// to be pushed aside.
 const STIFFNESS: [f64; 7] = [400.0, 400.0, 400.0, 400.0, 150.0, 100.0, 40.0];
-/// Dampers of the joints, `[N m s/rad]`: about as much as makes each joint's own inertia return without swinging.
+/// Dampers of the joints, `[N m s/rad]`: about as much as makes each joint's own inertia return
+/// without swinging.
 const DAMPING: [f64; 7] = [40.0, 40.0, 40.0, 35.0, 12.0, 8.0, 4.0];
 
 #[tokio::main]

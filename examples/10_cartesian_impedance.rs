@@ -1,7 +1,9 @@
-//! A Cartesian impedance law of one's own: the hand hangs on springs at the place where it is, and can be pushed aside.
-//! The same law as a control function, and on a thread of this program that reads states and writes commands itself.
+//! A Cartesian impedance law of one's own: the hand hangs on springs at the place where it is, and
+//! can be pushed aside. The same law as a control function, and on a thread of this program that
+//! reads states and writes commands itself.
 //!
-//! `cargo run --release --example cartesian_impedance -- callback [ADDRESS] [--seconds 10]`, likewise `active`
+//! `cargo run --release --example cartesian_impedance -- callback [ADDRESS] [--seconds 10]`,
+//! likewise `active`
 
 use clap::{Parser, ValueEnum};
 use franka_async::{Finish, Model, MotionError, MotionReport, Pose, Robot, RobotState, Torques};
@@ -67,13 +69,15 @@ struct Springs {
 
 /// Of the springs, `[N/m]` and `[N m/rad]`, along and about the axes of the base.
 const STIFFNESS: [f64; 6] = [300.0, 300.0, 300.0, 20.0, 20.0, 20.0];
-/// Of the dampers, `[N s/m]` and `[N m s/rad]`: close to critical for the 3 to 8 kg that the hand feels like.
+/// Of the dampers, `[N s/m]` and `[N m s/rad]`: close to critical for the 3 to 8 kg that the hand
+/// feels like.
 const DAMPING: [f64; 6] = [60.0, 60.0, 80.0, 3.0, 3.0, 3.0];
 /// Of the joints, `[N m s/rad]`, so that the elbow, which no spring holds, comes to rest too.
 const JOINT_DAMPING: f64 = 1.0;
 
 impl Springs {
-    /// What the springs answer a state with: `J' (K e - D J dq)`, a damper at each joint, and the Coriolis torques.
+    /// What the springs answer a state with: `J' (K e - D J dq)`, a damper at each joint, and the
+    /// Coriolis torques.
     fn torques(&self, state: &RobotState) -> Torques {
         let dynamics = dynamics(&self.model, state);
         let pose = transform::isometry(&dynamics.pose).unwrap_or(self.place);
@@ -101,13 +105,14 @@ async fn callback(
         time += step.as_secs_f64();
         springs.torques(state).finish_if(time >= seconds)
     });
-    // After lost commands the torques may be further away than the robot takes in one millisecond: the limiter goes there
-    // in steps.
+    // After lost commands the torques may be further away than the robot takes in one millisecond:
+    // the limiter goes there in steps.
     holding.limit_rate(true).await
 }
 
-/// The law on a thread of this program: it asks for the states, answers each, and is the control cycle meanwhile. How it
-/// is scheduled is up to this program as well; commands pass no filter and no limiter.
+/// The law on a thread of this program: it asks for the states, answers each, and is the control
+/// cycle meanwhile. How it is scheduled is up to this program as well; commands pass no filter and
+/// no limiter.
 async fn active(
     robot: &Robot,
     springs: Springs,
@@ -131,7 +136,8 @@ fn hold(
     runtime: &Handle,
 ) -> anyhow::Result<MotionReport> {
     scheduling.enter()?;
-    // The robot waits for the first command once the motion runs, so it begins on the thread that is ready to write it.
+    // The robot waits for the first command once the motion runs, so it begins on the thread that
+    // is ready to write it.
     let mut control = runtime.block_on(robot.active_torques())?;
     let mut time = 0.0;
     loop {

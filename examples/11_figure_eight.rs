@@ -1,5 +1,6 @@
-//! Draws figures of eight with the hand, upright and across the arm. The size grows from nothing and shrinks to nothing,
-//! so that the motion begins and ends at rest although the figure itself never stands still.
+//! Draws figures of eight with the hand, upright and across the arm. The size grows from nothing
+//! and shrinks to nothing, so that the motion begins and ends at rest although the figure itself
+//! never stands still.
 //!
 //! `cargo run --release --example figure_eight -- [ADDRESS] [--laps 3]`
 

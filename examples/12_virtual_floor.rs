@@ -1,5 +1,6 @@
-//! The hand is free to be led about, above a floor that is not there: a spring and a damper that only push upwards. The
-//! elbow is drawn back to its posture by springs that the hand does not feel.
+//! The hand is free to be led about, above a floor that is not there: a spring and a damper that
+//! only push upwards. The elbow is drawn back to its posture by springs that the hand does not
+//! feel.
 //!
 //! `cargo run --release --example virtual_floor -- [ADDRESS] [--below 0.05] [--seconds 20]`
 
@@ -54,10 +55,12 @@ struct Law {
 
 /// Of the floor's spring, `[N/m]`.
 const STIFFNESS: f64 = 2000.0;
-/// Of the floor's damper, `[s/m]`: the share of its spring by which the floor gets stiffer per velocity of the hand into it.
-/// A damper that grows with depth takes hold without a step (Hunt and Crossley, 1975).
+/// Of the floor's damper, `[s/m]`: the share of its spring by which the floor gets stiffer per
+/// velocity of the hand into it. A damper that grows with depth takes hold without a step (Hunt and
+/// Crossley, 1975).
 const DAMPING: f64 = 5.0;
-/// What slows the hand wherever it is, `[N s/m]` and `[N m s/rad]`: like oil, so that it stops when it is let go.
+/// What slows the hand wherever it is, `[N s/m]` and `[N m s/rad]`: like oil, so that it stops when
+/// it is let go.
 const OIL: [f64; 6] = [20.0, 20.0, 20.0, 1.5, 1.5, 1.5];
 /// Springs and dampers of the posture, `[N m/rad]` and `[N m s/rad]`.
 const POSTURE: (f64, f64) = (20.0, 4.0);
@@ -77,15 +80,16 @@ impl Law {
     }
 }
 
-/// Force of the floor on a hand `depth` below it that moves upwards at `velocity`, `[N]`: never downwards, so that the
-/// floor does not hold what leaves it.
+/// Force of the floor on a hand `depth` below it that moves upwards at `velocity`, `[N]`: never
+/// downwards, so that the floor does not hold what leaves it.
 fn push_of_the_floor(depth: f64, velocity: f64) -> f64 {
     STIFFNESS * depth.max(0.0) * (1.0 - DAMPING * velocity).max(0.0)
 }
 
-/// The part of `torques` that does not accelerate the hand: `(1 - J' L J M^-1) torques` with `L = (J M^-1 J')^-1`, the
-/// inertia that the hand feels like (Khatib, A unified approach for motion and force control of robot manipulators, 1987).
-/// Nothing where the hand cannot move in every direction, and no such part can be told.
+/// The part of `torques` that does not accelerate the hand: `(1 - J' L J M^-1) torques` with
+/// `L = (J M^-1 J')^-1`, the inertia that the hand feels like (Khatib, A unified approach for
+/// motion and force control of robot manipulators, 1987). Nothing where the hand cannot move in
+/// every direction, and no such part can be told.
 fn unfelt(dynamics: &Dynamics, torques: &JointVector) -> JointVector {
     let Some(hand) = dynamics.operational_space() else {
         return JointVector::zeros();

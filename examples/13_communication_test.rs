@@ -1,10 +1,12 @@
-//! Tests the network, and this computer, for control at 1 kHz: zero torques for some seconds, which holds the arm where it
-//! is since the robot makes up for gravity, and counts of what got lost and of how long everything took.
+//! Tests the network, and this computer, for control at 1 kHz: zero torques for some seconds, which
+//! holds the arm where it is since the robot makes up for gravity, and counts of what got lost and
+//! of how long everything took.
 //!
 //! `cargo run --release --example communication_test -- [ADDRESS] [--seconds 10] [--good 0.95] [--usable 0.9]`
 //!
-//! Exit code 0: the average success rate is at least `--good`; 3: it is below, and at least `--usable`; 4: it is below that
-//! too; 1: the test did not run to its end. 2 is a mistake on the command line.
+//! Exit code 0: the average success rate is at least `--good`; 3: it is below, and at least
+//! `--usable`; 4: it is below that too; 1: the test did not run to its end. 2 is a mistake on the
+//! command line.
 
 use std::process::ExitCode;
 

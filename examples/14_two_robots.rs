@@ -1,5 +1,5 @@
-//! Two arms at once from one program: both go to their ready pose, then swing like in a mirror. Whatever ends the motion of
-//! one has the other stop.
+//! Two arms at once from one program: both go to their ready pose, then swing like in a mirror.
+//! Whatever ends the motion of one has the other stop.
 //!
 //! `cargo run --release --example two_robots -- [ADDRESS OTHER]`
 
@@ -11,7 +11,8 @@ use franka_examples::{Connection, Ease, Summary, make_ready};
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// Address of the other robot, which is connected to with the same options; without it, it is simulated too.
+    /// Address of the other robot, which is connected to with the same options; without it, it is
+    /// simulated too.
     #[arg(requires = "address")]
     other: Option<String>,
 }
@@ -30,8 +31,8 @@ async fn main() -> anyhow::Result<()> {
     connection.ask("and the other one go to their ready poses, and swing aside by 0.3 rad")?;
     tokio::try_join!(make_ready(&left), make_ready(&right))?;
 
-    // Neither begins before both can, and then both do, within a millisecond. Dropped unfinished, a motion has its robot
-    // stop: which is what `try_join` does to one when the other has failed.
+    // Neither begins before both can, and then both do, within a millisecond. Dropped unfinished, a
+    // motion has its robot stop: which is what `try_join` does to one when the other has failed.
     let [first, second] = StartBarrier::new().tickets();
     let both = tokio::try_join!(
         swing(&left, 0.3).start_with(first),

@@ -1,5 +1,5 @@
-//! Provokes a reflex, shows what the robot says of it, recovers and goes on: what a program does that is to outlive an
-//! error which nobody has to look at.
+//! Provokes a reflex, shows what the robot says of it, recovers and goes on: what a program does
+//! that is to outlive an error which nobody has to look at.
 //!
 //! `cargo run --release --example recovery -- [ADDRESS] [--log FILE.csv]`
 
@@ -25,7 +25,8 @@ async fn main() -> anyhow::Result<()> {
     let what = "stops itself with a reflex (a jerk and the click of its brakes), and turns its hand by 0.3 rad";
     let (robot, _sim) = connection.open_ready(what).await?;
 
-    // From standstill to 0.2 rad/s within a millisecond is more acceleration than the robot takes from anybody.
+    // From standstill to 0.2 rad/s within a millisecond is more acceleration than the robot takes
+    // from anybody.
     let mut cycle = 0;
     let step = robot.control_joint_velocities(move |_, _| {
         cycle += 1;

@@ -1,4 +1,5 @@
-//! One session, many goals: poses, joints, a stream, the chunks of a policy, a guiding hand, without a stop in between.
+//! One session, many goals: poses, joints, a stream, the chunks of a policy, a guiding hand,
+//! without a stop in between.
 //!
 //! `cargo run --release --example engage [ADDRESS]`
 
@@ -28,7 +29,8 @@ async fn main() -> anyhow::Result<()> {
 }
 
 async fn run(robot: &Robot) -> Result<(), MotionError> {
-    // Whoever holds the token has to show life; here a task does, as a remote front end would with every message.
+    // Whoever holds the token has to show life; here a task does, as a remote front end would with
+    // every message.
     let (token, grip) = Deadman::new(Duration::from_millis(500));
     let alive = tokio::spawn(async move {
         let mut clock = tokio::time::interval(Duration::from_millis(50));
@@ -87,7 +89,8 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
     Ok(())
 }
 
-/// What a policy would predict from an observation: here, a second of motion of the first joint towards the others' place.
+/// What a policy would predict from an observation: here, a second of motion of the first joint
+/// towards the others' place.
 fn predict(observation: &RobotState, ready: &[f64; 7]) -> Chunk {
     let points = (1..=10_u32).map(|step| {
         let share = f64::from(step) / 10.0;

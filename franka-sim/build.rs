@@ -1,8 +1,9 @@
 //! Lets programs with the feature `mujoco` find the native library when they run.
 //!
-//! `mujoco-rs` sees to it that they link. Cargo adds the output directories of build scripts to the loader's search path of
-//! what it runs, so a link in ours serves `cargo run`, tests and documentation examples of every dependent; the binary
-//! `franka-sim` has the directory written into it besides, and looks beside itself first.
+//! `mujoco-rs` sees to it that they link. Cargo adds the output directories of build scripts to the
+//! loader's search path of what it runs, so a link in ours serves `cargo run`, tests and
+//! documentation examples of every dependent; the binary `franka-sim` has the directory written
+//! into it besides, and looks beside itself first.
 
 use std::env;
 use std::error::Error;

@@ -3,8 +3,8 @@
 use franka_async::{Model, RobotState};
 use franka_model::{Dynamics, EndEffector, Load};
 
-/// The model at a state: pose, Jacobian, mass, Coriolis and gravity torques, with the end effector and the load that the
-/// robot has been told of.
+/// The model at a state: pose, Jacobian, mass, Coriolis and gravity torques, with the end effector
+/// and the load that the robot has been told of.
 ///
 /// One pass over the arm, and no allocation: made to be called in a control function.
 pub fn dynamics(model: &Model, state: &RobotState) -> Dynamics {

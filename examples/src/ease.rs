@@ -2,9 +2,9 @@
 
 /// How far something is on its way from 0 to 1, and how fast.
 ///
-/// The way is the polynomial of fifth degree whose velocity and acceleration vanish at both ends (the minimum-jerk course
-/// of Flash and Hogan, 1985): what a motion generator is given from the first command on must be that smooth, since the
-/// robot takes no steps in acceleration.
+/// The way is the polynomial of fifth degree whose velocity and acceleration vanish at both ends
+/// (the minimum-jerk course of Flash and Hogan, 1985): what a motion generator is given from the
+/// first command on must be that smooth, since the robot takes no steps in acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ease {
     /// Share of the way.
@@ -14,7 +14,8 @@ pub struct Ease {
 }
 
 impl Ease {
-    /// The way within `duration` seconds, `time` seconds after its beginning; before and after it, its ends.
+    /// The way within `duration` seconds, `time` seconds after its beginning; before and after it,
+    /// its ends.
     pub fn over(duration: f64, time: f64) -> Self {
         let s = (time / duration).clamp(0.0, 1.0);
         Self {

@@ -1,5 +1,5 @@
-//! What the examples share: a robot at the address given, or a simulated one in this process; smooth references; and the
-//! dynamics of a state.
+//! What the examples share: a robot at the address given, or a simulated one in this process;
+//! smooth references; and the dynamics of a state.
 #![doc = include_str!("../README.md")]
 
 mod dynamics;
@@ -23,12 +23,14 @@ use tokio::task::JoinHandle;
 /// Options of every example.
 #[derive(Args, Clone, Debug)]
 pub struct Connection {
-    /// Address of a robot or simulator, `host` or `host:port`; without it a simulator starts in this process.
+    /// Address of a robot or simulator, `host` or `host:port`; without it a simulator starts in
+    /// this process.
     pub address: Option<String>,
     /// Which robot to simulate. A real one says itself which it is.
     #[arg(long, value_enum, default_value_t = Simulated::Fr3, conflicts_with = "address")]
     pub sim: Simulated,
-    /// Whether the control thread may go without real-time scheduling; for a simulator in this process it always may.
+    /// Whether the control thread may go without real-time scheduling; for a simulator in this
+    /// process it always may.
     #[arg(long, value_enum, default_value_t = Realtime::Enforce)]
     pub realtime: Realtime,
     /// Move at once, without asking whether somebody is at the user stop.
@@ -112,7 +114,8 @@ impl Connection {
         }
     }
 
-    /// Connects like [`Self::open`], asks whether the arm may do `what`, and moves it to the ready pose.
+    /// Connects like [`Self::open`], asks whether the arm may do `what`, and moves it to the ready
+    /// pose.
     ///
     /// # Errors
     /// Those of [`Self::open`], of [`Self::ask`] and of [`make_ready`].
@@ -123,8 +126,8 @@ impl Connection {
         Ok((robot, sim))
     }
 
-    /// Says what the arm is about to do and waits for the enter key, unless it is simulated in this process or `--yes` was
-    /// given.
+    /// Says what the arm is about to do and waits for the enter key, unless it is simulated in this
+    /// process or `--yes` was given.
     ///
     /// # Errors
     /// If the input ends first.
@@ -157,8 +160,8 @@ impl Connection {
     }
 }
 
-/// Moves the joints to [`READY`] at half speed, with thresholds that let the arm be pushed at: 20 N m and 20 N are a
-/// contact, 60 N m and 60 N a collision that stops it.
+/// Moves the joints to [`READY`] at half speed, with thresholds that let the arm be pushed at: 20 N
+/// m and 20 N are a contact, 60 N m and 60 N a collision that stops it.
 ///
 /// # Errors
 /// What kept the arm from its pose.
@@ -170,7 +173,8 @@ pub async fn make_ready(robot: &Robot) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints twice a second how far the hand is from where it is now, until the task is aborted or the connection ends.
+/// Prints twice a second how far the hand is from where it is now, until the task is aborted or the
+/// connection ends.
 pub fn report_hand(robot: &Robot) -> JoinHandle<()> {
     let (mut states, robot) = (robot.states(), robot.clone());
     let start = robot.pose().translation.vector;
@@ -183,7 +187,8 @@ pub fn report_hand(robot: &Robot) -> JoinHandle<()> {
     })
 }
 
-/// Has somebody push the hand of a simulated robot with `force`, in base axes `[N]`, for the next two seconds.
+/// Has somebody push the hand of a simulated robot with `force`, in base axes `[N]`, for the next
+/// two seconds.
 ///
 /// # Errors
 /// If the simulation has ended.

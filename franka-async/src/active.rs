@@ -1,4 +1,5 @@
-//! Active control: a thread of the user's reads states and writes commands, and is the control cycle meanwhile.
+//! Active control: a thread of the user's reads states and writes commands, and is the control
+//! cycle meanwhile.
 
 use std::marker::PhantomData;
 use std::time::Duration;
@@ -18,11 +19,13 @@ use crate::input::Outcome;
 use crate::{MotionError, MotionReport, Party, Robot};
 
 impl Robot {
-    /// Begins control by torques from a thread of the caller's, and resolves when the motion runs. The first command is
-    /// due within a few milliseconds: hand the result to the thread that reads and writes at once.
+    /// Begins control by torques from a thread of the caller's, and resolves when the motion runs.
+    /// The first command is due within a few milliseconds: hand the result to the thread that reads
+    /// and writes at once.
     ///
     /// # Errors
-    /// [`MotionError::Busy`] while anything else controls the arm; otherwise what ended the motion before it ran.
+    /// [`MotionError::Busy`] while anything else controls the arm; otherwise what ended the motion
+    /// before it ran.
     ///
     /// # Cancel safety
     /// Dropping the future has the robot stop.
@@ -32,8 +35,9 @@ impl Robot {
         Active::begin(self, request).await
     }
 
-    /// Begins control by joint positions, for the controller named; with [`MoveControllerMode::ExternalController`] every
-    /// command needs torques beside it. Otherwise like [`Self::active_torques`].
+    /// Begins control by joint positions, for the controller named; with
+    /// [`MoveControllerMode::ExternalController`] every command needs torques beside it. Otherwise
+    /// like [`Self::active_torques`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -61,7 +65,8 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by poses of the end effector; otherwise like [`Self::active_joint_positions`].
+    /// Begins control by poses of the end effector; otherwise like
+    /// [`Self::active_joint_positions`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -75,7 +80,8 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by twists of the end effector; otherwise like [`Self::active_joint_positions`].
+    /// Begins control by twists of the end effector; otherwise like
+    /// [`Self::active_joint_positions`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -98,12 +104,14 @@ impl Robot {
     }
 }
 
-/// A motion under active control. Send it to a thread, which then is the control cycle: from the first
-/// [`read_once`](Self::read_once) until this is dropped, states are received in there and nowhere else, and a thread that
-/// neither reads nor writes leaves the robot without commands, which stops it.
+/// A motion under active control. Send it to a thread, which then is the control cycle: from the
+/// first [`read_once`](Self::read_once) until this is dropped, states are received in there and
+/// nowhere else, and a thread that neither reads nor writes leaves the robot without commands,
+/// which stops it.
 ///
-/// Commands pass no filter and no limiter. All methods block; none may be called from async code. Nothing is raised but
-/// the driver's own thread: real-time scheduling of the calling thread is up to the caller, see [`franka_rt::sched`].
+/// Commands pass no filter and no limiter. All methods block; none may be called from async code.
+/// Nothing is raised but the driver's own thread: real-time scheduling of the calling thread is up
+/// to the caller, see [`franka_rt::sched`].
 ///
 /// **Dropping it** before the last command has the robot stop.
 #[derive(Debug)]
@@ -163,12 +171,12 @@ impl<C> Active<C> {
         })
     }
 
-    /// Waits for the next state of the motion; returns it with the robot's time since the state read before, which is
-    /// zero at first and more than a millisecond after a loss.
+    /// Waits for the next state of the motion; returns it with the robot's time since the state
+    /// read before, which is zero at first and more than a millisecond after a loss.
     ///
     /// # Errors
-    /// [`ActiveError::Motion`] when the robot has ended the motion, or has been silent for the link timeout;
-    /// [`ActiveError::Finished`] after the last command.
+    /// [`ActiveError::Motion`] when the robot has ended the motion, or has been silent for the link
+    /// timeout; [`ActiveError::Finished`] after the last command.
     pub fn read_once(&mut self) -> Result<(RobotState, Duration), ActiveError> {
         if self.outcome.is_none() {
             return Err(ActiveError::Finished);
@@ -228,12 +236,12 @@ impl<C> Active<C> {
 }
 
 impl Active<Torques> {
-    /// Sends torques for the newest state. After the last ones (`torques.finish()`), waits until the robot has ended the
-    /// motion and returns its report.
+    /// Sends torques for the newest state. After the last ones (`torques.finish()`), waits until
+    /// the robot has ended the motion and returns its report.
     ///
     /// # Errors
-    /// [`ActiveError::Write`] for torques that cannot be sent, after which others may be; [`ActiveError::Motion`] if the
-    /// robot ended the motion otherwise than asked.
+    /// [`ActiveError::Write`] for torques that cannot be sent, after which others may be;
+    /// [`ActiveError::Motion`] if the robot ended the motion otherwise than asked.
     pub fn write_once(
         &mut self,
         torques: impl Into<Next<Torques>>,
@@ -245,11 +253,13 @@ impl Active<Torques> {
 }
 
 impl<C: GeneratorCommand> Active<C> {
-    /// Sends a command to the motion generator for the newest state, under one of the robot's own controllers. After the
-    /// last one, waits until the robot has ended the motion and returns its report.
+    /// Sends a command to the motion generator for the newest state, under one of the robot's own
+    /// controllers. After the last one, waits until the robot has ended the motion and returns its
+    /// report.
     ///
     /// # Errors
-    /// As [`Active<Torques>::write_once`]; without torques where the motion wants them, refused with the vendor's text.
+    /// As [`Active<Torques>::write_once`]; without torques where the motion wants them, refused
+    /// with the vendor's text.
     pub fn write_motion(
         &mut self,
         motion: impl Into<Next<C>>,
@@ -262,11 +272,12 @@ impl<C: GeneratorCommand> Active<C> {
         self.write(&command, finished)
     }
 
-    /// Sends a command to the motion generator and torques beside it, under an external controller. If either is the last,
-    /// waits until the robot has ended the motion and returns its report.
+    /// Sends a command to the motion generator and torques beside it, under an external controller.
+    /// If either is the last, waits until the robot has ended the motion and returns its report.
     ///
     /// # Errors
-    /// As [`Self::write_motion`]; torques that the motion does not want are refused with the vendor's text.
+    /// As [`Self::write_motion`]; torques that the motion does not want are refused with the
+    /// vendor's text.
     pub fn write_motion_and_torques(
         &mut self,
         motion: impl Into<Next<C>>,

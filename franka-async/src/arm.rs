@@ -17,8 +17,8 @@ use crate::input::{Done, Input, Outcome, Waiting};
 use crate::motion::Work;
 use crate::{Follow, Motion, Pose, Robot};
 
-/// Options of a session of target control; see [`Robot::engage`]. The default holds with the gains of each kind of goal
-/// and the default budget.
+/// Options of a session of target control; see [`Robot::engage`]. The default holds with the gains
+/// of each kind of goal and the default budget.
 #[derive(Debug, Default)]
 #[must_use = "options do nothing until `Robot::engage` takes them"]
 pub struct Engage {
@@ -58,18 +58,21 @@ impl Engage {
         self
     }
 
-    /// Keeps the arm out of these regions, base frame, none by default. The reference slows down
-    /// on the way to one and stops [`KEEP_OUT_STOP`](crate::KEEP_OUT_STOP) before it, and a goal that this blocks is given up
-    /// as [`Lapse::Blocked`](crate::Lapse::Blocked); an arm that stands in a region may leave it. Links and the Franka Hand
-    /// are kept out, no other tool. [`GoalError::KeepOut`](crate::GoalError::KeepOut) refuses more than
-    /// [`KEEP_OUT_MAX`](crate::KEEP_OUT_MAX) regions, numbers that are not finite and negative sides.
+    /// Keeps the arm out of these regions, base frame, none by default. The reference slows down on
+    /// the way to one and stops [`KEEP_OUT_STOP`](crate::KEEP_OUT_STOP) before it, and a goal that
+    /// this blocks is given up as [`Lapse::Blocked`](crate::Lapse::Blocked); an arm that stands in
+    /// a region may leave it. Links and the Franka Hand are kept out, no other tool.
+    /// [`GoalError::KeepOut`](crate::GoalError::KeepOut) refuses more than
+    /// [`KEEP_OUT_MAX`](crate::KEEP_OUT_MAX) regions, numbers that are not finite and negative
+    /// sides.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.engagement.keep_out = Some(regions.into_iter().collect());
         self
     }
 
-    /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes and holds, and every goal
-    /// resolves as [`MotionError::Held`]. Its silence has to be 10 ms or more. See [`Deadman::new`](crate::Deadman::new).
+    /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes
+    /// and holds, and every goal resolves as [`MotionError::Held`]. Its silence has to be 10 ms or
+    /// more. See [`Deadman::new`](crate::Deadman::new).
     pub fn deadman(mut self, grip: Grip) -> Self {
         self.engagement.deadman = Some(grip);
         self
@@ -81,23 +84,26 @@ impl Engage {
         self
     }
 
-    /// Shows every cycle to `function`, on the real-time thread, once its command has left: the record of the cycle and its
-    /// state. It must not lock, allocate, print or wait; if it panics it is not called again, and the session goes on. For
-    /// records outside the thread see [`Robot::records`].
+    /// Shows every cycle to `function`, on the real-time thread, once its command has left: the
+    /// record of the cycle and its state. It must not lock, allocate, print or wait; if it panics
+    /// it is not called again, and the session goes on. For records outside the thread see
+    /// [`Robot::records`].
     pub fn observer(mut self, function: impl FnMut(&Record, &RobotState) + Send + 'static) -> Self {
         self.engagement.observer = Some(Observer::new(function));
         self
     }
 }
 
-/// A session of target control: the arm is held, and goes from goal to goal without a stop in between, whatever their
-/// kinds. Made by [`Robot::engage`].
+/// A session of target control: the arm is held, and goes from goal to goal without a stop in
+/// between, whatever their kinds. Made by [`Robot::engage`].
 ///
-/// A cheap handle: clones share the session, motions that are awaited are handles too. Dropping the last one brakes the arm and
-/// ends the session, in the background; [`Self::disengage`] does the same and can be awaited. [`Robot::stop`] ends it from
-/// outside, as does the robot by a reflex: whatever is asked of the session afterwards is answered with the reason.
+/// A cheap handle: clones share the session, motions that are awaited are handles too. Dropping the
+/// last one brakes the arm and ends the session, in the background; [`Self::disengage`] does the
+/// same and can be awaited. [`Robot::stop`] ends it from outside, as does the robot by a reflex:
+/// whatever is asked of the session afterwards is answered with the reason.
 ///
-/// While a session has the arm, motions of the [`Robot`] itself are refused as [`MotionError::Busy`].
+/// While a session has the arm, motions of the [`Robot`] itself are refused as
+/// [`MotionError::Busy`].
 #[derive(Clone)]
 pub struct Arm {
     session: Arc<Session>,
@@ -117,8 +123,9 @@ impl Drop for Session {
 }
 
 impl Robot {
-    /// Begins a session that holds the arm where it is and then goes from goal to goal; resolves when it has begun. After a
-    /// motion or a session that was dropped it begins when that has let the arm go.
+    /// Begins a session that holds the arm where it is and then goes from goal to goal; resolves
+    /// when it has begun. After a motion or a session that was dropped it begins when that has let
+    /// the arm go.
     ///
     /// # Errors
     /// [`MotionError`]: [`MotionError::Busy`] while anything else controls the arm, [`MotionError::Goal`] for gains or
@@ -172,8 +179,8 @@ impl Arm {
         &self.session.robot
     }
 
-    /// A motion of the end effector to `pose`; see [`Robot::move_to`]. It resolves when the arm has arrived and rests, which
-    /// is then held. Dropping it brakes the arm and holds it.
+    /// A motion of the end effector to `pose`; see [`Robot::move_to`]. It resolves when the arm has
+    /// arrived and rests, which is then held. Dropping it brakes the arm and holds it.
     pub fn move_to(&self, pose: Pose) -> Motion {
         self.motion(Target::Pose(pose), Then::Stay)
     }
@@ -188,8 +195,9 @@ impl Arm {
         self.motion(Target::Rest, Then::Stay)
     }
 
-    /// Heads for `pose` from now on, in the place of whatever came before, and holds it. Returns as soon as the goal is
-    /// taken: for programs that set goals at a rate of their own and look at the state for the rest.
+    /// Heads for `pose` from now on, in the place of whatever came before, and holds it. Returns as
+    /// soon as the goal is taken: for programs that set goals at a rate of their own and look at
+    /// the state for the rest.
     ///
     /// # Errors
     /// [`MotionError::Goal`] for a pose that is not accepted, and what ended the session.
@@ -211,14 +219,16 @@ impl Arm {
         self.take(Target::Joints(q)).await
     }
 
-    /// Follows a chunk of points with times, as a policy predicts them, from now on; returns as soon as it is taken. A chunk
-    /// that comes while another one runs goes on from it: see [`Chunk::blend`]. What the observation is old that it was
-    /// made from, [`Chunk::observed_at`] makes up for. The limits are kept whatever the points are. The arm rests at the
-    /// last one unless another chunk or goal comes.
+    /// Follows a chunk of points with times, as a policy predicts them, from now on; returns as
+    /// soon as it is taken. A chunk that comes while another one runs goes on from it: see
+    /// [`Chunk::blend`]. What the observation is old that it was made from, [`Chunk::observed_at`]
+    /// makes up for. The limits are kept whatever the points are. The arm rests at the last one
+    /// unless another chunk or goal comes.
     ///
     /// # Errors
     /// As [`Self::set`]; [`GoalError::Late`](crate::GoalError::Late) if all points have passed, and
-    /// [`GoalError::Chunks`](crate::GoalError::Chunks) if chunks come faster than the control thread takes them up.
+    /// [`GoalError::Chunks`](crate::GoalError::Chunks) if chunks come faster than the control
+    /// thread takes them up.
     ///
     /// # Cancel safety
     /// As [`Self::set`].
@@ -235,9 +245,10 @@ impl Arm {
         .await
     }
 
-    /// Lets a hand guide the arm, from when it rests: along the axes that are `free` there is no spring, and none holds the
-    /// elbow if that is free; the others stay where they are. Until the next goal; [`Self::hold`] ends it. Returns as soon as
-    /// it is taken. The load has to be declared, or it pulls the arm down.
+    /// Lets a hand guide the arm, from when it rests: along the axes that are `free` there is no
+    /// spring, and none holds the elbow if that is free; the others stay where they are. Until the
+    /// next goal; [`Self::hold`] ends it. Returns as soon as it is taken. The load has to be
+    /// declared, or it pulls the arm down.
     ///
     /// # Errors
     /// As [`Self::set`].
@@ -248,8 +259,8 @@ impl Arm {
         self.take(Target::Guide(free)).await
     }
 
-    /// Follows the newest of the targets that `targets` shows, poses or joint positions, until the sender is dropped, and
-    /// then comes to rest at the last one. See [`Robot::follow`].
+    /// Follows the newest of the targets that `targets` shows, poses or joint positions, until the
+    /// sender is dropped, and then comes to rest at the last one. See [`Robot::follow`].
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -257,8 +268,9 @@ impl Arm {
         Follow::watch(self.robot().clone(), Some(self.clone()), targets)
     }
 
-    /// Follows the newest of the targets that a stream yields, poses or joint positions, until it ends, and then comes to
-    /// rest at the last one. Targets that came while another one was taken are skipped.
+    /// Follows the newest of the targets that a stream yields, poses or joint positions, until it
+    /// ends, and then comes to rest at the last one. Targets that came while another one was taken
+    /// are skipped.
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
@@ -267,10 +279,12 @@ impl Arm {
         Follow::new(self.robot().clone(), Some(self.clone()), targets)
     }
 
-    /// Changes gains, limits and force cap, of the goal under way and of those to come. Gains fade over 0.3 s: the torques do not step.
+    /// Changes gains, limits and force cap, of the goal under way and of those to come. Gains fade
+    /// over 0.3 s: the torques do not step.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for values out of their bounds, which change nothing; what ended the session.
+    /// [`MotionError::Goal`] for values out of their bounds, which change nothing; what ended the
+    /// session.
     ///
     /// # Cancel safety
     /// Once polled it is done all the same for the goal under way.
@@ -290,11 +304,12 @@ impl Arm {
         Ok(())
     }
 
-    /// Brakes, lets the arm go and ends the session; resolves when it has ended. A goal under way resolves as
-    /// [`MotionError::Stopped`]. Every other handle is then disengaged.
+    /// Brakes, lets the arm go and ends the session; resolves when it has ended. A goal under way
+    /// resolves as [`MotionError::Stopped`]. Every other handle is then disengaged.
     ///
     /// # Errors
-    /// [`MotionError`] if the session ended otherwise: by a reflex, or [`MotionError::Stopped`] by [`Robot::stop`].
+    /// [`MotionError`] if the session ended otherwise: by a reflex, or [`MotionError::Stopped`] by
+    /// [`Robot::stop`].
     ///
     /// # Cancel safety
     /// Once polled the session ends all the same.
@@ -362,8 +377,8 @@ impl Arm {
         answer.map_err(|error| self.explain(error))
     }
 
-    /// What ended the session, in the place of an error that says no more than that it has: the lifecycle knows how the last
-    /// session ended, and of an older one only that it did.
+    /// What ended the session, in the place of an error that says no more than that it has: the
+    /// lifecycle knows how the last session ended, and of an older one only that it did.
     pub(crate) fn explain(&self, error: MotionError) -> MotionError {
         match (&*self.session.ended.borrow(), error) {
             (Some(Err(ended)), MotionError::Disengaged) => ended.clone(),

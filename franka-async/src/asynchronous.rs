@@ -19,13 +19,14 @@ use crate::{MotionError, Robot};
 pub struct AsynchronousOptions {
     /// Bounds of the joint velocities, `[rad/s]`.
     pub maximum_joint_velocities: [f64; 7],
-    /// Distance of the desired joint positions from the target that counts as reached, as Euclidean norm, `[rad]`.
+    /// Distance of the desired joint positions from the target that counts as reached, as Euclidean
+    /// norm, `[rad]`.
     pub goal_tolerance: f64,
 }
 
 impl Default for AsynchronousOptions {
-    /// 0.655 rad/s for joints 1 to 4 and 1.315 rad/s for the others, as in the example of libfranka 0.21; its tolerance of
-    /// 1 mrad.
+    /// 0.655 rad/s for joints 1 to 4 and 1.315 rad/s for the others, as in the example of libfranka
+    /// 0.21; its tolerance of 1 mrad.
     fn default() -> Self {
         Self {
             maximum_joint_velocities: [0.655, 0.655, 0.655, 0.655, 1.315, 1.315, 1.315],
@@ -35,12 +36,13 @@ impl Default for AsynchronousOptions {
 }
 
 impl Robot {
-    /// Starts a motion in which the robot itself moves to sparse joint targets, and resolves when it runs. Protocol 10
-    /// only, and experimental there.
+    /// Starts a motion in which the robot itself moves to sparse joint targets, and resolves when
+    /// it runs. Protocol 10 only, and experimental there.
     ///
     /// # Errors
-    /// [`MotionError::Unsupported`] for a version without it, before a byte is sent; [`MotionError::Busy`] while anything
-    /// else controls the arm; otherwise what ended the motion before it ran.
+    /// [`MotionError::Unsupported`] for a version without it, before a byte is sent;
+    /// [`MotionError::Busy`] while anything else controls the arm; otherwise what ended the motion
+    /// before it ran.
     ///
     /// # Cancel safety
     /// Dropping the future has the robot stop.
@@ -94,10 +96,12 @@ struct Targets {
 }
 
 impl AsynchronousControl {
-    /// Sends the robot to `q`, `[rad]`, where it comes to rest; wherever it was going before. Sent with the next state.
+    /// Sends the robot to `q`, `[rad]`, where it comes to rest; wherever it was going before. Sent
+    /// with the next state.
     ///
     /// # Errors
-    /// [`MotionError::Invalid`] for numbers that are not finite; what ended the motion, if it has ended.
+    /// [`MotionError::Invalid`] for numbers that are not finite; what ended the motion, if it has
+    /// ended.
     pub fn set_target(&self, q: [f64; 7]) -> Result<(), MotionError> {
         check::finite(&q)?;
         if let Some(outcome) = self.end.clone().now_or_never() {
@@ -139,7 +143,8 @@ impl AsynchronousControl {
         }
     }
 
-    /// Ends the motion at the newest target, or where the arm is without one, and resolves when the robot has. Best after
+    /// Ends the motion at the newest target, or where the arm is without one, and resolves when the
+    /// robot has. Best after
     /// [`Self::reached`]: the robot may refuse to end a motion that still moves.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! The bridge: one task between the async world, the command channel and the real-time thread.
 //!
-//! It drives the lifecycle of motions and is the only one that touches the thread's queues and slots. Waking other tasks
-//! takes locks; that is why it happens here and never on the thread.
+//! It drives the lifecycle of motions and is the only one that touches the thread's queues and
+//! slots. Waking other tasks takes locks; that is why it happens here and never on the thread.
 
 use std::collections::HashMap;
 use std::io;
@@ -34,8 +34,8 @@ const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 /// # Errors
 /// If the runtime's poll does not take the descriptor.
 pub(crate) fn attach(bell: Wake) -> io::Result<AsyncFd<Wake>> {
-    // SAFETY: a `Wake` owns its eventfd through an `Arc` that nothing replaces: the descriptor is open, and the same, for
-    // as long as the `Wake` lives, and the `AsyncFd` owns the `Wake`.
+    // SAFETY: a `Wake` owns its eventfd through an `Arc` that nothing replaces: the descriptor is
+    // open, and the same, for as long as the `Wake` lives, and the `AsyncFd` owns the `Wake`.
     let attached = unsafe { AsyncFd::register_with_interest(bell, Interest::READABLE) };
     attached.map_err(Into::into)
 }
@@ -98,8 +98,8 @@ impl Bridge {
         }
     }
 
-    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is told to end: by an
-    /// input, or by `cancellation`.
+    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is
+    /// told to end: by an input, or by `cancellation`.
     pub(crate) fn start(
         self,
         reports: mpsc::UnboundedReceiver<Report>,
@@ -227,8 +227,9 @@ impl Bridge {
         }
     }
 
-    /// Takes note that robot or thread is out of reach. Everything else ends with it: a thread without a connection would
-    /// go on towards a goal that nobody can take back, while one that has ended lets the robot stop the arm.
+    /// Takes note that robot or thread is out of reach. Everything else ends with it: a thread
+    /// without a connection would go on towards a goal that nobody can take back, while one that
+    /// has ended lets the robot stop the arm.
     fn lose(&mut self, reason: &str) {
         self.channel.note_end(reason);
         self.lifecycle.on_connection_closed(reason);
@@ -353,8 +354,8 @@ impl Bridge {
         Instant::now() + CLOSING_TIMEOUT
     }
 
-    /// Tells everybody who still waits, closes the connection and ends the thread. Whoever asks for that meanwhile joins
-    /// `done`.
+    /// Tells everybody who still waits, closes the connection and ends the thread. Whoever asks for
+    /// that meanwhile joins `done`.
     async fn end(
         mut self,
         mut inbox: mpsc::UnboundedReceiver<Input>,

@@ -14,7 +14,8 @@ use crate::{ConnectError, Robot};
 /// Which protocol versions to accept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VersionPolicy {
-    /// Announce the newest version; if the robot refuses and names an older one that is known, announce that.
+    /// Announce the newest version; if the robot refuses and names an older one that is known,
+    /// announce that.
     #[default]
     Negotiate,
     /// This one and no other.
@@ -55,8 +56,9 @@ impl Builder {
         self
     }
 
-    /// Whether the control thread has to get what it asks the operating system for: `SCHED_FIFO` on a `PREEMPT_RT`
-    /// kernel. [`Realtime::Enforce`] by default; [`Realtime::Ignore`] suits simulators.
+    /// Whether the control thread has to get what it asks the operating system for: `SCHED_FIFO` on
+    /// a `PREEMPT_RT` kernel. [`Realtime::Enforce`] by default; [`Realtime::Ignore`] suits
+    /// simulators.
     pub fn realtime(mut self, realtime: Realtime) -> Self {
         self.scheduling.realtime = realtime;
         self
@@ -86,62 +88,65 @@ impl Builder {
         self
     }
 
-    /// Time that each step of connecting may take: finding the host, the TCP connection to each of its addresses, the
-    /// handshake, the first state, the description. 1 s by default.
+    /// Time that each step of connecting may take: finding the host, the TCP connection to each of
+    /// its addresses, the handshake, the first state, the description. 1 s by default.
     pub fn connect_timeout(mut self, timeout: Duration) -> Self {
         self.connect_timeout = timeout;
         self
     }
 
-    /// Stack of the control thread that gets its pages before the first cycle, in bytes: 512 KiB by default, 64 MiB at
-    /// most. The thread's stack is larger by a reserve. For control functions that use more; see
-    /// [`ConnectError::Realtime`] for what is out of range.
+    /// Stack of the control thread that gets its pages before the first cycle, in bytes: 512 KiB by
+    /// default, 64 MiB at most. The thread's stack is larger by a reserve. For control functions
+    /// that use more; see [`ConnectError::Realtime`] for what is out of range.
     pub fn prefault_stack(mut self, bytes: usize) -> Self {
         self.scheduling.prefault_stack = bytes;
         self
     }
 
-    /// Polls the network card for so long before each wait for a state, in whole microseconds: `SO_BUSY_POLL`, 1 to 900 us;
-    /// not at all by default. What the kernel refuses (it takes `CAP_NET_ADMIN`) is an error under
-    /// [`Realtime::Enforce`] and done without under [`Realtime::Ignore`]; [`Robot::granted`] tells.
+    /// Polls the network card for so long before each wait for a state, in whole microseconds:
+    /// `SO_BUSY_POLL`, 1 to 900 us; not at all by default. What the kernel refuses (it takes
+    /// `CAP_NET_ADMIN`) is an error under [`Realtime::Enforce`] and done without under
+    /// [`Realtime::Ignore`]; [`Robot::granted`] tells.
     pub fn busy_poll(mut self, duration: Duration) -> Self {
         self.scheduling.busy_poll = Some(duration);
         self
     }
 
-    /// Silence of the robot after which a running motion fails with `LinkLost`: 20 ms to 1 s, 1 s by default. Anything else
-    /// is refused as [`ConnectError::LinkTimeout`]. It is noticed late by a quarter of it at most.
+    /// Silence of the robot after which a running motion fails with `LinkLost`: 20 ms to 1 s, 1 s
+    /// by default. Anything else is refused as [`ConnectError::LinkTimeout`]. It is noticed late by
+    /// a quarter of it at most.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self
     }
 
-    /// Whether to compute with the vendor's published constants whatever the robot says of itself; off by default, so that
-    /// a Franka Research 3 is asked for its description, and keeps the limits in there. For a robot whose description this
-    /// driver refuses, once it is known that its arm is that of the constants. A Franka Emika Robot has no description.
+    /// Whether to compute with the vendor's published constants whatever the robot says of itself;
+    /// off by default, so that a Franka Research 3 is asked for its description, and keeps the
+    /// limits in there. For a robot whose description this driver refuses, once it is known that
+    /// its arm is that of the constants. A Franka Emika Robot has no description.
     pub fn nominal_model(mut self, nominal: bool) -> Self {
         self.nominal_model = nominal;
         self
     }
 
     /// How many of its last cycles an error carries when the robot ends a motion: see
-    /// [`ControlError::log`](crate::ControlError::log). 50 by default; 0 for none, and then without the success rate in
-    /// its text.
+    /// [`ControlError::log`](crate::ControlError::log). 50 by default; 0 for none, and then without
+    /// the success rate in its text.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self
     }
 
-    /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does: brakes, ends the motion, closes. For
-    /// programs that end all their tasks by one token; await `shutdown` all the same, to know when it is done. Connecting
-    /// itself goes on: drop its future to give it up.
+    /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does: brakes, ends the
+    /// motion, closes. For programs that end all their tasks by one token; await `shutdown` all the
+    /// same, to know when it is done. Connecting itself goes on: drop its future to give it up.
     pub fn cancellation(mut self, token: CancellationToken) -> Self {
         self.cancellation = token;
         self
     }
 
-    /// Connects: real-time check, TCP, handshake, first state, description. Must be called on a Tokio runtime with I/O and time
-    /// enabled, which then runs the two tasks of the connection.
+    /// Connects: real-time check, TCP, handshake, first state, description. Must be called on a
+    /// Tokio runtime with I/O and time enabled, which then runs the two tasks of the connection.
     ///
     /// # Errors
     /// [`ConnectError`]; nothing is left behind.

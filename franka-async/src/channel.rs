@@ -1,8 +1,10 @@
-//! The command channel: one task that owns the TCP connection, sends requests and hands replies to whoever waits.
+//! The command channel: one task that owns the TCP connection, sends requests and hands replies to
+//! whoever waits.
 //!
-//! Replies match by command id. Every request has a deadline but `Move`, whose two replies belong to the lifecycle of
-//! the motion. Motions have a queue and places of their own, so that no number of other requests holds up a stop. When
-//! the connection ends, everybody who waits is told why, and so is everybody who comes later.
+//! Replies match by command id. Every request has a deadline but `Move`, whose two replies belong
+//! to the lifecycle of the motion. Motions have a queue and places of their own, so that no number
+//! of other requests holds up a stop. When the connection ends, everybody who waits is told why,
+//! and so is everybody who comes later.
 
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -28,7 +30,8 @@ use crate::newest::Newest;
 /// Requests that may wait for the task. A caller beyond that waits for room.
 const CAPACITY: usize = 32;
 
-/// Requests of callers that may wait for their answers: two places are a motion's, for its `Move` and its `StopMove`.
+/// Requests of callers that may wait for their answers: two places are a motion's, for its `Move`
+/// and its `StopMove`.
 const CALLS: usize = <Session>::PENDING_LIMIT - 2;
 
 /// What libfranka says when it finds the connection closed.
@@ -164,8 +167,8 @@ impl Channel {
         answered.await.unwrap_or_else(|_| Err(self.closed()))
     }
 
-    /// Sends a request on behalf of a motion, past all that wait for room. Replies to a `Move` come as [`Report`]s; a closed
-    /// channel has said so in a report of its own.
+    /// Sends a request on behalf of a motion, past all that wait for room. Replies to a `Move` come
+    /// as [`Report`]s; a closed channel has said so in a report of its own.
     pub(crate) fn send(&self, motion: MotionId, request: Request) {
         let waiter = match request {
             Request::Move(_) => Waiter::Motion(motion),
@@ -176,7 +179,8 @@ impl Channel {
         }
     }
 
-    /// Decides what everybody hears about the end of the connection, unless that is decided already.
+    /// Decides what everybody hears about the end of the connection, unless that is decided
+    /// already.
     pub(crate) fn note_end(&self, reason: &str) {
         self.ended.get_or_init(|| reason.to_owned());
     }
@@ -319,7 +323,8 @@ impl Task {
         self.waiting.insert(id, waiting);
     }
 
-    /// Gives up waiting for motions that the lifecycle has done with: it begins one after the other.
+    /// Gives up waiting for motions that the lifecycle has done with: it begins one after the
+    /// other.
     fn forget_motions(&mut self) {
         let over = self
             .waiting

@@ -85,7 +85,8 @@ impl Decoder for MessageCodec {
         Ok(Some(Frame { header, payload }))
     }
 
-    /// A stream may end within a message: that is the end of the stream all the same, and no failure to read it.
+    /// A stream may end within a message: that is the end of the stream all the same, and no
+    /// failure to read it.
     fn decode_eof(&mut self, received: &mut BytesMut) -> Result<Option<Frame>, StreamError> {
         let frame = self.decode(received)?;
         if frame.is_none() {

@@ -34,12 +34,14 @@ use crate::{ConnectError, Robot};
 /// Time for the TCP connection. Source: libfranka 0.21, `network.h`.
 pub(crate) const TCP_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Keepalive of the command connection: idle time, interval, count. Source: libfranka 0.21, `network.cpp`.
+/// Keepalive of the command connection: idle time, interval, count. Source: libfranka 0.21,
+/// `network.cpp`.
 const KEEPALIVE: (Duration, Duration, u32) = (Duration::from_secs(1), Duration::from_secs(1), 3);
 
 pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     LinkTimeout::new(builder.link_timeout)?;
-    // Refused before anything is sent, as the reference client does; the thread asks again for itself.
+    // Refused before anything is sent, as the reference client does; the thread asks again for
+    // itself.
     let scheduling = builder.scheduling.clone();
     scheduling.probe()?;
 
@@ -90,7 +92,8 @@ struct Opened {
     first: RobotState,
 }
 
-/// Opens a session on a new connection to `address`, with the version that the policy allows and the robot accepts.
+/// Opens a session on a new connection to `address`, with the version that the policy allows and
+/// the robot accepts.
 async fn open(
     tcp: TcpStream,
     address: SocketAddr,
@@ -154,8 +157,8 @@ async fn open_with(
     })
 }
 
-/// Finds the addresses of the host, each once, in the order in which to try them; `port` is that of the device, for an
-/// endpoint without one.
+/// Finds the addresses of the host, each once, in the order in which to try them; `port` is that of
+/// the device, for an endpoint without one.
 pub(crate) async fn resolve<P: Protocol>(
     endpoint: &Endpoint,
     port: u16,
@@ -182,7 +185,8 @@ pub(crate) async fn resolve<P: Protocol>(
             addresses.push(address);
         }
     }
-    // The reference client knows nothing but IPv4: this is how a robot is reached, and an IPv6 address a special case.
+    // The reference client knows nothing but IPv4: this is how a robot is reached, and an IPv6
+    // address a special case.
     addresses.sort_by_key(SocketAddr::is_ipv6);
     if addresses.is_empty() {
         return Err(network("No address found"));
@@ -196,7 +200,8 @@ fn network<P: Protocol>(reason: &str) -> ConnectError<P> {
     }
 }
 
-/// Connects to the first of `addresses` that takes a connection, and says which it is. `limit` holds for each.
+/// Connects to the first of `addresses` that takes a connection, and says which it is. `limit`
+/// holds for each.
 pub(crate) async fn dial<P: Protocol>(
     addresses: &[SocketAddr],
     limit: Duration,

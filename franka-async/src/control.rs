@@ -16,12 +16,14 @@ use crate::motion::Work;
 use crate::{Canceller, Moving, Robot};
 
 impl Robot {
-    /// Control by torques alone: `function` gets every state, and the robot's time since the state before, which is zero
-    /// at first and more than a millisecond after a loss. It returns [`Torques`], or `torques.finish()` for the last.
+    /// Control by torques alone: `function` gets every state, and the robot's time since the state
+    /// before, which is zero at first and more than a millisecond after a loss. It returns
+    /// [`Torques`], or `torques.finish()` for the last.
     ///
-    /// The function runs on the real-time thread, once a millisecond, with some 300 us to answer: it must not lock,
-    /// allocate, print or wait. If it panics, the robot is told to stop and the motion resolves as
-    /// [`MotionError::Panicked`](crate::MotionError::Panicked); the thread lives on.
+    /// The function runs on the real-time thread, once a millisecond, with some 300 us to answer:
+    /// it must not lock, allocate, print or wait. If it panics, the robot is told to stop and the
+    /// motion resolves as [`MotionError::Panicked`](crate::MotionError::Panicked); the thread lives
+    /// on.
     pub fn control_torques<R: Into<Next<Torques>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -29,8 +31,9 @@ impl Robot {
         Control::new(self.clone(), Callback::torques(self.version(), function))
     }
 
-    /// Control by joint positions for the robot's own controller; see [`Self::control_torques`] for what a function may
-    /// do, and [`Control::controller`] and [`Control::with_torques`] for who turns them into torques.
+    /// Control by joint positions for the robot's own controller; see [`Self::control_torques`] for
+    /// what a function may do, and [`Control::controller`] and [`Control::with_torques`] for who
+    /// turns them into torques.
     pub fn control_joint_positions<R: Into<Next<JointPositions>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -70,12 +73,14 @@ impl Robot {
     }
 }
 
-/// A motion under a control function, before it begins: nothing is sent until it is awaited or detached.
+/// A motion under a control function, before it begins: nothing is sent until it is awaited or
+/// detached.
 ///
-/// Awaiting it resolves when the function has finished and the robot has ended the motion. Unlike goals, it neither
-/// supersedes what runs nor is superseded: it is refused as [`MotionError::Busy`](crate::MotionError::Busy) while
-/// anything else controls the arm, and so is everything else while it does. **Dropping the future has the robot stop**;
-/// the function may still be called for the few cycles that this takes.
+/// Awaiting it resolves when the function has finished and the robot has ended the motion. Unlike
+/// goals, it neither supersedes what runs nor is superseded: it is refused as
+/// [`MotionError::Busy`](crate::MotionError::Busy) while anything else controls the arm, and so is
+/// everything else while it does. **Dropping the future has the robot stop**; the function may
+/// still be called for the few cycles that this takes.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Control {
@@ -101,14 +106,15 @@ impl Control {
         }
     }
 
-    /// Which of the robot's own controllers follows the commands; joint impedance by default. Without effect where
-    /// torques are commanded.
+    /// Which of the robot's own controllers follows the commands; joint impedance by default.
+    /// Without effect where torques are commanded.
     pub fn controller(mut self, controller: MoveControllerMode) -> Self {
         self.controller = controller;
         self
     }
 
-    /// Adds torques beside the commands to the motion generator, in the place of the robot's own controller.
+    /// Adds torques beside the commands to the motion generator, in the place of the robot's own
+    /// controller.
     pub fn with_torques<R: Into<Next<Torques>>>(
         mut self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -117,7 +123,8 @@ impl Control {
         self
     }
 
-    /// Whether commands pass the limiter; by default they do for protocol 5 and do not for protocol 10, as in libfranka.
+    /// Whether commands pass the limiter; by default they do for protocol 5 and do not for protocol
+    /// 10, as in libfranka.
     pub fn limit_rate(mut self, limit: bool) -> Self {
         self.limit_rate = limit;
         self
@@ -129,10 +136,12 @@ impl Control {
         self
     }
 
-    /// Begins together with the motions of other robots, see [`Motion::start_with`](crate::Motion::start_with). The function
-    /// is not called until all are there. Until then the driver holds the arm: by the desired joint positions or pose of the
-    /// robot, by velocities of zero, by torques of zero, which leave it to the robot's gravity compensation. The function's
-    /// first call is with a time step of zero all the same. The report's duration includes the wait.
+    /// Begins together with the motions of other robots, see
+    /// [`Motion::start_with`](crate::Motion::start_with). The function is not called until all are
+    /// there. Until then the driver holds the arm: by the desired joint positions or pose of the
+    /// robot, by velocities of zero, by torques of zero, which leave it to the robot's gravity
+    /// compensation. The function's first call is with a time step of zero all the same. The
+    /// report's duration includes the wait.
     ///
     /// # Cancel safety
     /// See [`Motion::start_with`](crate::Motion::start_with).
@@ -141,7 +150,8 @@ impl Control {
         self
     }
 
-    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log.
+    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the
+    /// log.
     pub fn detach(self) {
         let robot = self.robot.clone();
         robot.begin(self.work());

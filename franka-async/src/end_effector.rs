@@ -1,8 +1,9 @@
 //! The connection to an end effector: one task that owns both of its sockets.
 //!
-//! An action has one answer, when it has ended, and no deadline: a homing takes seconds, a blocked move minutes. The
-//! task watches whether somebody still waits for the action that runs, and sends a stop once nobody does. States come by
-//! UDP at a leisurely pace; a task of the runtime is good enough for them.
+//! An action has one answer, when it has ended, and no deadline: a homing takes seconds, a blocked
+//! move minutes. The task watches whether somebody still waits for the action that runs, and sends
+//! a stop once nobody does. States come by UDP at a leisurely pace; a task of the runtime is good
+//! enough for them.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -92,7 +93,8 @@ struct Call<D: Device> {
 /// The way to the task. Clones share it.
 pub(crate) struct Link<D: Device> {
     address: SocketAddr,
-    /// Unbounded, and yet bounded: the task takes requests at once, and refuses those for which the session has no place.
+    /// Unbounded, and yet bounded: the task takes requests at once, and refuses those for which the
+    /// session has no place.
     calls: mpsc::UnboundedSender<Call<D>>,
     states: watch::Receiver<D::State>,
     ended: Arc<OnceLock<String>>,

@@ -3,8 +3,8 @@
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::str::FromStr;
 
-/// Where a device listens: a host, and a port that is the usual one of the device unless given: 1337 of a robot, 1338 of a
-/// Franka Hand, 1339 of a vacuum gripper.
+/// Where a device listens: a host, and a port that is the usual one of the device unless given:
+/// 1337 of a robot, 1338 of a Franka Hand, 1339 of a vacuum gripper.
 ///
 /// Made from an [`IpAddr`], a [`SocketAddr`], or from text:
 ///
@@ -16,7 +16,8 @@ use std::str::FromStr;
 /// | `robot.lan`, `robot.lan:40123` | a host name; its addresses are tried in turn, IPv4 before IPv6 |
 ///
 /// Other text makes an endpoint too, which connecting refuses as
-/// [`ConnectError::Endpoint`](crate::ConnectError::Endpoint) before anything is sent. To know at once, `parse` it.
+/// [`ConnectError::Endpoint`](crate::ConnectError::Endpoint) before anything is sent. To know at
+/// once, `parse` it.
 ///
 /// ```
 /// use franka_async::{Endpoint, EndpointError};

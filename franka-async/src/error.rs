@@ -1,4 +1,5 @@
-//! What can go wrong, grouped by who can act on it. Texts are those of the reference client where it has one.
+//! What can go wrong, grouped by who can act on it. Texts are those of the reference client where
+//! it has one.
 
 use std::io;
 use std::net::SocketAddr;
@@ -21,8 +22,9 @@ pub use crate::reading::ReadError;
 pub use franka_rt::lifecycle::{ControlError, MotionError, Party};
 pub use franka_rt::session::GoalError;
 
-/// Anything that can go wrong with a robot or its end effectors: what a program with many kinds of calls returns. Every
-/// error of this crate converts into it, so that `?` does, and `Display` is that of the error inside.
+/// Anything that can go wrong with a robot or its end effectors: what a program with many kinds of
+/// calls returns. Every error of this crate converts into it, so that `?` does, and `Display` is
+/// that of the error inside.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -32,7 +34,8 @@ pub enum Error {
     /// A command other than a motion was not carried out.
     #[error(transparent)]
     Command(#[from] CommandError),
-    /// The robot ended a motion: a reflex, a stop. The error has the log of the motion's last cycles.
+    /// The robot ended a motion: a reflex, a stop. The error has the log of the motion's last
+    /// cycles.
     #[error(transparent)]
     Control(Box<ControlError>),
     /// A motion ended short of its goal for another reason.
@@ -100,12 +103,13 @@ impl Error {
     }
 }
 
-/// Why there is no connection: to a robot, unless `P` says otherwise. Nothing is left behind; connecting again is always
-/// possible.
+/// Why there is no connection: to a robot, unless `P` says otherwise. Nothing is left behind;
+/// connecting again is always possible.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
-    /// Host: it does not grant what real-time control needs, see [`Builder::realtime`](crate::Builder::realtime).
+    /// Host: it does not grant what real-time control needs, see
+    /// [`Builder::realtime`](crate::Builder::realtime).
     #[error(transparent)]
     Realtime(#[from] SchedError),
     /// Caller: the text that was given as the place of the device names none. Nothing was sent.
@@ -132,7 +136,8 @@ pub enum ConnectError<P: Protocol = Version> {
         /// The class of the failure.
         reason: String,
     },
-    /// Robot or link: the host name has several addresses, and there is no connection to any of them.
+    /// Robot or link: the host name has several addresses, and there is no connection to any of
+    /// them.
     #[error("{}", list(.attempts))]
     NoAddress {
         /// What came of each, in the order tried.
@@ -156,10 +161,12 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Link: the handshake was not answered in time.
     #[error("libfranka: TCP receive: Timeout")]
     HandshakeTimeout,
-    /// Link: the handshake succeeded and no state came. A firewall in the way of UDP is the usual cause.
+    /// Link: the handshake succeeded and no state came. A firewall in the way of UDP is the usual
+    /// cause.
     #[error("libfranka: UDP receive: Timeout")]
     NoState,
-    /// Robot, link or peer: there is no model of the arm. See [`Builder::nominal_model`](crate::Builder::nominal_model).
+    /// Robot, link or peer: there is no model of the arm. See
+    /// [`Builder::nominal_model`](crate::Builder::nominal_model).
     #[cfg(feature = "urdf")]
     #[error(transparent)]
     Model(#[from] crate::ModelError),

@@ -21,8 +21,8 @@ use crate::{Arm, Robot};
 
 type Targets = Pin<Box<dyn Stream<Item = Target> + Send>>;
 
-/// A motion that follows the newest of a stream of targets; see [`Robot::follow`] and [`Arm::follow`]. Nothing moves before
-/// it is awaited.
+/// A motion that follows the newest of a stream of targets; see [`Robot::follow`] and
+/// [`Arm::follow`]. Nothing moves before it is awaited.
 #[must_use = "a motion does nothing until it is awaited"]
 pub struct Follow {
     robot: Robot,
@@ -78,7 +78,8 @@ impl Follow {
         self
     }
 
-    /// See [`Motion::gains`](crate::Motion::gains). Without it, the kind of the first target decides.
+    /// See [`Motion::gains`](crate::Motion::gains). Without it, the kind of the first target
+    /// decides.
     pub fn gains(mut self, gains: Gains) -> Self {
         self.tuning.gains = Some(gains);
         self.stiffness = None;
@@ -97,9 +98,9 @@ impl Follow {
         self
     }
 
-    /// Bounds how far ahead of the arm a target may be, metres and radians above zero; by default nothing does. One that is
-    /// further ahead is drawn nearer, in every cycle anew while targets come, so a wild one cannot send the arm far once the
-    /// stream stops.
+    /// Bounds how far ahead of the arm a target may be, metres and radians above zero; by default
+    /// nothing does. One that is further ahead is drawn nearer, in every cycle anew while targets
+    /// come, so a wild one cannot send the arm far once the stream stops.
     pub fn lead(mut self, lead: Lead) -> Self {
         self.goal.lead = Some(lead);
         self
@@ -111,16 +112,18 @@ impl Follow {
         self
     }
 
-    /// Gives up when no target has come for `silence`, whole milliseconds from 10 on: the arm goes on to the last one
-    /// ([`Stale::Hold`]) or brakes at once ([`Stale::Brake`]), and the future resolves as [`MotionError::Held`] or
-    /// [`MotionError::Braked`] when it rests, unless targets come again before that. A target counts even if it equals the
-    /// one before. The control thread watches this by itself. Without it, the last target is held for ever.
+    /// Gives up when no target has come for `silence`, whole milliseconds from 10 on: the arm goes
+    /// on to the last one ([`Stale::Hold`]) or brakes at once ([`Stale::Brake`]), and the future
+    /// resolves as [`MotionError::Held`] or [`MotionError::Braked`] when it rests, unless targets
+    /// come again before that. A target counts even if it equals the one before. The control thread
+    /// watches this by itself. Without it, the last target is held for ever.
     pub fn watchdog(mut self, silence: Duration, stale: Stale) -> Self {
         self.goal.watchdog = Some(Watchdog { silence, stale });
         self
     }
 
-    /// See [`Motion::start_with`](crate::Motion::start_with). Targets that come before the start replace the first one.
+    /// See [`Motion::start_with`](crate::Motion::start_with). Targets that come before the start
+    /// replace the first one.
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
         self.ticket = Some(ticket);
         self
@@ -232,9 +235,10 @@ impl IntoFuture for Follow {
     type Output = Result<MotionReport, MotionError>;
     type IntoFuture = Pin<Box<dyn Future<Output = Self::Output> + Send>>;
 
-    /// Resolves when the targets have ended and the arm rests at the last one, or with the reason why not. A target that is
-    /// not accepted brakes the arm and ends the motion with [`MotionError::Goal`]. Before the first target nothing begins,
-    /// and no watchdog counts; a stream that ends without any resolves as [`MotionError::Stopped`].
+    /// Resolves when the targets have ended and the arm rests at the last one, or with the reason
+    /// why not. A target that is not accepted brakes the arm and ends the motion with
+    /// [`MotionError::Goal`]. Before the first target nothing begins, and no watchdog counts; a
+    /// stream that ends without any resolves as [`MotionError::Stopped`].
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, in the background.

@@ -13,26 +13,27 @@ use crate::error::ActionError;
 /// Why an action of the Hand has no result.
 pub type GripperError = ActionError<Command>;
 
-/// A connected Franka Hand. It has a server of its own beside the robot's, and neither waits for the other.
+/// A connected Franka Hand. It has a server of its own beside the robot's, and neither waits for
+/// the other.
 ///
-/// A cheap handle: clones share one connection, from any task or thread. One action runs at a time: a newer one aborts it,
-/// and so does [`Gripper::stop`], from any handle. Dropping the last handle closes the connection; what is grasped by then
-/// stays grasped.
+/// A cheap handle: clones share one connection, from any task or thread. One action runs at a time:
+/// a newer one aborts it, and so does [`Gripper::stop`], from any handle. Dropping the last handle
+/// closes the connection; what is grasped by then stays grasped.
 ///
 /// Actions have no deadline, since some take long: a move that an obstacle blocks, minutes. Put
-/// [`tokio::time::timeout`] around one to give it up, which stops it. A Hand that is out of reach ends them by the
-/// connection's keepalive, within seconds.
+/// [`tokio::time::timeout`] around one to give it up, which stops it. A Hand that is out of reach
+/// ends them by the connection's keepalive, within seconds.
 ///
-/// Connecting needs a Tokio runtime with I/O and time enabled, which then runs the task of the connection. Everything else
-/// may be called and awaited from anywhere.
+/// Connecting needs a Tokio runtime with I/O and time enabled, which then runs the task of the
+/// connection. Everything else may be called and awaited from anywhere.
 #[derive(Clone, Debug)]
 pub struct Gripper {
     link: Link<Version>,
 }
 
 impl Gripper {
-    /// Connects to the Hand at `endpoint`: TCP, handshake, first state; each step may take 1 s. The port is 1338 unless
-    /// given.
+    /// Connects to the Hand at `endpoint`: TCP, handshake, first state; each step may take 1 s. The
+    /// port is 1338 unless given.
     ///
     /// # Errors
     /// [`ConnectError`]; nothing is left behind.
@@ -59,14 +60,15 @@ impl Gripper {
         self.link.states()
     }
 
-    /// Finds how wide the fingers open: `max_width` of the state. Needed once after power-on and after a change of
-    /// fingers; wider grasps and moves are refused before. True if it succeeded.
+    /// Finds how wide the fingers open: `max_width` of the state. Needed once after power-on and
+    /// after a change of fingers; wider grasps and moves are refused before. True if it succeeded.
     ///
     /// # Errors
     /// [`GripperError`].
     ///
     /// # Cancel safety
-    /// Dropping the future stops the fingers, unless a newer action has taken over or the future was never polled.
+    /// Dropping the future stops the fingers, unless a newer action has taken over or the future
+    /// was never polled.
     pub async fn homing(&self) -> Result<bool, GripperError> {
         self.link.act(Request::Homing).await
     }
@@ -82,19 +84,21 @@ impl Gripper {
         self.link.act(Request::Move(Move { width, speed })).await
     }
 
-    /// Closes the fingers on an object. True if they ended within the tolerances of its width; the force stays applied
-    /// either way, until the next action or a stop.
+    /// Closes the fingers on an object. True if they ended within the tolerances of its width; the
+    /// force stays applied either way, until the next action or a stop.
     ///
     /// # Errors
     /// [`GripperError`].
     ///
     /// # Cancel safety
-    /// See [`Self::homing`]. Once the future has resolved, nothing lets go of the object but another request.
+    /// See [`Self::homing`]. Once the future has resolved, nothing lets go of the object but
+    /// another request.
     pub async fn grasp(&self, grasp: Grasp) -> Result<bool, GripperError> {
         self.link.act(Request::Grasp(grasp)).await
     }
 
-    /// Stops the fingers and lets go of what they hold. The action that runs resolves as aborted. True if it succeeded.
+    /// Stops the fingers and lets go of what they hold. The action that runs resolves as aborted.
+    /// True if it succeeded.
     ///
     /// # Errors
     /// [`GripperError`].

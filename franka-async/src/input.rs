@@ -23,7 +23,8 @@ pub(crate) enum Input {
         target: Target,
         taken: oneshot::Sender<Result<bool, GoalError>>,
     },
-    /// A goal that nobody awaits, for the session `id`; `taken` hears whether it is accepted. So does that of the next.
+    /// A goal that nobody awaits, for the session `id`; `taken` hears whether it is accepted. So
+    /// does that of the next.
     Set {
         id: GoalId,
         goal: Box<Goal>,
@@ -90,7 +91,8 @@ impl Done {
 /// The ways into the bridge, and the one way out of it that others subscribe to.
 #[derive(Clone, Debug)]
 pub(crate) struct Inputs {
-    /// Unbounded, since dropping a motion must be able to send; what awaits an answer bounds itself.
+    /// Unbounded, since dropping a motion must be able to send; what awaits an answer bounds
+    /// itself.
     pub(crate) queue: mpsc::UnboundedSender<Input>,
     pub(crate) subscriptions: Subscriptions,
 }

@@ -1,4 +1,5 @@
-//! Async driver for Franka robots: motions are futures, states are a `watch`, control stays on a real-time thread.
+//! Async driver for Franka robots: motions are futures, states are a `watch`, control stays on a
+//! real-time thread.
 //!
 //! ```text
 //!  Robot (Clone) --goals, stop--> bridge task --orders, goal slot--> real-time thread --UDP 1 kHz--> robot
@@ -7,18 +8,24 @@
 //!      +--- setters, recovery ----> channel task <------- TCP, replies matched by id ------> robot
 //! ```
 //!
-//! * [`Robot`]: a cheap, cloneable handle, fit for the state of a web service. [`Builder`] connects it.
-//! * [`Motion`]: `move_to`, `move_joints`: built, then awaited. [`Follow`]: targets from a `watch` at their own rate.
-//! * [`Robot::engage`], [`Arm`]: one session, many goals of any kind; [`Chunk`], [`Deadman`], [`Tuning`] for it.
-//! * [`Diagnosis`]: why the robot ended a motion, and what to change. [`Robot::records`], [`Engage::observer`]: every cycle.
-//! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`Active`]: the same from a thread of
-//!   the user's, which reads states and writes commands. [`AsynchronousControl`]: sparse joint
-//!   targets between which the robot plans.
+//! * [`Robot`]: a cheap, cloneable handle, fit for the state of a web service. [`Builder`] connects
+//!   it.
+//! * [`Motion`]: `move_to`, `move_joints`: built, then awaited. [`Follow`]: targets from a `watch`
+//!   at their own rate.
+//! * [`Robot::engage`], [`Arm`]: one session, many goals of any kind; [`Chunk`], [`Deadman`],
+//!   [`Tuning`] for it.
+//! * [`Diagnosis`]: why the robot ended a motion, and what to change. [`Robot::records`],
+//!   [`Engage::observer`]: every cycle.
+//! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`Active`]:
+//!   the same from a thread of the user's, which reads states and writes commands.
+//!   [`AsynchronousControl`]: sparse joint targets between which the robot plans.
 //! * [`StartBarrier`]: motions of several robots that begin within the same millisecond.
-//! * [`Robot::read`], [`StateStream`]: every state, whatever moves. [`Robot::stats`]: how punctual control is.
+//! * [`Robot::read`], [`StateStream`]: every state, whatever moves. [`Robot::stats`]: how punctual
+//!   control is.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
-//! * [`Robot::model`]: the model of the connected arm, from its own description (feature `urdf`, on by default).
-//!   `Robot::model_library` (feature `model-library`, off by default): the code that a Franka Emika Robot hands out.
+//! * [`Robot::model`]: the model of the connected arm, from its own description (feature `urdf`, on
+//!   by default). `Robot::model_library` (feature `model-library`, off by default): the code that a
+//!   Franka Emika Robot hands out.
 //! * [`error`]: what can go wrong, grouped by who can act on it.
 //!
 //! ```no_run
@@ -36,14 +43,16 @@
 //!
 //! # Cancel safety
 //!
-//! Every future of this crate may be dropped at any point. A request that was sent is carried out by the robot all the
-//! same; its answer is then discarded. **Dropping a motion brakes it** within the robot's limits: the arm is still moving when
-//! `drop` returns, and rests soon after. What else a method has to say stands in its own section.
+//! Every future of this crate may be dropped at any point. A request that was sent is carried out
+//! by the robot all the same; its answer is then discarded. **Dropping a motion brakes it** within
+//! the robot's limits: the arm is still moving when `drop` returns, and rests soon after. What else
+//! a method has to say stands in its own section.
 //!
 //! # What it does not do
 //!
-//! It holds no control loop: no task of the runtime is on the path from a state to its command, so a blocked worker
-//! delays new goals and nothing else. It does not reconnect by itself. It has not been run against a real arm yet.
+//! It holds no control loop: no task of the runtime is on the path from a state to its command, so
+//! a blocked worker delays new goals and nothing else. It does not reconnect by itself. It has not
+//! been run against a real arm yet.
 
 mod active;
 mod arm;
@@ -125,7 +134,8 @@ pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};
 
 pub use tokio_util::sync::CancellationToken;
 
-/// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame, `O_T_EE`.
+/// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame,
+/// `O_T_EE`.
 pub type Pose = nalgebra::Isometry3<f64>;
 
 /// What programs build on: handles go anywhere, futures go to any worker.

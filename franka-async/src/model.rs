@@ -22,7 +22,8 @@ pub use described::ModelError;
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 pub use library::ModelLibraryError;
 
-/// The model of the arm: from its description if it has one and that is wanted, the constants of its kind otherwise.
+/// The model of the arm: from its description if it has one and that is wanted, the constants of
+/// its kind otherwise.
 #[cfg(feature = "urdf")]
 pub(crate) async fn of(
     version: Version,
@@ -52,11 +53,12 @@ fn nominal(version: Version) -> Model {
 }
 
 impl Robot {
-    /// Asks for the model library of a Franka Emika Robot, and gives its bytes: a shared library in the format of the
-    /// system. Protocol 5 only.
+    /// Asks for the model library of a Franka Emika Robot, and gives its bytes: a shared library in
+    /// the format of the system. Protocol 5 only.
     ///
     /// # Errors
-    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command, without asking the robot.
+    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command, without
+    /// asking the robot.
     ///
     /// # Cancel safety
     /// Nothing is lost but the answer.
@@ -83,8 +85,8 @@ mod described {
     use crate::CommandError;
     use crate::error::Party;
 
-    /// Why there is no model of the connected arm. [`Builder::nominal_model`](crate::Builder::nominal_model) does without
-    /// its description.
+    /// Why there is no model of the connected arm.
+    /// [`Builder::nominal_model`](crate::Builder::nominal_model) does without its description.
     #[derive(Clone, Debug, PartialEq, thiserror::Error)]
     #[non_exhaustive]
     pub enum ModelError {
@@ -133,8 +135,8 @@ mod library {
     use crate::{CommandError, Robot};
 
     impl Robot {
-        /// Asks a Franka Emika Robot for its model library and loads it into this process. Needs the feature
-        /// `model-library`, and Linux.
+        /// Asks a Franka Emika Robot for its model library and loads it into this process. Needs
+        /// the feature `model-library`, and Linux.
         ///
         /// The call is unsafe, the future is not: `unsafe { robot.model_library() }.await`.
         ///

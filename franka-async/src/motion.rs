@@ -70,8 +70,9 @@ impl Clone for Held {
     }
 }
 
-/// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a motion of its own, with its
-/// own [`canceller`](Self::canceller) and without the [`start_with`](Self::start_with) of the original.
+/// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a
+/// motion of its own, with its own [`canceller`](Self::canceller) and without the
+/// [`start_with`](Self::start_with) of the original.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Motion {
@@ -107,8 +108,9 @@ impl Motion {
         }
     }
 
-    /// Walks the same path `factor` times as fast as by default: velocities scale with it, accelerations with its square,
-    /// jerks with its cube. Limits beyond the robot's are refused when the motion begins.
+    /// Walks the same path `factor` times as fast as by default: velocities scale with it,
+    /// accelerations with its square, jerks with its cube. Limits beyond the robot's are refused
+    /// when the motion begins.
     pub fn speed(mut self, factor: f64) -> Self {
         self.goal.budget = self.goal.budget.scaled(factor);
         self
@@ -120,30 +122,33 @@ impl Motion {
         self
     }
 
-    /// Sets the stiffness at the end effector, x y z `[N/m]` and about x y z `[N m/rad]`, base axes; dampings keep their
-    /// ratio.
+    /// Sets the stiffness at the end effector, x y z `[N/m]` and about x y z `[N m/rad]`, base
+    /// axes; dampings keep their ratio.
     pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
         self.goal.gains = self.goal.gains.with_cartesian_stiffness(stiffness);
         self
     }
 
-    /// Replaces the law and all gains; by default [`Gains::cartesian`] for poses and [`Gains::joint`] for joint positions.
-    /// The law is [`Gains::law`]: [`Law::OperationalSpace`](crate::Law::OperationalSpace) moves the arm by the springs at the
+    /// Replaces the law and all gains; by default [`Gains::cartesian`] for poses and
+    /// [`Gains::joint`] for joint positions. The law is [`Gains::law`]:
+    /// [`Law::OperationalSpace`](crate::Law::OperationalSpace) moves the arm by the springs at the
     /// end effector, and gains without any are refused under it.
     pub fn gains(mut self, gains: Gains) -> Self {
         self.goal.gains = gains;
         self
     }
 
-    /// Bounds the force with which springs and dampers press at the end effector, `[N]`, between 5 and 200; by default
-    /// [`DEFAULT_FORCE_CAP`](crate::DEFAULT_FORCE_CAP). What the arm carries without having been told counts: it sinks
-    /// under more weight than the cap, and the motion does not arrive.
+    /// Bounds the force with which springs and dampers press at the end effector, `[N]`, between 5
+    /// and 200; by default [`DEFAULT_FORCE_CAP`](crate::DEFAULT_FORCE_CAP). What the arm carries
+    /// without having been told counts: it sinks under more weight than the cap, and the motion
+    /// does not arrive.
     pub fn force_cap(mut self, newtons: f64) -> Self {
         self.goal.force_cap = Some(newtons);
         self
     }
 
-    /// Lets springs and dampers press with as much force as they come to. The reach of the springs still bounds theirs.
+    /// Lets springs and dampers press with as much force as they come to. The reach of the springs
+    /// still bounds theirs.
     pub fn without_force_cap(mut self) -> Self {
         self.goal.force_cap = None;
         self
@@ -155,20 +160,22 @@ impl Motion {
         self
     }
 
-    /// Begins together with the motions of other robots: the robot starts the motion, and holds the arm until all that have
-    /// a ticket of the same [`StartBarrier`](crate::StartBarrier) are there; then they begin within a millisecond of each
-    /// other. Such a motion supersedes nothing: it is refused as [`MotionError::Busy`] while anything controls the arm. If
-    /// the others do not all come, it resolves as [`MotionError::Start`], and the arm has not moved.
+    /// Begins together with the motions of other robots: the robot starts the motion, and holds the
+    /// arm until all that have a ticket of the same [`StartBarrier`](crate::StartBarrier) are
+    /// there; then they begin within a millisecond of each other. Such a motion supersedes nothing:
+    /// it is refused as [`MotionError::Busy`] while anything controls the arm. If the others do not
+    /// all come, it resolves as [`MotionError::Start`], and the arm has not moved.
     ///
     /// # Cancel safety
-    /// Dropped, stopped or superseded before the start, it lets the others go, with [`MotionError::Start`].
+    /// Dropped, stopped or superseded before the start, it lets the others go, with
+    /// [`MotionError::Start`].
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
         self.ticket = Held(Some(ticket));
         self
     }
 
-    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the log. It is no handle: the
-    /// last handle of its session or robot, dropped, still brakes it.
+    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the
+    /// log. It is no handle: the last handle of its session or robot, dropped, still brakes it.
     pub fn detach(self) {
         let work = Work::goal(self.goal, self.ticket.0, self.arm.as_ref());
         self.robot.begin(work);
@@ -202,18 +209,19 @@ impl Canceller {
         Self { robot, goal }
     }
 
-    /// Brakes the motion, which resolves as [`MotionError::Stopped`]. Without effect before it begins and after it has
-    /// ended or was superseded.
+    /// Brakes the motion, which resolves as [`MotionError::Stopped`]. Without effect before it
+    /// begins and after it has ended or was superseded.
     pub fn cancel(&self) {
         self.robot.cancel(self.goal);
     }
 }
 
-/// A motion as a future. It begins with the first poll and resolves when the arm has arrived, rests, and is no longer
-/// controlled; or with the reason why not.
+/// A motion as a future. It begins with the first poll and resolves when the arm has arrived,
+/// rests, and is no longer controlled; or with the reason why not.
 ///
 /// # Cancel safety
-/// Dropping it brakes the arm, in the background: within about a quarter of a second and the robot's limits.
+/// Dropping it brakes the arm, in the background: within about a quarter of a second and the
+/// robot's limits.
 ///
 /// # Panics
 /// When polled after it has resolved, as futures may.

@@ -9,8 +9,8 @@ use tokio::sync::watch;
 
 /// Reads the newest state where the control thread has left it.
 ///
-/// Whoever looks takes it from there, by himself, at no cost to the thread or to any task. Whoever waits for changes enters
-/// the audience: from then on the bridge is woken for every state.
+/// Whoever looks takes it from there, by himself, at no cost to the thread or to any task. Whoever
+/// waits for changes enters the audience: from then on the bridge is woken for every state.
 #[derive(Clone, Debug)]
 pub(crate) struct Newest {
     /// Stays as it is, so that each of its clones finds whatever came later.
@@ -50,7 +50,8 @@ impl Newest {
 
     /// The newest state.
     pub(crate) fn state(&self) -> RobotState {
-        // The thread may be writing at each attempt, if the kernel stopped it there: then what was published has to do.
+        // The thread may be writing at each attempt, if the kernel stopped it there: then what was
+        // published has to do.
         let newest = self.reader.clone().newest();
         newest.unwrap_or_else(|| *self.published.borrow())
     }

@@ -17,7 +17,8 @@ const ANSWER: Duration = Duration::from_secs(5);
 const RECOVERY: Duration = Duration::from_secs(30);
 
 impl Robot {
-    /// Sets the torques and forces at which the robot reports contact (lower) and stops itself (upper).
+    /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
+    /// (upper).
     ///
     /// # Errors
     /// [`CommandError`].
@@ -31,7 +32,8 @@ impl Robot {
         self.set(Request::SetCollisionBehavior(behavior)).await
     }
 
-    /// Sets the stiffness of the robot's own joint impedance controller, `[N m/rad]`, each in [0, 14250].
+    /// Sets the stiffness of the robot's own joint impedance controller, `[N m/rad]`, each in [0,
+    /// 14250].
     ///
     /// # Errors
     /// [`CommandError`].
@@ -42,8 +44,8 @@ impl Robot {
         self.set(Request::SetJointImpedance(stiffness)).await
     }
 
-    /// Sets the stiffness of the robot's own Cartesian impedance controller in the stiffness frame: x y z in [10, 3000]
-    /// N/m, roll pitch yaw in [1, 300] N m/rad.
+    /// Sets the stiffness of the robot's own Cartesian impedance controller in the stiffness frame:
+    /// x y z in [10, 3000] N/m, roll pitch yaw in [1, 300] N m/rad.
     ///
     /// # Errors
     /// [`CommandError`].
@@ -92,8 +94,8 @@ impl Robot {
             .await
     }
 
-    /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame `[m]`, inertia about
-    /// it `[kg m^2]`, column-major.
+    /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame
+    /// `[m]`, inertia about it `[kg m^2]`, column-major.
     ///
     /// # Errors
     /// [`CommandError`].
@@ -104,8 +106,8 @@ impl Robot {
         self.set(Request::SetLoad(load)).await
     }
 
-    /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot takes motions again. Succeeds
-    /// without effect if there is nothing to recover from.
+    /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot takes motions
+    /// again. Succeeds without effect if there is nothing to recover from.
     ///
     /// # Errors
     /// [`CommandError`]; a refusal that names manual recovery has to be solved at the robot.
@@ -130,8 +132,9 @@ impl Robot {
         urdf(self.channel(), ANSWER).await
     }
 
-    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz; 1000 switches a filter off.
-    /// Protocol 5 only (Franka Emika Robot), and deprecated by the vendor: filter on this side.
+    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz; 1000
+    /// switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by the vendor:
+    /// filter on this side.
     ///
     /// # Errors
     /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
@@ -142,8 +145,8 @@ impl Robot {
         self.set(Request::SetFilters(filters)).await
     }
 
-    /// Reads the virtual wall `id` as it is set up in Desk (libfranka's `getVirtualWall`). Protocol 5 only (Franka Emika
-    /// Robot).
+    /// Reads the virtual wall `id` as it is set up in Desk (libfranka's `getVirtualWall`). Protocol
+    /// 5 only (Franka Emika Robot).
     ///
     /// # Errors
     /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.

@@ -11,7 +11,8 @@ use tokio::sync::{broadcast, watch};
 
 use crate::newest;
 
-/// Records and states that a slow listener may lag behind before it misses some: two seconds and one.
+/// Records and states that a slow listener may lag behind before it misses some: two seconds and
+/// one.
 const RECORDS: usize = 2048;
 const STATES: usize = 1024;
 
@@ -96,10 +97,12 @@ impl Publisher {
         self.listeners.newest.borrow()
     }
 
-    /// Passes on everything that has come. Without anybody who listens, the thread does not ring for every state any more.
+    /// Passes on everything that has come. Without anybody who listens, the thread does not ring
+    /// for every state any more.
     pub(crate) fn publish(&mut self) {
         self.refresh();
-        // Counted before the listeners are: whoever begins to listen after that has none of these to come.
+        // Counted before the listeners are: whoever begins to listen after that has none of these
+        // to come.
         let come = self.sequence.waiting();
         if self.listeners.updates.receiver_count() == 0 {
             self.sequence.skip(come);
@@ -119,7 +122,8 @@ impl Publisher {
         self.audience.leave(|| self.listeners.are_there());
     }
 
-    /// Passes on the newest state only. While nobody listens, the one that was passed on last may be some states old.
+    /// Passes on the newest state only. While nobody listens, the one that was passed on last may
+    /// be some states old.
     pub(crate) fn refresh(&mut self) {
         if let Some(state) = self.newest.newest() {
             newest::publish(&self.listeners.newest, state);
@@ -151,8 +155,8 @@ impl Subscriptions {
         updates
     }
 
-    /// The silence that the link was given up for, if no state has come since: `newest` is the `message_id` of the newest.
-    /// Told once, and not to those who come later.
+    /// The silence that the link was given up for, if no state has come since: `newest` is the
+    /// `message_id` of the newest. Told once, and not to those who come later.
     pub(crate) fn silence(&self, newest: u64) -> Option<Duration> {
         let silent = *lock(&self.silent);
         silent.and_then(|told| (newest <= told.since).then_some(told.silence))

@@ -19,9 +19,10 @@ use crate::{Party, Robot};
 pub struct Reading {
     /// The state.
     pub state: RobotState,
-    /// How many states the robot sent between the one that this stream gave before and this one: they never came, were
-    /// skipped for a newer one by the control thread, or came while the reader lagged too far behind. Of the first one of
-    /// a stream: how many it sent since the stream was made, and before this one.
+    /// How many states the robot sent between the one that this stream gave before and this one:
+    /// they never came, were skipped for a newer one by the control thread, or came while the
+    /// reader lagged too far behind. Of the first one of a stream: how many it sent since the
+    /// stream was made, and before this one.
     pub missed: u64,
 }
 
@@ -61,7 +62,8 @@ impl ReadError {
 }
 
 impl Robot {
-    /// Calls `each` with every state that comes, until it breaks; returns what it breaks with. Whatever moves meanwhile.
+    /// Calls `each` with every state that comes, until it breaks; returns what it breaks with.
+    /// Whatever moves meanwhile.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::ReadError> {
@@ -76,13 +78,13 @@ impl Robot {
     /// # }
     /// ```
     ///
-    /// `each` runs in the task that awaits, not on the control thread: it holds up whatever else that task does, and
-    /// nothing else. One that takes longer than a millisecond lags behind, and misses states once it lags by more than a
-    /// second; [`Self::state_stream`] says how many.
+    /// `each` runs in the task that awaits, not on the control thread: it holds up whatever else
+    /// that task does, and nothing else. One that takes longer than a millisecond lags behind, and
+    /// misses states once it lags by more than a second; [`Self::state_stream`] says how many.
     ///
     /// # Errors
-    /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, at once if it is silent already;
-    /// [`ReadError::ConnectionClosed`] when there is no connection any more.
+    /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, at once if it
+    /// is silent already; [`ReadError::ConnectionClosed`] when there is no connection any more.
     ///
     /// # Cancel safety
     /// Dropping the future ends the reading, and nothing else. No state is kept for a later one.
@@ -115,11 +117,13 @@ impl Robot {
         }
     }
 
-    /// Every state from now on, each once and in order, with the number of those missed before it; whatever moves
-    /// meanwhile. A reader may lag about a second behind before it misses any. Ends when the connection does, and pauses
-    /// while the robot is silent. It does not keep the connection.
+    /// Every state from now on, each once and in order, with the number of those missed before it;
+    /// whatever moves meanwhile. A reader may lag about a second behind before it misses any. Ends
+    /// when the connection does, and pauses while the robot is silent. It does not keep the
+    /// connection.
     ///
-    /// For the newest state whenever one looks, see [`Self::states`]; for what control made of each, [`Self::records`].
+    /// For the newest state whenever one looks, see [`Self::states`]; for what control made of
+    /// each, [`Self::records`].
     pub fn state_stream(&self) -> StateStream {
         let updates = BroadcastStream::new(self.subscriptions().updates());
         let newest = self.state().message_id;

@@ -25,13 +25,15 @@ use crate::{ConnectError, Follow, Motion, MotionError, Pose};
 
 /// A connected robot.
 ///
-/// A cheap handle: clones share one connection, from any task or thread. A newer motion supersedes the one that runs.
-/// Dropping the last handle brakes the arm, ends the motion and closes the connection, in the background;
-/// [`Robot::shutdown`] does the same and can be awaited. Motions in progress are handles too.
+/// A cheap handle: clones share one connection, from any task or thread. A newer motion supersedes
+/// the one that runs. Dropping the last handle brakes the arm, ends the motion and closes the
+/// connection, in the background; [`Robot::shutdown`] does the same and can be awaited. Motions in
+/// progress are handles too.
 ///
-/// A connection that is lost ends everything that belongs to it, control thread included; the handles that are left then
-/// say why. If the runtime ends first, nobody is left to brake: the robot then misses its commands and stops by itself,
-/// with a reflex. Await [`Robot::shutdown`] before the program ends.
+/// A connection that is lost ends everything that belongs to it, control thread included; the
+/// handles that are left then say why. If the runtime ends first, nobody is left to brake: the
+/// robot then misses its commands and stops by itself, with a reflex. Await [`Robot::shutdown`]
+/// before the program ends.
 ///
 /// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
 #[derive(Clone)]
@@ -64,7 +66,8 @@ impl Robot {
     /// Connects with the options that [`Robot::builder`] begins with.
     ///
     /// # Errors
-    /// [`ConnectError`]. Without a real-time kernel this is [`ConnectError::Realtime`]: see [`Builder::realtime`].
+    /// [`ConnectError`]. Without a real-time kernel this is [`ConnectError::Realtime`]: see
+    /// [`Builder::realtime`].
     ///
     /// # Cancel safety
     /// Dropping the future closes whatever was opened.
@@ -82,21 +85,21 @@ impl Robot {
         self.shared.newest.state()
     }
 
-    /// The newest state as it changes, in motion or not. Closes when the connection does. For every state, see
-    /// [`Self::state_stream`] and [`Self::read`].
+    /// The newest state as it changes, in motion or not. Closes when the connection does. For every
+    /// state, see [`Self::state_stream`] and [`Self::read`].
     ///
-    /// It begins with the newest state of now, which is no change. As long as anybody has one of these, a task is woken for
-    /// every state; drop it when it is not needed.
+    /// It begins with the newest state of now, which is no change. As long as anybody has one of
+    /// these, a task is woken for every state; drop it when it is not needed.
     ///
-    /// Do not hold its borrow for long: the task that publishes states waits for it. Control does not. Nor call this while
-    /// holding one: it waits too, for the same reason.
+    /// Do not hold its borrow for long: the task that publishes states waits for it. Control does
+    /// not. Nor call this while holding one: it waits too, for the same reason.
     pub fn states(&self) -> watch::Receiver<RobotState> {
         self.shared.newest.changes()
     }
 
-    /// What every cycle of the control thread saw and did, one record per state; the first ones may be of cycles up to 50 ms
-    /// ago. A listener that lags more than two
-    /// seconds behind is told how many it missed. Closes when the connection does.
+    /// What every cycle of the control thread saw and did, one record per state; the first ones may
+    /// be of cycles up to 50 ms ago. A listener that lags more than two seconds behind is told how
+    /// many it missed. Closes when the connection does.
     pub fn records(&self) -> broadcast::Receiver<Record> {
         self.subscriptions().records()
     }
@@ -108,8 +111,8 @@ impl Robot {
         transform::isometry_from_array(&state.O_T_EE).unwrap_or_else(|| self.pose_at(state.q))
     }
 
-    /// The pose that the end effector has at the joint positions `q`, `[rad]`, with the end effector of the newest state.
-    /// One that is not a rigid transformation counts as the flange.
+    /// The pose that the end effector has at the joint positions `q`, `[rad]`, with the end
+    /// effector of the newest state. One that is not a rigid transformation counts as the flange.
     pub fn pose_at(&self, q: [f64; 7]) -> Pose {
         let ee = transform::isometry_from_array(&self.state().F_T_EE).unwrap_or_default();
         let ee = EndEffector {
@@ -120,10 +123,10 @@ impl Robot {
         transform::isometry(&pose).unwrap_or_default()
     }
 
-    /// The model of the connected arm, which control computes with. A Franka Research 3 describes itself: its masses and
-    /// limits are those of the description ([`Robot::urdf`]), unless the feature `urdf` is off or
-    /// [`Builder::nominal_model`] is chosen. A Franka Emika Robot does not: it has the constants that its own library is
-    /// known to compute with, [`Model::fer`].
+    /// The model of the connected arm, which control computes with. A Franka Research 3 describes
+    /// itself: its masses and limits are those of the description ([`Robot::urdf`]), unless the
+    /// feature `urdf` is off or [`Builder::nominal_model`] is chosen. A Franka Emika Robot does
+    /// not: it has the constants that its own library is known to compute with, [`Model::fer`].
     pub fn model(&self) -> &Model {
         &self.shared.model
     }
@@ -138,19 +141,21 @@ impl Robot {
         self.shared.address
     }
 
-    /// Counters and histograms of the control thread, its worst cycle and the motion that runs, live: written by the thread
-    /// itself, and to be read whatever the runtime is busy with.
+    /// Counters and histograms of the control thread, its worst cycle and the motion that runs,
+    /// live: written by the thread itself, and to be read whatever the runtime is busy with.
     pub fn stats(&self) -> &Stats {
         &self.shared.stats
     }
 
-    /// What the operating system granted the control thread, and what it refused under [`Realtime::Ignore`](crate::Realtime).
+    /// What the operating system granted the control thread, and what it refused under
+    /// [`Realtime::Ignore`](crate::Realtime).
     pub fn granted(&self) -> &Granted {
         &self.shared.granted
     }
 
-    /// A motion of the end effector to `pose` in the base frame: a straight line and a rotation about one axis if it
-    /// begins at rest. The arm is compliant on the way, see [`Motion::stiffness`].
+    /// A motion of the end effector to `pose` in the base frame: a straight line and a rotation
+    /// about one axis if it begins at rest. The arm is compliant on the way, see
+    /// [`Motion::stiffness`].
     pub fn move_to(&self, pose: Pose) -> Motion {
         self.motion(Target::Pose(pose))
     }
@@ -166,9 +171,9 @@ impl Robot {
         Motion::new(self.clone(), None, goal)
     }
 
-    /// Follows the newest of the targets that `targets` shows, poses or joint positions `[rad]`, until the sender is dropped,
-    /// and then comes to rest at the last one. The sender sets its own pace, and may step as far as it likes: the arm moves
-    /// within its budget.
+    /// Follows the newest of the targets that `targets` shows, poses or joint positions `[rad]`,
+    /// until the sender is dropped, and then comes to rest at the last one. The sender sets its own
+    /// pace, and may step as far as it likes: the arm moves within its budget.
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -176,12 +181,13 @@ impl Robot {
         Follow::watch(self.clone(), None, targets)
     }
 
-    /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if nothing moves. The
-    /// motion itself resolves as [`MotionError::Stopped`].
+    /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if
+    /// nothing moves. The motion itself resolves as [`MotionError::Stopped`].
     ///
     /// # Errors
-    /// [`MotionError`] if the motion ended otherwise, for instance by a reflex; [`MotionError::Superseded`] by a goal that
-    /// came after the stop; [`MotionError::ConnectionClosed`] if there is no connection, so that nobody can say whether
+    /// [`MotionError`] if the motion ended otherwise, for instance by a reflex;
+    /// [`MotionError::Superseded`] by a goal that came after the stop;
+    /// [`MotionError::ConnectionClosed`] if there is no connection, so that nobody can say whether
     /// the arm rests.
     ///
     /// # Cancel safety
@@ -198,7 +204,8 @@ impl Robot {
         }
     }
 
-    /// Brakes, ends the motion, ends the control thread and closes the connection. Every other handle is then closed.
+    /// Brakes, ends the motion, ends the control thread and closes the connection. Every other
+    /// handle is then closed.
     ///
     /// # Cancel safety
     /// Once polled, it goes on in the background.
@@ -226,7 +233,8 @@ impl Robot {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
     }
 
-    /// Has the bridge begin something. Whoever waits for the answer hears nothing if the bridge has ended.
+    /// Has the bridge begin something. Whoever waits for the answer hears nothing if the bridge has
+    /// ended.
     pub(crate) fn begin(&self, work: Work) -> oneshot::Receiver<Outcome> {
         let (done, outcome) = oneshot::channel();
         let waiting = Waiting {
@@ -237,8 +245,8 @@ impl Robot {
         outcome
     }
 
-    /// Has the bridge begin a program, and waits until it runs. Returns where its end will be heard. Dropping the future has
-    /// the robot stop.
+    /// Has the bridge begin a program, and waits until it runs. Returns where its end will be
+    /// heard. Dropping the future has the robot stop.
     ///
     /// # Errors
     /// What ended the motion before it ran.
@@ -277,8 +285,8 @@ impl Robot {
         self.send(Input::Cancel { goal });
     }
 
-    /// Sends to the bridge. One that has ended drops the input, and with it the sender of its answer, which is how
-    /// whoever waits hears of it.
+    /// Sends to the bridge. One that has ended drops the input, and with it the sender of its
+    /// answer, which is how whoever waits hears of it.
     pub(crate) fn send(&self, input: Input) {
         let _ = self.shared.inputs.queue.send(input);
     }

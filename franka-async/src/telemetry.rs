@@ -1,4 +1,5 @@
-//! What the statistics of the control thread have to tell, as `tracing` events: from here, never from the thread.
+//! What the statistics of the control thread have to tell, as `tracing` events: from here, never
+//! from the thread.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -25,7 +26,8 @@ impl Telemetry {
         }
     }
 
-    /// Warns of commands that left too late since the last time: once a second while there are more.
+    /// Warns of commands that left too late since the last time: once a second while there are
+    /// more.
     pub(crate) fn watch(&mut self, now: Instant) {
         let overruns = self.stats.overrun.count();
         let quiet = self.last.is_some_and(|last| now < last + WARNING_INTERVAL);

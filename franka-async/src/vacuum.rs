@@ -14,16 +14,16 @@ use crate::error::ActionError;
 /// Why an action of the vacuum gripper has no result.
 pub type VacuumGripperError = ActionError<Command>;
 
-/// A connected vacuum gripper. What [`Gripper`](crate::Gripper) says of handles, actions and their ends holds for it as
-/// well.
+/// A connected vacuum gripper. What [`Gripper`](crate::Gripper) says of handles, actions and their
+/// ends holds for it as well.
 #[derive(Clone, Debug)]
 pub struct VacuumGripper {
     link: Link<Version>,
 }
 
 impl VacuumGripper {
-    /// Connects to the gripper at `endpoint`: TCP, handshake, first state; each step may take 1 s. The port is 1339 unless
-    /// given.
+    /// Connects to the gripper at `endpoint`: TCP, handshake, first state; each step may take 1 s.
+    /// The port is 1339 unless given.
     ///
     /// # Errors
     /// [`ConnectError`]; nothing is left behind.
@@ -56,12 +56,14 @@ impl VacuumGripper {
     /// [`VacuumGripperError`].
     ///
     /// # Cancel safety
-    /// Dropping the future stops the pump, unless a newer action has taken over or the future was never polled.
+    /// Dropping the future stops the pump, unless a newer action has taken over or the future was
+    /// never polled.
     pub async fn vacuum(&self, vacuum: Vacuum) -> Result<bool, VacuumGripperError> {
         self.link.act(Request::Vacuum(vacuum)).await
     }
 
-    /// Drops the object. True if that was done within `timeout`, which goes out in whole milliseconds.
+    /// Drops the object. True if that was done within `timeout`, which goes out in whole
+    /// milliseconds.
     ///
     /// # Errors
     /// [`VacuumGripperError`].

@@ -78,8 +78,8 @@ pub enum Redundancy {
     Joint7(f64),
     /// The angle of joint 4, `[rad]`: the distance between shoulder and wrist.
     Joint4(f64),
-    /// The [swivel angle](crate::elbow::swivel), `[rad]`: where the elbow is on its circle about the
-    /// line from shoulder to wrist, zero when it is on top.
+    /// The [swivel angle](crate::elbow::swivel), `[rad]`: where the elbow is on its circle about
+    /// the line from shoulder to wrist, zero when it is on top.
     Swivel(f64),
 }
 

@@ -57,10 +57,10 @@ pub struct Damping {
 }
 
 impl Default for Damping {
-    /// A floor that costs less than 10⁻⁵ of a rotation and 10⁻⁹ of a translation at the ready
-    /// pose. In a singularity an orientation asks for at most 8 rad/s per rad/s. A position that
-    /// only a turning hand can keep, at a stretched elbow, asks for hundreds of rad/s per m/s: there
-    /// the box bounds the velocities.
+    /// A floor that costs less than 10⁻⁵ of a rotation and 10⁻⁹ of a translation at the ready pose.
+    /// In a singularity an orientation asks for at most 8 rad/s per rad/s. A position that only a
+    /// turning hand can keep, at a stretched elbow, asks for hundreds of rad/s per m/s: there the
+    /// box bounds the velocities.
     fn default() -> Self {
         Self {
             floor: 1.5e-3,

@@ -62,11 +62,11 @@ impl JointLimits {
 
     /// Velocities allowed at the positions `q`: `(lower, upper)`, `[rad/s]`.
     ///
-    /// With a [`BrakingEnvelope`] the speed towards a position limit is bounded by what stops before
-    /// the hard limit; without one it is [`velocity`](Self::velocity) everywhere, also beyond the
-    /// limits. `margin` `[rad/s]` then comes off both sides: the robot checks with 0, libfranka
-    /// limits with [`CLIENT_MARGIN`]. At and beyond a position limit with an envelope the bound
-    /// towards it is `-margin` inwards: it asks for a way back.
+    /// With a [`BrakingEnvelope`] the speed towards a position limit is bounded by what stops
+    /// before the hard limit; without one it is [`velocity`](Self::velocity) everywhere, also
+    /// beyond the limits. `margin` `[rad/s]` then comes off both sides: the robot checks with 0,
+    /// libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position limit with an envelope the
+    /// bound towards it is `-margin` inwards: it asks for a way back.
     ///
     /// Formula and operation order of libfranka 0.21, whose results it meets to the last digit.
     pub fn velocity_envelope(&self, q: &JointVector, margin: f64) -> (JointVector, JointVector) {

@@ -3,8 +3,8 @@
 use crate::JointVector;
 use crate::limits::JointLimits;
 
-/// Distances of one state of the joints from what they may do. Nothing is clamped: a negative margin says by how
-/// much a limit is passed.
+/// Distances of one state of the joints from what they may do. Nothing is clamped: a negative
+/// margin says by how much a limit is passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMargins {
     /// To the least position to command, `[rad]`.
@@ -13,10 +13,10 @@ pub struct JointMargins {
     pub to_upper: JointVector,
     /// To the nearer of the two, as a share of half the range: 1 in the middle, 0 at a limit.
     pub normalised: JointVector,
-    /// What is left, `[rad]`, to the limit that the joint moves towards, once it has come to rest from its velocity;
-    /// at rest what is left to the nearer one. The joint slows down at the deceleration of its
-    /// [envelope](crate::limits::BrakingEnvelope), or at its greatest acceleration where it has none, from now on: a
-    /// bound on jerk takes a little more.
+    /// What is left, `[rad]`, to the limit that the joint moves towards, once it has come to rest
+    /// from its velocity; at rest what is left to the nearer one. The joint slows down at the
+    /// deceleration of its [envelope](crate::limits::BrakingEnvelope), or at its greatest
+    /// acceleration where it has none, from now on: a bound on jerk takes a little more.
     pub braking: JointVector,
     /// To the least velocity allowed here, `[rad/s]`; see [`JointLimits::velocity_envelope`].
     pub to_least_velocity: JointVector,
@@ -25,8 +25,8 @@ pub struct JointMargins {
 }
 
 impl JointMargins {
-    /// The joint with the least [`normalised`](Self::normalised) margin, counted from 0, and that margin. A joint whose
-    /// position is not a number comes before all others.
+    /// The joint with the least [`normalised`](Self::normalised) margin, counted from 0, and that
+    /// margin. A joint whose position is not a number comes before all others.
     pub fn tightest(&self) -> (usize, f64) {
         let mut tightest = (0, self.normalised[0]);
         for (i, &margin) in self.normalised.iter().enumerate() {
@@ -39,7 +39,8 @@ impl JointMargins {
 }
 
 impl JointLimits {
-    /// The margins at positions `q` `[rad]` and velocities `dq` `[rad/s]`; zeros for an arm at rest.
+    /// The margins at positions `q` `[rad]` and velocities `dq` `[rad/s]`; zeros for an arm at
+    /// rest.
     pub fn margins(&self, q: &JointVector, dq: &JointVector) -> JointMargins {
         let (to_lower, to_upper) = (q - self.lower, self.upper - q);
         let nearer = to_lower.zip_map(&to_upper, f64::min);

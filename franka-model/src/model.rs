@@ -111,7 +111,8 @@ impl Model {
         jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin)
     }
 
-    /// [`pose`](Self::pose) and [`zero_jacobian`](Self::zero_jacobian), from one pass along the chain.
+    /// [`pose`](Self::pose) and [`zero_jacobian`](Self::zero_jacobian), from one pass along the
+    /// chain.
     pub fn pose_and_jacobian(
         &self,
         frame: Frame,

@@ -1,15 +1,16 @@
 //! The inertia that is felt at the end effector, or at another point of the arm.
 //!
-//! Who pushes the arm at a point feels masses that depend on the posture and on the direction. In the terms of the
-//! operational space formulation (Khatib, IEEE Journal on Robotics and Automation 3(1), 1987; effective mass:
-//! Khatib, International Journal of Robotics Research 14(1), 1995), with the Jacobian `J` of the point and the
-//! joint-space inertia `M`:
+//! Who pushes the arm at a point feels masses that depend on the posture and on the direction. In
+//! the terms of the operational space formulation (Khatib, IEEE Journal on Robotics and Automation
+//! 3(1), 1987; effective mass: Khatib, International Journal of Robotics Research 14(1), 1995),
+//! with the Jacobian `J` of the point and the joint-space inertia `M`:
 //!
 //! - `J M⁻¹ Jᵀ` is the **mobility**: the acceleration per wrench. It exists at every posture.
-//! - Its inverse is the **operational-space inertia** `Λ`: the wrench per acceleration, if the point is made to
-//!   accelerate in this way *and in no other*. In a singularity there is none.
-//! - The **effective mass** along a direction `u` is `1 / (uᵀ J M⁻¹ Jᵀ u)`: what a force along `u` feels while
-//!   the point moves as it likes. It is never above the number of `Λ` in the same direction.
+//! - Its inverse is the **operational-space inertia** `Λ`: the wrench per acceleration, if the
+//!   point is made to accelerate in this way *and in no other*. In a singularity there is none.
+//! - The **effective mass** along a direction `u` is `1 / (uᵀ J M⁻¹ Jᵀ u)`: what a force along `u`
+//!   feels while the point moves as it likes. It is never above the number of `Λ` in the same
+//!   direction.
 
 use nalgebra::{Cholesky, Matrix3, SMatrix, UnitVector3, Vector3};
 
@@ -27,8 +28,9 @@ pub struct OperationalSpace {
 impl OperationalSpace {
     /// Of a point with this Jacobian, on an arm with this joint-space inertia.
     ///
-    /// The point is the origin of the Jacobian's frame, the axes are those of the Jacobian: base axes for a zero
-    /// Jacobian. For another point of the last link move the end effector there ([`EndEffector::f_t_ee`]).
+    /// The point is the origin of the Jacobian's frame, the axes are those of the Jacobian: base
+    /// axes for a zero Jacobian. For another point of the last link move the end effector there
+    /// ([`EndEffector::f_t_ee`]).
     ///
     /// `None` if `mass` is not positive definite, which no posture of a physical arm gives.
     pub fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Option<Self> {
@@ -42,33 +44,34 @@ impl OperationalSpace {
         })
     }
 
-    /// `J M⁻¹ Jᵀ`: acceleration `[m/s², rad/s²]` per wrench `[N, N·m]`, the joints being free of other torques.
+    /// `J M⁻¹ Jᵀ`: acceleration `[m/s², rad/s²]` per wrench `[N, N·m]`, the joints being free of
+    /// other torques.
     pub fn mobility(&self) -> &Matrix6 {
         &self.mobility
     }
 
-    /// `Λ`, the inverse of the mobility: wrench per acceleration when all six components are given. `None` in a
-    /// singularity.
+    /// `Λ`, the inverse of the mobility: wrench per acceleration when all six components are given.
+    /// `None` in a singularity.
     pub fn inertia(&self) -> Option<Matrix6> {
         Cholesky::new(self.mobility).map(|factor| factor.inverse())
     }
 
-    /// `(Jv M⁻¹ Jvᵀ)⁻¹`, `[kg]`: force per acceleration of the point, its rotation left free. `None` where the
-    /// point cannot move in some direction.
+    /// `(Jv M⁻¹ Jvᵀ)⁻¹`, `[kg]`: force per acceleration of the point, its rotation left free.
+    /// `None` where the point cannot move in some direction.
     pub fn translational_inertia(&self) -> Option<Matrix3<f64>> {
         let block: Matrix3<f64> = self.mobility.fixed_view::<3, 3>(0, 0).into();
         Cholesky::new(block).map(|factor| factor.inverse())
     }
 
-    /// `(Jw M⁻¹ Jwᵀ)⁻¹`, `[kg·m²]`: torque per angular acceleration, the point left free. `None` where the body
-    /// cannot turn about some axis.
+    /// `(Jw M⁻¹ Jwᵀ)⁻¹`, `[kg·m²]`: torque per angular acceleration, the point left free. `None`
+    /// where the body cannot turn about some axis.
     pub fn rotational_inertia(&self) -> Option<Matrix3<f64>> {
         let block: Matrix3<f64> = self.mobility.fixed_view::<3, 3>(3, 3).into();
         Cholesky::new(block).map(|factor| factor.inverse())
     }
 
-    /// Effective mass along `direction`, `[kg]`: a force of 1 N along it accelerates the point along it by one over
-    /// this. Infinite where the point cannot move that way.
+    /// Effective mass along `direction`, `[kg]`: a force of 1 N along it accelerates the point
+    /// along it by one over this. Infinite where the point cannot move that way.
     pub fn effective_mass(&self, direction: &UnitVector3<f64>) -> f64 {
         self.effective_inertia(&Self::twist(direction, &Vector3::zeros()))
     }
@@ -91,8 +94,8 @@ impl OperationalSpace {
 }
 
 impl Model {
-    /// What the origin of `frame` feels like, in base axes. `None` for a load that no rigid body has, and for joints
-    /// that stand still for the frame: see [`OperationalSpace::new`].
+    /// What the origin of `frame` feels like, in base axes. `None` for a load that no rigid body
+    /// has, and for joints that stand still for the frame: see [`OperationalSpace::new`].
     pub fn operational_space(
         &self,
         frame: Frame,
@@ -119,7 +122,8 @@ mod tests {
     use crate::random::Random;
     use crate::{GRAVITY_EARTH, READY, Wrench};
 
-    /// Effective inertias along and about x, y, z; the diagonals of the translational inertia and of Λ.
+    /// Effective inertias along and about x, y, z; the diagonals of the translational inertia and
+    /// of Λ.
     type Row = ([f64; 6], [f64; 3], [f64; 6]);
 
     #[track_caller]
@@ -188,7 +192,8 @@ mod tests {
         );
     }
 
-    /// Likewise, with the rigid composition of link and load, which the vendor's library does not have.
+    /// Likewise, with the rigid composition of link and load, which the vendor's library does not
+    /// have.
     #[test]
     fn the_fer_at_the_ready_posture() {
         let rigid = Model {

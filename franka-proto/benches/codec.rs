@@ -1,4 +1,5 @@
-//! Time of one decode and one encode of the datagrams of both versions: `cargo bench -p franka-proto`.
+//! Time of one decode and one encode of the datagrams of both versions:
+//! `cargo bench -p franka-proto`.
 //!
 //! Medians over batches, in nanoseconds. Budget: 250 ns for a state, 100 ns for a command.
 

@@ -154,10 +154,9 @@ pub enum ReplyError<C: ServiceCommand = Command> {
         /// The version of the session.
         version: Version,
     },
-    /// A model is sent with
-    /// [`server::Session::model_header`](crate::server::Session::model_header) or
-    /// [`server::Session::library_header`](crate::server::Session::library_header), which also bound
-    /// its length.
+    /// A model is sent with [`server::Session::model_header`](crate::server::Session::model_header)
+    /// or [`server::Session::library_header`](crate::server::Session::library_header), which also
+    /// bound its length.
     #[error("a model of {len} bytes does not fit")]
     TextLength {
         /// Length of the model in bytes.

@@ -25,8 +25,8 @@ impl Outgoing {
     /// Size of the inline buffer in bytes: room for the longest fixed message.
     pub const CAPACITY: usize = 440;
 
-    /// A message of the robot's service: a header followed by `payload`; `extra` bytes that the caller sends behind it count in the
-    /// header's size.
+    /// A message of the robot's service: a header followed by `payload`; `extra` bytes that the
+    /// caller sends behind it count in the header's size.
     pub(crate) fn new<P: IntoBytes + Immutable + ?Sized>(
         command: u32,
         id: CommandId,

@@ -1,8 +1,9 @@
 //! Whether anybody wants to hear of every state.
 //!
-//! Ringing for each state wakes a task of the async world a thousand times a second, which takes about one percent of a
-//! processor, half of it on the thread. Whoever only looks at the newest state now and then need not be woken for that. So
-//! listeners enter, and the thread rings for every state while somebody is there, and now and then otherwise.
+//! Ringing for each state wakes a task of the async world a thousand times a second, which takes
+//! about one percent of a processor, half of it on the thread. Whoever only looks at the newest
+//! state now and then need not be woken for that. So listeners enter, and the thread rings for
+//! every state while somebody is there, and now and then otherwise.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -17,7 +18,8 @@ use std::sync::{
 
 /// One audience, somebody in it at first. Clones are the same one.
 ///
-/// Who is there is counted elsewhere, by the listeners of a channel for instance: this is only what the thread reads.
+/// Who is there is counted elsewhere, by the listeners of a channel for instance: this is only what
+/// the thread reads.
 #[derive(Clone, Debug)]
 pub struct Audience(Arc<AtomicBool>);
 
@@ -34,7 +36,8 @@ impl Audience {
         self.0.swap(true, Ordering::AcqRel);
     }
 
-    /// Says that nobody is there, unless `is_there` finds somebody who has entered meanwhile. For one thread only.
+    /// Says that nobody is there, unless `is_there` finds somebody who has entered meanwhile. For
+    /// one thread only.
     pub fn leave(&self, is_there: impl Fn() -> bool) {
         if is_there() {
             return;
@@ -47,7 +50,8 @@ impl Audience {
 
     /// Whether to ring for every state.
     pub fn is_there(&self) -> bool {
-        // Relaxed: nothing else is read on the strength of it. Who enters is heard of one state later at worst.
+        // Relaxed: nothing else is read on the strength of it. Who enters is heard of one state
+        // later at worst.
         self.0.load(Ordering::Relaxed)
     }
 }

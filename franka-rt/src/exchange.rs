@@ -1,9 +1,11 @@
-//! The UDP side of a connection: the robot's newest state in, one command back to where that state came from.
+//! The UDP side of a connection: the robot's newest state in, one command back to where that state
+//! came from.
 //!
-//! The robot sends one state per millisecond, and a host that was held up finds several of them waiting. The newest
-//! one wins: [`Exchange::receive`] waits for a datagram, then takes all that are there and keeps the one with the
-//! highest `message_id`, if that is above the last one kept. What did not come from the robot's address is dropped and
-//! counted. Nothing here allocates after [`Exchange::new`].
+//! The robot sends one state per millisecond, and a host that was held up finds several of them
+//! waiting. The newest one wins: [`Exchange::receive`] waits for a datagram, then takes all that
+//! are there and keeps the one with the highest `message_id`, if that is above the last one kept.
+//! What did not come from the robot's address is dropped and counted. Nothing here allocates after
+//! [`Exchange::new`].
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
@@ -13,8 +15,9 @@ use socket2::{SockAddr, Socket};
 
 use crate::sys;
 
-/// Opens the socket that `robot` sends its states to: any address of the robot's family, IPv4 or IPv6, and a free port
-/// (the one to announce in `Connect`). States that arrive before the thread starts wait in the kernel.
+/// Opens the socket that `robot` sends its states to: any address of the robot's family, IPv4 or
+/// IPv6, and a free port (the one to announce in `Connect`). States that arrive before the thread
+/// starts wait in the kernel.
 ///
 /// # Errors
 /// If the system refuses a socket or a port.
@@ -26,13 +29,15 @@ pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
     }
 }
 
-/// Time that [`Exchange::receive`] waits at most, and therefore the longest time until the thread sees an order, or
-/// the wish that it stop, while the robot is silent.
+/// Time that [`Exchange::receive`] waits at most, and therefore the longest time until the thread
+/// sees an order, or the wish that it stop, while the robot is silent.
 pub const TICK: Duration = Duration::from_millis(20);
 
-/// How long to wait for a state where silences of `link_timeout` have to be noticed: a quarter of it, a [`TICK`] at most.
+/// How long to wait for a state where silences of `link_timeout` have to be noticed: a quarter of
+/// it, a [`TICK`] at most.
 ///
-/// So a loss shows late by a quarter, and by the kernel's clock tick (4 ms at 250 Hz), in which it counts such waits.
+/// So a loss shows late by a quarter, and by the kernel's clock tick (4 ms at 250 Hz), in which it
+/// counts such waits.
 pub fn wait_for(link_timeout: Duration) -> Duration {
     (link_timeout / 4).clamp(MIN_WAIT, TICK)
 }
@@ -75,8 +80,9 @@ pub struct Reception {
 }
 
 impl Exchange {
-    /// Takes the bound `socket`, the robot's address and the size of a state in bytes, which includes the
-    /// `message_id` (8 bytes, little-endian) that it begins with in every protocol version.
+    /// Takes the bound `socket`, the robot's address and the size of a state in bytes, which
+    /// includes the `message_id` (8 bytes, little-endian) that it begins with in every protocol
+    /// version.
     ///
     /// # Errors
     /// If the system refuses the options of the socket.
@@ -101,7 +107,8 @@ impl Exchange {
         })
     }
 
-    /// Waits for `wait` in each [`receive`](Self::receive), a millisecond at least, in place of a [`TICK`].
+    /// Waits for `wait` in each [`receive`](Self::receive), a millisecond at least, in place of a
+    /// [`TICK`].
     ///
     /// # Errors
     /// If the system refuses the option.
@@ -125,8 +132,8 @@ impl Exchange {
         self.message_id
     }
 
-    /// Waits for a datagram, up to [`TICK`] or what [`with_wait`](Self::with_wait) was given, then takes those that are there,
-    /// up to [`DRAIN_MAX`] in all.
+    /// Waits for a datagram, up to [`TICK`] or what [`with_wait`](Self::with_wait) was given, then
+    /// takes those that are there, up to [`DRAIN_MAX`] in all.
     pub fn receive(&mut self) -> Reception {
         let mut reception = Reception::default();
         let mut flags = 0;
@@ -172,7 +179,8 @@ impl Exchange {
         core::mem::swap(&mut self.newest, &mut self.incoming);
     }
 
-    /// Sends a command to the sender of the newest state. Does not wait: a full send buffer is a failure.
+    /// Sends a command to the sender of the newest state. Does not wait: a full send buffer is a
+    /// failure.
     ///
     /// # Errors
     /// [`SendError`]; the next cycle may try with its own command.
@@ -212,8 +220,8 @@ pub enum SendError {
     Refused(i32),
 }
 
-/// Datagrams taken in one call at most, so that a flood cannot hold the cycle up. The default receive buffer of Linux
-/// (212992 bytes) holds fewer states than that.
+/// Datagrams taken in one call at most, so that a flood cannot hold the cycle up. The default
+/// receive buffer of Linux (212992 bytes) holds fewer states than that.
 pub const DRAIN_MAX: usize = 256;
 
 /// Size of the `message_id`, in bytes.

@@ -6,19 +6,24 @@
 //!         orders, goal slot --+        +--> newest state, records, events -> eventfd
 //! ```
 //!
-//! * [`driver`]: what one robot state calls for; phases from watching to finishing. No clock, no socket.
+//! * [`driver`]: what one robot state calls for; phases from watching to finishing. No clock, no
+//!   socket.
 //! * [`session`]: target control: goals in, one continuous joint-space reference out.
-//! * [`control`]: control at 1 kHz by the user's own functions; [`shaping`]: filters, limiters and checks of their commands.
+//! * [`control`]: control at 1 kHz by the user's own functions; [`shaping`]: filters, limiters and
+//!   checks of their commands.
 //! * [`law`]: joint torques from a reference and a state.
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`otg`]: jerk-limited trajectories to rest.
-//! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP. Pure.
+//! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
+//!   Pure.
 //! * [`diagnosis`]: why the robot ended a motion, read off its last cycles. Pure.
 //! * [`together`]: motions of several robots that begin at the same time.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
-//! * [`slot`], [`wake`], [`audience`], [`exchange`], [`sched`], [`stats`]: what the loop is built of.
+//! * [`slot`], [`wake`], [`audience`], [`exchange`], [`sched`], [`stats`]: what the loop is built
+//!   of.
 //!
-//! This crate knows no async runtime, opens no TCP connection and reads no file but the kernel's real-time flag.
+//! This crate knows no async runtime, opens no TCP connection and reads no file but the kernel's
+//! real-time flag.
 
 pub mod audience;
 pub mod control;

@@ -1,8 +1,10 @@
-//! What the operating system grants the thread: scheduling class, processor, memory, a socket that is polled.
+//! What the operating system grants the thread: scheduling class, processor, memory, a socket that
+//! is polled.
 //!
-//! [`Scheduling::enter`] asks for what concerns the calling thread, [`Scheduling::tune`] for what concerns its socket.
-//! Under [`Realtime::Enforce`] the first refusal is an error; under [`Realtime::Ignore`] the same requests are made and the
-//! refusals are listed in [`Granted`]. What no host can grant is an error under both.
+//! [`Scheduling::enter`] asks for what concerns the calling thread, [`Scheduling::tune`] for what
+//! concerns its socket. Under [`Realtime::Enforce`] the first refusal is an error; under
+//! [`Realtime::Ignore`] the same requests are made and the refusals are listed in [`Granted`]. What
+//! no host can grant is an error under both.
 
 mod stack;
 
@@ -35,27 +37,30 @@ pub struct Scheduling {
     pub cpu: Option<usize>,
     /// Lock the pages of the whole process into memory (`mlockall`, present and future ones).
     ///
-    /// Off by default: under a small `RLIMIT_MEMLOCK` later allocations anywhere in the process would fail.
+    /// Off by default: under a small `RLIMIT_MEMLOCK` later allocations anywhere in the process
+    /// would fail.
     pub lock_memory: bool,
-    /// Stack to touch before the loop starts, in bytes, so that no cycle meets a page of it for the first time: at most
-    /// [`PREFAULT_MAX`], [`PREFAULT_DEFAULT`] by default. The thread gets a larger one by a reserve. Control functions
-    /// of the user's run on this stack.
+    /// Stack to touch before the loop starts, in bytes, so that no cycle meets a page of it for the
+    /// first time: at most [`PREFAULT_MAX`], [`PREFAULT_DEFAULT`] by default. The thread gets a
+    /// larger one by a reserve. Control functions of the user's run on this stack.
     pub prefault_stack: usize,
-    /// How long a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`), in whole microseconds and at
-    /// most [`BUSY_POLL_MAX`]; not at all if `None`.
+    /// How long a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`), in
+    /// whole microseconds and at most [`BUSY_POLL_MAX`]; not at all if `None`.
     ///
-    /// Spares the interrupt's and the wake-up's way to the thread, and costs the processor that it polls on. Only cards
-    /// whose driver takes part are polled: the loopback device is not. Raising it above the system's default
-    /// (`net.core.busy_read`, 0) takes `CAP_NET_ADMIN`.
+    /// Spares the interrupt's and the wake-up's way to the thread, and costs the processor that it
+    /// polls on. Only cards whose driver takes part are polled: the loopback device is not. Raising
+    /// it above the system's default (`net.core.busy_read`, 0) takes `CAP_NET_ADMIN`.
     pub busy_poll: Option<Duration>,
 }
 
-/// The longest busy poll, in each millisecond between two states. Polling counts as running time, and a `SCHED_FIFO`
-/// thread that runs for more than 950 ms of a second is held up for the rest of it (`sched_rt_runtime_us`).
+/// The longest busy poll, in each millisecond between two states. Polling counts as running time,
+/// and a `SCHED_FIFO` thread that runs for more than 950 ms of a second is held up for the rest of
+/// it (`sched_rt_runtime_us`).
 pub const BUSY_POLL_MAX: Duration = Duration::from_micros(900);
 
 impl Default for Scheduling {
-    /// [`Realtime::Enforce`] at the highest priority, on any processor, without locked memory and without polling.
+    /// [`Realtime::Enforce`] at the highest priority, on any processor, without locked memory and
+    /// without polling.
     fn default() -> Self {
         Self {
             realtime: Realtime::Enforce,
@@ -79,14 +84,16 @@ pub struct Granted {
     pub refusals: Vec<SchedError>,
 }
 
-/// Why the thread cannot run as asked. The numbers are errno values; the texts of the first three are libfranka's.
+/// Why the thread cannot run as asked. The numbers are errno values; the texts of the first three
+/// are libfranka's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SchedError {
     /// The system does not name a highest `SCHED_FIFO` priority.
     #[error("libfranka: unable to get maximum possible thread priority: {}", sys::error_text(*.0))]
     MaximumPriority(i32),
-    /// The process may not use `SCHED_FIFO` at this priority; usually its `RLIMIT_RTPRIO` is too low.
+    /// The process may not use `SCHED_FIFO` at this priority; usually its `RLIMIT_RTPRIO` is too
+    /// low.
     #[error("libfranka: unable to set realtime scheduling: {}", sys::error_text(*.0))]
     SetScheduling(i32),
     /// `/sys/kernel/realtime` is absent or does not hold 1. Under [`Realtime::Enforce`] only.
@@ -103,7 +110,8 @@ pub enum SchedError {
     /// Memory cannot be locked; usually `RLIMIT_MEMLOCK` is too low.
     #[error("unable to lock memory: {}", sys::error_text(*.0))]
     LockMemory(i32),
-    /// The socket is not polled; without `CAP_NET_ADMIN`, or with a kernel that cannot (`ENOPROTOOPT`).
+    /// The socket is not polled; without `CAP_NET_ADMIN`, or with a kernel that cannot
+    /// (`ENOPROTOOPT`).
     #[error("unable to poll the socket for {} us: {}", .duration.as_micros(), sys::error_text(*.errno))]
     BusyPoll {
         /// What was asked for.
@@ -136,12 +144,12 @@ impl SchedError {
 }
 
 impl Scheduling {
-    /// Applies the options to the calling thread and touches its stack. The order is that of libfranka 0.21:
-    /// scheduling first, then the question after the kernel.
+    /// Applies the options to the calling thread and touches its stack. The order is that of
+    /// libfranka 0.21: scheduling first, then the question after the kernel.
     ///
     /// # Errors
-    /// Under [`Realtime::Enforce`], the first request that was refused. Requests granted before it stay granted. Under
-    /// either, an option that is out of range: nothing is asked for then.
+    /// Under [`Realtime::Enforce`], the first request that was refused. Requests granted before it
+    /// stay granted. Under either, an option that is out of range: nothing is asked for then.
     pub fn enter(&self) -> Result<Granted, SchedError> {
         self.check()?;
         let mut granted = Granted::default();
@@ -166,7 +174,8 @@ impl Scheduling {
         Ok(granted)
     }
 
-    /// Applies the options to the socket that the thread receives from, and notes in `granted` what came of it.
+    /// Applies the options to the socket that the thread receives from, and notes in `granted` what
+    /// came of it.
     ///
     /// # Errors
     /// Under [`Realtime::Enforce`], [`SchedError::BusyPoll`] if that is refused.
@@ -199,11 +208,13 @@ impl Scheduling {
         }
     }
 
-    /// Whether a thread of this process would be granted what is asked for, memory aside. Starts a short-lived thread,
-    /// so that the caller keeps its own scheduling; for asking before a robot is contacted.
+    /// Whether a thread of this process would be granted what is asked for, memory aside. Starts a
+    /// short-lived thread, so that the caller keeps its own scheduling; for asking before a robot
+    /// is contacted.
     ///
     /// # Errors
-    /// As [`Self::enter`] and [`Self::tune`]. A thread that cannot be started at all counts as refused scheduling.
+    /// As [`Self::enter`] and [`Self::tune`]. A thread that cannot be started at all counts as
+    /// refused scheduling.
     pub fn probe(&self) -> Result<Granted, SchedError> {
         self.check()?;
         let asked = Self {

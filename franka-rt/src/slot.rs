@@ -1,9 +1,11 @@
-//! One writer, any number of readers, newest value only: how goals enter the thread and states leave it.
+//! One writer, any number of readers, newest value only: how goals enter the thread and states
+//! leave it.
 //!
-//! A sequence lock over `AtomicU64` words. The writer makes the count odd, stores the words, makes the count even. A
-//! reader that finds the count odd, or changed while it read, has a torn copy and throws it away. Writing never waits;
-//! a read is one attempt, so neither side can hold the other up, whatever their priorities. A cycle that meets a torn
-//! goal keeps the previous one; a task outside the thread may try again with [`SlotReader::read_retry`].
+//! A sequence lock over `AtomicU64` words. The writer makes the count odd, stores the words, makes
+//! the count even. A reader that finds the count odd, or changed while it read, has a torn copy and
+//! throws it away. Writing never waits; a read is one attempt, so neither side can hold the other
+//! up, whatever their priorities. A cycle that meets a torn goal keeps the previous one; a task
+//! outside the thread may try again with [`SlotReader::read_retry`].
 //!
 //! ```
 //! use franka_rt::slot::{self, Read};
@@ -16,8 +18,8 @@
 //! assert_eq!(reader.read_newer(), Read::Same);
 //! ```
 //!
-//! The words are atomics, so a torn read is a wrong value and not a data race, and no `unsafe` is needed. Memory order
-//! is argued at the two loops; `tests/loom.rs` explores the interleavings.
+//! The words are atomics, so a torn read is a wrong value and not a data race, and no `unsafe` is
+//! needed. Memory order is argued at the two loops; `tests/loom.rs` explores the interleavings.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -32,14 +34,14 @@ use std::sync::{
 
 /// A plain value that crosses as a fixed number of words.
 ///
-/// `load` must accept whatever `store` wrote. Neither may allocate or block when one end of the slot is on the
-/// real-time thread.
+/// `load` must accept whatever `store` wrote. Neither may allocate or block when one end of the
+/// slot is on the real-time thread.
 pub trait Words: Sized {
     /// Number of words.
     const WORDS: usize;
 
-    /// Writes the value into `words`, which has [`Self::WORDS`] elements. All of them travel; ones left alone keep
-    /// the content of an earlier value.
+    /// Writes the value into `words`, which has [`Self::WORDS`] elements. All of them travel; ones
+    /// left alone keep the content of an earlier value.
     fn store(&self, words: &mut [u64]);
 
     /// Reads back what one call of [`Self::store`] left in `words`.
@@ -120,11 +122,13 @@ impl<T: Words> SlotWriter<T> {
         // Relaxed: the word stores below carry it.
         self.shared.count.store(self.count + 1, Ordering::Relaxed);
         for (word, &new) in self.shared.words.iter().zip(&self.scratch) {
-            // Release, pairs with the Acquire load of this word: who sees it also sees the odd count.
+            // Release, pairs with the Acquire load of this word: who sees it also sees the odd
+            // count.
             word.store(new, Ordering::Release);
         }
         self.count += 2;
-        // Release, pairs with the reader's first load of the count: who sees it sees every word of this value.
+        // Release, pairs with the reader's first load of the count: who sees it sees every word of
+        // this value.
         self.shared.count.store(self.count, Ordering::Release);
     }
 }
@@ -164,7 +168,8 @@ impl<T> Clone for SlotReader<T> {
 impl<T: Words> SlotReader<T> {
     /// Reads the newest value if this reader has not returned it yet. One attempt, wait-free.
     pub fn read_newer(&mut self) -> Read<T> {
-        // Acquire, pairs with the writer's last store: an even count comes with every word of its value.
+        // Acquire, pairs with the writer's last store: an even count comes with every word of its
+        // value.
         let before = self.shared.count.load(Ordering::Acquire);
         if before == self.seen {
             return Read::Same;
@@ -173,11 +178,12 @@ impl<T: Words> SlotReader<T> {
             return Read::Torn;
         }
         for (copy, word) in self.scratch.iter_mut().zip(&self.shared.words) {
-            // Acquire, pairs with the Release store of this word: if it belongs to a later value, the load of the
-            // count below sees that value's odd count or a later one.
+            // Acquire, pairs with the Release store of this word: if it belongs to a later value,
+            // the load of the count below sees that value's odd count or a later one.
             *copy = word.load(Ordering::Acquire);
         }
-        // Relaxed: the loads above come first in program order and are Acquire, so this one cannot move before them.
+        // Relaxed: the loads above come first in program order and are Acquire, so this one cannot
+        // move before them.
         if self.shared.count.load(Ordering::Relaxed) != before {
             return Read::Torn;
         }
@@ -185,8 +191,9 @@ impl<T: Words> SlotReader<T> {
         Read::Newer(T::load(&self.scratch))
     }
 
-    /// Like [`Self::read_newer`], with up to `attempts` attempts while they are torn. Not for the real-time thread:
-    /// on one core, a reader of higher priority would use all of them up against a writer that cannot run.
+    /// Like [`Self::read_newer`], with up to `attempts` attempts while they are torn. Not for the
+    /// real-time thread: on one core, a reader of higher priority would use all of them up against
+    /// a writer that cannot run.
     pub fn read_retry(&mut self, attempts: usize) -> Read<T> {
         for _ in 1..attempts {
             match self.read_newer() {

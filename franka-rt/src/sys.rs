@@ -1,4 +1,5 @@
-//! The system calls that neither std nor socket2 offers safely: the only file of this crate with `unsafe`.
+//! The system calls that neither std nor socket2 offers safely: the only file of this crate with
+//! `unsafe`.
 
 use core::mem::MaybeUninit;
 use core::time::Duration;
@@ -11,7 +12,8 @@ use socket2::Socket;
 
 /// The highest priority of `SCHED_FIFO`: 99 on Linux.
 pub(crate) fn max_fifo_priority() -> Result<i32, i32> {
-    // SAFETY: the function takes a number, touches no memory of ours, and reports an unknown policy as -1.
+    // SAFETY: the function takes a number, touches no memory of ours, and reports an unknown policy
+    // as -1.
     let priority = unsafe { libc::sched_get_priority_max(libc::SCHED_FIFO) };
     if priority == -1 {
         Err(last_errno())
@@ -20,14 +22,15 @@ pub(crate) fn max_fifo_priority() -> Result<i32, i32> {
     }
 }
 
-/// Puts the calling thread, and only it, under `SCHED_FIFO` at `priority`. The error is an errno value.
+/// Puts the calling thread, and only it, under `SCHED_FIFO` at `priority`. The error is an errno
+/// value.
 pub(crate) fn set_fifo(priority: i32) -> Result<(), i32> {
-    // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value (musl has further fields
-    // than the priority, so a literal would not build everywhere).
+    // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value (musl
+    // has further fields than the priority, so a literal would not build everywhere).
     let mut parameters: libc::sched_param = unsafe { core::mem::zeroed() };
     parameters.sched_priority = priority;
-    // SAFETY: `pthread_self` is always the valid id of the calling thread, which lives during the call; `parameters`
-    // is initialised, and only read before the call returns.
+    // SAFETY: `pthread_self` is always the valid id of the calling thread, which lives during the
+    // call; `parameters` is initialised, and only read before the call returns.
     match unsafe {
         libc::pthread_setschedparam(
             libc::pthread_self(),
@@ -49,7 +52,8 @@ pub(crate) fn pin_to(cpu: usize) -> Result<(), i32> {
     let mut set: libc::cpu_set_t = unsafe { core::mem::zeroed() };
     // SAFETY: `cpu` is below `CPU_SETSIZE`, the number of bits in `set`, so the bit lies inside it.
     unsafe { libc::CPU_SET(cpu, &mut set) };
-    // SAFETY: thread 0 is the caller; `set` is initialised and valid for reads of the size passed with it.
+    // SAFETY: thread 0 is the caller; `set` is initialised and valid for reads of the size passed
+    // with it.
     match unsafe { libc::sched_setaffinity(0, size_of::<libc::cpu_set_t>(), &raw const set) } {
         0 => Ok(()),
         _ => Err(last_errno()),
@@ -58,21 +62,22 @@ pub(crate) fn pin_to(cpu: usize) -> Result<(), i32> {
 
 /// Locks every page of the process, present and future, into memory. The error is an errno value.
 pub(crate) fn lock_memory() -> Result<(), i32> {
-    // SAFETY: the function takes flags only. It changes which pages may be evicted, not what they hold.
+    // SAFETY: the function takes flags only. It changes which pages may be evicted, not what they
+    // hold.
     match unsafe { libc::mlockall(libc::MCL_CURRENT | libc::MCL_FUTURE) } {
         0 => Ok(()),
         _ => Err(last_errno()),
     }
 }
 
-/// Has receives from `socket` poll the network card's queue for that long, in whole microseconds, before they sleep. The
-/// error is an errno value.
+/// Has receives from `socket` poll the network card's queue for that long, in whole microseconds,
+/// before they sleep. The error is an errno value.
 pub(crate) fn busy_poll(socket: &impl AsFd, duration: Duration) -> Result<(), i32> {
     let Ok(us) = libc::c_int::try_from(duration.as_micros()) else {
         return Err(libc::EINVAL);
     };
-    // SAFETY: the descriptor is borrowed from its owner, hence open during the call; `us` is initialised and valid for
-    // reads of the size passed with it, and only read.
+    // SAFETY: the descriptor is borrowed from its owner, hence open during the call; `us` is
+    // initialised and valid for reads of the size passed with it, and only read.
     let set = unsafe {
         libc::setsockopt(
             socket.as_fd().as_raw_fd(),
@@ -93,8 +98,8 @@ pub(crate) fn busy_poll(socket: &impl AsFd, duration: Duration) -> Result<(), i3
 pub(crate) fn busy_poll_of(socket: &impl AsFd) -> Result<libc::c_int, i32> {
     let mut us: libc::c_int = 0;
     let mut length = size_of::<libc::c_int>() as libc::socklen_t;
-    // SAFETY: the descriptor is borrowed from its owner, hence open during the call; `us` is valid for writes of
-    // `length` bytes, and `length` for reads and writes.
+    // SAFETY: the descriptor is borrowed from its owner, hence open during the call; `us` is valid
+    // for writes of `length` bytes, and `length` for reads and writes.
     let got = unsafe {
         libc::getsockopt(
             socket.as_fd().as_raw_fd(),
@@ -113,8 +118,9 @@ pub(crate) fn busy_poll_of(socket: &impl AsFd) -> Result<libc::c_int, i32> {
 /// The system's text for an errno value, as `strerror` gives it.
 pub(crate) fn error_text(errno: i32) -> String {
     let mut text = [0u8; 128];
-    // SAFETY: the buffer is valid for writes of the length passed with it. This is the POSIX `strerror_r` (libc maps
-    // the symbol so), which writes at most that many bytes, the terminating zero included.
+    // SAFETY: the buffer is valid for writes of the length passed with it. This is the POSIX
+    // `strerror_r` (libc maps the symbol so), which writes at most that many bytes, the terminating
+    // zero included.
     let failed = unsafe { libc::strerror_r(errno, text.as_mut_ptr().cast(), text.len()) };
     match CStr::from_bytes_until_nul(&text) {
         Ok(text) if failed == 0 => text.to_string_lossy().into_owned(),
@@ -129,8 +135,8 @@ pub(crate) fn eventfd() -> io::Result<OwnedFd> {
     if fd == -1 {
         return Err(io::Error::last_os_error());
     }
-    // SAFETY: `fd` is open and was returned to us alone just now, so the `OwnedFd` is its only owner; `close` is the
-    // right way to give up an eventfd.
+    // SAFETY: `fd` is open and was returned to us alone just now, so the `OwnedFd` is its only
+    // owner; `close` is the right way to give up an eventfd.
     Ok(unsafe { OwnedFd::from_raw_fd(fd) })
 }
 
@@ -140,9 +146,10 @@ pub(crate) fn recv_from(
     buffer: &mut [u8],
     flags: i32,
 ) -> io::Result<(usize, Option<SocketAddr>)> {
-    // SAFETY: same address, length and lifetime; `MaybeUninit<u8>` has the layout of `u8`. Writing uninitialised bytes
-    // through the new type would be unsound, and socket2 promises not to ("Safety" in the documentation of
-    // `Socket::recv`, to which that of `recv_from_with_flags` refers).
+    // SAFETY: same address, length and lifetime; `MaybeUninit<u8>` has the layout of `u8`. Writing
+    // uninitialised bytes through the new type would be unsound, and socket2 promises not to
+    // ("Safety" in the documentation of `Socket::recv`, to which that of `recv_from_with_flags`
+    // refers).
     let buffer = unsafe { &mut *(core::ptr::from_mut(buffer) as *mut [MaybeUninit<u8>]) };
     let (length, sender) = socket.recv_from_with_flags(buffer, flags)?;
     Ok((length, sender.as_socket()))

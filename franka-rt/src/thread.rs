@@ -6,22 +6,26 @@
 //!                                  +-> nothing came: on_silence            records, notices, eventfd, statistics
 //! ```
 //!
-//! The command leaves before anything is published. After [`spawn`] has returned, the loop neither allocates, frees,
-//! locks nor logs, and its only system calls are `recvfrom`, `sendto`, the clock and the `write` that rings the bell.
-//! What has to be freed (a program that ended) leaves inside an event.
+//! The command leaves before anything is published. After [`spawn`] has returned, the loop neither
+//! allocates, frees, locks nor logs, and its only system calls are `recvfrom`, `sendto`, the clock
+//! and the `write` that rings the bell. What has to be freed (a program that ended) leaves inside
+//! an event.
 //!
-//! The queues are rtrb's, whose two ends never wait for each other. Not crossbeam's `ArrayQueue`: there, an end that
-//! finds the other in the middle of an operation spins until it is done, and if the other was preempted by this very
-//! thread, on the one processor that it may run on, that never happens.
+//! The queues are rtrb's, whose two ends never wait for each other. Not crossbeam's `ArrayQueue`:
+//! there, an end that finds the other in the middle of an operation spins until it is done, and if
+//! the other was preempted by this very thread, on the one processor that it may run on, that never
+//! happens.
 //!
 //! The cycle can be lent out: a thread of the user's then runs it in this one's place,
 //! through a [`Lease`], for as long as it likes.
 //!
-//! The clock is read for this loop and for nothing else in the crate: how long the robot has been silent, how far apart its
-//! states arrive, and how long an answer takes and (feature `cycle-phases`) each part of it. Control itself lives by the robot's clock, in the core.
+//! The clock is read for this loop and for nothing else in the crate: how long the robot has been
+//! silent, how far apart its states arrive, and how long an answer takes and (feature
+//! `cycle-phases`) each part of it. Control itself lives by the robot's clock, in the core.
 //!
-//! A panic in the core ends the loop and nothing else: the robot misses its commands and stops by itself, the bell
-//! rings, and [`Thread::join`] tells. Printing the panic is the business of the process's panic hook.
+//! A panic in the core ends the loop and nothing else: the robot misses its commands and stops by
+//! itself, the bell rings, and [`Thread::join`] tells. Printing the panic is the business of the
+//! process's panic hook.
 
 mod cycle;
 mod desk;
@@ -81,8 +85,8 @@ pub struct Capacity {
 }
 
 impl Default for Capacity {
-    /// 16 orders (a motion takes two), 64 notices (a motion causes a handful), 2048 records and 1024 states: two seconds and
-    /// one in which nobody need read them.
+    /// 16 orders (a motion takes two), 64 notices (a motion causes a handful), 2048 records and
+    /// 1024 states: two seconds and one in which nobody need read them.
     fn default() -> Self {
         Self {
             orders: 16,
@@ -105,10 +109,12 @@ pub enum StartError {
     System(#[from] io::Error),
 }
 
-/// Starts the thread of one robot, on the socket whose port `Connect` announces (see [`crate::exchange::bind`]).
+/// Starts the thread of one robot, on the socket whose port `Connect` announces (see
+/// [`crate::exchange::bind`]).
 ///
-/// States count only if they come from `robot`, and commands go to where the newest state came from. Returns when the
-/// thread has asked the operating system for what `config` wants; that takes well under a millisecond of blocking.
+/// States count only if they come from `robot`, and commands go to where the newest state came
+/// from. Returns when the thread has asked the operating system for what `config` wants; that takes
+/// well under a millisecond of blocking.
 ///
 /// # Errors
 /// [`StartError`]; the core is then dropped.

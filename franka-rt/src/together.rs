@@ -10,14 +10,16 @@
 //!         a member is dropped, ends, is taken back, or has waited too long
 //! ```
 //!
-//! A motion *arrives* when its robot shows the motion's modes. From then on its thread answers every state with a command
-//! that holds the arm, as the robot wants it of a motion's first commands, until the last member has arrived. Each thread
-//! looks once in each of its own cycles, so the motions begin within a millisecond of each other: the robots' clocks are
-//! not synchronised, and nobody can do better than the next state of each.
+//! A motion *arrives* when its robot shows the motion's modes. From then on its thread answers
+//! every state with a command that holds the arm, as the robot wants it of a motion's first
+//! commands, until the last member has arrived. Each thread looks once in each of its own cycles,
+//! so the motions begin within a millisecond of each other: the robots' clocks are not
+//! synchronised, and nobody can do better than the next state of each.
 //!
-//! All of it is one atomic word, which leaves `waiting` once and for all. No thread ever waits for another one: looking is
-//! a load, arriving and leaving a compare-and-exchange, repeated only if another member changed the word in between. Each
-//! member does that twice at most, which bounds the repetitions.
+//! All of it is one atomic word, which leaves `waiting` once and for all. No thread ever waits for
+//! another one: looking is a load, arriving and leaving a compare-and-exchange, repeated only if
+//! another member changed the word in between. Each member does that twice at most, which bounds
+//! the repetitions.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -56,8 +58,8 @@ impl Default for StartBarrier {
 }
 
 impl StartBarrier {
-    /// How long a motion waits for the others unless said otherwise: twice as long as a robot may take to show the modes
-    /// of a motion.
+    /// How long a motion waits for the others unless said otherwise: twice as long as a robot may
+    /// take to show the modes of a motion.
     pub const TIMEOUT: Duration = Duration::from_secs(10);
 
     /// The most members.
@@ -70,7 +72,8 @@ impl StartBarrier {
         }
     }
 
-    /// Replaces the time that a motion waits for the others, counted from its own arrival by its robot's clock.
+    /// Replaces the time that a motion waits for the others, counted from its own arrival by its
+    /// robot's clock.
     pub fn timeout(mut self, timeout: Duration) -> Self {
         self.timeout = timeout;
         self
@@ -103,8 +106,8 @@ impl StartBarrier {
     }
 }
 
-/// The right, and the duty, of one motion to begin together with others. Dropping it before the start lets the others go,
-/// with an error.
+/// The right, and the duty, of one motion to begin together with others. Dropping it before the
+/// start lets the others go, with an error.
 #[derive(Debug)]
 #[must_use = "dropping a ticket ends the common start"]
 pub struct StartTicket {
@@ -134,12 +137,13 @@ pub enum Gate {
     Broken(StartFault),
 }
 
-/// Caller: why motions that were to begin together did not. Members count from 0, in the order of their tickets.
+/// Caller: why motions that were to begin together did not. Members count from 0, in the order of
+/// their tickets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartFault {
-    /// A ticket, or the motion that had it, was dropped before it was awaited; or the motion was refused before its robot was
-    /// asked.
+    /// A ticket, or the motion that had it, was dropped before it was awaited; or the motion was
+    /// refused before its robot was asked.
     #[error("member {member} of the common start was dropped or refused before it began")]
     Dropped {
         /// Which.
@@ -151,7 +155,8 @@ pub enum StartFault {
         /// Which.
         member: usize,
     },
-    /// A motion ended before the start: its robot refused it, stopped, or fell silent. Its own error says what happened.
+    /// A motion ended before the start: its robot refused it, stopped, or fell silent. Its own
+    /// error says what happened.
     #[error("the motion of member {member} ended before the common start")]
     Ended {
         /// Which.
@@ -203,7 +208,8 @@ impl StartTicket {
         }
     }
 
-    /// Arrives, the first time, and tells whether the motion may begin at `now`, `[ms]` of its robot's clock. Never waits.
+    /// Arrives, the first time, and tells whether the motion may begin at `now`, `[ms]` of its
+    /// robot's clock. Never waits.
     pub fn pass(&mut self, now: u64) -> Gate {
         let since = match self.step {
             Step::Decided(gate) => return gate,
@@ -239,7 +245,8 @@ impl StartTicket {
         }
     }
 
-    /// Takes the motion out of the common start: it goes on by itself. The others are let go, if they wait still.
+    /// Takes the motion out of the common start: it goes on by itself. The others are let go, if
+    /// they wait still.
     pub fn withdraw(&mut self) {
         if self.is_undecided() {
             self.shared.leave(self.member, Cause::Withdrawn);
@@ -288,8 +295,8 @@ enum Word {
 
 impl Shared {
     fn gate(&self) -> Gate {
-        // Relaxed, here and below: nothing but the word itself is read on the strength of it, and the changes of one
-        // atomic have one order that every thread sees.
+        // Relaxed, here and below: nothing but the word itself is read on the strength of it, and
+        // the changes of one atomic have one order that every thread sees.
         match Word::from(self.word.load(Ordering::Relaxed)) {
             Word::Waiting { present } if present == self.members => Gate::Open,
             Word::Waiting { .. } => Gate::Closed,
@@ -329,13 +336,15 @@ impl Shared {
         });
     }
 
-    /// Replaces the word while it is neither open nor broken; what it says afterwards stays otherwise.
+    /// Replaces the word while it is neither open nor broken; what it says afterwards stays
+    /// otherwise.
     fn change(&self, to: impl Fn(u16) -> Word) {
         let mut word = self.word.load(Ordering::Relaxed);
         while let Word::Waiting { present } = Word::from(word)
             && present < self.members
         {
-            // Strong: it fails only if another member has changed the word, which each does twice at most.
+            // Strong: it fails only if another member has changed the word, which each does twice
+            // at most.
             match self.word.compare_exchange(
                 word,
                 to(present).into(),

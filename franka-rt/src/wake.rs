@@ -1,7 +1,9 @@
-//! The bell that the thread rings when it has left something to be looked at: an eventfd, which any reactor can wait for.
+//! The bell that the thread rings when it has left something to be looked at: an eventfd, which any
+//! reactor can wait for.
 //!
-//! Ringing is one non-blocking `write`, without a lock and without knowledge of who listens. Rings add up until the
-//! listener clears them, so a slow listener is woken once and then looks at the slot and the queues.
+//! Ringing is one non-blocking `write`, without a lock and without knowledge of who listens. Rings
+//! add up until the listener clears them, so a slow listener is woken once and then looks at the
+//! slot and the queues.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -12,8 +14,9 @@ use crate::sys;
 
 /// One bell. Clones ring and clear the same one.
 ///
-/// For Tokio: `AsyncFd::new(wake)`, await `readable()`, [`Wake::clear`], then the guard's `clear_ready`, then look. A
-/// ring that comes between is not lost: it makes the descriptor readable again.
+/// For Tokio: `AsyncFd::new(wake)`, await `readable()`, [`Wake::clear`], then the guard's
+/// `clear_ready`, then look. A ring that comes between is not lost: it makes the descriptor
+/// readable again.
 #[derive(Clone, Debug)]
 pub struct Wake(Arc<File>);
 
@@ -26,8 +29,8 @@ impl Wake {
         Ok(Self(Arc::new(sys::eventfd()?.into())))
     }
 
-    /// Rings. Never blocks and cannot fail in a way that matters: at 2^64 - 2 rings that nobody cleared the write is
-    /// refused, and the descriptor is readable anyway.
+    /// Rings. Never blocks and cannot fail in a way that matters: at 2^64 - 2 rings that nobody
+    /// cleared the write is refused, and the descriptor is readable anyway.
     pub fn ring(&self) {
         let _ = (&*self.0).write(&1u64.to_ne_bytes());
     }

@@ -33,22 +33,22 @@ pub struct Config {
     /// Whether commands and motion outside the limits end in a reflex. Without, the arm does what
     /// it physically can.
     pub enforce_limits: bool,
-    /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints: above
-    /// 1 for clients that are rougher than a robot allows. 1 by default.
+    /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints:
+    /// above 1 for clients that are rougher than a robot allows. 1 by default.
     pub joint_discontinuity_scale: f64,
     /// Whether 20 lost commands in a row end in a reflex. Without, a cycle that has no command is
     /// no cycle for the motion generator: it keeps its setpoint until the next command, so that
     /// a client may be slower than 1 kHz or stand in a debugger.
     pub enforce_communication: bool,
-    /// The description that the robot serves instead of its own (protocol 10), whatever it says: for
-    /// clients' tests.
+    /// The description that the robot serves instead of its own (protocol 10), whatever it says:
+    /// for clients' tests.
     pub urdf: Option<String>,
     /// The model library that the robot serves to every architecture and system (protocol 5). The
     /// vendor's is not ours to give: without one the robot answers with an error.
     pub model_library: Option<Bytes>,
     /// Virtual walls, as set up in Desk, by the number that a client asks for (protocol 5). The end
-    /// effector stays inside the cuboid of each active one, which reaches from the origin of its frame
-    /// to its corner.
+    /// effector stays inside the cuboid of each active one, which reaches from the origin of its
+    /// frame to its corner.
     pub walls: Vec<(i32, VirtualWall)>,
     /// What is assumed where nothing is published.
     pub unpublished: Unpublished,

@@ -6,7 +6,8 @@ use franka_proto::{Filters, RobotCommand};
 use crate::generator::Desired;
 use crate::signal::CYCLE;
 
-/// A command after the filters, which start from what is desired and from the last torques, `[N·m]`.
+/// A command after the filters, which start from what is desired and from the last torques,
+/// `[N·m]`.
 ///
 /// First-order low-passes of gain `T / (T + 1 / 2πf)`; the highest cutoff that can be set, 1000 Hz,
 /// means none (FCI documentation). A pose that is none passes as it is, to be refused.

@@ -39,29 +39,29 @@
 //!
 //! # Features
 //!
-//! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. Needs Rust 1.95, and MuJoCo's library: in this workspace
-//!   `cargo xtask mujoco` fetches it.
+//! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. Needs Rust 1.95, and MuJoCo's library: in
+//!   this workspace `cargo xtask mujoco` fetches it.
 //!
 //! # Hands on
 //!
-//! [`Robot`], and [`Running`] from any task: [`touch`](Robot::touch) the arm anywhere ([`Touch`]: push it,
-//! also over time, pull it by a spring, hold it, block a joint, put a wall in its way), press the user stop,
-//! close the brakes, guide the arm, activate a safety function, change the payload, trip any error, and
-//! perform the recovery that takes a person.
+//! [`Robot`], and [`Running`] from any task: [`touch`](Robot::touch) the arm anywhere ([`Touch`]:
+//! push it, also over time, pull it by a spring, hold it, block a joint, put a wall in its way),
+//! press the user stop, close the brakes, guide the arm, activate a safety function, change the
+//! payload, trip any error, and perform the recovery that takes a person.
 //!
 //! # What it does not do
 //!
 //! - The robot: its model library (protocol 5) is one that the user has. It knows the shape of the
 //!   Franka Hand and of no other tool when it keeps off itself.
-//! - Errors that never come by themselves: those of the force controller, of Desk's own motions and of
-//!   the base's acceleration. [`Robot::trip`] raises any.
-//! - Physics: links and joints do not bend. Around the rigid-body plant there is nothing but what a [`Touch`]
-//!   puts there, itself included; around that of MuJoCo (feature `mujoco`) is a scene.
-//! - The end effectors: kinematics, unless the plant has fingers. Without, they and the arm know nothing of
-//!   each other, and what they hold has neither mass nor pose.
-//! - What a robot keeps to itself (tolerances, thresholds and gains by default, the gain of its force
-//!   estimate, what counts as unstable) has values chosen here, which are options: [`Unpublished`]. None
-//!   has been measured on a robot.
+//! - Errors that never come by themselves: those of the force controller, of Desk's own motions and
+//!   of the base's acceleration. [`Robot::trip`] raises any.
+//! - Physics: links and joints do not bend. Around the rigid-body plant there is nothing but what a
+//!   [`Touch`] puts there, itself included; around that of MuJoCo (feature `mujoco`) is a scene.
+//! - The end effectors: kinematics, unless the plant has fingers. Without, they and the arm know
+//!   nothing of each other, and what they hold has neither mass nor pose.
+//! - What a robot keeps to itself (tolerances, thresholds and gains by default, the gain of its
+//!   force estimate, what counts as unstable) has values chosen here, which are options:
+//!   [`Unpublished`]. None has been measured on a robot.
 
 mod brake;
 pub mod config;

@@ -24,9 +24,9 @@ use tokio::signal::unix::{SignalKind, signal};
 /// it is between clients.
 ///
 /// The robot is as strict as a real one: a command beyond a limit, a step in velocity or torque, a
-/// collision and 20 missing commands in a row end a motion in a reflex, which the client clears with
-/// an automatic error recovery. With --permissive it lets commands pass, so that a program can be
-/// brought to run before it is made safe.
+/// collision and 20 missing commands in a row end a motion in a reflex, which the client clears
+/// with an automatic error recovery. With --permissive it lets commands pass, so that a program can
+/// be brought to run before it is made safe.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES)]
 struct Arguments {
@@ -34,7 +34,8 @@ struct Arguments {
     #[arg(long, value_enum, default_value_t = Kind::Fr3)]
     robot: Kind,
 
-    /// Address to listen on, IPv4 or IPv6; 0.0.0.0 for all interfaces, :: for both families on all of them.
+    /// Address to listen on, IPv4 or IPv6; 0.0.0.0 for all interfaces, :: for both families on all
+    /// of them.
     #[arg(long, default_value = "127.0.0.1")]
     bind: IpAddr,
 
@@ -46,8 +47,9 @@ struct Arguments {
     #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
     q: Option<[f64; 7]>,
 
-    /// Serves neither a Franka Hand nor a vacuum gripper. Without this, they listen on the two ports
-    /// that follow the robot's, as on a robot: 1338 and 1339. On port 0 all three are free ones.
+    /// Serves neither a Franka Hand nor a vacuum gripper. Without this, they listen on the two
+    /// ports that follow the robot's, as on a robot: 1338 and 1339. On port 0 all three are free
+    /// ones.
     #[arg(long)]
     no_gripper: bool,
 
@@ -78,12 +80,13 @@ struct Arguments {
     #[arg(long, value_enum, default_value_t = PlantKind::Rigid)]
     plant: PlantKind,
 
-    /// An MJCF file with what is around the robot, in its base frame, instead of the table. Bodies with a
-    /// free joint are objects to push and to grasp.
+    /// An MJCF file with what is around the robot, in its base frame, instead of the table. Bodies
+    /// with a free joint are objects to push and to grasp.
     #[arg(long, value_name = "FILE.xml")]
     scene: Option<PathBuf>,
 
-    /// What happens to states and commands on their way, besides what the network between the hosts does.
+    /// What happens to states and commands on their way, besides what the network between the hosts
+    /// does.
     #[arg(long, value_enum, default_value_t = NetworkKind::Perfect)]
     network: NetworkKind,
 
@@ -91,19 +94,20 @@ struct Arguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
 
-    /// Whether commands and motions beyond the limits end in a reflex, as on a robot. With `false` the
-    /// arm does what it physically can.
+    /// Whether commands and motions beyond the limits end in a reflex, as on a robot. With `false`
+    /// the arm does what it physically can.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]
     enforce_motion_limits: bool,
 
-    /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints. Above 1
-    /// for clients that are rougher than a robot allows: it would stop with a discontinuity error.
+    /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints.
+    /// Above 1 for clients that are rougher than a robot allows: it would stop with a discontinuity
+    /// error.
     #[arg(long, value_name = "FACTOR", value_parser = factor, default_value = "1")]
     joint_discontinuity_scale: f64,
 
-    /// Whether 20 commands missing in a row end in a reflex, as on a robot. With `false` the robot waits
-    /// for them: for slow or debugged clients.
+    /// Whether 20 commands missing in a row end in a reflex, as on a robot. With `false` the robot
+    /// waits for them: for slow or debugged clients.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]
     enforce_comm_constraints: bool,
@@ -112,14 +116,14 @@ struct Arguments {
     #[arg(long)]
     permissive: bool,
 
-    /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond, which takes
-    /// the right to one. Without the right, the simulator says so and goes on without.
+    /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond, which
+    /// takes the right to one. Without the right, the simulator says so and goes on without.
     #[arg(long)]
     realtime: bool,
 
-    /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a motion the next
-    /// millisecond begins when the answer to the last state is there, within a second. For tests, and for
-    /// clients slower than a robot allows.
+    /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a
+    /// motion the next millisecond begins when the answer to the last state is there, within a
+    /// second. For tests, and for clients slower than a robot allows.
     #[arg(long, conflicts_with = "realtime")]
     virtual_time: bool,
 }

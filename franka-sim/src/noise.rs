@@ -2,8 +2,8 @@
 
 use franka_model::JointVector;
 
-/// A small generator of numbers: SplitMix64 (Steele, Lea and Flood, 2014), and the Box-Muller transform for
-/// those that are normally distributed.
+/// A small generator of numbers: SplitMix64 (Steele, Lea and Flood, 2014), and the Box-Muller
+/// transform for those that are normally distributed.
 #[derive(Debug, Clone)]
 pub(crate) struct Random {
     state: u64,

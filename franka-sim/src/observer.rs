@@ -4,16 +4,16 @@ use franka_model::{Dynamics, JointVector, MassMatrix};
 
 use crate::signal::CYCLE;
 
-/// A momentum observer (De Luca, Albu-Schäffer, Haddadin and Hirzinger, "Collision detection and safe
-/// reaction with the DLR-III lightweight manipulator arm", IROS 2006, section III).
+/// A momentum observer (De Luca, Albu-Schäffer, Haddadin and Hirzinger, "Collision detection and
+/// safe reaction with the DLR-III lightweight manipulator arm", IROS 2006, section III).
 ///
-/// The generalised momentum `p = M dq` of the links obeys `dp/dt = τ + (dM/dt − C) dq − g + τ_ext`, with
-/// `τ` the torques between gears and links, which the joint sensors read. What the right side without
-/// `τ_ext` leaves open is the residual `r`, which follows `τ_ext` like a first-order low-pass:
-/// `dr/dt = gain (τ_ext − r)`. No acceleration is measured or computed.
+/// The generalised momentum `p = M dq` of the links obeys `dp/dt = τ + (dM/dt − C) dq − g + τ_ext`,
+/// with `τ` the torques between gears and links, which the joint sensors read. What the right side
+/// without `τ_ext` leaves open is the residual `r`, which follows `τ_ext` like a first-order
+/// low-pass: `dr/dt = gain (τ_ext − r)`. No acceleration is measured or computed.
 ///
-/// `M`, `C` and `g` are those of the load that is *declared*: what else hangs on the flange, and what
-/// it takes to accelerate it, counts as external.
+/// `M`, `C` and `g` are those of the load that is *declared*: what else hangs on the flange, and
+/// what it takes to accelerate it, counts as external.
 #[derive(Debug, Clone)]
 pub(crate) struct MomentumObserver {
     residual: JointVector,
@@ -48,10 +48,11 @@ impl MomentumObserver {
         }
     }
 
-    /// Takes in one millisecond: the arm at both ends, the mean torque that the sensors read, `[N·m]`.
-    /// `gain` in `[1/s]`.
+    /// Takes in one millisecond: the arm at both ends, the mean torque that the sensors read,
+    /// `[N·m]`. `gain` in `[1/s]`.
     ///
-    /// Backward Euler in the residual, the trapezoidal rule in all else, so that no gain is too high.
+    /// Backward Euler in the residual, the trapezoidal rule in all else, so that no gain is too
+    /// high.
     pub(crate) fn update(
         &mut self,
         before: &Instant,

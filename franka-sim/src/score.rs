@@ -2,7 +2,8 @@
 
 use crate::config::FirstCycles;
 
-/// Cycles lost in a row that end a motion (FCI documentation, "communication_constraints_violation").
+/// Cycles lost in a row that end a motion (FCI documentation,
+/// "communication_constraints_violation").
 pub(crate) const LOST_LIMIT: u32 = 20;
 
 /// Cycles that the success rate looks back on (libfranka 0.21, `robot_state.h`).

@@ -27,8 +27,8 @@ fn one_command(version: Version) -> (Program, MoveRequest) {
     torques(version, |_, _| Torques([0.0; 7]).finish())
 }
 
-/// Asserts that a function that failed in the cycle before gets no more states, that the robot is told to stop, and that
-/// the motion resolves when it has; then that the next motion runs.
+/// Asserts that a function that failed in the cycle before gets no more states, that the robot is
+/// told to stop, and that the motion resolves when it has; then that the next motion runs.
 fn assert_stopped(pair: &mut Pair, motion: &Running) -> MotionError {
     assert_eq!(pair.client.record.activity, Activity::Silent);
     assert_eq!(pair.step(), None);

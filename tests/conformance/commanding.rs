@@ -99,7 +99,8 @@ fn scenario_4_a_command_of_another_kind_is_refused() {
     });
 }
 
-/// A motion command without its torques is refused in the words of `writeOnce`, which come first in libfranka too.
+/// A motion command without its torques is refused in the words of `writeOnce`, which come first in
+/// libfranka too.
 #[test]
 fn scenario_5_a_generator_beside_torques_takes_both_or_none() {
     for_each_version(|version| {
@@ -164,7 +165,8 @@ fn scenario_6_torques_alone() {
     pair.succeed(&motion);
 }
 
-/// Protocol 5 has no such motion: it cannot be asked for, and a generator that stands still runs beside torques.
+/// Protocol 5 has no such motion: it cannot be asked for, and a generator that stands still runs
+/// beside torques.
 #[test]
 fn scenario_6_torques_alone_are_beside_a_standing_generator_in_protocol_5() {
     let version = Version::V5;

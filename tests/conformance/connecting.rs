@@ -8,7 +8,8 @@ use franka_proto::{Version, client, server};
 
 use crate::for_each_version;
 
-/// Over a real socket, since that is what there is to it; more of the kind in `tests/live/connecting.rs`.
+/// Over a real socket, since that is what there is to it; more of the kind in
+/// `tests/live/connecting.rs`.
 #[tokio::test]
 async fn scenario_17_nobody_listens() {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");

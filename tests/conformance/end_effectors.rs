@@ -85,7 +85,8 @@ impl<P: for<'a> Protocol<Reply<'a> = Reply>> Connection<P> {
     }
 }
 
-/// `tests/live/hands.rs` asks the same of the async client, over sockets, and of a status that does not exist.
+/// `tests/live/hands.rs` asks the same of the async client, over sockets, and of a status that does
+/// not exist.
 #[test]
 fn scenario_18_every_answer_to_every_command_of_the_hand() {
     assert_eq!(gripper::Command::SERVICE, "libfranka gripper");

@@ -46,7 +46,8 @@ fn scenario_9_a_finished_motion_succeeds() {
             let motion = pair.begin(program, request);
             assert!(!motion.first.expect("an answer").motion_generation_finished);
             assert!(!pair.step().expect("an answer").motion_generation_finished);
-            // The last command is repeated, each time for the newest state, while the robot shows the motion.
+            // The last command is repeated, each time for the newest state, while the robot shows
+            // the motion.
             for _ in 0..4 {
                 let last = pair.step().expect("an answer");
                 assert_eq!(last.message_id, pair.robot.state.message_id);
@@ -152,8 +153,8 @@ fn scenario_11_a_cancelled_motion_is_stopped() {
     });
 }
 
-/// Whoever asks for the stop hears that the arm rests; whoever awaited the motion, that it was stopped. The answer to the
-/// `Move` may come late.
+/// Whoever asks for the stop hears that the arm rests; whoever awaited the motion, that it was
+/// stopped. The answer to the `Move` may come late.
 #[test]
 fn scenario_11_a_stop_resolves_for_both() {
     for_each_version(|version| {
@@ -179,8 +180,9 @@ fn scenario_11_a_stop_resolves_for_both() {
     });
 }
 
-/// libfranka throws when the stop is refused, and leaves the motion to itself. This driver goes by whether the motion ends:
-/// it asks once more, leaves the robot without commands, and then says that it neither ran nor stopped.
+/// libfranka throws when the stop is refused, and leaves the motion to itself. This driver goes by
+/// whether the motion ends: it asks once more, leaves the robot without commands, and then says
+/// that it neither ran nor stopped.
 #[test]
 fn scenario_11_a_stop_that_is_refused() {
     for_each_version(|version| {

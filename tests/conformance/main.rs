@@ -1,5 +1,5 @@
-//! How libfranka's client behaves, scenario by scenario, after the tests that it is held to itself: beside a robot that
-//! follows a script, for both versions of the protocol.
+//! How libfranka's client behaves, scenario by scenario, after the tests that it is held to itself:
+//! beside a robot that follows a script, for both versions of the protocol.
 //!
 //! | module | scenarios |
 //! |---|---|
@@ -12,9 +12,10 @@
 //! | [`connecting`] | 17: no robot, or one of another version |
 //! | [`end_effectors`] | 18: the Hand and the vacuum gripper |
 //!
-//! Client and robot share one thread and a counted clock, see [`pair::Pair`]. Everything between them is bytes: messages go
-//! through the sessions of both sides, datagrams over loopback through the socket code of the control thread. Where this
-//! driver answers otherwise than libfranka, on purpose, the test says so.
+//! Client and robot share one thread and a counted clock, see [`pair::Pair`]. Everything between
+//! them is bytes: messages go through the sessions of both sides, datagrams over loopback through
+//! the socket code of the control thread. Where this driver answers otherwise than libfranka, on
+//! purpose, the test says so.
 
 mod callbacks;
 mod commanding;

@@ -18,8 +18,8 @@ use crate::robot::ScriptedRobot;
 
 /// The client, the robot, and the sockets between.
 ///
-/// A datagram sent over loopback is there when the call that sends it returns, so nothing here waits: time is what
-/// [`Pair::cycle`] and [`Pair::silence`] count.
+/// A datagram sent over loopback is there when the call that sends it returns, so nothing here
+/// waits: time is what [`Pair::cycle`] and [`Pair::silence`] count.
 pub(crate) struct Pair {
     pub(crate) client: Client,
     pub(crate) robot: ScriptedRobot,
@@ -37,8 +37,8 @@ pub(crate) struct Running {
 }
 
 impl Pair {
-    /// Connected as the scenarios have it: the handshake, a state with the id 1, then the robot's model where the version
-    /// has one.
+    /// Connected as the scenarios have it: the handshake, a state with the id 1, then the robot's
+    /// model where the version has one.
     pub(crate) fn connected(version: Version) -> Self {
         Self::with_log_size(version, ControlLog::DEFAULT_CAPACITY)
     }
@@ -69,8 +69,8 @@ impl Pair {
         pair
     }
 
-    /// One wake-up of the control thread, for which a datagram has to be waiting; then whatever was said over TCP
-    /// arrives. It takes a millisecond.
+    /// One wake-up of the control thread, for which a datagram has to be waiting; then whatever was
+    /// said over TCP arrives. It takes a millisecond.
     pub(crate) fn cycle(&mut self) -> Reception {
         let reception = self.exchange.receive();
         if reception.fresh {
@@ -121,7 +121,8 @@ impl Pair {
         }
     }
 
-    /// Starts a motion: the robot says that it has, and shows its modes in one state, which is answered.
+    /// Starts a motion: the robot says that it has, and shows its modes in one state, which is
+    /// answered.
     pub(crate) fn begin(&mut self, program: Program, request: MoveRequest) -> Running {
         let (work, id) = self.ask(program, request);
         self.robot.reply_move(id, MoveStatus::MotionStarted);
@@ -159,7 +160,8 @@ impl Pair {
         written.map(|_| arrived.expect("just so"))
     }
 
-    /// Has the robot end a motion well: its states show rest, and it says that the motion succeeded.
+    /// Has the robot end a motion well: its states show rest, and it says that the motion
+    /// succeeded.
     pub(crate) fn succeed(&mut self, motion: &Running) {
         self.robot.rest();
         self.robot.reply_move(motion.id, MoveStatus::Success);

@@ -55,8 +55,9 @@ fn scenario_2_a_second_without_a_state_loses_the_link() {
     });
 }
 
-/// A driver that has lost its connection refuses the torques of a motion in the words for one that has ended; libfranka
-/// names the connection once more. `tests/live/ending.rs` closes real sockets in every phase of a motion.
+/// A driver that has lost its connection refuses the torques of a motion in the words for one that
+/// has ended; libfranka names the connection once more. `tests/live/ending.rs` closes real sockets
+/// in every phase of a motion.
 #[test]
 fn scenario_2_a_closed_connection_ends_the_motion_and_refuses_torques() {
     let closed = "libfranka: server closed connection";
@@ -86,7 +87,8 @@ fn scenario_2_a_closed_connection_ends_the_motion_and_refuses_torques() {
     });
 }
 
-/// States may go on when the stream has ended. A control function that nobody can stop any more gets none of them.
+/// States may go on when the stream has ended. A control function that nobody can stop any more
+/// gets none of them.
 #[test]
 fn scenario_2_a_closed_connection_silences_a_control_function() {
     for_each_version(|version| {

@@ -105,7 +105,8 @@ impl ScriptedRobot {
         }
     }
 
-    /// Answers the `StopMove` that has to be there, and says that the motion `id` was preempted by it; states show rest.
+    /// Answers the `StopMove` that has to be there, and says that the motion `id` was preempted by
+    /// it; states show rest.
     pub(crate) fn obey_stop(&mut self, id: CommandId) {
         let stop = self.expect_stop();
         self.reply(stop, Reply::StopMove(StopStatus::Success));

@@ -63,8 +63,9 @@ fn to_ready(pair: &mut Pair) -> Goal {
     Goal::new(pair.client.next_goal(), target, Then::Finish, limits)
 }
 
-/// A second start is refused before anything is sent, as of a motion that another caller runs. libfranka 0.21 has the words
-/// `Attempted to start multiple motions!` for callers who get around its lock; here nobody can.
+/// A second start is refused before anything is sent, as of a motion that another caller runs.
+/// libfranka 0.21 has the words `Attempted to start multiple motions!` for callers who get around
+/// its lock; here nobody can.
 #[test]
 fn scenario_3_a_motion_runs_when_the_modes_are_there_already_and_no_second_starts() {
     for_each_version(|version| {
@@ -113,8 +114,8 @@ fn scenario_3_the_first_state_with_the_modes_is_answered_whatever_came_before() 
     });
 }
 
-/// libfranka throws a `CommandException` for a refusal in the first answer and a `ControlException` for one in the second;
-/// here both are [`MotionError::Rejected`], with its text.
+/// libfranka throws a `CommandException` for a refusal in the first answer and a `ControlException`
+/// for one in the second; here both are [`MotionError::Rejected`], with its text.
 #[test]
 fn scenario_8_a_refusal_after_the_motion_was_said_to_start() {
     for_each_version(|version| {
@@ -195,8 +196,8 @@ fn scenario_13_three_motions_in_a_row() {
     });
 }
 
-/// Callers share the state machine that is asked here, whatever threads they are on. States are free for all at any time,
-/// in both versions: reading one takes no lock.
+/// Callers share the state machine that is asked here, whatever threads they are on. States are
+/// free for all at any time, in both versions: reading one takes no lock.
 #[test]
 fn scenario_16_whoever_comes_second_is_told_that_another_is_at_it() {
     for_each_version(|version| {

@@ -49,7 +49,8 @@ async fn an_arm_moves_over_ipv6() {
     moves_on(bind, |port| vec![format!("[::1]:{port}")]).await;
 }
 
-/// The address that a link gives itself, which means nothing without the name or the index of its interface.
+/// The address that a link gives itself, which means nothing without the name or the index of its
+/// interface.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn an_arm_moves_over_a_link_local_address() {
     let _alone = alone();
@@ -67,8 +68,8 @@ async fn an_arm_moves_over_a_link_local_address() {
     .await;
 }
 
-/// A link-local address of this host, the index and the name of its interface. Columns of `/proc/net/if_inet6`: address,
-/// index, prefix length, scope (0x20 for a link), flags, name.
+/// A link-local address of this host, the index and the name of its interface. Columns of
+/// `/proc/net/if_inet6`: address, index, prefix length, scope (0x20 for a link), flags, name.
 fn link_local() -> Option<(Ipv6Addr, u32, String)> {
     let table = std::fs::read_to_string("/proc/net/if_inet6").ok()?;
     table.lines().find_map(|line| {
@@ -89,7 +90,8 @@ async fn an_arm_moves_by_its_host_name() {
     moves_on(bind, |port| vec![format!("localhost:{port}")]).await;
 }
 
-/// A simulator for both families sees an IPv4 client under a mapped address; the client sees an IPv4 robot.
+/// A simulator for both families sees an IPv4 client under a mapped address; the client sees an
+/// IPv4 robot.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_simulator_for_both_families_serves_both() {
     let _alone = alone();

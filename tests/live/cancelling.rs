@@ -1,5 +1,5 @@
-//! Every future of a motion, dropped after each of its polls in turn: the arm comes to rest without a reflex, and takes the
-//! next motion.
+//! Every future of a motion, dropped after each of its polls in turn: the arm comes to rest without
+//! a reflex, and takes the next motion.
 
 use std::future::poll_fn;
 use std::pin::{Pin, pin};
@@ -51,7 +51,8 @@ async fn rests(robot: &Robot, what: &str) {
     assert!(reason.is_empty(), "{what}: {reason:?}");
 }
 
-/// Drops what `make` makes after one poll, then after two, and so on until it comes to its end; returns how many it took.
+/// Drops what `make` makes after one poll, then after two, and so on until it comes to its end;
+/// returns how many it took.
 async fn drop_at_every_poll<'a>(
     robot: &Robot,
     what: &str,

@@ -13,8 +13,9 @@ use franka_sim::{Running, Sim, Tool};
 
 use crate::{alone, connect};
 
-/// A simulated robot of each kind with its hand, and a handle on it. A busy machine loses cycles, which shows as a step
-/// in what a function commands: that is for lockstep to judge, so these robots mind neither unless `strict`.
+/// A simulated robot of each kind with its hand, and a handle on it. A busy machine loses cycles,
+/// which shows as a step in what a function commands: that is for lockstep to judge, so these
+/// robots mind neither unless `strict`.
 pub(crate) async fn each(strict: bool) -> Vec<(Robot, Running)> {
     let mut robots = Vec::new();
     for sim in [Sim::fr3(), Sim::fer()] {
@@ -37,7 +38,8 @@ fn smooth(t: f64, seconds: f64) -> (f64, f64) {
     (value, (1.0 - (2.0 * PI * phase).cos()) / seconds)
 }
 
-/// The command of a motion over `seconds`, made by `at` of the time; the last one once they are over.
+/// The command of a motion over `seconds`, made by `at` of the time; the last one once they are
+/// over.
 fn timed<C: Finish>(
     seconds: f64,
     mut at: impl FnMut(&RobotState, f64) -> C + Send + 'static,
@@ -180,7 +182,8 @@ async fn a_panic_or_a_bad_number_stops_the_motion_and_the_thread_lives_on() {
         let error = panicking.await.unwrap_err();
         let text = "the control function panicked: a bug of the user's";
         assert_eq!(error.to_string(), text);
-        // Printing a panic can take longer than the robot waits for commands; it has then stopped itself.
+        // Printing a panic can take longer than the robot waits for commands; it has then stopped
+        // itself.
         robot.recover().await.unwrap();
 
         let mut calls = 0;

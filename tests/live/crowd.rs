@@ -1,7 +1,9 @@
-//! Ten simulators and ten driven robots in one process: nobody gets what is another's, and everything resolves.
+//! Ten simulators and ten driven robots in one process: nobody gets what is another's, and
+//! everything resolves.
 //!
-//! The arms keep to lanes of their own, have loads and tools of their own, and go from goal to goal. What reaches the wrong
-//! robot shows: a state in the lane, the load or the tool of a neighbour, a command in an arm that leaves its lane.
+//! The arms keep to lanes of their own, have loads and tools of their own, and go from goal to
+//! goal. What reaches the wrong robot shows: a state in the lane, the load or the tool of a
+//! neighbour, a command in an arm that leaves its lane.
 //!
 //! The test takes [`SECONDS`]. For as long as one likes, of which the report tells more:
 //!
@@ -9,7 +11,8 @@
 //! FRANKA_CROWD_SECONDS=60 cargo test --package franka-tests --test live crowd -- --nocapture
 //! ```
 //!
-//! `FRANKA_CROWD_STRICT=1` has the robots enforce communication, which takes a machine that carries twenty threads at 1 kHz.
+//! `FRANKA_CROWD_STRICT=1` has the robots enforce communication, which takes a machine that carries
+//! twenty threads at 1 kHz.
 
 use std::future::IntoFuture;
 use std::time::{Duration, Instant};
@@ -141,7 +144,8 @@ impl Member {
         outcome.unwrap_or_else(|_| panic!("robot {number}: a future is lost"))
     }
 
-    /// Notes how a motion ended that was to end as `expected` says. A robot that lacked commands is recovered.
+    /// Notes how a motion ended that was to end as `expected` says. A robot that lacked commands is
+    /// recovered.
     async fn note(&mut self, outcome: Outcome, expected: fn(&mut Tally, &Outcome) -> bool) -> bool {
         if expected(&mut self.tally, &outcome) {
             return true;

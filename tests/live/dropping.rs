@@ -13,7 +13,8 @@ use tokio::time::timeout;
 
 use crate::{alone, connect, long_way, simulated};
 
-/// Polls a future `polls` times, up to `pause` apart, from a thread without a runtime, and drops it.
+/// Polls a future `polls` times, up to `pause` apart, from a thread without a runtime, and drops
+/// it.
 fn poll_and_drop<F: Future + Send>(future: F, polls: u32, pause: Duration, random: &mut SmallRng) {
     let pauses: Vec<Duration> = (0..polls)
         .map(|_| pause.mul_f64(random.random::<f64>()))

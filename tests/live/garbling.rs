@@ -40,7 +40,8 @@ async fn replies_that_come_twice_count_once() {
         error.to_string(),
         "libfranka: Move received unexpected motion started message."
     );
-    // The state may be of before the motion: that it is over is shown by a parameter that the robot takes.
+    // The state may be of before the motion: that it is over is shown by a parameter that the robot
+    // takes.
     let rest = async {
         while robot.set_joint_impedance(STIFFNESS).await.is_err() {
             sleep(Duration::from_millis(5)).await;

@@ -1,4 +1,5 @@
-//! The driver and the simulator over real sockets on this machine, where the socket or the clock is what is tested.
+//! The driver and the simulator over real sockets on this machine, where the socket or the clock is
+//! what is tested.
 //!
 //! Run one at a time: each test has a robot, and two cores carry only so many.
 

@@ -1,4 +1,5 @@
-//! A robot that leaves the protocol, or says nothing: errors that name it, motions that resolve, and a next connection.
+//! A robot that leaves the protocol, or says nothing: errors that name it, motions that resolve,
+//! and a next connection.
 
 use std::net::UdpSocket;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -157,7 +158,8 @@ async fn a_motion_whose_start_cannot_be_read_is_stopped() {
         }
     });
     still.await.expect("the robot was told to stop");
-    // A motion that is asked for at once may meet the end of the abandoned one; it resolves, and another one arrives.
+    // A motion that is asked for at once may meet the end of the abandoned one; it resolves, and
+    // another one arrives.
     let arrived = timeout(Duration::from_secs(20), async {
         while let Err(error) = robot.move_to(robot.pose()).await {
             assert!(
@@ -242,7 +244,8 @@ async fn stray_datagrams_do_not_disturb_a_motion() {
     for address in ["127.0.0.1:0", "127.0.0.2:0"] {
         let stray = UdpSocket::bind(address).unwrap();
         for length in [0, 1, 371, 1376, 1377, 9000] {
-            // From the robot's own address, a whole state is a state: only a stranger sends one here.
+            // From the robot's own address, a whole state is a state: only a stranger sends one
+            // here.
             if length < 1377 || address.starts_with("127.0.0.2") {
                 stray
                     .send_to(&vec![0xff; length], peer.client_udp())

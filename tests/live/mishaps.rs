@@ -1,7 +1,8 @@
 //! Each thing that a network does to datagrams, between the simulator's sockets and the driver's.
 //!
-//! In virtual time the same networks are in `tests/lockstep/mishaps.rs`, where what they do is exact. Here a busy machine does
-//! some of its own, which loses no state but makes commands late: the robots wait for commands, and bounds are wide.
+//! In virtual time the same networks are in `tests/lockstep/mishaps.rs`, where what they do is
+//! exact. Here a busy machine does some of its own, which loses no state but makes commands late:
+//! the robots wait for commands, and bounds are wide.
 
 use std::future::IntoFuture;
 use std::time::{Duration, Instant};

@@ -20,8 +20,8 @@ struct Scheduled {
     processors: String,
 }
 
-/// All threads of this process, by their ids. Fields 19, 40 and 41 of proc_pid_stat(5), and two lines of
-/// proc_pid_status(5).
+/// All threads of this process, by their ids. Fields 19, 40 and 41 of proc_pid_stat(5), and two
+/// lines of proc_pid_status(5).
 fn threads() -> BTreeMap<u32, Scheduled> {
     let tasks = std::fs::read_dir("/proc/self/task").expect("Linux has /proc");
     let mut threads = BTreeMap::new();
@@ -118,7 +118,8 @@ async fn nothing_but_the_control_threads_is_raised_or_pinned() {
     }
 }
 
-/// Under `Enforce` a host that refuses something gets no connection, and the thread that asks stays as it was.
+/// Under `Enforce` a host that refuses something gets no connection, and the thread that asks stays
+/// as it was.
 #[tokio::test]
 async fn what_is_enforced_and_refused_connects_nothing_and_raises_nobody() {
     let _alone = alone();

@@ -23,14 +23,16 @@ async fn patient() -> (Robot, Running) {
     (connect(&sim).await, sim)
 }
 
-/// `message_id` of all states of a stream, each with what was missed before it. Ends with the connection.
+/// `message_id` of all states of a stream, each with what was missed before it. Ends with the
+/// connection.
 fn collect(robot: &Robot) -> JoinHandle<BTreeMap<u64, u64>> {
     let stream = robot.state_stream();
     let entry = |reading: Reading| (reading.state.message_id, reading.missed);
     tokio::spawn(stream.map(entry).collect())
 }
 
-/// The same of the records, of which there is one for each state that the control thread has received.
+/// The same of the records, of which there is one for each state that the control thread has
+/// received.
 fn records(robot: &Robot) -> JoinHandle<BTreeMap<u64, u64>> {
     let mut records = robot.records();
     tokio::spawn(async move {
@@ -93,7 +95,8 @@ async fn a_stream_has_every_state_whatever_moves() {
 
     let (mut states, mut records) = (states.await.unwrap(), records.await.unwrap());
     assert!(states.len() > 1500, "{} states", states.len());
-    // One of them may have begun, or ended, a state earlier; and before its first state a stream has missed none.
+    // One of them may have begun, or ended, a state earlier; and before its first state a stream
+    // has missed none.
     let first = states.keys().next().max(records.keys().next()).copied();
     let last = states.keys().last().min(records.keys().last()).copied();
     let both = first.unwrap() + 1..=last.unwrap();

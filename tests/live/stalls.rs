@@ -1,7 +1,8 @@
-//! An FER's transmit stalls over sockets, for the driver as it is. In virtual time: `tests/lockstep/stalls.rs`.
+//! An FER's transmit stalls over sockets, for the driver as it is. In virtual time:
+//! `tests/lockstep/stalls.rs`.
 //!
-//! What is answered too late is about the same there and here. More states give way to a newer one here: a burst leaves the
-//! simulator faster than the driver's thread wakes up.
+//! What is answered too late is about the same there and here. More states give way to a newer one
+//! here: a burst leaves the simulator faster than the driver's thread wakes up.
 //!
 //! ```text
 //! FRANKA_STALLS_SECONDS=30 cargo test --package franka-tests --test live stalls -- --nocapture
@@ -18,8 +19,8 @@ use franka_tests::tally::Tally;
 use crate::starving::prefer_the_simulator;
 use crate::{alone, connect};
 
-/// Commands no torque to an FER for so many seconds, over `network`. Beside what was noted, how well this machine has kept the
-/// robot's millisecond.
+/// Commands no torque to an FER for so many seconds, over `network`. Beside what was noted, how
+/// well this machine has kept the robot's millisecond.
 async fn communicate(network: Network, seconds: u64) -> (Tally, Pace) {
     let sim = Sim::fer().network(network).enforce_communication(false);
     let sim = sim.start().await.expect("a simulator starts");
@@ -47,7 +48,8 @@ async fn communicate(network: Network, seconds: u64) -> (Tally, Pace) {
     (tally, pace)
 }
 
-/// A state that has waited out a stall is answered late, whatever the client: some 14 of 1000 cycles.
+/// A state that has waited out a stall is answered late, whatever the client: some 14 of 1000
+/// cycles.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn the_stalls_of_an_fer_make_the_driver_as_late_as_in_virtual_time() {
     let _alone = alone();
@@ -61,7 +63,8 @@ async fn the_stalls_of_an_fer_make_the_driver_as_late_as_in_virtual_time() {
         tally.row,
         tally.rate(),
     );
-    // No machine is better than the robot's network, and what this one adds is late in a burst or not sent.
+    // No machine is better than the robot's network, and what this one adds is late in a burst or
+    // not sent.
     assert!(tally.rate() < 0.995, "{tally:?}");
     let own = (pace.burst + pace.skipped) as f64 / pace.cycles as f64;
     if own < 0.005 {

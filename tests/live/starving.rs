@@ -1,4 +1,5 @@
-//! A runtime whose every worker is blocked, and processors that are all busy, do not reach the control thread.
+//! A runtime whose every worker is blocked, and processors that are all busy, do not reach the
+//! control thread.
 
 use std::fs;
 use std::future::IntoFuture;
@@ -27,7 +28,8 @@ enum Beside {
     Nothing,
     /// Every worker of the program's runtime sleeps.
     BlockedWorkers,
-    /// A thread of normal priority per processor computes, and so does nobody else who has to wait for it.
+    /// A thread of normal priority per processor computes, and so does nobody else who has to wait
+    /// for it.
     BusyProcessors,
 }
 
@@ -51,7 +53,8 @@ fn runtime(workers: usize) -> Runtime {
     builder.expect("a runtime")
 }
 
-/// Runs one motion and watches the middle of it. A robot that is not `strict` minds no lost command.
+/// Runs one motion and watches the middle of it. A robot that is not `strict` minds no lost
+/// command.
 fn run(beside: Beside, strict: bool) -> Window {
     let runtime = runtime(WORKERS);
     // The simulator has a runtime of its own, as a robot would.
@@ -127,8 +130,8 @@ fn compute_everywhere() {
     });
 }
 
-/// Puts the thread of the simulator, which stands for another computer, where this one's load does not reach it; below
-/// the control thread. Has no effect where the system does not grant it.
+/// Puts the thread of the simulator, which stands for another computer, where this one's load does
+/// not reach it; below the control thread. Has no effect where the system does not grant it.
 pub(crate) fn prefer_the_simulator() {
     for task in fs::read_dir("/proc/self/task").expect("Linux") {
         let task = task.expect("a thread").path();
@@ -136,10 +139,12 @@ pub(crate) fn prefer_the_simulator() {
         let name = fs::read_to_string(task.join("comm")).unwrap_or_default();
         let id = task.file_name().and_then(|id| id.to_str()?.parse().ok());
         if let ("franka-sim", Some(id)) = (name.trim_end(), id) {
-            // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value.
+            // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid
+            // value.
             let mut parameters: libc::sched_param = unsafe { std::mem::zeroed() };
             parameters.sched_priority = 10;
-            // SAFETY: the function takes numbers, and reads `parameters`, which lives until it returns.
+            // SAFETY: the function takes numbers, and reads `parameters`, which lives until it
+            // returns.
             unsafe { libc::sched_setscheduler(id, libc::SCHED_FIFO, &raw const parameters) };
         }
     }
@@ -170,7 +175,8 @@ fn blocking_every_worker_for_two_seconds_loses_no_cycle_of_a_motion() {
     );
 }
 
-/// While the workers are blocked nobody passes targets on, and the control thread takes note of that by itself.
+/// While the workers are blocked nobody passes targets on, and the control thread takes note of
+/// that by itself.
 #[test]
 fn a_session_whose_stream_blocked_workers_hold_up_is_braked_in_time() {
     const SILENCE: Duration = Duration::from_millis(200);
@@ -242,8 +248,8 @@ fn a_session_whose_stream_blocked_workers_hold_up_is_braked_in_time() {
     runtime.block_on(robot.shutdown());
 }
 
-/// Without `SCHED_FIFO` the control thread has its fair share of a processor and no more, so there is nothing to hold it
-/// to but that it answers what it gets.
+/// Without `SCHED_FIFO` the control thread has its fair share of a processor and no more, so there
+/// is nothing to hold it to but that it answers what it gets.
 #[test]
 fn two_seconds_of_a_full_load_on_every_processor_lose_no_motion_where_the_kernel_grants_priority() {
     let _alone = alone();
@@ -258,7 +264,8 @@ fn two_seconds_of_a_full_load_on_every_processor_lose_no_motion_where_the_kernel
     assert_answered(&loaded);
     if preferred {
         assert!(loaded.states > 1500, "{loaded:?}");
-        // Five of a hundred; the robot gives up after twenty in a row. Those that came too late are not the thread's.
+        // Five of a hundred; the robot gives up after twenty in a row. Those that came too late are
+        // not the thread's.
         assert!(loaded.lost <= loaded.late + 100, "{loaded:?}");
     } else {
         println!("PUNCTUALITY WAS NOT CHECKED: {:?}", granted.refusals);

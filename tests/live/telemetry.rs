@@ -60,7 +60,8 @@ fn told(field: &str) -> Vec<Told> {
         .collect()
 }
 
-/// Floats for 400 ms, and takes 5 ms over each of the cycles at 100 and 110 ms and over that at 300 ms 20 ms.
+/// Floats for 400 ms, and takes 5 ms over each of the cycles at 100 and 110 ms and over that at 300
+/// ms 20 ms.
 async fn dawdle(robot: &Robot) -> MotionReport {
     let (mut time, mut dawdled) = (Duration::ZERO, 0);
     let control = robot.control_torques(move |_, step| {

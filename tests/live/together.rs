@@ -24,7 +24,8 @@ async fn two() -> ([Robot; 2], [Running; 2]) {
     ([connect(&sims[0]).await, connect(&sims[1]).await], sims)
 }
 
-/// Turns the last joint a little for half a second, and notes the time of the first call, `[ns]` after `base`.
+/// Turns the last joint a little for half a second, and notes the time of the first call, `[ns]`
+/// after `base`.
 fn turning(robot: &Robot, base: Instant, called: &Arc<AtomicU64>) -> Control {
     let (called, mut time) = (called.clone(), 0.0);
     robot.control_joint_velocities(move |_, step| {

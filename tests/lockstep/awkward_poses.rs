@@ -13,7 +13,8 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// Times that a joint may turn round on one way. A law that chatters turns round tens of times a second.
+/// Times that a joint may turn round on one way. A law that chatters turns round tens of times a
+/// second.
 const MOST_TURNS: u32 = 15;
 
 #[test]
@@ -82,7 +83,8 @@ fn a_pose_far_away_is_reached_or_reported_short() {
     };
     let (mut reached, mut short, mut blocked) = (0, 0, 0);
     for case in 0..40 {
-        // No straight line leads there in general: joints come to their bounds on the way, and the arm folds.
+        // No straight line leads there in general: joints come to their bounds on the way, and the
+        // arm folds.
         let posture = JointVector::from_fn(|i, _| {
             random.random_range(limits.lower[i] + 0.2..limits.upper[i] - 0.2)
         });
@@ -130,7 +132,8 @@ fn an_arm_held_at_the_length_of_its_leash_is_given_up_in_time() {
     assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
 }
 
-/// The robot allows less and less speed towards the end of a joint's range; a plan has to arrive there inside that.
+/// The robot allows less and less speed towards the end of a joint's range; a plan has to arrive
+/// there inside that.
 #[test]
 fn joints_arrive_at_the_ends_of_their_ranges_at_any_pace() {
     let limits = Model::fr3().joint_limits();

@@ -1,5 +1,5 @@
-//! A goal taken back in every millisecond of its motion, as dropping its future does. Every command on the way is held
-//! against the limits, that of the jerk included, by the harness.
+//! A goal taken back in every millisecond of its motion, as dropping its future does. Every command
+//! on the way is held against the limits, that of the jerk included, by the harness.
 
 use franka_proto::RobotMode;
 use franka_rt::lifecycle::MotionError;
@@ -30,7 +30,8 @@ fn goal(lockstep: &mut Lockstep, turn: u64, then: Then, joints: bool) -> Goal {
     }
 }
 
-/// Takes a goal back in its first millisecond, in its second, and so on until one arrives before that.
+/// Takes a goal back in its first millisecond, in its second, and so on until one arrives before
+/// that.
 fn in_every_millisecond(
     lockstep: &mut Lockstep,
     mut submit: impl FnMut(&mut Lockstep, u64) -> GoalId,

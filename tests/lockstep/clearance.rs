@@ -14,7 +14,8 @@ use franka_rt::session::{
 use franka_tests::lockstep::{Lockstep, for_each_robot, self_distance};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
-/// By how much less than the distance to keep there may be, `[m]`: the way to rest is looked at in two places.
+/// By how much less than the distance to keep there may be, `[m]`: the way to rest is looked at in
+/// two places.
 const CURVE: f64 = 1e-4;
 
 /// The same for a brake of 6 rad/s^2, whose joints come to rest one after the other.
@@ -27,7 +28,8 @@ fn into_itself() -> Target {
     Target::Joints(q)
 }
 
-/// Runs until the goal is resolved, and tells the least that `room` was at the reference, and whether clearance bound.
+/// Runs until the goal is resolved, and tells the least that `room` was at the reference, and
+/// whether clearance bound.
 fn least_room(
     lockstep: &mut Lockstep,
     goal: GoalId,
@@ -118,7 +120,8 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
     });
 }
 
-/// An engaged arm above a table that its session keeps out of, 0.12 m below the hand; and how near it may come.
+/// An engaged arm above a table that its session keeps out of, 0.12 m below the hand; and how near
+/// it may come.
 fn above_a_table(ready: &dyn Fn() -> Lockstep) -> (Lockstep, GoalId, impl Fn(&Lockstep) -> f64) {
     let mut lockstep = ready();
     let table = block(lockstep.true_pose().translation.z - 0.12);
@@ -183,7 +186,8 @@ fn chunks_that_follow_each_other_lead_no_nearer_than_one_does() {
     });
 }
 
-/// A goal with a gentle budget takes over from a quick one on its way to the table: its brake would be far longer.
+/// A goal with a gentle budget takes over from a quick one on its way to the table: its brake would
+/// be far longer.
 #[test]
 fn a_gentler_goal_that_takes_over_comes_no_nearer() {
     for_each_robot(|ready| {

@@ -150,7 +150,8 @@ fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
                 .starts_with("libfranka: UDP receive: Timeout")
         );
 
-        // The robot has stopped itself meanwhile. Once the link is back, it can be recovered and moved.
+        // The robot has stopped itself meanwhile. Once the link is back, it can be recovered and
+        // moved.
         lockstep.run(1000);
         assert!(
             lockstep
@@ -198,7 +199,8 @@ fn losses_that_the_robot_tolerates_do_not_end_a_motion() {
                 .until_resolved(goal, 8000)
                 .unwrap_or_else(|error| panic!("seed {seed}: {error}"));
             assert!(report.lost_states > 0, "seed {seed}");
-            // While fewer than a hundred cycles have passed, one loss weighs more than one per cent.
+            // While fewer than a hundred cycles have passed, one loss weighs more than one per
+            // cent.
             assert!(report.success_rate_min < 1.0, "seed {seed}: {report:?}");
             assert!(report.success_rate_avg > 0.9, "seed {seed}: {report:?}");
         }
@@ -300,7 +302,8 @@ fn bad_goals_are_named_and_change_nothing() {
     );
 }
 
-/// Nobody knows what the robot is doing, so a control function gets no more states, and the robot is told to stop.
+/// Nobody knows what the robot is doing, so a control function gets no more states, and the robot
+/// is told to stop.
 #[test]
 fn a_control_function_is_left_alone_when_a_reply_cannot_be_read() {
     for_each_robot(|ready| {

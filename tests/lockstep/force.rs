@@ -1,10 +1,12 @@
-//! With how much force the arm presses: on something that stands in its way, and on a hand that pushes it.
+//! With how much force the arm presses: on something that stands in its way, and on a hand that
+//! pushes it.
 //!
-//! The forces are those of the simulated contact, in the millisecond in which it acts on the arm; nothing of them is taken
-//! from the driver. Of a push, the part that accelerates the arm is not the law's. It is what the contact has to give
-//! whatever the torques are, `Lambda J ddq`, with the simulated arm's whole inertia, rotors included, and is subtracted: by
-//! the equations of motion the rest is what torques and friction of the joints oppose to the hand. It holds the end effector
-//! at a point, so `J` is of the position alone:
+//! The forces are those of the simulated contact, in the millisecond in which it acts on the arm;
+//! nothing of them is taken from the driver. Of a push, the part that accelerates the arm is not
+//! the law's. It is what the contact has to give whatever the torques are, `Lambda J ddq`, with the
+//! simulated arm's whole inertia, rotors included, and is subtracted: by the equations of motion
+//! the rest is what torques and friction of the joints oppose to the hand. It holds the end
+//! effector at a point, so `J` is of the position alone:
 //!
 //! ```text
 //! M ddq + c = tau - friction + J' f    =>    f - Lambda (J ddq) = -Lambda J M^-1 (tau - friction - c)
@@ -73,9 +75,11 @@ fn head_for(
     lockstep.submit_within(engaged, goal).expect("within reach");
 }
 
-/// Mean and greatest force on a wall 3 cm from the arm, whose goal is 5 cm beyond it, in the last of three seconds.
+/// Mean and greatest force on a wall 3 cm from the arm, whose goal is 5 cm beyond it, in the last
+/// of three seconds.
 ///
-/// The wall is smooth, and stiffness that is coupled across axes lets the arm slide on it, the further the deeper the goal.
+/// The wall is smooth, and stiffness that is coupled across axes lets the arm slide on it, the
+/// further the deeper the goal.
 fn on_a_wall(
     ready: &dyn Fn() -> Lockstep,
     way: Vector3<f64>,
@@ -345,8 +349,9 @@ fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
     });
 }
 
-/// Nobody has declared the load, it is more than the cap, and the goal has no end of its own. The cap bounds the dampers as
-/// well, so the arm is carried off as by a hand and goes on to fall: it may reach a limit of the robot before it rests.
+/// Nobody has declared the load, it is more than the cap, and the goal has no end of its own. The
+/// cap bounds the dampers as well, so the arm is carried off as by a hand and goes on to fall: it
+/// may reach a limit of the robot before it rests.
 #[test]
 fn a_held_arm_does_not_sink_in_silence() {
     for_each_robot(|ready| {

@@ -77,7 +77,8 @@ fn the_hand_moves_on_a_straight_line() {
             "the reference is {:.4} mm aside",
             reference * 1e3
         );
-        // The arm is a spring: on a way of 117 mm at 0.3 m/s it swings to the side by a few millimetres.
+        // The arm is a spring: on a way of 117 mm at 0.3 m/s it swings to the side by a few
+        // millimetres.
         assert!(arm < 4e-3, "the arm is {:.2} mm aside", arm * 1e3);
     });
 }
@@ -139,7 +140,8 @@ fn the_kind_of_goal_changes_in_mid_motion() {
 #[test]
 fn a_goal_that_comes_while_the_motion_ends_gets_a_motion_of_its_own() {
     for_each_robot(|ready| {
-        // The two sides of an ending motion take some ten milliseconds; every moment of it is tried.
+        // The two sides of an ending motion take some ten milliseconds; every moment of it is
+        // tried.
         for after in 0..40 {
             let mut lockstep = ready();
             let start = lockstep.true_pose();

@@ -16,8 +16,8 @@ fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
     lockstep
 }
 
-/// Pulls the arm aside against spring and damper, at a steady pace, until that is more than it is to swing back by itself.
-/// Returns how far, `[m]`.
+/// Pulls the arm aside against spring and damper, at a steady pace, until that is more than it is
+/// to swing back by itself. Returns how far, `[m]`.
 fn pull_aside(lockstep: &mut Lockstep) -> f64 {
     let start = lockstep.true_pose().translation.y;
     loop {

@@ -1,5 +1,5 @@
-//! Each thing that a network does to datagrams, under target control: what it does is what the report says, and within
-//! what the robot tolerates the arm arrives.
+//! Each thing that a network does to datagrams, under target control: what it does is what the
+//! report says, and within what the robot tolerates the arm arrives.
 //!
 //! Over sockets the same networks are in `tests/live/mishaps.rs`.
 
@@ -95,8 +95,8 @@ fn a_delay_within_the_cycle_costs_nothing() {
     });
 }
 
-/// Each command is on its way as long as the state, so that from half a millisecond on it misses its cycle: the robot never
-/// sees the motion begin, nor end.
+/// Each command is on its way as long as the state, so that from half a millisecond on it misses
+/// its cycle: the robot never sees the motion begin, nor end.
 #[test]
 fn a_delay_beyond_the_cycle_leaves_no_command_in_time() {
     for_each_robot(|ready| {

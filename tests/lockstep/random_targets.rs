@@ -8,7 +8,8 @@ use franka_tests::lockstep::{Lockstep, pose_of, self_distance};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// Distance kept from the ends of the joints' ranges, `[rad]`, so that a straight line between targets has room.
+/// Distance kept from the ends of the joints' ranges, `[rad]`, so that a straight line between
+/// targets has room.
 const MARGIN: f64 = 0.3;
 
 #[test]
@@ -33,7 +34,8 @@ fn two_hundred_random_targets(kind: RobotKind) {
     let mut worst = PoseError::default();
     let mut blocked = 0;
     for case in 0..200 {
-        // Joint targets lie anywhere in the ranges; a pose lies near the posture before it, a straight line away.
+        // Joint targets lie anywhere in the ranges; a pose lies near the posture before it, a
+        // straight line away.
         let anywhere = case % 2 == 0;
         let from = *lockstep.robot.q();
         let posture = loop {

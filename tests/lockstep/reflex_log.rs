@@ -14,8 +14,9 @@ fn provoke(lockstep: &mut Lockstep, callback: Callback) -> ControlError {
     error.control().expect("the robot's doing").clone()
 }
 
-/// Asserts that the log is full, that only its last entry has the command that `stepped` recognises, and that the state
-/// of that entry, the first after the command, is the one with the errors.
+/// Asserts that the log is full, that only its last entry has the command that `stepped`
+/// recognises, and that the state of that entry, the first after the command, is the one with the
+/// errors.
 fn assert_shown(error: &ControlError, errors: Errors, stepped: impl Fn(&LogEntry) -> bool) {
     let log = &error.log;
     assert_eq!(log.len(), ControlLog::DEFAULT_CAPACITY);

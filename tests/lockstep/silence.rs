@@ -1,4 +1,5 @@
-//! A robot that falls silent in a motion: up to the link timeout nothing happens, at it the motion is given up.
+//! A robot that falls silent in a motion: up to the link timeout nothing happens, at it the motion
+//! is given up.
 
 use std::time::Duration;
 

@@ -1,9 +1,10 @@
 //! What an FER's transmit stalls do to its client.
 //!
-//! Measured on robots, in 30 s under control by a client that answers the newest state there is: some 28 of the 30 000
-//! states gave way to a newer one, never two in a row, and the mean of `control_command_success_rate` was 0.986. These are
-//! the figures of libfranka's example `communication_test`, and are counted here as there: by the program, from the time
-//! that it is told has passed and the rate in each state.
+//! Measured on robots, in 30 s under control by a client that answers the newest state there is:
+//! some 28 of the 30 000 states gave way to a newer one, never two in a row, and the mean of
+//! `control_command_success_rate` was 0.986. These are the figures of libfranka's example
+//! `communication_test`, and are counted here as there: by the program, from the time that it is
+//! told has passed and the rate in each state.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -44,8 +45,9 @@ const RUN: u64 = 30_000;
 /// Measurements: one seed each.
 const RUNS: u64 = 12;
 
-/// What the client of the measurement takes from a state to being ready for the next. It has not been published. Below 20 us,
-/// which a state takes on the line, every state of a burst is answered; from 40 us on, two in a row give way to a newer one.
+/// What the client of the measurement takes from a state to being ready for the next. It has not
+/// been published. Below 20 us, which a state takes on the line, every state of a burst is
+/// answered; from 40 us on, two in a row give way to a newer one.
 const TURNAROUND: Duration = Duration::from_micros(35);
 
 fn measure(turnaround: Duration, runs: u64) -> Vec<Tally> {
@@ -70,8 +72,9 @@ fn mean_loss(runs: &[Tally]) -> f64 {
     mean(runs, |tally| tally.lost() as f64)
 }
 
-/// Between runs, as between measurements, the losses deviate by some 5, since few stalls are long enough for one, and the
-/// rate by 0.001. A run is allowed three to four times that, the mean of all less.
+/// Between runs, as between measurements, the losses deviate by some 5, since few stalls are long
+/// enough for one, and the rate by 0.001. A run is allowed three to four times that, the mean of
+/// all less.
 #[test]
 fn the_figures_measured_on_fers_come_out_of_the_stalls() {
     let runs = measure(TURNAROUND, RUNS);
@@ -86,7 +89,8 @@ fn the_figures_measured_on_fers_come_out_of_the_stalls() {
     assert!((rate - 0.986).abs() < 0.002, "{rate}");
 }
 
-/// What a client answers in time is up to the robot; how many states of a burst it sees, up to the client.
+/// What a client answers in time is up to the robot; how many states of a burst it sees, up to the
+/// client.
 #[test]
 fn a_faster_client_loses_no_state_and_is_as_late_with_its_answers() {
     let [fast, measured, slow] =

@@ -1,5 +1,5 @@
-//! Steps of 5 cm, the common measure of impedance controllers: how far they end off, how long they take, how far the arm
-//! lags behind meanwhile.
+//! Steps of 5 cm, the common measure of impedance controllers: how far they end off, how long they
+//! take, how far the arm lags behind meanwhile.
 
 use franka_rt::session::{Target, Then};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
@@ -49,8 +49,8 @@ fn step(
     figures
 }
 
-/// 5 cm from rest to rest with 0.5 m/s^2 and 20 m/s^3, neither of which lets the hand reach 0.3 m/s: the time-optimal
-/// profile has four equal parts of constant acceleration with ramps.
+/// 5 cm from rest to rest with 0.5 m/s^2 and 20 m/s^3, neither of which lets the hand reach 0.3
+/// m/s: the time-optimal profile has four equal parts of constant acceleration with ramps.
 fn optimum() -> f64 {
     let (a, j, way) = (0.5_f64, 20.0_f64, 0.05_f64);
     let ramp = a / j;

@@ -1,4 +1,5 @@
-//! Switching between goals of all kinds in mid-motion: the acceleration that is commanded never jumps.
+//! Switching between goals of all kinds in mid-motion: the acceleration that is commanded never
+//! jumps.
 
 use std::time::Duration;
 
@@ -41,7 +42,8 @@ struct Switching {
     jerk: [f64; 7],
     /// Of the cycle before, and when that was.
     last: (u64, [f64; 7]),
-    /// Largest jump of the acceleration so far, as a share of what the jerk limit allows in a cycle.
+    /// Largest jump of the acceleration so far, as a share of what the jerk limit allows in a
+    /// cycle.
     worst: f64,
     /// Cycles in which the arm moved.
     moving: u64,

@@ -10,8 +10,8 @@ use franka_rt::session::Target;
 use franka_tests::lockstep::{Link, Lockstep, Outcome};
 use nalgebra::Translation3;
 
-/// Runs until `goal` resolves or `most` milliseconds are over; returns the outcome, and the success rates of the states that
-/// arrived while the motion ran.
+/// Runs until `goal` resolves or `most` milliseconds are over; returns the outcome, and the success
+/// rates of the states that arrived while the motion ran.
 fn watch(
     lockstep: &mut Lockstep,
     goal: franka_rt::session::GoalId,
@@ -103,7 +103,8 @@ fn states_that_give_way_to_a_newer_one_count_as_skipped() {
         .control(program, request)
         .expect("nothing else runs");
     lockstep.run(100);
-    // As the control thread does that finds three states and takes the newest; of five missing, two never came.
+    // As the control thread does that finds three states and takes the newest; of five missing, two
+    // never came.
     let mut told = VecDeque::from([(5, 3), (2, 2), (1, 0)]);
     let (mut lost, mut skipped) = (0, 0);
     while let Some((missing, came)) = told.pop_front() {

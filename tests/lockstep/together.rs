@@ -299,7 +299,8 @@ fn a_wait_for_the_others_is_no_silence_of_a_stream() {
     assert_eq!(two.left.client.record.goal, goal.0, "it has begun");
 }
 
-/// A control function of each kind that swings a little for half a second, and notes when it was first called.
+/// A control function of each kind that swings a little for half a second, and notes when it was
+/// first called.
 fn functions(version: Version, called: &Arc<AtomicU64>) -> Vec<(&'static str, Callback)> {
     let swing = |time: f64| {
         let there_and_back = 0.5 * (1.0 - (std::f64::consts::TAU * 2.0 * time).cos());

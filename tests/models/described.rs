@@ -46,8 +46,8 @@ async fn an_arm_with_other_numbers_has_a_model_with_those_numbers() {
     robot.shutdown().await;
 }
 
-/// The description of an arm whose first joint is slow at its end, and stops short of the documented one: the range of newer
-/// systems.
+/// The description of an arm whose first joint is slow at its end, and stops short of the
+/// documented one: the range of newer systems.
 fn narrower() -> String {
     served_with("upper=\"2.7501\"", "upper=\"2.7437\"")
 }
@@ -73,7 +73,8 @@ async fn goals_keep_the_range_that_the_description_gives() {
 
 #[tokio::test]
 async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
-    // The range ends 1.25 rad short of the vendor's: where the constants would still allow full speed, the arm has to brake.
+    // The range ends 1.25 rad short of the vendor's: where the constants would still allow full
+    // speed, the arm has to brake.
     let mut start = READY;
     start[0] = 1.2;
     let text = served_with("upper=\"2.7501\"", "upper=\"1.5\"");

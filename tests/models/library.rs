@@ -58,7 +58,8 @@ async fn every_function_of_a_library_from_the_robot_gets_its_inputs() {
     let (robot, _sim) = connected(Sim::fer().model_library(bytes.clone())).await;
     let downloaded = robot.load_model_library(Architecture::X64, System::Linux);
     assert_eq!(downloaded.await, Ok(bytes));
-    // SAFETY: the library was compiled from the source beside this file, with the signatures that `load` names.
+    // SAFETY: the library was compiled from the source beside this file, with the signatures that
+    // `load` names.
     let library = unsafe { robot.model_library() }.await.expect("a library");
     robot.shutdown().await;
 
@@ -155,7 +156,8 @@ fn what_is_no_library_is_refused_in_the_vendors_words() {
     );
 
     let lacking = stand_in("lacking", &["--cfg", "lacking"]);
-    // SAFETY: the library was compiled from the source beside this file, with the signatures that `load` names.
+    // SAFETY: the library was compiled from the source beside this file, with the signatures that
+    // `load` names.
     let error = unsafe { ModelLibrary::load(&lacking) }.expect_err("a function is missing");
     assert!(matches!(error, LibraryError::Symbol { .. }));
     let text = error.to_string();

@@ -1,5 +1,6 @@
-//! A library with the functions of the vendor's, as a robot could send it, whose numbers are easily recognised: each is
-//! made of the function's own number, its place, and every input with a weight of its own.
+//! A library with the functions of the vendor's, as a robot could send it, whose numbers are easily
+//! recognised: each is made of the function's own number, its place, and every input with a weight
+//! of its own.
 //!
 //! Compiled by the tests, as a `cdylib`; with `--cfg lacking`, one function is missing.
 

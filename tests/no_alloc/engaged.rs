@@ -1,6 +1,8 @@
-//! Sessions that go from goal to goal: every kind of goal under every guard, and what their owners do to them.
+//! Sessions that go from goal to goal: every kind of goal under every guard, and what their owners
+//! do to them.
 //!
-//! That an observer panics is not among it: what a panic takes, the machinery of panics allocates before anybody catches it.
+//! That an observer panics is not among it: what a panic takes, the machinery of panics allocates
+//! before anybody catches it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -155,7 +157,8 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
             engaged.lockstep.robot.push_end_effector(push, 300);
             engaged.run(500);
         }
-        // Chunks of poses through the robot's own inverse kinematics are left out: their joints may come to its jerk limit.
+        // Chunks of poses through the robot's own inverse kinematics are left out: their joints may
+        // come to its jerk limit.
         if !poses {
             let q = engaged.lockstep.client.record.q_ref;
             for way in [0.05, -0.05] {

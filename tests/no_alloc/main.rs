@@ -1,4 +1,5 @@
-//! What runs on the real-time thread neither allocates nor frees: an allocator counts, thread by thread.
+//! What runs on the real-time thread neither allocates nor frees: an allocator counts, thread by
+//! thread.
 
 mod control;
 mod endings;
@@ -32,9 +33,9 @@ fn count() {
     CALLS.set(CALLS.get() + 1);
 }
 
-// SAFETY: every method hands its arguments to the system's allocator unchanged and returns what that returns; counting
-// touches a thread-local cell that is initialised at compile time and has no destructor, so it neither allocates nor
-// fails in any phase of a thread's life.
+// SAFETY: every method hands its arguments to the system's allocator unchanged and returns what
+// that returns; counting touches a thread-local cell that is initialised at compile time and has no
+// destructor, so it neither allocates nor fails in any phase of a thread's life.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();

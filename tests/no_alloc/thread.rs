@@ -1,7 +1,7 @@
 //! The running thread, whatever comes over its socket and queues.
 //!
-//! The core, which runs on the real-time thread, reads the count of that thread. A thread that has borrowed the cycle
-//! counts for itself.
+//! The core, which runs on the real-time thread, reads the count of that thread. A thread that has
+//! borrowed the cycle counts for itself.
 
 use std::hint::black_box;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
@@ -24,7 +24,8 @@ use franka_rt::thread::{self, Core, Handle, Notice, ThreadConfig};
 
 const VERSION: Version = Version::V10;
 
-/// A driver whose every state is answered, and that tells how often its thread has called the allocator.
+/// A driver whose every state is answered, and that tells how often its thread has called the
+/// allocator.
 struct Watched {
     driver: Driver,
     statistics: MotionStatistics,
@@ -118,8 +119,8 @@ fn peer(last: u8, port: u16) -> UdpSocket {
     socket
 }
 
-/// Runs a thread for about two seconds of everything that can come, with one order `order` among it, and returns the
-/// thread's calls of the allocator and the number of its cycles.
+/// Runs a thread for about two seconds of everything that can come, with one order `order` among
+/// it, and returns the thread's calls of the allocator and the number of its cycles.
 fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
     let calls = Arc::new(AtomicU64::new(0));
     let timeout = LinkTimeout::new(Duration::from_millis(50)).expect("in range");

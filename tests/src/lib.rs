@@ -1,4 +1,5 @@
-//! What the cross-crate suites share: golden vectors, the lockstep harness and the measuring frame of the benchmarks.
+//! What the cross-crate suites share: golden vectors, the lockstep harness and the measuring frame
+//! of the benchmarks.
 //!
 //! | module | what it is |
 //! |---|---|

@@ -1,5 +1,5 @@
-//! Networks under which one thing happens to datagrams, for the suites in virtual time and over sockets: what is seen in one
-//! is to be seen in the other.
+//! Networks under which one thing happens to datagrams, for the suites in virtual time and over
+//! sockets: what is seen in one is to be seen in the other.
 //!
 //! Unless a function says otherwise, it happens in both directions.
 
@@ -45,8 +45,8 @@ pub fn delay(time: Duration) -> Network {
     )
 }
 
-/// Datagrams are up to 0.8 ms late. If state and command are late by more than a millisecond together, the command misses its
-/// cycle, which is so for 28 of 100.
+/// Datagrams are up to 0.8 ms late. If state and command are late by more than a millisecond
+/// together, the command misses its cycle, which is so for 28 of 100.
 pub fn jitter(seed: u64) -> Network {
     both(
         seed,
@@ -90,8 +90,8 @@ pub fn cut(time: Range<Duration>) -> Network {
     network
 }
 
-/// Packets to the client are lost. A state of protocol 5 takes two, so that there mostly half of a state is lost, and almost
-/// twice as many states as packets; a state of protocol 10 takes one.
+/// Packets to the client are lost. A state of protocol 5 takes two, so that there mostly half of a
+/// state is lost, and almost twice as many states as packets; a state of protocol 10 takes one.
 pub fn halves(seed: u64) -> Network {
     let losing = losing(Loss::Independent(LOST_TO_CLIENT));
     Network::new(seed, losing, Conditions::default())

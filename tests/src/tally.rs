@@ -1,4 +1,5 @@
-//! What a control function notes of the cycles that it is called in, as libfranka's example `communication_test` does.
+//! What a control function notes of the cycles that it is called in, as libfranka's example
+//! `communication_test` does.
 
 use core::time::Duration;
 

@@ -31,8 +31,8 @@ fn receives(call: &Call) -> bool {
 }
 
 impl Calls {
-    /// The calls from the first that waits for the robot to the last: without those that set the thread up and take it
-    /// down, which are anything.
+    /// The calls from the first that waits for the robot to the last: without those that set the
+    /// thread up and take it down, which are anything.
     pub(crate) fn of_the_cycle(&self) -> &[Call] {
         let first = self.calls.iter().position(receives);
         let last = self.calls.iter().rposition(receives);

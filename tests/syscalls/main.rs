@@ -1,11 +1,13 @@
 //! What the control thread asks of the system, call by call.
 //!
-//! Each test runs a scenario in a child of its own, which is this same program, traced by the kernel (`ptrace`), and looks
-//! at every system call that the thread of the cycle makes between its first wait for the robot and its last. They have
-//! to be receives, sends, polls, the clock and the bell; a lock that has to wait, an allocation that reaches the system, a
-//! log or a file would be something else.
+//! Each test runs a scenario in a child of its own, which is this same program, traced by the
+//! kernel (`ptrace`), and looks at every system call that the thread of the cycle makes between its
+//! first wait for the robot and its last. They have to be receives, sends, polls, the clock and the
+//! bell; a lock that has to wait, an allocation that reaches the system, a log or a file would be
+//! something else.
 //!
-//! A lock that is free and an allocation from memory at hand make no call: `no_alloc` counts allocations.
+//! A lock that is free and an allocation from memory at hand make no call: `no_alloc` counts
+//! allocations.
 
 mod calls;
 mod scenarios;
@@ -27,7 +29,8 @@ const CONTROL: &str = "franka-rt";
 /// Held while a child runs: each has a robot, which keeps a processor busy.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Runs `scenario` in a child, in which only `test` runs, and gives the calls of the threads with these `names` to `judge`.
+/// Runs `scenario` in a child, in which only `test` runs, and gives the calls of the threads with
+/// these `names` to `judge`.
 fn trace(
     test: impl Fn(),
     names: &[&str],

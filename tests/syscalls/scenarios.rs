@@ -1,4 +1,5 @@
-//! What the traced child does: every way to control a robot, against a simulated one in the same process.
+//! What the traced child does: every way to control a robot, against a simulated one in the same
+//! process.
 
 use std::future::IntoFuture;
 use std::os::unix::process::parent_id;
@@ -79,7 +80,8 @@ pub(crate) async fn targets() {
     robot.shutdown().await;
 }
 
-/// Sessions of both backends through every kind of goal, with an observer, a deadman and a stream that falls silent.
+/// Sessions of both backends through every kind of goal, with an observer, a deadman and a stream
+/// that falls silent.
 pub(crate) async fn engaged() {
     let (robot, _sim) = simulated().await;
     let (deadman, grip) = Deadman::new(Duration::from_millis(500));
@@ -162,7 +164,8 @@ async fn still(deadman: &Deadman) {
     }
 }
 
-/// A control function that answers so many states with a command, and that is `also` called each time.
+/// A control function that answers so many states with a command, and that is `also` called each
+/// time.
 fn holding<C: Finish + Copy + Send + 'static>(
     command: C,
     mut also: impl FnMut() + Send + 'static,

@@ -6,8 +6,8 @@
 //!      +---- every call ---+-- thread with a name that is asked for: stopped at each call
 //! ```
 //!
-//! Tracing one's own child needs no privilege. The child cannot slip through: new threads are traced from their first
-//! instruction, and go free only once they have named themselves.
+//! Tracing one's own child needs no privilege. The child cannot slip through: new threads are
+//! traced from their first instruction, and go free only once they have named themselves.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -48,8 +48,8 @@ pub(crate) struct Calls {
     pub(crate) calls: Vec<Call>,
 }
 
-/// Runs the test of this program called `test` in a child, and returns the calls of all its threads that have one of
-/// these `names`.
+/// Runs the test of this program called `test` in a child, and returns the calls of all its threads
+/// that have one of these `names`.
 ///
 /// # Errors
 /// If the system refuses to start or to trace the child.
@@ -63,8 +63,8 @@ pub(crate) fn run(test: &str, names: &[&str]) -> io::Result<Vec<Calls>> {
         .env(TRACED, "1")
         .stdin(Stdio::null())
         .stdout(Stdio::null());
-    // SAFETY: between fork and exec the closure makes one system call, which takes no lock and allocates nothing; its
-    // error is a number.
+    // SAFETY: between fork and exec the closure makes one system call, which takes no lock and
+    // allocates nothing; its error is a number.
     unsafe { command.pre_exec(|| ptrace::traceme().map_err(io::Error::from)) };
     // This thread is the tracer of what it forks, and the only one that may ask about it.
     let child = command.spawn()?;
@@ -137,7 +137,8 @@ impl Tracer<'_> {
         Ok(true)
     }
 
-    /// Notes a call at its entry; at the return of the one that names a thread, decides how to follow it.
+    /// Notes a call at its entry; at the return of the one that names a thread, decides how to
+    /// follow it.
     fn note(&mut self, thread: Pid) -> io::Result<()> {
         let info = match ptrace::syscall_info(thread) {
             Ok(info) => info,
@@ -146,7 +147,8 @@ impl Tracer<'_> {
             Err(error) => return Err(error.into()),
         };
         let entry = (info.op == libc::PTRACE_SYSCALL_INFO_ENTRY).then(|| {
-            // SAFETY: `op` says that the kernel has filled in this member of the union, which is plain integers.
+            // SAFETY: `op` says that the kernel has filled in this member of the union, which is
+            // plain integers.
             let entry = unsafe { info.u.entry };
             (entry.nr.cast_signed(), entry.args)
         });

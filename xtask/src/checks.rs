@@ -120,7 +120,8 @@ fn loom(workspace: &Workspace) -> anyhow::Result<()> {
     workspace.run(&mut command)
 }
 
-/// Builds for this machine, where the standard library exists and must not be used, and for one where it does not.
+/// Builds for this machine, where the standard library exists and must not be used, and for one
+/// where it does not.
 fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let package = workspace.root().join("tests").join("no_std");
     // The package resolves by itself, to the versions that the workspace has.

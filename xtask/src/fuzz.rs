@@ -43,7 +43,8 @@ fn run_all(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     }
 }
 
-/// Whether this machine can build the targets at all: libFuzzer is C++, and the sanitizer has its platforms.
+/// Whether this machine can build the targets at all: libFuzzer is C++, and the sanitizer has its
+/// platforms.
 fn supported() -> Result<(), String> {
     if !cfg!(any(target_os = "linux", target_os = "macos")) {
         return Err("cargo-fuzz works on Linux and macOS only".to_owned());
@@ -210,7 +211,8 @@ fn version(program: &Path) -> Option<String> {
     Some(text.trim().strip_prefix("cargo-fuzz ")?.to_owned())
 }
 
-/// The platform that the compiler builds for by itself. cargo-fuzz would guess that of its own build.
+/// The platform that the compiler builds for by itself. cargo-fuzz would guess that of its own
+/// build.
 fn host() -> anyhow::Result<String> {
     let output = Command::new("rustc").arg("-vV").output()?;
     let text = String::from_utf8_lossy(&output.stdout);

@@ -1,5 +1,5 @@
-//! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`, `cargo xtask fuzz`,
-//! `cargo xtask bench`, `cargo xtask mujoco`.
+//! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`,
+//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask mujoco`.
 //!
 //! | module | task |
 //! |---|---|
@@ -58,8 +58,9 @@ enum Task {
     },
     /// Measure the work of one control cycle and write `target/bench.json`.
     ///
-    /// With --live: measure clients against the simulator over real sockets, and write `target/bench_live.json`.
-    /// With --sim: measure what one simulated arm costs, and write `target/bench_sim.json`.
+    /// With --live: measure clients against the simulator over real sockets, and write
+    /// `target/bench_live.json`. With --sim: measure what one simulated arm costs, and write
+    /// `target/bench_sim.json`.
     Bench {
         /// Rounds; each runs every benchmark once.
         #[arg(long, default_value_t = 15)]
@@ -73,7 +74,8 @@ enum Task {
         /// Measure what a busy program costs the control thread, and a task in the thread's place.
         #[arg(long, conflicts_with_all = ["live", "instructions"])]
         starvation: bool,
-        /// Measure time to start, processor time, memory and punctuality of the simulator: nothing else should run meanwhile.
+        /// Measure time to start, processor time, memory and punctuality of the simulator: nothing
+        /// else should run meanwhile.
         #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
         sim: bool,
         /// How long to measure each case of --live and --sim.
@@ -100,7 +102,8 @@ fn run(task: Task) -> anyhow::Result<()> {
     match task {
         Task::Test { only } => checks::run(&workspace, &only),
         Task::Vectors { dir } => {
-            // The program runs in the root of the workspace, the argument was written somewhere else.
+            // The program runs in the root of the workspace, the argument was written somewhere
+            // else.
             let dir = dir.map(std::path::absolute).transpose()?;
             workspace.run(workspace.cargo_release_binary("vectors").args(dir))
         }

@@ -7,8 +7,9 @@
 //! .cargo/config.toml: MUJOCO_DYNAMIC_LINK_DIR, unless set ──────┘
 //! ```
 //!
-//! The directory is not below the build directory: Cargo adds only the output directories of build scripts to the search
-//! path of what it runs, and the build script of `franka-sim` puts the library into its own.
+//! The directory is not below the build directory: Cargo adds only the output directories of build
+//! scripts to the search path of what it runs, and the build script of `franka-sim` puts the
+//! library into its own.
 
 use std::env;
 use std::ffi::OsStr;
@@ -31,7 +32,8 @@ pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<()> {
     }
 }
 
-/// Makes the library available to be built with. The inner error says what this machine lacks for it.
+/// Makes the library available to be built with. The inner error says what this machine lacks for
+/// it.
 pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
     match rust() {
         Some(version) if version < RUST => Ok(Err(format!(
@@ -42,7 +44,8 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String
     }
 }
 
-/// Makes the library available, then checks and tests the simulator with it: the step of `cargo xtask test`.
+/// Makes the library available, then checks and tests the simulator with it: the step of
+/// `cargo xtask test`.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     if let Err(why) = prepare(workspace)? {
         return Outcome::without(why);
@@ -63,8 +66,8 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// Does nothing if the user names a library of their own or the right one is there. The inner error says why this machine
-/// cannot have one.
+/// Does nothing if the user names a library of their own or the right one is there. The inner error
+/// says why this machine cannot have one.
 fn fetch(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
     if let Some(variable) = named_by_user(workspace) {
         println!("{variable} is set: its library is used");
@@ -182,7 +185,8 @@ fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join(".mujoco")
 }
 
-/// The variable by which the user names a library. Cargo sets one of them itself, from its configuration.
+/// The variable by which the user names a library. Cargo sets one of them itself, from its
+/// configuration.
 fn named_by_user(workspace: &Workspace) -> Option<&'static str> {
     ["MUJOCO_STATIC_LINK_DIR", "MUJOCO_DYNAMIC_LINK_DIR"]
         .into_iter()
@@ -239,16 +243,16 @@ const RUST: (u32, u32) = (1, 95);
 /// The version that the crate `mujoco-rs` is made for.
 const VERSION: &str = "3.17.0";
 
-/// The directory of the library. Where it does not exist, the build script of `mujoco-rs` fails with its path, and so says
-/// what to do about it.
+/// The directory of the library. Where it does not exist, the build script of `mujoco-rs` fails
+/// with its path, and so says what to do about it.
 const LIBRARIES: &str = "by-cargo-xtask-mujoco";
 
 /// What a linker looks for, and what a program asks the loader for.
 const LIBRARY: &str = "libmujoco.so";
 const VERSIONED: &str = "libmujoco.so.3.17.0";
 
-/// Version and ABI of the Python that the wheels are for. They need not be those of the Python that fetches them: the library
-/// is the same in all of them.
+/// Version and ABI of the Python that the wheels are for. They need not be those of the Python that
+/// fetches them: the library is the same in all of them.
 const PYTHON: (&str, &str) = ("3.12", "cp312");
 
 /// Versions of the Python that fetches: all that have pip as it is used here.

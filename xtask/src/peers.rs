@@ -16,8 +16,8 @@ use crate::python::{Python, Version};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
-/// Runs our client beside another one, and the scripts of `tests/peers` that check something against a simulator of their
-/// own.
+/// Runs our client beside another one, and the scripts of `tests/peers` that check something
+/// against a simulator of their own.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let mut summaries = vec![beside_franka_rs(workspace)?];
     let interpreter = match interpreter(workspace)? {
@@ -56,7 +56,8 @@ fn summary(name: &'static str, script: Command) -> Summary {
     (name, steps, start.elapsed(), result)
 }
 
-/// Builds franka-rs, in a workspace of its own, and holds our target control against its own on the same robots.
+/// Builds franka-rs, in a workspace of its own, and holds our target control against its own on the
+/// same robots.
 fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Summary> {
     let target = workspace.target().join("peers");
     let mut build = workspace.cargo();
@@ -133,7 +134,8 @@ impl fmt::Display for Steps {
     }
 }
 
-/// Runs a script to its end and counts its steps, which it prints; what else it prints is passed on.
+/// Runs a script to its end and counts its steps, which it prints; what else it prints is passed
+/// on.
 fn count(mut script: Command, time_max: Duration) -> (Steps, anyhow::Result<()>) {
     let (sender, lines) = mpsc::channel();
     let result = thread::scope(|scope| {
@@ -182,15 +184,18 @@ fn supported() -> Result<(), String> {
     }
 }
 
-/// The vendor's client knows one port only, so that simulators side by side need addresses of their own.
+/// The vendor's client knows one port only, so that simulators side by side need addresses of their
+/// own.
 fn loopback_address(process: u32) -> String {
-    // 127.1.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or 255.
+    // 127.1.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or
+    // 255.
     let (high, low) = ((process / 254) % 256, process % 254 + 1);
     format!("127.1.{high}.{low}")
 }
 
-/// The simulator under real-time scheduling where this user may ask for it, as it is otherwise. A robot sends a state every
-/// millisecond whatever else happens; a simulator on a busy machine does only if the kernel prefers it.
+/// The simulator under real-time scheduling where this user may ask for it, as it is otherwise. A
+/// robot sends a state every millisecond whatever else happens; a simulator on a busy machine does
+/// only if the kernel prefers it.
 fn real_time(program: &Path) -> Command {
     let chrt = |program: &Path| {
         let mut command = Command::new("chrt");
@@ -249,8 +254,8 @@ impl Drop for Running {
     }
 }
 
-/// Runs a program to its end; one that takes longer than `time_max` is killed and counts as failed. `read` gets its
-/// output, if there is a pipe for it.
+/// Runs a program to its end; one that takes longer than `time_max` is killed and counts as failed.
+/// `read` gets its output, if there is a pipe for it.
 fn finish(
     command: &mut Command,
     time_max: Duration,

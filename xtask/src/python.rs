@@ -18,7 +18,8 @@ pub(crate) struct Python {
 pub(crate) type Version = (u32, u32);
 
 impl Python {
-    /// The first interpreter of this machine that will do and has one of these versions, or why there is none.
+    /// The first interpreter of this machine that will do and has one of these versions, or why
+    /// there is none.
     pub(crate) fn find(versions: RangeInclusive<Version>) -> Result<Self, String> {
         let mut unfit = Vec::new();
         for program in PROGRAMS {
@@ -40,8 +41,9 @@ impl Python {
         ))
     }
 
-    /// Makes the virtual environment of the scripts, in the build directory, installs `requirements` in it and returns its interpreter. Does nothing but
-    /// the last if both are as before.
+    /// Makes the virtual environment of the scripts, in the build directory, installs
+    /// `requirements` in it and returns its interpreter. Does nothing but the last if both are as
+    /// before.
     pub(crate) fn environment(
         &self,
         workspace: &Workspace,
@@ -72,7 +74,8 @@ impl Python {
         Ok(interpreter)
     }
 
-    /// Makes an empty virtual environment in `directory`, in place of what is there, and returns its interpreter.
+    /// Makes an empty virtual environment in `directory`, in place of what is there, and returns
+    /// its interpreter.
     pub(crate) fn make_environment(
         &self,
         workspace: &Workspace,

@@ -57,7 +57,8 @@ impl Workspace {
         command
     }
 
-    /// Builds and runs a binary of the tests package, optimised; arguments appended are the binary's own.
+    /// Builds and runs a binary of the tests package, optimised; arguments appended are the
+    /// binary's own.
     pub(crate) fn cargo_release_binary(&self, name: &str) -> Command {
         self.cargo_release_binary_with(&[], name)
     }
@@ -106,7 +107,8 @@ fn line(command: &Command) -> String {
     words.join(" ")
 }
 
-/// The Cargo that runs this program, so that a toolchain chosen by `cargo +name` or by a variable stays chosen.
+/// The Cargo that runs this program, so that a toolchain chosen by `cargo +name` or by a variable
+/// stays chosen.
 fn cargo_in(root: &Path) -> Command {
     let cargo = env::var_os("CARGO").unwrap_or("cargo".into());
     let mut command = Command::new(cargo);

@@ -1,4 +1,5 @@
-//! A simulated robot in the process of the test, which watches it and lays hands on it while a program drives it.
+//! A simulated robot in the process of the test, which watches it and lays hands on it while a
+//! program drives it.
 
 use std::sync::mpsc;
 use std::thread::JoinHandle;
@@ -21,14 +22,16 @@ pub(crate) struct Scene {
     pub(crate) strict: bool,
 }
 
-/// Whether it is time for what comes next: from the state, and the milliseconds that a motion has gone on for.
+/// Whether it is time for what comes next: from the state, and the milliseconds that a motion has
+/// gone on for.
 pub(crate) type When = fn(&RobotState, u64) -> bool;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Event {
     /// Somebody pushes the hand with this force, `[N]`, for so many milliseconds.
     PushHand([f64; 3], u64),
-    /// Somebody swings the elbow and hardly moves the hand: joint 3 feels this torque, `[N m]`, for so many milliseconds.
+    /// Somebody swings the elbow and hardly moves the hand: joint 3 feels this torque, `[N m]`, for
+    /// so many milliseconds.
     SwingElbow(f64, u64),
     /// The robot stops itself.
     Trip(RobotError),
@@ -73,8 +76,9 @@ impl Arm {
         let (started, address) = mpsc::channel();
         let (end, ended) = oneshot::channel();
         let watching = std::thread::spawn(move || {
-            // The simulator's thread inherits what this one is granted. Where that is real-time scheduling, other work on
-            // this machine costs no cycles; a robot's clock does not wait for it either.
+            // The simulator's thread inherits what this one is granted. Where that is real-time
+            // scheduling, other work on this machine costs no cycles; a robot's clock does not wait
+            // for it either.
             let scheduling = Scheduling {
                 realtime: Realtime::Ignore,
                 priority: Some(10),
@@ -159,8 +163,8 @@ async fn watch(
     Course(moments)
 }
 
-/// The direction in which the joints at `q` can move without the hand, joint 3 forwards; of length 1. Both robots have the
-/// same kinematics.
+/// The direction in which the joints at `q` can move without the hand, joint 3 forwards; of length
+/// 1. Both robots have the same kinematics.
 fn self_motion(q: &JointVector) -> JointVector {
     let jacobian = Model::fr3().zero_jacobian(Frame::EndEffector, q, &EndEffector::default());
     let gram = jacobian * jacobian.transpose();
@@ -185,7 +189,8 @@ impl Course {
         )
     }
 
-    /// How far the hand was from where it began, along an axis of the base `[m]`: least, greatest, and in the end.
+    /// How far the hand was from where it began, along an axis of the base `[m]`: least, greatest,
+    /// and in the end.
     pub(crate) fn hand(&self, axis: usize) -> (f64, f64, f64) {
         let of = |state: &RobotState| state.O_T_EE[12 + axis] - self.0[0].state.O_T_EE[12 + axis];
         let (least, most) = self.extent(of);
@@ -199,7 +204,8 @@ impl Course {
         (least, most, of(self.last()))
     }
 
-    /// How far the joints were from the ready pose along their [`self_motion`], `[rad]`: least, greatest, and in the end.
+    /// How far the joints were from the ready pose along their [`self_motion`], `[rad]`: least,
+    /// greatest, and in the end.
     pub(crate) fn elbow(&self) -> (f64, f64, f64) {
         let of = |state: &RobotState| {
             let q = JointVector::from(state.q);

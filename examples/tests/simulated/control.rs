@@ -155,7 +155,8 @@ fn virtual_floor_holds_the_hand_up_lets_it_go_and_keeps_the_elbow() {
         |robot, said, course| {
             succeeded(robot, said, course);
             let (lowest, highest, _) = course.hand(2);
-            // 10 N press the spring of 2000 N/m in by 5 mm, and at first the hand comes with some speed.
+            // 10 N press the spring of 2000 N/m in by 5 mm, and at first the hand comes with some
+            // speed.
             assert!((-0.07..-0.054).contains(&lowest), "{robot}: {lowest}");
             assert!(
                 highest > 0.0,

@@ -1,5 +1,5 @@
-//! The examples as programs: against a simulator of each kind in their own process, and, where it matters what the arm does,
-//! against one in the process of the test.
+//! The examples as programs: against a simulator of each kind in their own process, and, where it
+//! matters what the arm does, against one in the process of the test.
 
 mod arm;
 mod control;

@@ -41,8 +41,8 @@ pub(crate) struct Said {
 }
 
 impl Said {
-    /// Whether the robot ended a motion after more than one in twenty of its last commands had not come in time: that says
-    /// nothing but that this machine was busy.
+    /// Whether the robot ended a motion after more than one in twenty of its last commands had not
+    /// come in time: that says nothing but that this machine was busy.
     fn was_starved(&self) -> bool {
         let rate = self.stderr.split("control_command_success_rate: ").nth(1);
         let rate = rate.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
@@ -90,7 +90,8 @@ fn collect(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<Stri
     })
 }
 
-/// Runs an example on each robot, both at once, and has `check` judge what it said and what its arm did.
+/// Runs an example on each robot, both at once, and has `check` judge what it said and what its arm
+/// did.
 ///
 /// A program that ended while [its commands came late](Said::was_starved) is run again.
 pub(crate) fn on_both(

@@ -12,8 +12,9 @@ use crate::model::Model;
 /// The posture within the limits, whatever its redundancy parameter, that brings the end effector
 /// to `target` and is nearest to `q` in the sense of the sum of squares; `None` if none was found.
 ///
-/// Joint 7 is swept through its range and the best place of every branch refined, some 0.3 ms. A pose that only a
-/// hundredth of a radian of joint 7 can meet may be missed; [`reach`](super::reach) looks closer.
+/// Joint 7 is swept through its range and the best place of every branch refined, some 0.3 ms. A
+/// pose that only a hundredth of a radian of joint 7 can meet may be missed;
+/// [`reach`](super::reach) looks closer.
 ///
 /// # Errors
 /// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].

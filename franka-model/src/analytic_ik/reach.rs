@@ -79,7 +79,8 @@ pub fn position(model: &Model, point: &Vector3<f64>, ee: &EndEffector) -> Result
     Ok(Reach { posture, margin })
 }
 
-/// Distances beyond this are not looked at, `[m]`: no point of the arm is further from the shoulder.
+/// Distances beyond this are not looked at, `[m]`: no point of the arm is further from the
+/// shoulder.
 pub const FAR: f64 = 1.2;
 
 /// Postures for poses that are next to each other.

@@ -93,14 +93,15 @@ const fn on_hand(start: [f64; 3], end: [f64; 3], radius: f64) -> Capsule {
     Capsule::new(turned(start), turned(end), radius)
 }
 
-/// `franka_description` 1.0.1, `end_effectors/common/franka_hand.xacro`: body, and fingers at any width.
+/// `franka_description` 1.0.1, `end_effectors/common/franka_hand.xacro`: body, and fingers at any
+/// width.
 pub(super) static VENDOR_HAND: [Capsule; 2] = [
     on_hand([0.0, -0.05, 0.04], [0.0, 0.05, 0.04], 0.04),
     on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
 ];
 
-/// The body fitted as the links are; the fingers as the vendor's capsule has them, and another one for
-/// where they leave the body.
+/// The body fitted as the links are; the fingers as the vendor's capsule has them, and another one
+/// for where they leave the body.
 pub(super) static COVERING_HAND: [Capsule; 3] = [
     on_hand(
         [-0.0007, -0.0702, 0.0228],
@@ -111,8 +112,9 @@ pub(super) static COVERING_HAND: [Capsule; 3] = [
     on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
 ];
 
-/// `franka_description` 1.0.1, `robots/common/franka_arm.xacro` with a safety distance of 0, the same for
-/// the FER and the FR3; the second capsule of link 7 with the turn of 45° of its sub-link applied.
+/// `franka_description` 1.0.1, `robots/common/franka_arm.xacro` with a safety distance of 0, the
+/// same for the FER and the FR3; the second capsule of link 7 with the turn of 45° of its sub-link
+/// applied.
 pub(super) static VENDOR: [LinkCapsule; 10] = [
     link(0, [-0.09, 0.0, 0.06], [-0.06, 0.0, 0.06], 0.06),
     link(1, [0.0, 0.0, -0.333], [0.0, 0.0, -0.05], 0.06),
@@ -131,9 +133,9 @@ pub(super) static VENDOR: [LinkCapsule; 10] = [
     ),
 ];
 
-/// Franka Research 3: capsules fitted to the surface of the collision meshes of `franka_description` 1.0.1
-/// by least squares. The second summand of a radius is the largest distance at which a vertex of the link's
-/// mesh sticks out of the fit.
+/// Franka Research 3: capsules fitted to the surface of the collision meshes of
+/// `franka_description` 1.0.1 by least squares. The second summand of a radius is the largest
+/// distance at which a vertex of the link's mesh sticks out of the fit.
 pub(super) static FR3: [LinkCapsule; 17] = [
     link(
         0,
@@ -239,9 +241,9 @@ pub(super) static FR3: [LinkCapsule; 17] = [
     ),
 ];
 
-/// Franka Emika Robot: capsules fitted to the surface of the collision meshes of `franka_description` 1.0.1
-/// by least squares. The second summand of a radius is the largest distance at which a vertex of the link's
-/// mesh sticks out of the fit.
+/// Franka Emika Robot: capsules fitted to the surface of the collision meshes of
+/// `franka_description` 1.0.1 by least squares. The second summand of a radius is the largest
+/// distance at which a vertex of the link's mesh sticks out of the fit.
 pub(super) static FER: [LinkCapsule; 17] = [
     link(
         0,

@@ -8,22 +8,23 @@
 //!        ──> to(obstacle), nearest_to(..)   arm and tool against a plane or a box
 //! ```
 //!
-//! The bodies are [capsules](Capsule): all points within a radius of a segment. Distances are exact, between
-//! surfaces, in metres; where bodies overlap they are negative, the length of the shortest shift that separates
-//! the two. Gradients are with respect to the joint positions, in m/rad. Work and memory are bounded;
-//! nothing is allocated.
+//! The bodies are [capsules](Capsule): all points within a radius of a segment. Distances are
+//! exact, between surfaces, in metres; where bodies overlap they are negative, the length of the
+//! shortest shift that separates the two. Gradients are with respect to the joint positions, in
+//! m/rad. Work and memory are bounded; nothing is allocated.
 //!
 //! # Kinks
 //!
-//! Each distance is continuous in `q` and changes by no more than the points move, but it is not smooth everywhere:
+//! Each distance is continuous in `q` and changes by no more than the points move, but it is not
+//! smooth everywhere:
 //!
 //! - Between two segments that are parallel and side by side, or that cross (distance
 //!   `-(r1 + r2)`), the nearest points jump. The gradient given is one of those that occur around
-//!   that posture: at parallel segments that of the middle of the overlap; at crossing ones along the
-//!   common normal of the segments, which of its two directions is a matter of rounding.
+//!   that posture: at parallel segments that of the middle of the overlap; at crossing ones along
+//!   the common normal of the segments, which of its two directions is a matter of rounding.
 //! - An axis that crosses a box may be as far from one of its faces, or edges, as from another; one
-//!   parallel to a face, or to a plane, has both ends as near. The gradient is that of one of them, in the
-//!   latter case that of the middle.
+//!   parallel to a face, or to a plane, has both ends as near. The gradient is that of one of them,
+//!   in the latter case that of the middle.
 //! - The least distance over pairs has a kink where another pair becomes the nearest. Who needs a
 //!   smooth constraint takes every pair's distance and gradient ([`Placed::pairs`]) as one
 //!   constraint each.
@@ -98,11 +99,11 @@ pub struct Proximity<P> {
     pub distance: f64,
     /// Change of the distance per joint position, `[m/rad]`.
     pub gradient: JointVector,
-    /// Direction in which the distance grows, in base axes: from the inner body, or the obstacle, to
-    /// the outer body. Length 1.
+    /// Direction in which the distance grows, in base axes: from the inner body, or the obstacle,
+    /// to the outer body. Length 1.
     pub normal: Vector3<f64>,
-    /// The nearest points of the axes, `[m]`, in the base frame: of the inner body, or on the surface
-    /// of the obstacle, and of the outer body.
+    /// The nearest points of the axes, `[m]`, in the base frame: of the inner body, or on the
+    /// surface of the obstacle, and of the outer body.
     pub points: [Vector3<f64>; 2],
 }
 
@@ -161,8 +162,8 @@ impl Placed<'_> {
         })
     }
 
-    /// The distance of every pair that can meet, `[m]`, in the order of [`pairs`](Self::pairs). Costs less: there are no
-    /// gradients.
+    /// The distance of every pair that can meet, `[m]`, in the order of [`pairs`](Self::pairs).
+    /// Costs less: there are no gradients.
     pub fn distances(&self) -> impl Iterator<Item = ((Body, Body), f64)> + '_ {
         self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -170,7 +171,8 @@ impl Placed<'_> {
         })
     }
 
-    /// The pair with the least distance. Costs less than [`pairs`](Self::pairs): there is one gradient.
+    /// The pair with the least distance. Costs less than [`pairs`](Self::pairs): there is one
+    /// gradient.
     pub fn nearest_pair(&self) -> Proximity<(Body, Body)> {
         let distances = self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -180,7 +182,8 @@ impl Placed<'_> {
         self.pair_proximity(a, b, &nearest)
     }
 
-    /// Every capsule that moves, against an obstacle. The base stands where it stands: it is left out.
+    /// Every capsule that moves, against an obstacle. The base stands where it stands: it is left
+    /// out.
     pub fn to<'o>(&'o self, obstacle: &'o Obstacle) -> impl Iterator<Item = Proximity<Body>> + 'o {
         self.moving().map(move |i| {
             let nearest = obstacle.nearest(&self.segments[i]);
@@ -188,8 +191,8 @@ impl Placed<'_> {
         })
     }
 
-    /// The moving capsule that is nearest to an obstacle. To a floor at the height of the base this is link 1 in most
-    /// postures, which turns in place a decimetre above it.
+    /// The moving capsule that is nearest to an obstacle. To a floor at the height of the base this
+    /// is link 1 in most postures, which turns in place a decimetre above it.
     pub fn nearest_to(&self, obstacle: &Obstacle) -> Proximity<Body> {
         let distances = self.moving().map(|i| {
             let nearest = obstacle.nearest(&self.segments[i]);
@@ -236,8 +239,8 @@ impl Placed<'_> {
 
     /// `joints` move the second point and not the first.
     ///
-    /// The nearest points stay the nearest to first order, so the distance changes by the velocity of
-    /// the second along the normal: `n · (axis × p + moment) = axis · (p × n) + moment · n`.
+    /// The nearest points stay the nearest to first order, so the distance changes by the velocity
+    /// of the second along the normal: `n · (axis × p + moment) = axis · (p × n) + moment · n`.
     #[inline(always)]
     fn proximity<P>(
         &self,

@@ -35,8 +35,9 @@ impl Obstacle {
         }
     }
 
-    /// Nearest points of the obstacle and a capsule. All distances are exact: apart, the least between
-    /// any two points; overlapping, the length of the shortest shift that separates them, negative.
+    /// Nearest points of the obstacle and a capsule. All distances are exact: apart, the least
+    /// between any two points; overlapping, the length of the shortest shift that separates them,
+    /// negative.
     #[inline(always)]
     pub(super) fn nearest(&self, segment: &Segment) -> Nearest {
         match self {
@@ -94,8 +95,8 @@ fn nearest_to_box(pose: &Isometry3<f64>, half: &Vector3<f64>, segment: &Segment)
     }
 }
 
-/// Length, `[m]`, below which the axis counts as touching the box: the direction of a shorter gap is
-/// rounding.
+/// Length, `[m]`, below which the axis counts as touching the box: the direction of a shorter gap
+/// is rounding.
 const TOUCHING: f64 = 1e-12;
 
 /// The axis of a capsule in the axes of a box.
@@ -108,7 +109,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// How far it is from the box; negative where it meets the box, the length of the shortest way out.
+    /// How far it is from the box; negative where it meets the box, the length of the shortest way
+    /// out.
     pub(super) fn distance(&self) -> f64 {
         let t = self.one_nearest_outside();
         let gap = self.at(t) - self.clamped(t);
@@ -120,8 +122,9 @@ impl Axis {
         }
     }
 
-    /// Some parameter with the least distance to the box; see [`nearest_outside`](Self::nearest_outside). Between the ends
-    /// only the bends matter that lie where the slope has not been found to fall yet, or to rise already.
+    /// Some parameter with the least distance to the box; see
+    /// [`nearest_outside`](Self::nearest_outside). Between the ends only the bends matter that lie
+    /// where the slope has not been found to fall yet, or to rise already.
     fn one_nearest_outside(&self) -> f64 {
         let mut low = (0.0, self.slope(0.0));
         if low.1 >= 0.0 {
@@ -153,7 +156,8 @@ impl Axis {
 
     /// The point of the box nearest to the point at `t`.
     fn clamped(&self, t: f64) -> Vector3<f64> {
-        // Unlike `f64::clamp`, without a panic for sides that are none, and not a number stays what it is.
+        // Unlike `f64::clamp`, without a panic for sides that are none, and not a number stays what
+        // it is.
         let clamp = |x: f64, half: f64| {
             if x > half || half.is_nan() {
                 half
@@ -211,12 +215,12 @@ impl Axis {
         bends
     }
 
-    /// The shortest shift out of the box, given that the axis meets it: the parameter of the point that
-    /// touches the box last, the direction, and the length, which is negative.
+    /// The shortest shift out of the box, given that the axis meets it: the parameter of the point
+    /// that touches the box last, the direction, and the length, which is negative.
     ///
-    /// All positions at which the two meet fill a polytope: the box swept by the segment. Its faces are
-    /// those of the box, and those that the segment sweeps from the box's edges; the nearest of them is
-    /// the way out (Gottschalk, Lin and Manocha, OBBTree, 1996).
+    /// All positions at which the two meet fill a polytope: the box swept by the segment. Its faces
+    /// are those of the box, and those that the segment sweeps from the box's edges; the nearest of
+    /// them is the way out (Gottschalk, Lin and Manocha, OBBTree, 1996).
     fn shortest_way_out(&self) -> (f64, Vector3<f64>, f64) {
         let mut best = (0.0, Vector3::zeros(), f64::NEG_INFINITY);
         for i in 0..3 {
@@ -247,8 +251,8 @@ impl Axis {
         }
     }
 
-    /// Where the axis passes the edge of the box along coordinate `i` that is outermost along `normal`,
-    /// a direction perpendicular to both.
+    /// Where the axis passes the edge of the box along coordinate `i` that is outermost along
+    /// `normal`, a direction perpendicular to both.
     fn beside_edge(&self, i: usize, normal: &Vector3<f64>) -> f64 {
         let edge = normal.zip_map(&self.half, |n, half| sign(n) * half);
         // Seen along the edge, the axis passes a point.
@@ -274,8 +278,8 @@ fn sign(x: f64) -> f64 {
     }
 }
 
-/// Square of the sine of an angle below which an axis counts as parallel to an edge: it then sweeps no face of
-/// its own from it.
+/// Square of the sine of an angle below which an axis counts as parallel to an edge: it then sweeps
+/// no face of its own from it.
 const PARALLEL: f64 = 1e-24;
 
 /// Two ends and two faces per coordinate.

@@ -78,9 +78,9 @@ impl Segment {
 
     /// Nearest points of two axes, and the distance of the surfaces.
     ///
-    /// Both parameters minimise one convex quadratic in a square: solve for the first, clamp it, solve
-    /// for the second given it, clamp, and solve for the first again (Ericson, Real-Time Collision
-    /// Detection, 2004, section 5.1.9).
+    /// Both parameters minimise one convex quadratic in a square: solve for the first, clamp it,
+    /// solve for the second given it, clamp, and solve for the first again (Ericson, Real-Time
+    /// Collision Detection, 2004, section 5.1.9).
     #[inline(always)]
     pub(super) fn nearest(&self, other: &Self) -> Nearest {
         let between = self.start - other.start;
@@ -113,11 +113,12 @@ impl Segment {
         }
     }
 
-    /// Where on this segment another one is nearest that is parallel to it. `ends` are the parameters
-    /// of the other's ends.
+    /// Where on this segment another one is nearest that is parallel to it. `ends` are the
+    /// parameters of the other's ends.
     ///
-    /// Along the stretch beside the other the distance is the same, and the middle is the one choice
-    /// that is symmetric; or it falls by a rounding's worth of slope, and an end of the stretch is right.
+    /// Along the stretch beside the other the distance is the same, and the middle is the one
+    /// choice that is symmetric; or it falls by a rounding's worth of slope, and an end of the
+    /// stretch is right.
     #[cold]
     fn beside(&self, other: &Self, ends: [f64; 2]) -> f64 {
         let [from, to] = ends.map(clamp);
@@ -172,8 +173,8 @@ fn ratio(numerator: f64, square: f64) -> f64 {
     }
 }
 
-/// Square of the sine of an angle below which segments count as parallel: with less, the solution for
-/// two parameters is rounding.
+/// Square of the sine of an angle below which segments count as parallel: with less, the solution
+/// for two parameters is rounding.
 const PARALLEL: f64 = 1e-12;
 
 /// Length, `[m]`, below which the direction of a gap is rounding.

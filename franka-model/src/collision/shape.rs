@@ -37,8 +37,8 @@ impl Capsule {
 
 /// Capsules on the links of the arm and on the flange.
 ///
-/// Two sets describe the arm, for different questions. Both are the same for every end effector; the
-/// [Hand](Self::with_hand) or [another tool](Self::with_tool) comes on top.
+/// Two sets describe the arm, for different questions. Both are the same for every end effector;
+/// the [Hand](Self::with_hand) or [another tool](Self::with_tool) comes on top.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape<'a> {
     /// By link, the base first.
@@ -54,13 +54,13 @@ pub struct Shape<'a> {
 impl Shape<'static> {
     /// The vendor's capsules for self-collision, the same for both robots.
     ///
-    /// They are made for links that are far from each other along the chain, and **do not cover** the
-    /// links: the elbow, for one, sticks out by several centimetres. Towards obstacles take
+    /// They are made for links that are far from each other along the chain, and **do not cover**
+    /// the links: the elbow, for one, sticks out by several centimetres. Towards obstacles take
     /// [`covering`](Self::covering).
     ///
-    /// The pairs are those that come within 5 cm of each other somewhere within the position limits of
-    /// either robot, of links with another link between them. Links 1 and 3 are left out: their capsules
-    /// overlap around the shoulder, where the links themselves fit each other.
+    /// The pairs are those that come within 5 cm of each other somewhere within the position limits
+    /// of either robot, of links with another link between them. Links 1 and 3 are left out: their
+    /// capsules overlap around the shoulder, where the links themselves fit each other.
     pub const fn vendor() -> Self {
         Self {
             arm: &VENDOR,
@@ -74,8 +74,8 @@ impl Shape<'static> {
     /// obstacles.
     ///
     /// They are up to 3.4 cm thicker than the links. So a small negative distance need not be a
-    /// collision, and its pairs of links are only those of the base, link 1 and link 2 with links 5 to 7:
-    /// closer ones touch in postures that the arm takes every day.
+    /// collision, and its pairs of links are only those of the base, link 1 and link 2 with links 5
+    /// to 7: closer ones touch in postures that the arm takes every day.
     pub const fn covering(kind: RobotKind) -> Self {
         let arm: &[LinkCapsule] = match kind {
             RobotKind::Fr3 => &FR3,
@@ -90,7 +90,8 @@ impl Shape<'static> {
         }
     }
 
-    /// With the Franka Hand on the flange, mounted as the vendor does: turned by -45° about its axis.
+    /// With the Franka Hand on the flange, mounted as the vendor does: turned by -45° about its
+    /// axis.
     pub const fn with_hand(self) -> Self {
         Self {
             tool: self.hand,
@@ -105,8 +106,8 @@ impl Shape<'_> {
     /// A tool is checked against links 0 to 5.
     ///
     /// # Errors
-    /// [`ToolError`] for more capsules than there is room for, and for numbers that are not finite or a
-    /// negative radius.
+    /// [`ToolError`] for more capsules than there is room for, and for numbers that are not finite
+    /// or a negative radius.
     pub fn with_tool<'a>(&self, capsules: &'a [Capsule]) -> Result<Shape<'a>, ToolError> {
         if capsules.len() > TOOL_MAX {
             return Err(ToolError::TooMany {

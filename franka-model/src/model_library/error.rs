@@ -4,8 +4,8 @@ use std::string::String;
 
 /// Why a model library cannot be used. The texts are those of libfranka 0.9.
 ///
-/// One of its texts has no place here: a library that is loaded already cannot be loaded once more, since each
-/// is a value of its own.
+/// One of its texts has no place here: a library that is loaded already cannot be loaded once more,
+/// since each is a value of its own.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LibraryError {

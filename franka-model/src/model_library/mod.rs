@@ -1,8 +1,9 @@
 //! The FER's own model library: compiled code that a robot of FCI version 5 hands to its clients.
 //!
-//! [`Model::fer`](crate::Model::fer) meets that library to the last digits in everything that was compared
-//! (the book's page on the model). This module is for who wants to compare on a robot of their own, or does not
-//! want to rely on the comparison. Needs the feature `model-library`, and Linux.
+//! [`Model::fer`](crate::Model::fer) meets that library to the last digits in everything that was
+//! compared (the book's page on the model). This module is for who wants to compare on a robot of
+//! their own, or does not want to rely on the comparison. Needs the feature `model-library`, and
+//! Linux.
 //!
 //! The code is loaded into this process. It runs with its rights, unchecked: hence
 //! [`ModelLibrary::load`] is `unsafe`.
@@ -41,17 +42,18 @@ impl fmt::Debug for ModelLibrary {
 }
 
 impl ModelLibrary {
-    /// Loads the bytes that the robot sent, by way of a temporary file that only this user can read and that
-    /// is gone when this returns.
+    /// Loads the bytes that the robot sent, by way of a temporary file that only this user can read
+    /// and that is gone when this returns.
     ///
     /// # Errors
     /// [`LibraryError`].
     ///
     /// # Safety
     /// The bytes must be the vendor's model library, or another one whose initialisers and
-    /// functions may be run, from any thread and at any time, and whose functions called `M_NE`, `c_NE`,
-    /// `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` have the vendor's signatures. Who loads what a robot
-    /// sends trusts that robot, and everybody who can speak in its name on the network, with this process.
+    /// functions may be run, from any thread and at any time, and whose functions called `M_NE`,
+    /// `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` have the vendor's signatures. Who loads
+    /// what a robot sends trusts that robot, and everybody who can speak in its name on the
+    /// network, with this process.
     pub unsafe fn load(bytes: &[u8]) -> Result<Self, LibraryError> {
         let file = Temporary::with(bytes).map_err(LibraryError::Save)?;
         // SAFETY: the caller vouches for the initialisers.
@@ -75,8 +77,8 @@ impl ModelLibrary {
     pub fn pose(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Matrix4<f64> {
         let mut pose = Matrix4::zeros();
         let out = pose.as_mut_slice().as_mut_ptr();
-        // SAFETY: `load` was told the signatures; 7 and 16 numbers go in, 16 come out, and the library is
-        // loaded as long as `self` is there.
+        // SAFETY: `load` was told the signatures; 7 and 16 numbers go in, 16 come out, and the
+        // library is loaded as long as `self` is there.
         unsafe {
             match on_flange(frame, ee) {
                 Some(f_t_frame) => {

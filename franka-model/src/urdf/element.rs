@@ -105,8 +105,8 @@ fn sane(text: &str) -> Option<f64> {
     (number.abs() <= 1e6).then_some(number)
 }
 
-/// The pose in the direct child `origin`: a translation `xyz`, and `rpy` about the fixed axes x, y and z in
-/// this order. What is left out is zero.
+/// The pose in the direct child `origin`: a translation `xyz`, and `rpy` about the fixed axes x, y
+/// and z in this order. What is left out is zero.
 pub(super) fn origin(parent: Node<'_, '_>, owner: &str) -> Result<Isometry3<f64>, UrdfError> {
     let Some(element) = Element::find(parent, "origin", owner) else {
         return Ok(Isometry3::identity());

@@ -6,7 +6,8 @@ use std::vec::Vec;
 /// Why a text is no description of the arm. Each variant says what was found, and its text what was
 /// expected.
 ///
-/// Where libfranka has a text for the case (its velocity-limit parser, 0.21), the text begins with it.
+/// Where libfranka has a text for the case (its velocity-limit parser, 0.21), the text begins with
+/// it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UrdfError {

@@ -1,8 +1,8 @@
 //! A model from the description that a robot serves: URDF.
 //!
-//! Robots that speak FCI version 10 give this text to a client that asks for it (`GetRobotModel`). It holds
-//! what may differ from one arm to the next: masses, position limits, speeds, torques, and the velocity
-//! envelope, which is an element of the vendor's own.
+//! Robots that speak FCI version 10 give this text to a client that asks for it (`GetRobotModel`).
+//! It holds what may differ from one arm to the next: masses, position limits, speeds, torques, and
+//! the velocity envelope, which is an element of the vendor's own.
 //!
 //! # What is read, and what is not
 //!
@@ -13,20 +13,22 @@
 //! | `origin`, `axis` of the joints, `link8` | checked against the [geometry](crate::geometry) |
 //!
 //! The geometry is that of the crate: inverse kinematics and capsules are made for it. A text with
-//! another one is refused rather than computed with half of it. Up to 1 µm and 10 µrad, which is what rounded
-//! numbers may be off, the crate's numbers replace those of the text.
+//! another one is refused rather than computed with half of it. Up to 1 µm and 10 µrad, which is
+//! what rounded numbers may be off, the crate's numbers replace those of the text.
 //!
-//! The text has no limits of acceleration, jerk and torque rate, and none for the end effector: those of the
-//! FR3 are taken. Nor has it the positions to command ([`lower`](crate::limits::JointLimits::lower),
-//! [`upper`](crate::limits::JointLimits::upper)), which are a little inside the limits: the documented ones
-//! are taken, or, where the text's limit is further in, a position as far inside it.
+//! The text has no limits of acceleration, jerk and torque rate, and none for the end effector:
+//! those of the FR3 are taken. Nor has it the positions to command
+//! ([`lower`](crate::limits::JointLimits::lower), [`upper`](crate::limits::JointLimits::upper)),
+//! which are a little inside the limits: the documented ones are taken, or, where the text's limit
+//! is further in, a position as far inside it.
 //!
 //! # What is refused
 //!
-//! [`UrdfError`] has the list. The vendor's parsers let some of it pass: an inertia that cannot be read makes a
-//! link without mass there, and the last of two joints with one name counts. Numbers have to be
-//! numbers to their end. Inertias have to be positive; that the largest moment is at most the sum of the others is
-//! not asked for, as the vendor's own descriptions of other arms break it.
+//! [`UrdfError`] has the list. The vendor's parsers let some of it pass: an inertia that cannot be
+//! read makes a link without mass there, and the last of two joints with one name counts. Numbers
+//! have to be numbers to their end. Inertias have to be positive; that the largest moment is at
+//! most the sum of the others is not asked for, as the vendor's own descriptions of other arms
+//! break it.
 //!
 //! # Example
 //!
@@ -63,7 +65,8 @@ pub const TRANSLATION_OFF: f64 = 1e-6;
 /// How far a frame may be turned against the [geometry](crate::geometry), `[rad]`.
 pub const ROTATION_OFF: f64 = 1e-5;
 
-/// Elements and attributes' texts beyond this are refused: the vendor's description has a few hundred.
+/// Elements and attributes' texts beyond this are refused: the vendor's description has a few
+/// hundred.
 const NODES_MAX: u32 = 100_000;
 
 impl Model {

@@ -154,8 +154,8 @@ fn named<'a, 'n>(
 
 /// Which of the joints is which of the arm, 1 to 7.
 ///
-/// A name counts that is the joint's, or else contains it, as in the vendor's client. Fixed joints have
-/// names of their own.
+/// A name counts that is the joint's, or else contains it, as in the vendor's client. Fixed joints
+/// have names of their own.
 fn arm(joints: &[Joint<'_, '_>]) -> Result<Vec<Option<usize>>, UrdfError> {
     let mut numbers = vec![None; joints.len()];
     let mut missing = Vec::new();

@@ -109,8 +109,8 @@ impl<'a> Reply<'a> {
     }
 
     /// The message that carries this reply to the request `id` for `command`; `extra` bytes of a
-    /// model are sent behind it and count in the header's size. What is in `self` of the model would
-    /// not fit: it has to be empty.
+    /// model are sent behind it and count in the header's size. What is in `self` of the model
+    /// would not fit: it has to be empty.
     pub(crate) fn encode(
         &self,
         version: Version,

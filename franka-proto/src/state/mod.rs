@@ -109,9 +109,11 @@ pub struct RobotState {
     pub theta: [f64; 7],
     /// Motor velocities; `[rad/s]`.
     pub dtheta: [f64; 7],
-    /// Upper accelerometer of joints 1 to 6, in the frame of its board `[m/s^2]`; zero in protocol 5.
+    /// Upper accelerometer of joints 1 to 6, in the frame of its board `[m/s^2]`; zero in protocol
+    /// 5.
     pub accelerometer_top: [[f32; 3]; 6],
-    /// Lower accelerometer of joints 1 to 6, in the frame of its board `[m/s^2]`; zero in protocol 5.
+    /// Lower accelerometer of joints 1 to 6, in the frame of its board `[m/s^2]`; zero in protocol
+    /// 5.
     pub accelerometer_bottom: [[f32; 3]; 6],
     /// Active motion generator.
     pub motion_generator_mode: MotionGeneratorMode,

@@ -105,8 +105,9 @@ impl Version {
         self.table().accelerometers
     }
 
-    /// Whether a control loop with two functions calls the one for the motion generator before the one for the torques. As
-    /// in `control_loop.cpp` of libfranka 0.9 (protocol 5: it does) and 0.21 (protocol 10: it does not).
+    /// Whether a control loop with two functions calls the one for the motion generator before the
+    /// one for the torques. As in `control_loop.cpp` of libfranka 0.9 (protocol 5: it does) and
+    /// 0.21 (protocol 10: it does not).
     #[must_use]
     pub fn generator_first(self) -> bool {
         self.table().generator_first

@@ -3,7 +3,8 @@
 use franka_proto::framing::{Header, Message};
 use franka_proto::{Command, MoveStatus, Refusal, Reply, RobotMode, Status, Version};
 
-/// The texts behind `libfranka: `, by status byte; empty where there is nothing to say. A byte more has no meaning.
+/// The texts behind `libfranka: `, by status byte; empty where there is nothing to say. A byte more
+/// has no meaning.
 type Texts = &'static [&'static str];
 
 /// A reply that is long enough for every command.

@@ -10,7 +10,8 @@ use crate::shaping::{InvalidCommand, check};
 #[derive(Clone, Copy, Debug)]
 pub struct ActiveControl;
 
-/// Why a command was not sent. Texts are those of libfranka 0.21, `active_control*.h` and `robot_impl.cpp`.
+/// Why a command was not sent. Texts are those of libfranka 0.21, `active_control*.h` and
+/// `robot_impl.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
@@ -41,7 +42,8 @@ pub enum WriteError {
 }
 
 impl ActiveControl {
-    /// Whether a motion in `modes` takes `command`, in the order in which the reference client asks.
+    /// Whether a motion in `modes` takes `command`, in the order in which the reference client
+    /// asks.
     pub(crate) fn check(
         &self,
         command: &Command,

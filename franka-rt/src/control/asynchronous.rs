@@ -5,7 +5,8 @@ use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, RobotMode
 use super::{Command, JointPositions};
 use crate::slot::{Read, SlotReader, SlotWriter, Words, slot};
 
-/// The program of a motion between sparse joint targets: one command per new target, not one per state. Protocol 10 only.
+/// The program of a motion between sparse joint targets: one command per new target, not one per
+/// state. Protocol 10 only.
 #[derive(Debug)]
 pub struct AsynchronousPositions {
     targets: SlotReader<AsynchronousTarget>,
@@ -27,7 +28,8 @@ impl AsynchronousPositions {
         (Self { targets }, writer)
     }
 
-    /// The request for such a motion; the robot keeps each joint below `maximum_velocities`, `[rad/s]`.
+    /// The request for such a motion; the robot keeps each joint below `maximum_velocities`,
+    /// `[rad/s]`.
     pub fn request(maximum_velocities: [f64; 7]) -> MoveRequest {
         MoveRequest {
             asynchronous: Some(maximum_velocities),
@@ -84,7 +86,8 @@ pub enum TargetStatus {
     Aborted(AbortReason),
 }
 
-/// Why targets are followed no more. Texts are those of libfranka 0.21, `async_position_control_handler.cpp`.
+/// Why targets are followed no more. Texts are those of libfranka 0.21,
+/// `async_position_control_handler.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -101,11 +104,13 @@ pub enum AbortReason {
 }
 
 impl TargetStatus {
-    /// Distance of the desired joint positions from the target that counts as reached unless asked otherwise, as
-    /// Euclidean norm, `[rad]`. Source: libfranka 0.21, `async_position_control_handler.hpp`.
+    /// Distance of the desired joint positions from the target that counts as reached unless asked
+    /// otherwise, as Euclidean norm, `[rad]`. Source: libfranka 0.21,
+    /// `async_position_control_handler.hpp`.
     pub const GOAL_TOLERANCE: f64 = 1e-3;
 
-    /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`. Source: as above.
+    /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`.
+    /// Source: as above.
     pub const REST: f64 = 0.01;
 
     /// The status that a state of the motion shows of its newest target.

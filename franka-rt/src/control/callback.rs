@@ -15,10 +15,11 @@ type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 
 /// One or two control functions, called with every state of a motion.
 ///
-/// As in libfranka's control loops: a function gets a state and the robot's time since the state before, which is zero at
-/// first and more than a millisecond after a loss. What it returns passes the low-pass filter, the limiter and the checks.
-/// Two functions see the same state and step; once one finishes, the other is not called any more, and its command of the
-/// cycle before goes out with the last one. In protocol 10 the torque function is called first, in protocol 5 the motion
+/// As in libfranka's control loops: a function gets a state and the robot's time since the state
+/// before, which is zero at first and more than a millisecond after a loss. What it returns passes
+/// the low-pass filter, the limiter and the checks. Two functions see the same state and step; once
+/// one finishes, the other is not called any more, and its command of the cycle before goes out
+/// with the last one. In protocol 10 the torque function is called first, in protocol 5 the motion
 /// function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
 pub struct Callback {
     shaper: Shaper,
@@ -38,8 +39,8 @@ struct Source<T> {
 }
 
 impl Callback {
-    /// Torques alone, shaped as by default. A version without such motions runs a generator beside that is told to stand
-    /// still.
+    /// Torques alone, shaped as by default. A version without such motions runs a generator beside
+    /// that is told to stand still.
     pub fn torques<R: Into<Next<Torques>>>(
         version: Version,
         torques: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -52,7 +53,8 @@ impl Callback {
         Self::new(version, stand).with_torques(torques)
     }
 
-    /// Commands to a motion generator, shaped as by default, for one of the robot's own controllers.
+    /// Commands to a motion generator, shaped as by default, for one of the robot's own
+    /// controllers.
     pub fn motion<C: GeneratorCommand, R: Into<Next<C>>>(
         version: Version,
         mut motion: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -61,7 +63,8 @@ impl Callback {
         Self::new(version, Some(Source::new(motion, C::ZERO.into())))
     }
 
-    /// Adds torques beside the commands to a motion generator, in the place of the robot's own controller.
+    /// Adds torques beside the commands to a motion generator, in the place of the robot's own
+    /// controller.
     #[must_use]
     pub fn with_torques<R: Into<Next<Torques>>>(
         self,
@@ -118,8 +121,9 @@ impl Callback {
         Ok((self.newest(), finished))
     }
 
-    /// The command that holds the arm at this state, or at the first one that it held it at: what the robot desires there, no
-    /// velocity, no torque. No function is called, and the first call afterwards is still the first.
+    /// The command that holds the arm at this state, or at the first one that it held it at: what
+    /// the robot desires there, no velocity, no torque. No function is called, and the first call
+    /// afterwards is still the first.
     pub(crate) fn hold(&mut self, state: &RobotState) -> Command {
         if let Some(source) = &mut self.motion
             && !self.held
@@ -177,7 +181,8 @@ impl<T> Source<T> {
 
     /// What the function returns, and whether it is done. A panic of it stays inside.
     fn call(&mut self, state: &RobotState, step: Duration) -> Result<(T, bool), Failure> {
-        // A function that has panicked is never called again, so nobody sees what it left half done.
+        // A function that has panicked is never called again, so nobody sees what it left half
+        // done.
         let called = catch_unwind(AssertUnwindSafe(|| (self.function)(state, step)));
         called.map(Next::into_parts).map_err(Failure::Panicked)
     }

@@ -22,7 +22,8 @@ pub struct JointVelocities(pub [f64; 7]);
 pub struct CartesianPose {
     /// The pose, column-major, `[m]`.
     pub O_T_EE: [f64; 16],
-    /// Position of joint 3, `[rad]`, and sign of joint 4, -1 or +1; `None` leaves the elbow to the robot.
+    /// Position of joint 3, `[rad]`, and sign of joint 4, -1 or +1; `None` leaves the elbow to the
+    /// robot.
     pub elbow: Option<[f64; 2]>,
 }
 
@@ -60,8 +61,8 @@ impl MotionCommand {
         }
     }
 
-    /// The command to the same generator that changes nothing: where the robot desires to be, at no velocity. It is what
-    /// the robot wants to see first.
+    /// The command to the same generator that changes nothing: where the robot desires to be, at no
+    /// velocity. It is what the robot wants to see first.
     pub(super) fn holding(&self, state: &RobotState) -> Self {
         match self {
             Self::JointPositions(_) => JointPositions(state.q_d).into(),

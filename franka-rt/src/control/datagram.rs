@@ -5,7 +5,8 @@ use franka_proto::{MoveGeneratorMode, RobotCommand, Version};
 use super::{GeneratorCommand, JointVelocities, MotionCommand, Torques};
 use crate::driver::Modes;
 
-/// What is sent in a cycle: a command to the motion generator, torques, or both, as the motion wants.
+/// What is sent in a cycle: a command to the motion generator, torques, or both, as the motion
+/// wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
     /// For the motion generator.
@@ -14,7 +15,8 @@ pub struct Command {
     pub torques: Option<Torques>,
 }
 
-/// A command that does not fit the motion that runs. Texts are those of libfranka 0.21, `robot_impl.cpp`.
+/// A command that does not fit the motion that runs. Texts are those of libfranka 0.21,
+/// `robot_impl.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Misfit {
@@ -30,8 +32,8 @@ pub enum Misfit {
 }
 
 impl Command {
-    /// Torques of a motion without commands to a generator. A version without such motions runs a generator beside, which
-    /// is told to stand still.
+    /// Torques of a motion without commands to a generator. A version without such motions runs a
+    /// generator beside, which is told to stand still.
     pub fn torques(version: Version, torques: Torques) -> Self {
         let idle = JointVelocities::ZERO.into();
         Self {
@@ -62,8 +64,9 @@ impl Command {
         }
     }
 
-    /// The datagram that answers the state `message_id`. What is not commanded is zero. The finishing flag is that of the
-    /// motion generator where there is a command to it, and that of the torques otherwise.
+    /// The datagram that answers the state `message_id`. What is not commanded is zero. The
+    /// finishing flag is that of the motion generator where there is a command to it, and that of
+    /// the torques otherwise.
     pub fn datagram(&self, message_id: u64, finished: bool) -> RobotCommand {
         let mut command = RobotCommand {
             message_id,

@@ -2,9 +2,11 @@
 //!
 //! * [`Torques`] and the four [`MotionCommand`]s: what is commanded, in the robot's own terms.
 //! * [`Next`]: what a control function answers a state with.
-//! * [`Callback`]: control functions as the program of a motion, with the order, filter and limiter of the reference client.
+//! * [`Callback`]: control functions as the program of a motion, with the order, filter and limiter
+//!   of the reference client.
 //! * [`ActiveControl`]: a motion whose commands are written from outside.
-//! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and what became of them.
+//! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and what became
+//!   of them.
 //! * [`Command`]: what goes into one datagram, and whether the motion that runs takes it.
 
 mod active;

@@ -9,8 +9,8 @@ use super::{CartesianPose, CartesianVelocities, JointPositions, JointVelocities,
 pub enum Next<T> {
     /// Send it; the function is called again with the next state.
     Continue(T),
-    /// Send it, repeated until the robot has ended the motion; the function is not called again. The robot refuses to end
-    /// a motion that still moves.
+    /// Send it, repeated until the robot has ended the motion; the function is not called again.
+    /// The robot refuses to end a motion that still moves.
     Finish(T),
 }
 

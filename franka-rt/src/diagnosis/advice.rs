@@ -36,7 +36,8 @@ pub enum Advice {
 }
 
 impl Advice {
-    /// The advice in words, with the settings of this driver that there are where `commander` commands.
+    /// The advice in words, with the settings of this driver that there are where `commander`
+    /// commands.
     pub fn text(self, commander: Commander) -> &'static str {
         use Commander::{Active, Asynchronous, Function, Goals};
         match (self, commander) {

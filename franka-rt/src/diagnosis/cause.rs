@@ -16,7 +16,8 @@ pub enum Cause {
         subject: Subject,
         /// Its position, velocity, acceleration or torque.
         quantity: Quantity,
-        /// By how much, beyond what going on as before would have been, in the unit of the quantity.
+        /// By how much, beyond what going on as before would have been, in the unit of the
+        /// quantity.
         size: f64,
         /// The command answers this state.
         cycle: u64,
@@ -45,7 +46,8 @@ pub enum Cause {
     LostPackets {
         /// States that did not arrive, so that nothing answered them.
         states: u64,
-        /// Commands that were sent and did not arrive in time, by the success rate that the robot reports.
+        /// Commands that were sent and did not arrive in time, by the success rate that the robot
+        /// reports.
         commands: u64,
         /// States that arrived and were not answered.
         unanswered: u64,
@@ -55,7 +57,8 @@ pub enum Cause {
         first: u64,
         /// The last of them.
         last: u64,
-        /// `control_command_success_rate` of the last state of the motion that was received, in `[0, 1]`.
+        /// `control_command_success_rate` of the last state of the motion that was received, in
+        /// `[0, 1]`.
         success_rate: f64,
     },
     /// Commands left this host after the next state was due, at some time in the motion.
@@ -69,16 +72,16 @@ pub enum Cause {
     Contact {
         /// The joint, or the axis of the stiffness frame.
         subject: Subject,
-        /// The largest estimate in these cycles: `[N·m]` of a joint or a rotation, `[N]` of a translation. Positive is what
-        /// the robot does to its surroundings.
+        /// The largest estimate in these cycles: `[N·m]` of a joint or a rotation, `[N]` of a
+        /// translation. Positive is what the robot does to its surroundings.
         value: f64,
         /// Since when it was above the lower threshold, without a break.
         since: u64,
     },
     /// A Cartesian motion in a pose where joints have to move fast for little.
     Singularity {
-        /// Smallest singular value of the Jacobian of the end effector, metres and radians mixed; 0.14 to 0.23 in ordinary
-        /// poses.
+        /// Smallest singular value of the Jacobian of the end effector, metres and radians mixed;
+        /// 0.14 to 0.23 in ordinary poses.
         smallest: f64,
         /// What joint 4 is from where the arm is stretched, `[rad]`.
         stretch: f64,

@@ -1,7 +1,7 @@
 //! What commands ask for, by the differences that the robot takes of them.
 //!
-//! Backward differences over one cycle, from what the state that a command answers publishes as commanded (FCI documentation,
-//! control parameters). Limits are the nominal ones.
+//! Backward differences over one cycle, from what the state that a command answers publishes as
+//! commanded (FCI documentation, control parameters). Limits are the nominal ones.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::limits::MotionLimits;
@@ -64,7 +64,8 @@ pub(super) fn joints(sample: &Sample<'_>) -> Option<(JointVector, Derivatives<7>
     Some((q, Derivatives::of(velocity, dq_d, ddq_d)))
 }
 
-/// Pose and derivatives that a Cartesian command asks for; `None` for other commands, and for what is no pose.
+/// Pose and derivatives that a Cartesian command asks for; `None` for other commands, and for what
+/// is no pose.
 pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivatives<6>)> {
     let Sample {
         before, command, ..
@@ -107,8 +108,9 @@ pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
     ))
 }
 
-/// Likewise of the joints that a Cartesian command takes, by Newton's iteration from where they were told to be. The robot's
-/// own way to them is not published; the smallest step is what it is known to be near.
+/// Likewise of the joints that a Cartesian command takes, by Newton's iteration from where they
+/// were told to be. The robot's own way to them is not published; the smallest step is what it is
+/// known to be near.
 pub(super) fn resulting(
     model: &Model,
     sample: &Sample<'_>,
@@ -146,7 +148,8 @@ pub(super) fn resulting(
     Some((q, Derivatives::of((q - from) / CYCLE, dq_d, ddq_d)))
 }
 
-/// Change of the torques of a command against those that the state publishes, `[N·m]`; of the first one against none.
+/// Change of the torques of a command against those that the state publishes, `[N·m]`; of the first
+/// one against none.
 pub(super) fn torque_step(sample: &Sample<'_>) -> Option<JointVector> {
     if !sample.before.controller_running() {
         return None;

@@ -2,7 +2,8 @@
 
 use crate::driver::Program;
 
-/// Who commanded a motion, which decides what its commands mean and which settings there are to change.
+/// Who commanded a motion, which decides what its commands mean and which settings there are to
+/// change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -18,8 +19,9 @@ pub enum Commander {
 }
 
 impl Commander {
-    /// Whether a command says where to be a cycle later, so that differences of commands are what the joints are to do. A
-    /// target that the robot plans to is not that, and only new targets are sent.
+    /// Whether a command says where to be a cycle later, so that differences of commands are what
+    /// the joints are to do. A target that the robot plans to is not that, and only new targets are
+    /// sent.
     pub(super) fn commands_every_cycle(self) -> bool {
         self != Self::Asynchronous
     }

@@ -57,7 +57,8 @@ impl<'a> Evidence<'a> {
         self.states().rev().find(|state| state.motion_running())
     }
 
-    /// What the motion was commanded in. In protocol 5 a motion in torques shows a generator too, whose commands rest.
+    /// What the motion was commanded in. In protocol 5 a motion in torques shows a generator too,
+    /// whose commands rest.
     pub(super) fn generator(&self) -> MotionGeneratorMode {
         self.last_running()
             .map_or(MotionGeneratorMode::Idle, |state| {
@@ -73,9 +74,9 @@ impl<'a> Evidence<'a> {
         )
     }
 
-    /// The commands that reached the robot, as far as its success rate tells, and whose state is in the log as well.
-    /// Differences are to be taken from what that state publishes as commanded: it includes what the robot made up for cycles
-    /// without a command.
+    /// The commands that reached the robot, as far as its success rate tells, and whose state is in
+    /// the log as well. Differences are to be taken from what that state publishes as commanded: it
+    /// includes what the robot made up for cycles without a command.
     pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = Sample<'a>> {
         self.entries.windows(2).filter_map(|pair| {
             let (before, command) = (&pair[0].state, &pair[1].command);
@@ -137,7 +138,8 @@ impl Reading {
         }
     }
 
-    /// The finding that a reading of the end of the motion amounts to, without regard to how it came about.
+    /// The finding that a reading of the end of the motion amounts to, without regard to how it
+    /// came about.
     pub(super) fn finding(&self, error: RobotError) -> Finding {
         Finding {
             error,
@@ -151,8 +153,8 @@ impl Reading {
     }
 }
 
-/// Whether the command between two states in a row did not reach the robot in time, by the success rate that it reports. The
-/// state that shows the end of the motion does not tell.
+/// Whether the command between two states in a row did not reach the robot in time, by the success
+/// rate that it reports. The state that shows the end of the motion does not tell.
 pub(super) fn is_lost(before: &RobotState, after: &RobotState) -> bool {
     let (rate, rate_after) = (
         before.control_command_success_rate,
@@ -210,8 +212,8 @@ pub(super) fn positions(
         .collect()
 }
 
-/// The worst of some readings of the sensors, oldest first, as a finding: with the first of the cycles in a row in which its
-/// limit was exceeded. `None` if nothing comes near its limit.
+/// The worst of some readings of the sensors, oldest first, as a finding: with the first of the
+/// cycles in a row in which its limit was exceeded. `None` if nothing comes near its limit.
 pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let worst = readings
         .iter()
@@ -220,8 +222,8 @@ pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> 
     Some(since_first(error, worst, readings))
 }
 
-/// Likewise of commands. The robot stops at the first that breaks a limit, so it is the newest that does; if none does for
-/// certain, the newest that comes near.
+/// Likewise of commands. The robot stops at the first that breaks a limit, so it is the newest that
+/// does; if none does for certain, the newest that comes near.
 pub(super) fn newest(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let last = |least: f64| {
         let cycle = readings
@@ -266,13 +268,15 @@ impl Subject {
     }
 }
 
-/// The share of a limit from which on it counts as reached. States in single precision move a third difference by up to a
-/// twentieth of what it may be, and how the robot itself measures is not published.
+/// The share of a limit from which on it counts as reached. States in single precision move a third
+/// difference by up to a twentieth of what it may be, and how the robot itself measures is not
+/// published.
 const VISIBLE: f64 = 0.95;
 
-/// What a position may lack of a limit, over [`VISIBLE`], `[rad]`: so that half a hundredth of a radian is near.
+/// What a position may lack of a limit, over [`VISIBLE`], `[rad]`: so that half a hundredth of a
+/// radian is near.
 const SCALE: f64 = 0.1;
 
-/// Two success rates that differ by less are the same: one command in a hundred is a hundredth of a rate, and rates are at
-/// worst in single precision.
+/// Two success rates that differ by less are the same: one command in a hundred is a hundredth of a
+/// rate, and rates are at worst in single precision.
 const SAME_RATE: f64 = 1e-4;

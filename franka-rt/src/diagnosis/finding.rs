@@ -11,7 +11,8 @@ use franka_proto::RobotError;
 pub enum Subject {
     /// A joint, 1 to 7 from the base.
     Joint(u8),
-    /// The translation of the end effector. Limits hold for the norm of the vector; this is its largest component.
+    /// The translation of the end effector. Limits hold for the norm of the vector; this is its
+    /// largest component.
     Translation(Axis),
     /// The rotation of the end effector, likewise.
     Rotation(Axis),
@@ -52,7 +53,8 @@ pub enum Quantity {
     Torque,
     /// `[N·m/s]`.
     TorqueRate,
-    /// What the environment does by the robot's estimate: `[N·m]` of a joint or a rotation, `[N]` of a translation.
+    /// What the environment does by the robot's estimate: `[N·m]` of a joint or a rotation, `[N]`
+    /// of a translation.
     ExternalLoad,
     /// From what the state says is commanded to the first command: `[rad]` or `[m]`.
     StartOffset,
@@ -74,7 +76,8 @@ pub enum Quantity {
 pub enum Origin {
     /// From the commands: differences from what the state published before, over one cycle.
     Commanded,
-    /// From the joint positions that a Cartesian command takes, by this driver's inverse kinematics.
+    /// From the joint positions that a Cartesian command takes, by this driver's inverse
+    /// kinematics.
     Desired,
     /// From the sensors.
     Measured,
@@ -90,7 +93,8 @@ pub enum Bound {
     AtMost(f64),
     /// The nominal limit of the robot's model on the negative side, or the lower end of a range.
     AtLeast(f64),
-    /// A threshold that no state shows: it lies between the magnitude that passed and the one that did not.
+    /// A threshold that no state shows: it lies between the magnitude that passed and the one that
+    /// did not.
     Between(f64, f64),
     /// Neither published nor shown by a state.
     Unknown,
@@ -112,19 +116,20 @@ pub struct Finding {
     pub value: f64,
     /// What it must not exceed, in the same unit.
     pub bound: Bound,
-    /// The first of the cycles in a row in which it was exceeded: the `message_id` of the state that the command answers, or
-    /// that shows what was measured.
+    /// The first of the cycles in a row in which it was exceeded: the `message_id` of the state
+    /// that the command answers, or that shows what was measured.
     pub since: u64,
 }
 
 impl Finding {
-    /// By how much the limit is exceeded, in the unit of the quantity; `None` if the limit is not known. Zero or less, by a
-    /// few hundredths of the limit, if the state is too coarse to tell.
+    /// By how much the limit is exceeded, in the unit of the quantity; `None` if the limit is not
+    /// known. Zero or less, by a few hundredths of the limit, if the state is too coarse to tell.
     pub fn excess(&self) -> Option<f64> {
         self.bound.excess(self.value)
     }
 
-    /// How many times the limit the value is; `None` if the limit is zero, a position, or not known.
+    /// How many times the limit the value is; `None` if the limit is zero, a position, or not
+    /// known.
     pub fn times(&self) -> Option<f64> {
         let limit = self.bound.limit()?;
         let is_scale = limit != 0.0 && self.quantity != Quantity::Position;

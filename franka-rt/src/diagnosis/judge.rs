@@ -29,8 +29,9 @@ enum Matter {
     Desk,
 }
 
-/// Every error, the more explaining ones first: a missing command before the leap that it leads to, a command before what
-/// the arm makes of it, acceleration before jerk before velocity, a contact before the motion that it causes.
+/// Every error, the more explaining ones first: a missing command before the leap that it leads to,
+/// a command before what the arm makes of it, acceleration before jerk before velocity, a contact
+/// before the motion that it causes.
 const ORDER: [(E, Matter); 41] = [
     (E::CommunicationConstraintsViolation, Matter::Link),
     (
@@ -134,8 +135,8 @@ fn matter(error: E) -> Matter {
     known.map_or(Matter::Desk, |&(_, matter)| matter)
 }
 
-/// The error that explains the others, with what the log shows of it: the first one of which it shows something, or else
-/// the first one.
+/// The error that explains the others, with what the log shows of it: the first one of which it
+/// shows something, or else the first one.
 pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>, Option<Finding>) {
     let named = || {
         ORDER
@@ -172,8 +173,8 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
         | E::CartesianMotionGeneratorStartElbowInvalid
         | E::StartElbowSignInconsistent => step::start_offset(evidence, error),
         E::ControllerTorqueDiscontinuity => first_of(&[&|| commanded::torque_readings(evidence)]),
-        // Which of the two an error means depends on what is commanded: of a velocity, the acceleration is the first
-        // difference.
+        // Which of the two an error means depends on what is commanded: of a velocity, the
+        // acceleration is the first difference.
         E::JointMotionGeneratorVelocityDiscontinuity
         | E::JointMotionGeneratorAccelerationDiscontinuity => {
             first_of(&[&joints(Acceleration), &joints(Jerk)])
@@ -279,8 +280,8 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
     causes
 }
 
-/// What to change. Two at most: by the causes, and by the error itself if they say nothing, or if it is about what the arm
-/// does, whatever led up to that.
+/// What to change. Two at most: by the causes, and by the error itself if they say nothing, or if
+/// it is about what the arm does, whatever led up to that.
 pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
     let by_cause = causes.iter().map(|cause| match cause {
         Cause::LostPackets {

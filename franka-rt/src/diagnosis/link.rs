@@ -6,7 +6,8 @@ use super::cause::Cause;
 use super::evidence::{Evidence, is_lost};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Cycles that may be lost in a row: 20 end a motion (FCI documentation, `communication_constraints_violation`).
+/// Cycles that may be lost in a row: 20 end a motion (FCI documentation,
+/// `communication_constraints_violation`).
 const LOST_LIMIT: f64 = 19.0;
 
 /// Cycles without a command, oldest first, named by the states whose answers are missing.
@@ -86,7 +87,8 @@ pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
     })
 }
 
-/// What got lost within the log. `starved`: the robot stopped for want of commands, so the last one did not reach it either.
+/// What got lost within the log. `starved`: the robot stopped for want of commands, so the last one
+/// did not reach it either.
 pub(super) fn lost_packets(evidence: &Evidence<'_>, starved: bool) -> Option<Cause> {
     let losses = Losses::of(evidence, starved);
     let (longest_run, _) = losses.longest()?;

@@ -60,7 +60,8 @@ pub(super) fn speed_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Joint torques against the nominal ones: the range of the sensors, a little larger, is not published.
+/// Joint torques against the nominal ones: the range of the sensors, a little larger, is not
+/// published.
 pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = &evidence.model.joint_limits().torque;
     evidence
@@ -102,7 +103,8 @@ pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
     ))
 }
 
-/// The two bodies of the arm that are nearest to each other at the end, three links or more apart, by the vendor's capsules.
+/// The two bodies of the arm that are nearest to each other at the end, three links or more apart,
+/// by the vendor's capsules.
 pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
     let state = evidence.last()?;
     let arm = Shape::vendor();
@@ -192,8 +194,8 @@ fn unbounded(
     }
 }
 
-/// Bodies further apart than this do not explain a stop, `[m]`: robots are known to stop before contact, and how long before
-/// is not published.
+/// Bodies further apart than this do not explain a stop, `[m]`: robots are known to stop before
+/// contact, and how long before is not published.
 const NEAR: f64 = 0.1;
 
 /// Velocity that is none, `[rad/s]`: several times what an arm at rest shows.

@@ -1,17 +1,20 @@
-//! Why the robot ended a motion: what was exceeded, by how much, since when, what led up to it and what to change.
+//! Why the robot ended a motion: what was exceeded, by how much, since when, what led up to it and
+//! what to change.
 //!
 //! ```text
 //! errors, log, model ──> findings (one error each: commanded | measured | touch | link)
 //!                           └─> causes (step | link | touch | pose) ──> advice
 //! ```
 //!
-//! Everything here is read off the last cycles of the motion, outside the real-time path, when the error is made. The robot
-//! names errors and nothing else: no joint, no number. Joint and number come from the same differences and limits that it
-//! checks by (FCI documentation), so far as they are published and as states of single precision show them. What the log does
-//! not show is not guessed: a [`Diagnosis`] then says that it is not visible.
+//! Everything here is read off the last cycles of the motion, outside the real-time path, when the
+//! error is made. The robot names errors and nothing else: no joint, no number. Joint and number
+//! come from the same differences and limits that it checks by (FCI documentation), so far as they
+//! are published and as states of single precision show them. What the log does not show is not
+//! guessed: a [`Diagnosis`] then says that it is not visible.
 //!
-//! What a log cannot hold: thresholds of collisions (a threshold is told by the two values that it lies between), virtual
-//! walls, filters of the robot's own, and whatever happened before its first cycle.
+//! What a log cannot hold: thresholds of collisions (a threshold is told by the two values that it
+//! lies between), virtual walls, filters of the robot's own, and whatever happened before its first
+//! cycle.
 
 mod advice;
 mod cause;
@@ -58,7 +61,8 @@ pub struct Diagnosis {
     pub finding: Option<Finding>,
     /// What led up to it, the most likely first. Empty if the log shows nothing.
     pub causes: Vec<Cause>,
-    /// What to change, the most promising first; [`Advice::text`] has the settings of this commander.
+    /// What to change, the most promising first; [`Advice::text`] has the settings of this
+    /// commander.
     pub advice: Vec<Advice>,
     /// The state that shows the end of the motion, by its `message_id`; `None` without a log.
     pub end: Option<u64>,
@@ -82,8 +86,8 @@ pub struct Case<'a> {
 }
 
 impl Diagnosis {
-    /// Reads a case. This allocates, and takes up to a few milliseconds for fifty cycles of a Cartesian motion: not for the
-    /// control thread.
+    /// Reads a case. This allocates, and takes up to a few milliseconds for fifty cycles of a
+    /// Cartesian motion: not for the control thread.
     pub fn of(case: &Case<'_>) -> Self {
         let evidence = Evidence {
             commander: case.commander,
@@ -111,7 +115,8 @@ impl Diagnosis {
         }
     }
 
-    /// Cycles from the one in which the limit was first exceeded to the one that shows the end of the motion.
+    /// Cycles from the one in which the limit was first exceeded to the one that shows the end of
+    /// the motion.
     pub fn cycles_before_end(&self) -> Option<u64> {
         Some(self.end?.saturating_sub(self.finding?.since))
     }

@@ -69,7 +69,8 @@ fn position(state: &RobotState, origin: Origin) -> JointVector {
     .into()
 }
 
-/// Smallest singular value from which on a pose counts as singular. Ordinary ones have 0.14 and more.
+/// Smallest singular value from which on a pose counts as singular. Ordinary ones have 0.14 and
+/// more.
 const SINGULAR: f64 = 0.1;
 
 /// A joint with less than this left is near the end of its range, `[rad]`.

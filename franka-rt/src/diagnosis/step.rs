@@ -35,7 +35,8 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
             let from = transform::isometry_from_array(&before.O_T_EE_c)?;
             let shift = target.translation.vector - from.translation.vector;
             let turn = rotation::error(&target.rotation, &from.rotation);
-            // A radian counts as half a metre: with which of the two the robot disagrees is not published.
+            // A radian counts as half a metre: with which of the two the robot disagrees is not
+            // published.
             Some(if shift.norm() > 0.5 * turn.norm() {
                 (Subject::component(shift.iamax()), shift.norm())
             } else {
@@ -151,7 +152,8 @@ fn cartesian_leap(
     Some((axis, quantity, size))
 }
 
-/// What of a command leaps: what is commanded itself if the acceleration is too large, the acceleration if the jerk is.
+/// What of a command leaps: what is commanded itself if the acceleration is too large, the
+/// acceleration if the jerk is.
 fn leap_of(
     sample: &Sample<'_>,
     motion: &Derivatives<1>,
@@ -175,7 +177,8 @@ fn leap_of(
     }
 }
 
-/// Whether the finding is about a last command that moves: standing still would have had to follow it.
+/// Whether the finding is about a last command that moves: standing still would have had to follow
+/// it.
 pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let every_cycle = evidence.commander.commands_every_cycle();
     let sample = evidence.sample(finding.since)?;
@@ -204,7 +207,8 @@ pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Opt
     }
 }
 
-/// The largest step of the commanded torques before a cycle, if it takes more than half of what is allowed.
+/// The largest step of the commanded torques before a cycle, if it takes more than half of what is
+/// allowed.
 pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
     let largest = readings
@@ -227,6 +231,6 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
     }
 }
 
-/// An offset that no robot minds, `[rad]` or `[m]`: how far off a first command may be is not published, but clients begin at
-/// measured positions, too.
+/// An offset that no robot minds, `[rad]` or `[m]`: how far off a first command may be is not
+/// published, but clients begin at measured positions, too.
 const AT_THE_START: f64 = 1e-3;

@@ -74,7 +74,8 @@ pub(super) fn collision(
         quantity: Quantity::ExternalLoad,
         origin: Origin::Estimated,
         value,
-        // What passed before the flag came was below the threshold, unless that changed with the acceleration.
+        // What passed before the flag came was below the threshold, unless that changed with the
+        // acceleration.
         bound: match passed {
             Some(passed) if since == last.message_id && passed < value.abs() => {
                 Bound::Between(passed, value.abs())
@@ -85,8 +86,8 @@ pub(super) fn collision(
     })
 }
 
-/// The contact that held when the motion ended: of what the finding is of, or else the strongest by its share of the
-/// joint's torque.
+/// The contact that held when the motion ended: of what the finding is of, or else the strongest by
+/// its share of the joint's torque.
 pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Cause> {
     let state = evidence.last()?;
     let named = of.and_then(|subject| {

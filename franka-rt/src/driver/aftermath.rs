@@ -6,8 +6,9 @@ use super::{Driver, Event, MotionStatistics, Phase};
 use crate::stats::{Arrival, CycleTimes};
 
 impl Driver {
-    /// Does for a state, once [`Self::on_state`] has taken it and the command has left (or none was due), what need not be
-    /// done before. `sent` has the times of the command, if one left, as far as they are known.
+    /// Does for a state, once [`Self::on_state`] has taken it and the command has left (or none was
+    /// due), what need not be done before. `sent` has the times of the command, if one left, as far
+    /// as they are known.
     pub fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
         self.record.late = arrival.late;
         if let Some(sent) = sent {

@@ -30,12 +30,14 @@ pub enum Event {
         /// Counts so far.
         statistics: MotionStatistics,
     },
-    /// The finishing command is out for the first time; it is repeated until the robot leaves the motion's modes.
+    /// The finishing command is out for the first time; it is repeated until the robot leaves the
+    /// motion's modes.
     Finishing {
         /// The motion.
         motion: MotionId,
     },
-    /// The motion's program could not go on. No command leaves any more; the robot has to be told to stop.
+    /// The motion's program could not go on. No command leaves any more; the robot has to be told
+    /// to stop.
     Failed {
         /// The motion.
         motion: MotionId,
@@ -90,7 +92,8 @@ impl Ended {
     }
 }
 
-/// How a motion ended, as the thread saw it. The robot's own word on it is its last reply to the `Move`.
+/// How a motion ended, as the thread saw it. The robot's own word on it is its last reply to the
+/// `Move`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The finishing command was sent and the robot left the motion's modes.
@@ -110,9 +113,10 @@ pub enum Ending {
 
 /// Events that wait for the thread to carry them out.
 ///
-/// A motion causes at most `Started`, a report per goal, `Failed` or `Finishing`, `Ended` and `LinkLost`, and needs orders from
-/// outside; the thread empties the queue every cycle unless the world outside has stopped listening altogether. A link
-/// that comes and goes meanwhile fills one slot and no more, so that there is room for the end of a motion.
+/// A motion causes at most `Started`, a report per goal, `Failed` or `Finishing`, `Ended` and
+/// `LinkLost`, and needs orders from outside; the thread empties the queue every cycle unless the
+/// world outside has stopped listening altogether. A link that comes and goes meanwhile fills one
+/// slot and no more, so that there is room for the end of a motion.
 #[derive(Debug, Default)]
 pub(super) struct EventQueue {
     slots: [Option<Event>; EventQueue::CAPACITY],
@@ -123,8 +127,8 @@ pub(super) struct EventQueue {
 impl EventQueue {
     const CAPACITY: usize = 16;
 
-    /// Appends. A full queue leaks the event: what it carries must not be freed on the thread, and no motion can
-    /// start without somebody outside who listens.
+    /// Appends. A full queue leaks the event: what it carries must not be freed on the thread, and
+    /// no motion can start without somebody outside who listens.
     pub(super) fn push(&mut self, event: Event) {
         let newest = (self.first + self.count + Self::CAPACITY - 1) % Self::CAPACITY;
         if let (Event::LinkLost { silence }, Some(Event::LinkLost { silence: told })) =

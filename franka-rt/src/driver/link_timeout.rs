@@ -7,12 +7,14 @@ use core::time::Duration;
 /// Source: the UDP receive timeout of libfranka, `network.h`.
 pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Silence of the robot after which the link counts as lost, between [`Self::MIN`] and [`Self::MAX`].
+/// Silence of the robot after which the link counts as lost, between [`Self::MIN`] and
+/// [`Self::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LinkTimeout(Duration);
 
 impl LinkTimeout {
-    /// 20 ms: a robot that misses as many commands in a row stops by itself, and before that it bridges the gap.
+    /// 20 ms: a robot that misses as many commands in a row stops by itself, and before that it
+    /// bridges the gap.
     pub const MIN: Duration = Duration::from_millis(20);
 
     /// [`LINK_TIMEOUT`]: the reference client waits no longer either.

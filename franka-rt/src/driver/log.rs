@@ -6,8 +6,9 @@ use franka_proto::{General, RobotCommand, RobotState, SuccessRate};
 
 /// One cycle of a motion: a state, and the command that left before it came.
 ///
-/// As in libfranka 0.21 (`logger.h`), so that each entry shows what a command did: the state carries the number `n + 1`
-/// if the command answered the state `n`. The first entry of a motion has a command of zeros.
+/// As in libfranka 0.21 (`logger.h`), so that each entry shows what a command did: the state
+/// carries the number `n + 1` if the command answered the state `n`. The first entry of a motion
+/// has a command of zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LogEntry {
@@ -70,8 +71,8 @@ impl ControlLog {
         older.iter().chain(newer)
     }
 
-    /// The success rate at the end, as libfranka 0.21 reports it: the last state always shows 0, so it is that of the
-    /// state before. `None` with fewer than two entries.
+    /// The success rate at the end, as libfranka 0.21 reports it: the last state always shows 0, so
+    /// it is that of the state before. `None` with fewer than two entries.
     pub fn success_rate(&self) -> Option<SuccessRate> {
         let mut newest = self.iter().rev();
         let (last, before) = (newest.next()?, newest.next()?);
@@ -82,8 +83,8 @@ impl ControlLog {
         ))
     }
 
-    /// The log as a table with one row per cycle, times in milliseconds, columns named and numbers printed as by
-    /// `franka::logToCSV` of libfranka 0.21. Empty for an empty log.
+    /// The log as a table with one row per cycle, times in milliseconds, columns named and numbers
+    /// printed as by `franka::logToCSV` of libfranka 0.21. Empty for an empty log.
     pub fn to_csv(&self) -> String {
         let mut text = String::new();
         if !self.is_empty() {
@@ -102,8 +103,8 @@ impl ControlLog {
         self.len = (self.len + 1).min(self.capacity());
     }
 
-    /// Notes the newest command, for the state that comes next. To be called after each state: the entry may still hold what
-    /// an older one left.
+    /// Notes the newest command, for the state that comes next. To be called after each state: the
+    /// entry may still hold what an older one left.
     pub(super) fn note_command(&mut self, command: &RobotCommand) {
         if let Some(entry) = self.entries.get_mut(self.next) {
             entry.command = *command;

@@ -10,17 +10,20 @@
 //!              the state leaves the motion's modes, or the link falls silent
 //! ```
 //!
-//! A motion with a ticket (see [`together`](crate::together)) begins its run by holding the arm, until all that have one of
-//! the same start are there, or one of them is not to come; in that case it finishes.
+//! A motion with a ticket (see [`together`](crate::together)) begins its run by holding the arm,
+//! until all that have one of the same start are there, or one of them is not to come; in that case
+//! it finishes.
 //!
-//! A program that fails, in place of finishing, leaves the motion `Silent`: no command, until the robot has left its modes.
-//! So does `Order::Silence`, when nobody is in charge of the program any more.
+//! A program that fails, in place of finishing, leaves the motion `Silent`: no command, until the
+//! robot has left its modes. So does `Order::Silence`, when nobody is in charge of the program any
+//! more.
 //!
-//! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are the command that
-//! `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. What can wait until the command has left is done in
-//! [`Driver::after_send`], once for each state, and [`Driver::note_cycle`]. No clock, socket, allocation or log: the thread,
-//! and the lockstep tests, supply time and carry the effects out. A program that has ended leaves inside an [`Event`],
-//! so that its memory is freed elsewhere.
+//! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are
+//! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. What can
+//! wait until the command has left is done in [`Driver::after_send`], once for each state, and
+//! [`Driver::note_cycle`]. No clock, socket, allocation or log: the thread, and the lockstep tests,
+//! supply time and carry the effects out. A program that has ended leaves inside an [`Event`], so
+//! that its memory is freed elsewhere.
 
 mod aftermath;
 mod event;
@@ -181,9 +184,10 @@ impl Driver {
 
     /// Takes a newly received state and returns the command that answers it, if one is due.
     ///
-    /// Bounded work: at most one step of the program. A state that is not newer than the newest so far is ignored,
-    /// as the robot numbers its cycles strictly upwards. A motion does not answer a state whose joint positions,
-    /// velocities or torques are not finite: the robot bridges the gap, or stops by itself if more of them follow.
+    /// Bounded work: at most one step of the program. A state that is not newer than the newest so
+    /// far is ignored, as the robot numbers its cycles strictly upwards. A motion does not answer a
+    /// state whose joint positions, velocities or torques are not finite: the robot bridges the
+    /// gap, or stops by itself if more of them follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let missing = match self.newest {
             Some(newest) if state.message_id <= newest => return None,
@@ -247,8 +251,9 @@ impl Driver {
         }
     }
 
-    /// Writes a command for the newest state of a motion under [`Program::Active`], to be sent at once. The last one says
-    /// so; it is then repeated with every state until the robot has left the motion's modes.
+    /// Writes a command for the newest state of a motion under [`Program::Active`], to be sent at
+    /// once. The last one says so; it is then repeated with every state until the robot has left
+    /// the motion's modes.
     ///
     /// # Errors
     /// [`WriteError`]; nothing is to be sent then, and the motion goes on.
@@ -274,7 +279,8 @@ impl Driver {
         Ok(sent)
     }
 
-    /// Tells that no state has come for `silence`. At the link timeout a motion ends with [`Ending::LinkLost`].
+    /// Tells that no state has come for `silence`. At the link timeout a motion ends with
+    /// [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
         if silence < self.link_timeout.get() || self.lost.is_some() {
             return;
@@ -340,7 +346,8 @@ impl Driver {
         }
     }
 
-    /// Ends a motion with the state that shows its end. There is nothing to answer then, so its log takes the state at once.
+    /// Ends a motion with the state that shows its end. There is nothing to answer then, so its log
+    /// takes the state at once.
     fn end_at(
         &mut self,
         state: &RobotState,
@@ -384,7 +391,8 @@ impl Driver {
     }
 }
 
-/// Whether what every program computes with is finite. Anything a program made of other numbers would go to the motors.
+/// Whether what every program computes with is finite. Anything a program made of other numbers
+/// would go to the motors.
 fn is_sound(state: &RobotState) -> bool {
     let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
     numbers.copied().all(f64::is_finite)

@@ -15,7 +15,8 @@ pub(super) enum Phase {
     Running(Motion),
     /// The finishing command is repeated until the robot leaves the motion's modes.
     Finishing(Motion),
-    /// The program has failed, or was left alone: nothing is sent until the robot leaves the motion's modes.
+    /// The program has failed, or was left alone: nothing is sent until the robot leaves the
+    /// motion's modes.
     Silent(Motion),
 }
 

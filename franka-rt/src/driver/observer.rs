@@ -10,9 +10,11 @@ use super::Record;
 
 type Function = dyn FnMut(&Record, &RobotState) + Send;
 
-/// Sees every cycle of a motion on the control thread, once its command has left: the record of the cycle and its state.
+/// Sees every cycle of a motion on the control thread, once its command has left: the record of the
+/// cycle and its state.
 ///
-/// It has some 300 us and must not lock, allocate, print or wait. If it panics it is not called again; the motion goes on.
+/// It has some 300 us and must not lock, allocate, print or wait. If it panics it is not called
+/// again; the motion goes on.
 pub struct Observer {
     function: Box<Function>,
     /// What it panicked with, kept to be freed elsewhere.

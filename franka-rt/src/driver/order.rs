@@ -14,7 +14,8 @@ pub struct MotionId(pub u64);
 /// An order into the thread. Orders cross in a bounded queue and are never lost or reordered.
 #[derive(Debug)]
 pub enum Order {
-    /// Watch for `modes`, then answer every state with `program`. Comes before the `Move` goes out on TCP.
+    /// Watch for `modes`, then answer every state with `program`. Comes before the `Move` goes out
+    /// on TCP.
     Arm {
         /// The motion that this begins.
         motion: MotionId,
@@ -24,8 +25,8 @@ pub enum Order {
         program: Program,
         /// Where its last cycles are noted; empty.
         log: ControlLog,
-        /// Of a motion that begins together with others. Until they are all there the driver holds the arm, by goals or a
-        /// control function; other programs do not wait.
+        /// Of a motion that begins together with others. Until they are all there the driver holds
+        /// the arm, by goals or a control function; other programs do not wait.
         ticket: Option<StartTicket>,
         /// Where the times of its cycles are counted; empty.
         times: Arc<MotionTimes>,
@@ -37,8 +38,8 @@ pub enum Order {
         /// The motion to forget.
         motion: MotionId,
     },
-    /// Answer no more states of the motion: nobody is in charge of its program any more. The robot stops by itself when
-    /// its commands stay away. An armed motion is disarmed.
+    /// Answer no more states of the motion: nobody is in charge of its program any more. The robot
+    /// stops by itself when its commands stay away. An armed motion is disarmed.
     Silence {
         /// The motion to leave alone.
         motion: MotionId,
@@ -76,7 +77,8 @@ impl Modes {
         self.controller == ControllerMode::ExternalController
     }
 
-    /// Whether `state` shows both modes. `robot_mode` is no part of it: it may still be on its way at the start.
+    /// Whether `state` shows both modes. `robot_mode` is no part of it: it may still be on its way
+    /// at the start.
     pub fn shown_by(&self, state: &RobotState) -> bool {
         state.motion_generator_mode == self.generator && state.controller_mode == self.controller
     }

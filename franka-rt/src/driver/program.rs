@@ -23,7 +23,8 @@ pub enum Program {
     Asynchronous(AsynchronousPositions),
 }
 
-/// Why a program could not go on. The motion then gets no more commands; it is for the world outside to stop the robot.
+/// Why a program could not go on. The motion then gets no more commands; it is for the world
+/// outside to stop the robot.
 #[derive(Debug)]
 pub enum Failure {
     /// Its command cannot be sent.
@@ -52,7 +53,8 @@ pub(super) enum Answer {
 }
 
 impl Program {
-    /// Whether what the motion was to begin with has been taken back or replaced. Asked only while the motion waits.
+    /// Whether what the motion was to begin with has been taken back or replaced. Asked only while
+    /// the motion waits.
     pub(super) fn is_withdrawn(&mut self) -> bool {
         match self {
             Self::Target(session) => session.is_withdrawn(),
@@ -60,7 +62,8 @@ impl Program {
         }
     }
 
-    /// Answers a state: holds the arm while the gate is closed, and finishes where it is if that never opens.
+    /// Answers a state: holds the arm while the gate is closed, and finishes where it is if that
+    /// never opens.
     pub(super) fn step(
         &mut self,
         gate: Gate,

@@ -41,10 +41,11 @@ pub struct Record {
     pub tau_c: [f64; 7],
     /// Which guards bound the command.
     pub bindings: Bindings,
-    /// From when the state was due to when the thread had it: see [`CycleTimes::late`](crate::stats::CycleTimes::late).
+    /// From when the state was due to when the thread had it: see
+    /// [`CycleTimes::late`](crate::stats::CycleTimes::late).
     pub late: Duration,
-    /// Time from the receipt of the state to the departure of its command; zero where none left, and under active control,
-    /// where the command leaves after the record is made.
+    /// Time from the receipt of the state to the departure of its command; zero where none left,
+    /// and under active control, where the command leaves after the record is made.
     pub turnaround: Duration,
     /// What was left until the next state was due when the command left; `None` where none left, as
     /// above.
@@ -60,7 +61,8 @@ pub enum Activity {
     Watching,
     /// A motion is armed; the robot does not show its modes yet.
     Armed,
-    /// The robot is ready for a motion that is to begin together with others; the arm is held until they all are.
+    /// The robot is ready for a motion that is to begin together with others; the arm is held until
+    /// they all are.
     Waiting,
     /// A motion runs.
     Running,

@@ -79,8 +79,8 @@ impl MotionStatistics {
         (self.commands > 0).then_some(self.worst)
     }
 
-    /// Counts one state of the running motion, with what is missing before it. The first and the final state of a motion
-    /// report a success rate of 0 whatever happened, so zeros do not count.
+    /// Counts one state of the running motion, with what is missing before it. The first and the
+    /// final state of a motion report a success rate of 0 whatever happened, so zeros do not count.
     pub(super) fn note_state(&mut self, state: &RobotState, lost: u64, skipped: u64) {
         if self.cycles == 0 {
             self.span.0 = state.message_id;

@@ -215,7 +215,8 @@ fn a_robot_on_ipv6_and_one_whose_address_is_mapped_are_known_and_answered() {
 #[test]
 fn a_flood_is_taken_in_portions() {
     let mut bench = Bench::new();
-    // As large as an unprivileged process may have it, and the datagrams small: more fit than one call takes.
+    // As large as an unprivileged process may have it, and the datagrams small: more fit than one
+    // call takes.
     bench
         .exchange
         .socket

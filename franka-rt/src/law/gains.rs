@@ -7,19 +7,20 @@ use crate::shaping::MAX_CUTOFF_FREQUENCY;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Law {
-    /// Springs along the base axes and at the joints, summed in joint space: see [`hybrid`](crate::law::hybrid).
+    /// Springs along the base axes and at the joints, summed in joint space: see
+    /// [`hybrid`](crate::law::hybrid).
     #[default]
     Hybrid,
-    /// Springs along the base axes, coupled by the inertia at the end effector; the joints' springs in its null space:
-    /// see [`operational`](crate::law::operational).
+    /// Springs along the base axes, coupled by the inertia at the end effector; the joints' springs
+    /// in its null space: see [`operational`](crate::law::operational).
     OperationalSpace,
 }
 
-/// Law and diagonal gains: a spring and damper at the end effector, along the axes of the base frame, and one at each
-/// joint.
+/// Law and diagonal gains: a spring and damper at the end effector, along the axes of the base
+/// frame, and one at each joint.
 ///
-/// A goal brings all of them. On the way from one goal's to the next every number cross-fades, also the choices, so that
-/// no change steps the torque.
+/// A goal brings all of them. On the way from one goal's to the next every number cross-fades, also
+/// the choices, so that no change steps the torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
     /// Which law they are of.
@@ -32,14 +33,16 @@ pub struct Gains {
     pub joint_stiffness: [f64; 7],
     /// Joint damping, `[N m s/rad]`.
     pub joint_damping: [f64; 7],
-    /// Weight of the reference velocity in the dampers, between 0 and 1. At 1 they oppose only the velocity error, so
-    /// the arm does not lag behind a moving reference by its damping; at 0 they oppose all motion.
+    /// Weight of the reference velocity in the dampers, between 0 and 1. At 1 they oppose only the
+    /// velocity error, so the arm does not lag behind a moving reference by its damping; at 0 they
+    /// oppose all motion.
     pub feedforward: f64,
-    /// Cutoff frequency of the first-order low-pass on that reference velocity, `[Hz]`; at 1000 it is off, as a filter of
-    /// libfranka is.
+    /// Cutoff frequency of the first-order low-pass on that reference velocity, `[Hz]`; at 1000 it
+    /// is off, as a filter of libfranka is.
     pub feedforward_cutoff: f64,
-    /// Whether the joints' springs and dampers act only in the null space of the end effector, where they move the elbow
-    /// but do not push at the hand. [`Law::OperationalSpace`] always does this.
+    /// Whether the joints' springs and dampers act only in the null space of the end effector,
+    /// where they move the elbow but do not push at the hand. [`Law::OperationalSpace`] always does
+    /// this.
     pub project_joint_gains: bool,
 }
 
@@ -75,8 +78,9 @@ impl Gains {
 
     /// The most of each number that [`check`](Self::check) accepts.
     ///
-    /// Stiffness at the end effector: the bounds of the robot's own impedance commands, 3000 N/m and 300 N m/rad. Joints
-    /// and damping: ten times the stiff preset. All of it on every axis at once has not been tried on hardware.
+    /// Stiffness at the end effector: the bounds of the robot's own impedance commands, 3000 N/m
+    /// and 300 N m/rad. Joints and damping: ten times the stiff preset. All of it on every axis at
+    /// once has not been tried on hardware.
     pub const MOST: Self = Self {
         law: Law::OperationalSpace,
         cartesian_stiffness: [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0],
@@ -91,7 +95,8 @@ impl Gains {
     /// How many numbers [`to_array`](Self::to_array) gives.
     pub(crate) const NUMBERS: usize = 30;
 
-    /// Compliant at the end effector: 750 N/m and 15 N m/rad, with light joint springs that keep the elbow.
+    /// Compliant at the end effector: 750 N/m and 15 N m/rad, with light joint springs that keep
+    /// the elbow.
     pub const fn cartesian() -> Self {
         Self {
             law: Law::Hybrid,
@@ -105,8 +110,8 @@ impl Gains {
         }
     }
 
-    /// As compliant, with the lighter damping of the DROID platform and without feedforward: for a policy that was
-    /// trained on its data.
+    /// As compliant, with the lighter damping of the DROID platform and without feedforward: for a
+    /// policy that was trained on its data.
     pub const fn droid() -> Self {
         Self {
             cartesian_damping: [37.0, 37.0, 37.0, 2.0, 2.0, 2.0],
@@ -129,8 +134,8 @@ impl Gains {
         }
     }
 
-    /// For hand guiding: springs at the end effector as by [`Self::cartesian`] on the axes that are not free, and a light
-    /// damping of the joints.
+    /// For hand guiding: springs at the end effector as by [`Self::cartesian`] on the axes that are
+    /// not free, and a light damping of the joints.
     pub fn guiding(free: Free) -> Self {
         let preset = Self::cartesian();
         let locked =
@@ -143,8 +148,9 @@ impl Gains {
         }
     }
 
-    /// The same gains with another stiffness at the end effector, base axes. Its damping scales with the square root, which
-    /// keeps the damping ratio; an axis without stiffness takes its damping ratio from [`Gains::cartesian`].
+    /// The same gains with another stiffness at the end effector, base axes. Its damping scales
+    /// with the square root, which keeps the damping ratio; an axis without stiffness takes its
+    /// damping ratio from [`Gains::cartesian`].
     #[must_use]
     pub fn with_cartesian_stiffness(self, stiffness: [f64; 6]) -> Self {
         let preset = Self::cartesian();
@@ -163,7 +169,8 @@ impl Gains {
         }
     }
 
-    /// Checks that every number is between that of [`LEAST`](Self::LEAST) and that of [`MOST`](Self::MOST).
+    /// Checks that every number is between that of [`LEAST`](Self::LEAST) and that of
+    /// [`MOST`](Self::MOST).
     ///
     /// # Errors
     /// [`GainError`] names the first one that is not.

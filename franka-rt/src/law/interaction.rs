@@ -7,7 +7,8 @@ use crate::law::operational;
 use crate::law::task_space::TaskSpace;
 use crate::law::tuning::Tuning;
 
-/// The springs of a law, or its dampers, in one cycle: at the posture in which the arm was measured.
+/// The springs of a law, or its dampers, in one cycle: at the posture in which the arm was
+/// measured.
 #[derive(Debug)]
 pub(crate) struct Interaction<'a> {
     /// At the end effector, base axes.
@@ -23,7 +24,8 @@ pub(crate) struct Interaction<'a> {
 impl<'a> Interaction<'a> {
     /// The springs: errors are positions, `[rad]`.
     ///
-    /// `space` has to be there if the tuning [needs](Tuning::needs_task_space) it; without it the law is the hybrid one.
+    /// `space` has to be there if the tuning [needs](Tuning::needs_task_space) it; without it the
+    /// law is the hybrid one.
     pub(crate) fn springs(
         tuning: &Tuning,
         jacobian: &'a Jacobian,
@@ -86,7 +88,8 @@ mod tests {
     use nalgebra::Matrix3;
     use proptest::prelude::*;
 
-    /// How far the arm is from its reference, `[rad]`, and how much slower than the dampers let pass, `[rad/s]`.
+    /// How far the arm is from its reference, `[rad]`, and how much slower than the dampers let
+    /// pass, `[rad/s]`.
     struct Errors {
         q: JointVector,
         dq: JointVector,
@@ -218,7 +221,8 @@ mod tests {
             prop_assert!(tau.amax() > 1e-3);
         }
 
-        /// Also where the arm is stretched out or folded, where inertias at the end effector have no bound.
+        /// Also where the arm is stretched out or folded, where inertias at the end effector have
+        /// no bound.
         #[test]
         fn is_bounded_at_every_pose(q in anywhere(), stretch in 0.0..1.0f64, error in joints(0.1)) {
             let mut q = q;
@@ -233,7 +237,8 @@ mod tests {
                 let springs = Interaction::springs(&tuning, &dynamics.jacobian, Some(&space));
                 let tau = springs.torques(&error);
                 prop_assert!(tau.iter().all(|tau| tau.is_finite()));
-                // Correlations are at most one: each axis adds at most the geometric mean of its gain and the other's.
+                // Correlations are at most one: each axis adds at most the geometric mean of its
+                // gain and the other's.
                 let wrench = springs.cartesian * pose;
                 prop_assert!(wrench.amax() <= 750.0 * pose.abs().sum() * 1.01);
                 // In the metric of the inertia a projection is no longer than what is projected.
@@ -244,8 +249,8 @@ mod tests {
             }
         }
 
-        /// Springs give back no more than they took, dampers only take: the matrices at the end effector are symmetric
-        /// and not negative.
+        /// Springs give back no more than they took, dampers only take: the matrices at the end
+        /// effector are symmetric and not negative.
         #[test]
         fn the_dampers_at_the_end_effector_only_take_energy(q in anywhere(), dq in joints(1.0)) {
             let dynamics = dynamics_at(&q, &dq);
@@ -270,7 +275,8 @@ mod tests {
         }
     }
 
-    /// The middle of a fade between two laws is the mean of their torques, so the way from one to the other is even.
+    /// The middle of a fade between two laws is the mean of their torques, so the way from one to
+    /// the other is even.
     #[test]
     fn a_change_of_law_goes_evenly_from_torque_to_torque() {
         let dynamics = dynamics_at(&READY, &JointVector::zeros());

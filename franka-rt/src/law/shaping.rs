@@ -5,10 +5,12 @@ use franka_model::limits::CLIENT_MARGIN;
 
 use crate::shaping::{CYCLE, DEFAULT_CUTOFF_FREQUENCY, filter, limiter};
 
-/// Bound of the spring and damper torques per joint, `[N m]`: just inside the 87 and 12 N m that the joints can give.
+/// Bound of the spring and damper torques per joint, `[N m]`: just inside the 87 and 12 N m that
+/// the joints can give.
 pub const TORQUE_CLAMP: [f64; 7] = [86.0, 86.0, 86.0, 86.0, 11.5, 11.5, 11.5];
 
-/// Share of the new value in the low-pass filter, which has the cutoff frequency of libfranka's control loops.
+/// Share of the new value in the low-pass filter, which has the cutoff frequency of libfranka's
+/// control loops.
 const FILTER_GAIN: f64 = filter::gain(CYCLE, DEFAULT_CUTOFF_FREQUENCY);
 
 /// Bounds each torque by `most`, `[N m]`, and tells whether that changed any.
@@ -22,10 +24,11 @@ pub fn low_pass(tau: &JointVector, last: &JointVector) -> JointVector {
     tau.zip_map(last, |tau, last| filter::mix(FILTER_GAIN, tau, last))
 }
 
-/// Keeps the change from the torques that the robot last took inside its rate limit, and tells whether that bound.
+/// Keeps the change from the torques that the robot last took inside its rate limit, and tells
+/// whether that bound.
 ///
-/// The usual margin is kept from `rate`, the robot's limit `[N m/s]`, and what an echo rounded to `f32` may hide of the
-/// last torques.
+/// The usual margin is kept from `rate`, the robot's limit `[N m/s]`, and what an echo rounded to
+/// `f32` may hide of the last torques.
 pub fn limit_rate(
     tau: &JointVector,
     last: &JointVector,

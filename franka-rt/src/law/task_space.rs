@@ -1,23 +1,25 @@
 //! The inertia at the end effector, factorised once a cycle for all that need it.
 //!
-//! With the joint-space inertia `M` and the Jacobian `J`, `W = J M^-1 J'` is the mobility of the end effector and
-//! `Lambda = W^-1` its inertia (Khatib, IEEE Journal on Robotics and Automation 3(1), 1987). The torques `tau` press with
-//! the wrench `Lambda J M^-1 tau` on whoever holds the end effector still.
+//! With the joint-space inertia `M` and the Jacobian `J`, `W = J M^-1 J'` is the mobility of the
+//! end effector and `Lambda = W^-1` its inertia (Khatib, IEEE Journal on Robotics and Automation
+//! 3(1), 1987). The torques `tau` press with the wrench `Lambda J M^-1 tau` on whoever holds the
+//! end effector still.
 //!
-//! `W` is taken as it is where the arm can move in all directions. Near a singularity it is damped: as the inertia along
-//! any axis goes beyond that in [`GREATEST_INERTIA`], damping grows from zero, smoothly, to one over it. So nothing
-//! jumps and nothing divides by zero, and no inertia along an axis exceeds four thirds of the greatest.
+//! `W` is taken as it is where the arm can move in all directions. Near a singularity it is damped:
+//! as the inertia along any axis goes beyond that in [`GREATEST_INERTIA`], damping grows from zero,
+//! smoothly, to one over it. So nothing jumps and nothing divides by zero, and no inertia along an
+//! axis exceeds four thirds of the greatest.
 
 use franka_model::{Dynamics, Jacobian, JointVector, MassMatrix, Wrench};
 use nalgebra::{Cholesky, Const, Matrix3, SMatrix};
 
-/// Inertia, x y z `[kg]` and about x y z `[kg m^2]`, from which on a direction counts as lost. At the ready pose the
-/// arm has 11 kg and 0.5 kg m^2 with all other directions held.
+/// Inertia, x y z `[kg]` and about x y z `[kg m^2]`, from which on a direction counts as lost. At
+/// the ready pose the arm has 11 kg and 0.5 kg m^2 with all other directions held.
 const GREATEST_INERTIA: [f64; 6] = [100.0, 100.0, 100.0, 5.0, 5.0, 5.0];
 
-/// Inertia of the rotors, felt at the joints, `[kg m^2]`, which is not in the robot's model. About the mean of what
-/// `mujoco_menagerie` has for both arms: 0.195 (joints 1 to 4) and 0.074 (5 to 7) of `franka_fr3`, 0.1 of
-/// `franka_emika_panda`. Not measured on a robot.
+/// Inertia of the rotors, felt at the joints, `[kg m^2]`, which is not in the robot's model. About
+/// the mean of what `mujoco_menagerie` has for both arms: 0.195 (joints 1 to 4) and 0.074 (5 to 7)
+/// of `franka_fr3`, 0.1 of `franka_emika_panda`. Not measured on a robot.
 pub(crate) const ROTORS: [f64; 7] = [0.15, 0.15, 0.15, 0.15, 0.09, 0.09, 0.09];
 
 /// Inertia at the end effector, in base axes.
@@ -39,7 +41,8 @@ impl TaskSpace {
         Self::new(&dynamics.jacobian, &(dynamics.mass + rotors))
     }
 
-    /// A `mass` that is no physical arm's, as of a load that cannot be, counts as the identity: the geometry remains.
+    /// A `mass` that is no physical arm's, as of a load that cannot be, counts as the identity: the
+    /// geometry remains.
     fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Self {
         let mass = Cholesky::new(*mass)
             .unwrap_or_else(|| Cholesky::pack_dirty(SMatrix::<f64, 7, 7>::identity()));
@@ -60,7 +63,8 @@ impl TaskSpace {
         }
     }
 
-    /// The wrench with which `tau` presses on whoever holds the end effector still, `Lambda J M^-1 tau`.
+    /// The wrench with which `tau` presses on whoever holds the end effector still,
+    /// `Lambda J M^-1 tau`.
     pub(crate) fn reaction(&self, tau: &JointVector) -> Wrench {
         let mut half = *tau;
         self.mass
@@ -69,10 +73,12 @@ impl TaskSpace {
         self.inertia.solve(&self.root.tr_mul(&half))
     }
 
-    /// How the joints move of themselves when the end effector is moved and its rotation left free, `M^-1 J' Lambda` of the
-    /// position alone, `[rad/m]`: of all motions that do it the one of the least kinetic energy.
+    /// How the joints move of themselves when the end effector is moved and its rotation left free,
+    /// `M^-1 J' Lambda` of the position alone, `[rad/m]`: of all motions that do it the one of the
+    /// least kinetic energy.
     ///
-    /// Its transpose gives the force, `[N]`, with which torques press on whoever holds the end effector at a point.
+    /// Its transpose gives the force, `[N]`, with which torques press on whoever holds the end
+    /// effector at a point.
     pub(crate) fn yielding(&self) -> SMatrix<f64, 7, 3> {
         let mut yielding = self.root.fixed_columns::<3>(0) * self.blocks[0];
         self.mass
@@ -98,8 +104,9 @@ fn damped<const N: usize>(
     greatest: &[f64; N],
 ) -> Cholesky<f64, Const<N>> {
     let factor = Cholesky::new(*mobility);
-    // The greatest against the inertia along each axis, all others held: above zero where the mobility is not singular. A
-    // pivot of the factorisation holds only the axes before it, and does not see what is lost along several at once.
+    // The greatest against the inertia along each axis, all others held: above zero where the
+    // mobility is not singular. A pivot of the factorisation holds only the axes before it, and
+    // does not see what is lost along several at once.
     let room = factor.as_ref().map_or(0.0, |factor| {
         let mut root = SMatrix::<f64, N, N>::identity();
         factor
@@ -142,7 +149,8 @@ mod tests {
         assert!((reaction - wrench).amax() < 1e-10, "{reaction}");
     }
 
-    /// The wrench of the constraint that keeps the end effector from accelerating, from the equations of motion in full.
+    /// The wrench of the constraint that keeps the end effector from accelerating, from the
+    /// equations of motion in full.
     #[test]
     fn the_reaction_holds_the_end_effector_still() {
         let (space, jacobian, mass) = space_at(&READY);
@@ -183,7 +191,8 @@ mod tests {
         assert!(greatest < 1e3, "{greatest}");
     }
 
-    /// On a way between two postures of the joints, where no pivot of the factorisation tells that a direction is lost.
+    /// On a way between two postures of the joints, where no pivot of the factorisation tells that
+    /// a direction is lost.
     #[test]
     fn a_direction_that_is_lost_along_several_axes_is_damped() {
         let q = JointVector::from(OBLIQUE);

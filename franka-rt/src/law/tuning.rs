@@ -6,7 +6,8 @@ use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY, filter};
 /// Cycles over which everything goes from one goal's to the next.
 const CROSS_FADE: u32 = 300;
 
-/// Gains and force cap in numbers: a choice is a weight between 0 and 1, so that all of it may stand between two goals.
+/// Gains and force cap in numbers: a choice is a weight between 0 and 1, so that all of it may
+/// stand between two goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tuning {
     pub(crate) cartesian_stiffness: [f64; 6],

@@ -94,7 +94,8 @@ pub(super) struct Goals {
 /// A session that goes on from goal to goal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Engaged {
-    /// Names whoever awaits its end. Between goals it is the name of the goal that the arm holds, too.
+    /// Names whoever awaits its end. Between goals it is the name of the goal that the arm holds,
+    /// too.
     pub(super) id: GoalId,
     /// Whether its end is what was asked for.
     pub(super) disengaged: bool,
@@ -176,7 +177,8 @@ impl Active {
             Some(refusal) if ended.ending == Ending::Disarmed && is_rejection(status) => {
                 return Err(MotionError::Rejected(refusal));
             }
-            // So ends a program's motion on a stop that was asked for, even with its finishing command on its way,
+            // So ends a program's motion on a stop that was asked for, even with its finishing
+            // command on its way,
             Some(_) if status == MoveStatus::Preempted && self.work.stopped() => {
                 return Err(MotionError::Stopped);
             }
@@ -216,14 +218,16 @@ impl Active {
             }
     }
 
-    /// Until when a motion under way may go on: without end, unless its last command is out or a stop was asked for.
+    /// Until when a motion under way may go on: without end, unless its last command is out or a
+    /// stop was asked for.
     pub(super) fn running_deadline(&self) -> Option<Duration> {
         let since = self.finishing.or(self.work.stopped_since());
         since.map(|since| since + END_TIMEOUT)
     }
 
-    /// Has the thread end the motion by what is in its hands, and returns the order that this takes: nobody waits for it
-    /// any more. Goals come to rest; a program is left alone, and the robot stops for want of commands.
+    /// Has the thread end the motion by what is in its hands, and returns the order that this
+    /// takes: nobody waits for it any more. Goals come to rest; a program is left alone, and the
+    /// robot stops for want of commands.
     pub(super) fn abandon(&mut self) -> Option<Order> {
         let motion = self.motion;
         match (&mut self.work, &self.thread) {
@@ -273,8 +277,8 @@ impl Goals {
         self.current.goal.then != Then::Finish
     }
 
-    /// Takes note that a goal of the session `engaged` has come to its end, and is held from now on. Returns how it turned
-    /// out, unless somebody has been told of its end before.
+    /// Takes note that a goal of the session `engaged` has come to its end, and is held from now
+    /// on. Returns how it turned out, unless somebody has been told of its end before.
     pub(super) fn reach(
         &mut self,
         engaged: GoalId,
@@ -432,7 +436,8 @@ impl Settled {
     }
 }
 
-/// Whether the robot did not let the motion begin, rather than ended it before the thread saw it run.
+/// Whether the robot did not let the motion begin, rather than ended it before the thread saw it
+/// run.
 fn is_rejection(status: MoveStatus) -> bool {
     matches!(
         status,

@@ -35,13 +35,14 @@ pub struct Tuning {
     pub gains: Option<Gains>,
     /// How fast.
     pub budget: Option<Budget>,
-    /// With how much force springs and dampers may press, `[N]`: see [`Goal::force_cap`]. `Some(None)` takes the cap away. It
-    /// fades as the gains do.
+    /// With how much force springs and dampers may press, `[N]`: see [`Goal::force_cap`].
+    /// `Some(None)` takes the cap away. It fades as the gains do.
     pub force_cap: Option<Option<f64>>,
 }
 
 impl Tuning {
-    /// The goal with these changes. One that guides keeps its gains: the axes that are free are free of springs.
+    /// The goal with these changes. One that guides keeps its gains: the axes that are free are
+    /// free of springs.
     #[must_use]
     pub fn apply(&self, goal: Goal) -> Goal {
         Goal {
@@ -57,14 +58,15 @@ impl Tuning {
 }
 
 impl Lifecycle {
-    /// Starts a session that holds the arm where it is and then goes from goal to goal, with the gains and the budget of
-    /// `goal`, whose `id` becomes the name of the session. It resolves when the session has ended. While a motion comes to
-    /// its end that nobody wants any more, the session waits for that.
+    /// Starts a session that holds the arm where it is and then goes from goal to goal, with the
+    /// gains and the budget of `goal`, whose `id` becomes the name of the session. It resolves when
+    /// the session has ended. While a motion comes to its end that nobody wants any more, the
+    /// session waits for that.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for gains, a budget, regions or a posture that are not accepted, [`MotionError::Busy`] while
-    /// anything controls the arm or waits for it, [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is
-    /// resolved then.
+    /// [`MotionError::Goal`] for gains, a budget, regions or a posture that are not accepted,
+    /// [`MotionError::Busy`] while anything controls the arm or waits for it,
+    /// [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved then.
     pub fn engage(
         &mut self,
         goal: Goal,
@@ -106,8 +108,9 @@ impl Lifecycle {
     /// Takes a goal for the session `engaged`. It supersedes the goal before it.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for a goal that is not accepted; what ended the session, if that was not its owner's wish, and
-    /// [`MotionError::Disengaged`] otherwise. Nothing is resolved in any of these cases, and a goal under way goes on.
+    /// [`MotionError::Goal`] for a goal that is not accepted; what ended the session, if that was
+    /// not its owner's wish, and [`MotionError::Disengaged`] otherwise. Nothing is resolved in any
+    /// of these cases, and a goal under way goes on.
     pub fn submit_within(
         &mut self,
         engaged: GoalId,
@@ -131,13 +134,13 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Hands a chunk to the session `engaged`. It takes the place of the chunk before it, as it says itself; any other goal is
-    /// superseded by `goal`, which names the chunks until another goal comes, and says how fast and how stiff. The arm rests
-    /// at the last point.
+    /// Hands a chunk to the session `engaged`. It takes the place of the chunk before it, as it
+    /// says itself; any other goal is superseded by `goal`, which names the chunks until another
+    /// goal comes, and says how fast and how stiff. The arm rests at the last point.
     ///
     /// # Errors
-    /// As [`Self::submit_within`]; [`GoalError::Late`] for a chunk whose points have all passed, [`GoalError::Chunks`] if too
-    /// many are under way.
+    /// As [`Self::submit_within`]; [`GoalError::Late`] for a chunk whose points have all passed,
+    /// [`GoalError::Chunks`] if too many are under way.
     pub fn chunk(
         &mut self,
         engaged: GoalId,
@@ -219,16 +222,18 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Ends the session `engaged` as asked: brakes, lets the arm go, ends the motion. Its goal resolves as
-    /// [`MotionError::Stopped`], the session itself well. Without effect on one that is ending or has ended.
+    /// Ends the session `engaged` as asked: brakes, lets the arm go, ends the motion. Its goal
+    /// resolves as [`MotionError::Stopped`], the session itself well. Without effect on one that is
+    /// ending or has ended.
     pub fn disengage(&mut self, engaged: GoalId, now: Duration) {
         if self.check_engaged(engaged).is_ok() {
             self.release(engaged, now);
         }
     }
 
-    /// What follows the end of a goal: more goals, if it is one of a session that goes from goal to goal. A session that is to
-    /// end ends, also if the goal that ends it is taken back: its owner may have been told that it takes no more goals.
+    /// What follows the end of a goal: more goals, if it is one of a session that goes from goal to
+    /// goal. A session that is to end ends, also if the goal that ends it is taken back: its owner
+    /// may have been told that it takes no more goals.
     pub(super) fn end_of(&mut self, id: GoalId) -> Then {
         let goes_on = match &self.next {
             Some(next) if next.waiting.goal.id == id => next.engagement.is_some(),

@@ -17,13 +17,14 @@ use crate::slot;
 use crate::together::StartTicket;
 
 impl Lifecycle {
-    /// Takes a goal, for a robot in `state`, and starts towards it or hands it to the running motion. It supersedes every
-    /// goal before it. Its `id` has to be one that was never used before.
+    /// Takes a goal, for a robot in `state`, and starts towards it or hands it to the running
+    /// motion. It supersedes every goal before it. Its `id` has to be one that was never used
+    /// before.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for a goal that is not accepted, which leaves everything as it was; [`MotionError::Busy`]
-    /// while a program of the user's, or a session that goes from goal to goal, controls the arm;
-    /// [`MotionError::ConnectionClosed`] after the connection was lost.
+    /// [`MotionError::Goal`] for a goal that is not accepted, which leaves everything as it was;
+    /// [`MotionError::Busy`] while a program of the user's, or a session that goes from goal to
+    /// goal, controls the arm; [`MotionError::ConnectionClosed`] after the connection was lost.
     /// Nothing is resolved in any of these cases.
     pub fn submit(
         &mut self,
@@ -50,12 +51,14 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Takes a goal that begins together with the motions of other robots: once all are there; until then the arm is held.
-    /// It supersedes nothing. One that comes later supersedes it as usual, and takes it out of the common start.
+    /// Takes a goal that begins together with the motions of other robots: once all are there;
+    /// until then the arm is held. It supersedes nothing. One that comes later supersedes it as
+    /// usual, and takes it out of the common start.
     ///
     /// # Errors
-    /// As [`Self::submit`]; [`MotionError::Busy`] while anything controls the arm; [`MotionError::Start`] if the others are
-    /// not to come. The ticket is dropped in any of these cases.
+    /// As [`Self::submit`]; [`MotionError::Busy`] while anything controls the arm;
+    /// [`MotionError::Start`] if the others are not to come. The ticket is dropped in any of these
+    /// cases.
     pub fn submit_together(
         &mut self,
         goal: Goal,
@@ -70,8 +73,9 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the goal is still the
-    /// one being followed: one that was taken back is not, whatever was still on its way for it.
+    /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the
+    /// goal is still the one being followed: one that was taken back is not, whatever was still on
+    /// its way for it.
     ///
     /// # Errors
     /// [`GoalError`] for a target that is not accepted; the previous one stays.
@@ -84,8 +88,8 @@ impl Lifecycle {
         self.amend(id, |goal| Goal { target, ..*goal }, Some(state))
     }
 
-    /// Lets a goal that is held come to its end: the motion settles at the newest target and finishes, unless its session
-    /// goes on from goal to goal.
+    /// Lets a goal that is held come to its end: the motion settles at the newest target and
+    /// finishes, unless its session goes on from goal to goal.
     pub fn close(&mut self, id: GoalId) {
         let then = self.end_of(id);
         let end = |goal: &Goal| Goal {
@@ -101,8 +105,8 @@ impl Lifecycle {
     }
 
     /// Takes back a goal: an arm on its way to it is braked as by a stop, and the goal resolves as
-    /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest. A program is taken back in the
-    /// same way, by having the robot stop.
+    /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest. A program
+    /// is taken back in the same way, by having the robot stop.
     pub fn cancel(&mut self, id: GoalId, now: Duration) {
         if let Some(next) = self.next.take_if(|next| next.waiting.goal.id == id) {
             return self.resolve(next.waiting.goal.id, Err(MotionError::Stopped));
@@ -120,8 +124,9 @@ impl Lifecycle {
         }
     }
 
-    /// Brakes whatever moves, as a goal of its own named `id`, which resolves once the arm rests and the motion has ended.
-    /// The goals before it resolve as [`MotionError::Stopped`]. Returns false, and does nothing, if there is no motion.
+    /// Brakes whatever moves, as a goal of its own named `id`, which resolves once the arm rests
+    /// and the motion has ended. The goals before it resolve as [`MotionError::Stopped`]. Returns
+    /// false, and does nothing, if there is no motion.
     pub fn stop(&mut self, id: GoalId, now: Duration) -> bool {
         if self.stop_program(id, now) {
             // A session that waits for the program's end.
@@ -182,8 +187,9 @@ impl Lifecycle {
         }
     }
 
-    /// Takes up what waited for the motion before it, which has ended with `before`. If rest is all that it asks
-    /// for, the end of that motion has brought it, and no motion is started to brake nothing.
+    /// Takes up what waited for the motion before it, which has ended with `before`. If rest is all
+    /// that it asks for, the end of that motion has brought it, and no motion is started to brake
+    /// nothing.
     pub(super) fn follow(
         &mut self,
         Next {
@@ -221,7 +227,8 @@ impl Lifecycle {
         }
     }
 
-    /// Puts a goal in the place of all others, which resolve with `reason`. No program may be running.
+    /// Puts a goal in the place of all others, which resolve with `reason`. No program may be
+    /// running.
     pub(super) fn replace(&mut self, waiting: Waiting, reason: MotionError, now: Duration) {
         if let Some(next) = self.next.take() {
             self.resolve(next.waiting.goal.id, Err(reason.clone()));
@@ -253,7 +260,8 @@ impl Lifecycle {
         }
     }
 
-    /// Has a goal wait until the motion under way has ended. One that waited before it resolves with `reason`.
+    /// Has a goal wait until the motion under way has ended. One that waited before it resolves
+    /// with `reason`.
     pub(super) fn wait(
         &mut self,
         waiting: Waiting,
@@ -304,7 +312,8 @@ impl Lifecycle {
         Ok(true)
     }
 
-    /// Starts a motion towards a goal; of a session that goes on from goal to goal if `engagement` tells of one.
+    /// Starts a motion towards a goal; of a session that goes on from goal to goal if `engagement`
+    /// tells of one.
     pub(super) fn start_goal(
         &mut self,
         waiting: Waiting,

@@ -1,4 +1,5 @@
-//! One motion from its goal to the robot's last word on it, across the command connection and the thread.
+//! One motion from its goal to the robot's last word on it, across the command connection and the
+//! thread.
 //!
 //! ```text
 //!            submit                     both sides have ended
@@ -7,14 +8,15 @@
 //!                         |  thread side:  Armed -> Running -> Ended(how)
 //! ```
 //!
-//! The thread is told to arm before the `Move` goes out, so the first state of the motion finds it ready. The two sides
-//! then report in any order; the motion is over when both have. Goals come and go meanwhile: a newer one supersedes the
-//! older within the same motion, one that came too late for it gets a motion of its own. A program of the user's has the
-//! motion for itself.
+//! The thread is told to arm before the `Move` goes out, so the first state of the motion finds it
+//! ready. The two sides then report in any order; the motion is over when both have. Goals come and
+//! go meanwhile: a newer one supersedes the older within the same motion, one that came too late
+//! for it gets a motion of its own. A program of the user's has the motion for itself.
 //!
-//! Inputs are `submit`, `update`, `close`, `control`, `cancel`, `stop` (from users), the `on_*` methods (from the command
-//! connection, the thread and the clock); effects come out of [`Lifecycle::poll`]. No clock, socket or task in here:
-//! `now` is an argument, counted from any fixed moment.
+//! Inputs are `submit`, `update`, `close`, `control`, `cancel`, `stop` (from users), the `on_*`
+//! methods (from the command connection, the thread and the clock); effects come out of
+//! [`Lifecycle::poll`]. No clock, socket or task in here: `now` is an argument, counted from any
+//! fixed moment.
 
 mod active;
 mod engagement;
@@ -51,8 +53,8 @@ pub const END_TIMEOUT: Duration = Duration::from_secs(2);
 pub enum Output {
     /// Hand this to the thread.
     Order(Order),
-    /// Send this on the command connection. Replies to `Move` come back through [`Lifecycle::on_move_reply`] with this
-    /// motion; replies to other requests are not awaited.
+    /// Send this on the command connection. Replies to `Move` come back through
+    /// [`Lifecycle::on_move_reply`] with this motion; replies to other requests are not awaited.
     Send {
         /// The motion that it is about.
         motion: MotionId,
@@ -115,7 +117,8 @@ impl Lifecycle {
         }
     }
 
-    /// Replaces the number of cycles that the log of a motion holds, [`ControlLog::DEFAULT_CAPACITY`] by default.
+    /// Replaces the number of cycles that the log of a motion holds,
+    /// [`ControlLog::DEFAULT_CAPACITY`] by default.
     #[must_use]
     pub fn with_log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
@@ -158,8 +161,8 @@ impl Lifecycle {
         self.conclude(now);
     }
 
-    /// Takes note that a reply to the `Move` of `motion` could not be read: nobody knows what the robot is doing, so the arm
-    /// is braked, the robot told to stop, and the goal resolves.
+    /// Takes note that a reply to the `Move` of `motion` could not be read: nobody knows what the
+    /// robot is doing, so the arm is braked, the robot told to stop, and the goal resolves.
     pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
         if self.active(motion).is_some() {
             self.finish(now, Some(MotionError::Violation(violation)));
@@ -205,13 +208,15 @@ impl Lifecycle {
                 active.deadline = Some(now + END_TIMEOUT);
                 self.conclude(now);
             }
-            // A motion that the silence ended has been told by its own event; one that nobody observes goes on.
+            // A motion that the silence ended has been told by its own event; one that nobody
+            // observes goes on.
             Event::LinkLost { .. } | Event::Unobserved { .. } => {}
         }
     }
 
-    /// The command connection is gone: every goal resolves, an arm that moves is braked (by the robot itself, if a program of
-    /// the user's moves it: it gets no more commands), nothing starts any more.
+    /// The command connection is gone: every goal resolves, an arm that moves is braked (by the
+    /// robot itself, if a program of the user's moves it: it gets no more commands), nothing starts
+    /// any more.
     pub fn on_connection_closed(&mut self, reason: &str) {
         let phase = core::mem::replace(&mut self.phase, Phase::Closed(reason.to_owned()));
         let error = MotionError::ConnectionClosed {
@@ -305,7 +310,8 @@ impl Lifecycle {
         self.outputs.push_back(Output::Order(order));
     }
 
-    /// Tells everybody who awaits a motion how it turned out; those who asked for its stop, whether it rests.
+    /// Tells everybody who awaits a motion how it turned out; those who asked for its stop, whether
+    /// it rests.
     fn resolve_work(
         &mut self,
         work: Work,
@@ -330,7 +336,8 @@ impl Lifecycle {
         }
     }
 
-    /// Tells everybody who awaits the session of a motion how it turned out, and goals that came too late for it.
+    /// Tells everybody who awaits the session of a motion how it turned out, and goals that came
+    /// too late for it.
     fn resolve_session(
         &mut self,
         late: Vec<GoalId>,
@@ -406,9 +413,10 @@ impl Lifecycle {
         }
     }
 
-    /// Ends the motion, with `error` for its goal (or the failure of its program, from which everything else followed), or
-    /// else by what the two sides have said. A robot that has not said that the motion is over is told to stop it, and a thread
-    /// that goes on is told to brake or to fall silent.
+    /// Ends the motion, with `error` for its goal (or the failure of its program, from which
+    /// everything else followed), or else by what the two sides have said. A robot that has not
+    /// said that the motion is over is told to stop it, and a thread that goes on is told to brake
+    /// or to fall silent.
     fn finish(&mut self, now: Duration, error: Option<MotionError>) {
         let Phase::Active(mut active) = core::mem::replace(&mut self.phase, Phase::Idle) else {
             return;
@@ -430,7 +438,8 @@ impl Lifecycle {
                 if let Work::Goals(goals) = &active.work
                     && goals.came_too_late(active.command, ended)
                 {
-                    // The session had let go before it saw this goal: the goal gets a motion of its own.
+                    // The session had let go before it saw this goal: the goal gets a motion of its
+                    // own.
                     let (current, counted) = (goals.current, Counted::of(ended));
                     let well = Ok(MotionReport::new(&counted, 0, None));
                     let end = goals.end_of_engagement(&well);

@@ -16,14 +16,15 @@ use crate::together::StartFault;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionReport {
-    /// From the first state that the goal answered to the arrival, in the robot's time; of a control function, to the
-    /// end of the motion.
+    /// From the first state that the goal answered to the arrival, in the robot's time; of a
+    /// control function, to the end of the motion.
     pub duration: Duration,
     /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,
     /// States that never arrived while the motion ran.
     pub lost_states: u64,
-    /// States that arrived meanwhile but were skipped, because a newer one had come before they were looked at.
+    /// States that arrived meanwhile but were skipped, because a newer one had come before they
+    /// were looked at.
     pub skipped_states: u64,
     /// Lowest success rate that the robot reported while the motion ran, in `[0, 1]`.
     pub success_rate_min: f64,
@@ -31,8 +32,8 @@ pub struct MotionReport {
     pub success_rate_avg: f64,
     /// Longest time from the receipt of a state to the departure of its command.
     pub worst_turnaround: Duration,
-    /// The least time that was left until the next state was due when a command departed. `None`, as below, if no command
-    /// left.
+    /// The least time that was left until the next state was due when a command departed. `None`,
+    /// as below, if no command left.
     pub slack_min: Option<Slack>,
     /// Commands that left only after the next state was due.
     pub overruns: u64,
@@ -93,11 +94,13 @@ pub enum MotionError {
     /// Caller: a stop was asked for; the arm was braked and rests.
     #[error("stopped on request")]
     Stopped,
-    /// Caller: the goal was given up, and the arm holds: at the last target, or where it came to rest.
+    /// Caller: the goal was given up, and the arm holds: at the last target, or where it came to
+    /// rest.
     #[error("held: {0}")]
     Held(Lapse),
-    /// The goal was given up and the arm braked, for this reason. It holds where it came to rest. Caller: its targets stopped
-    /// coming, or lead too near to the arm itself or to a region to keep out of; or somebody carried the arm off.
+    /// The goal was given up and the arm braked, for this reason. It holds where it came to rest.
+    /// Caller: its targets stopped coming, or lead too near to the arm itself or to a region to
+    /// keep out of; or somebody carried the arm off.
     #[error("braked: {0}")]
     Braked(Lapse),
     /// Caller: the session that the goal is for has ended, or is about to. Nothing was sent.
@@ -108,7 +111,8 @@ pub enum MotionError {
         "libfranka robot: Cannot perform this operation while another control or read operation is running."
     )]
     Busy,
-    /// Caller: it was to begin together with others, and they did not all come. The arm was held, or never moved.
+    /// Caller: it was to begin together with others, and they did not all come. The arm was held,
+    /// or never moved.
     #[error(transparent)]
     Start(#[from] StartFault),
     /// Caller: the protocol version has no such motion. Nothing was sent.
@@ -126,11 +130,12 @@ pub enum MotionError {
     /// Robot: it refused to start the motion.
     #[error("{0}")]
     Rejected(Refusal),
-    /// Robot: it ended the motion: a reflex, a user stop, another client's stop, a safety function. Clear the cause;
-    /// after a reflex, recover.
+    /// Robot: it ended the motion: a reflex, a user stop, another client's stop, a safety function.
+    /// Clear the cause; after a reflex, recover.
     #[error(transparent)]
     Control(#[from] Box<ControlError>),
-    /// Robot or surroundings: the reference reached the target and the arm did not follow. It rests where it is.
+    /// Robot or surroundings: the reference reached the target and the arm did not follow. It rests
+    /// where it is.
     #[error(
         "the arm came to rest {:.1} mm and {:.1} mrad from the target: something holds it, or its load differs from \
          the one declared",
@@ -163,8 +168,9 @@ pub enum MotionError {
 impl MotionError {
     /// Whether the robot accepts a new motion afterwards without anybody's doing.
     ///
-    /// After a reflex the robot has to be recovered first; after a lost link or connection, reconnected to. A control
-    /// function that fails may have left it without commands for long enough to stop itself, too.
+    /// After a reflex the robot has to be recovered first; after a lost link or connection,
+    /// reconnected to. A control function that fails may have left it without commands for long
+    /// enough to stop itself, too.
     pub fn is_ready_for_more(&self) -> bool {
         matches!(
             self,
@@ -228,7 +234,8 @@ pub enum Party {
     Link,
     /// Whoever looks after this computer: privileges, kernel, resources.
     Host,
-    /// Nobody but a developer: the other side does not keep to the protocol, or is of another version.
+    /// Nobody but a developer: the other side does not keep to the protocol, or is of another
+    /// version.
     Peer,
 }
 
@@ -251,14 +258,15 @@ pub enum Stage {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ControlError {
-    /// What the robot answered, what stopped it (`reflex_reason` of the state that ended the motion) and the success
-    /// rate before it.
+    /// What the robot answered, what stopped it (`reflex_reason` of the state that ended the
+    /// motion) and the success rate before it.
     pub failure: ControlFailure,
     /// Errors that hold, as far as the last state told.
     pub errors: Errors,
     /// How far the motion had come.
     pub stage: Stage,
-    /// The last cycles of the motion, the newest of which shows its end. How many is an option of the connection.
+    /// The last cycles of the motion, the newest of which shows its end. How many is an option of
+    /// the connection.
     pub log: Arc<ControlLog>,
     /// Why the robot stopped itself, as far as the log shows; `None` if it did not.
     pub diagnosis: Option<Diagnosis>,
@@ -270,8 +278,8 @@ impl ControlError {
         self.failure.refusal
     }
 
-    /// Whether the robot stopped itself for one of the reasons in [`ControlFailure::reflex_reason`], and has to be
-    /// recovered.
+    /// Whether the robot stopped itself for one of the reasons in
+    /// [`ControlFailure::reflex_reason`], and has to be recovered.
     pub fn is_reflex(&self) -> bool {
         self.failure.refusal.status() == Status::Move(MoveStatus::ReflexAborted)
     }
@@ -280,7 +288,8 @@ impl ControlError {
 impl core::fmt::Display for ControlError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self.stage {
-            // libfranka 0.21, `robot_impl.cpp`: a motion that has not begun ends in the refusal's text, and nothing more;
+            // libfranka 0.21, `robot_impl.cpp`: a motion that has not begun ends in the refusal's
+            // text, and nothing more;
             Stage::Starting => write!(f, "{}", self.failure.refusal),
             // and this text takes its place at the end.
             Stage::Finishing if self.is_reflex() => {

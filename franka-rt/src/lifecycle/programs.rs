@@ -12,12 +12,12 @@ use crate::session::GoalId;
 use crate::together::StartTicket;
 
 impl Lifecycle {
-    /// Starts the motion that `request` asks for under a program of the user's, as work named `id`, which resolves once
-    /// the motion has ended. Its `id` has to be one that was never used before.
+    /// Starts the motion that `request` asks for under a program of the user's, as work named `id`,
+    /// which resolves once the motion has ended. Its `id` has to be one that was never used before.
     ///
     /// # Errors
-    /// [`MotionError::Busy`] while anything else controls the arm, [`MotionError::ConnectionClosed`] after the connection
-    /// was lost. Nothing is resolved then.
+    /// [`MotionError::Busy`] while anything else controls the arm,
+    /// [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved then.
     pub fn control(
         &mut self,
         id: GoalId,
@@ -28,12 +28,12 @@ impl Lifecycle {
         self.begin_program(id, program, request, None, now)
     }
 
-    /// Like [`Self::control`], for a control function that begins together with the motions of other robots. Until they are
-    /// all there it is not called: the driver holds the arm.
+    /// Like [`Self::control`], for a control function that begins together with the motions of
+    /// other robots. Until they are all there it is not called: the driver holds the arm.
     ///
     /// # Errors
-    /// As [`Self::control`]; [`MotionError::Start`] if the others are not to come. The ticket is dropped in any of these
-    /// cases.
+    /// As [`Self::control`]; [`MotionError::Start`] if the others are not to come. The ticket is
+    /// dropped in any of these cases.
     pub fn control_together(
         &mut self,
         id: GoalId,
@@ -86,7 +86,8 @@ impl Lifecycle {
         named
     }
 
-    /// Has the robot stop the program that runs, and `id` resolve when it has. Returns whether there is one.
+    /// Has the robot stop the program that runs, and `id` resolve when it has. Returns whether
+    /// there is one.
     pub(super) fn stop_program(&mut self, id: GoalId, now: Duration) -> bool {
         let Some(program) = self.program() else {
             return false;
@@ -116,8 +117,9 @@ impl Lifecycle {
         }
     }
 
-    /// Asks the robot to stop the program's motion, unless it has been asked or the motion is over for it. Its answer is not
-    /// awaited: that the motion has ended is what counts, and a robot that goes on is told once more, then given up.
+    /// Asks the robot to stop the program's motion, unless it has been asked or the motion is over
+    /// for it. Its answer is not awaited: that the motion has ended is what counts, and a robot
+    /// that goes on is told once more, then given up.
     fn send_stop(&mut self, now: Duration) {
         let Phase::Active(active) = &mut self.phase else {
             return;

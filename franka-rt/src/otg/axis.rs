@@ -88,7 +88,8 @@ impl Axis {
         self.unit * (self.braking + least)
     }
 
-    /// The least duration that it can take and that is not less than `duration`, which is not less than the least.
+    /// The least duration that it can take and that is not less than `duration`, which is not less
+    /// than the least.
     pub(super) fn from(&self, duration: f64) -> f64 {
         let Motion::Through(passing) = &self.motion else {
             return duration;
@@ -107,7 +108,8 @@ impl Axis {
         TOGETHER / self.unit
     }
 
-    /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes longer.
+    /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes
+    /// longer.
     ///
     /// Behind a target in motion it goes on for a cycle and then comes to rest in the least time.
     pub(super) fn lay_out(&self, duration: f64, profile: &mut Profile) {
@@ -150,7 +152,8 @@ impl Axis {
         profile
     }
 
-    /// Appends a shape in the direction of `sign` that leads as far `beyond` the target, in units of the axis.
+    /// Appends a shape in the direction of `sign` that leads as far `beyond` the target, in units
+    /// of the axis.
     fn lay_out_shape(&self, sign: f64, shape: &Shape, beyond: f64, profile: &mut Profile) {
         let unit = self.unit;
         let up = sign * self.limits.jerk;
@@ -171,17 +174,19 @@ pub(super) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
     Task::new(start, start.position, limits).is_some()
 }
 
-/// Lays out the least-time stop, from a state that [`can_stop`] or that a plan from such a state leads to.
+/// Lays out the least-time stop, from a state that [`can_stop`] or that a plan from such a state
+/// leads to.
 pub(super) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut Profile) {
     profile.begin(start);
     append_stop(limits, profile);
 }
 
-/// Appends what follows a target in motion: a cycle and what counts as together more of its acceleration, if the limits
-/// allow it, and the least-time stop.
+/// Appends what follows a target in motion: a cycle and what counts as together more of its
+/// acceleration, if the limits allow it, and the least-time stop.
 ///
-/// The first command that counts as at the target is sent up to one cycle after the last axis is there. Whoever sets a new target then finds
-/// the axis where the old one would be, not already slowing down.
+/// The first command that counts as at the target is sent up to one cycle after the last axis is
+/// there. Whoever sets a new target then finds the axis where the old one would be, not already
+/// slowing down.
 fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
     let AxisState {
         velocity,
@@ -221,7 +226,8 @@ pub(crate) fn rest_of(start: AxisState, limits: AxisLimits) -> f64 {
     start.position + way.position
 }
 
-/// The jerks of the least-time stop and how long each lasts, in seconds: back into the acceleration limit first.
+/// The jerks of the least-time stop and how long each lasts, in seconds: back into the acceleration
+/// limit first.
 fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
     let (task, unit) = Task::unchecked(front, front.position, limits);
     let excess = task.a.abs() - 1.0;
@@ -240,10 +246,12 @@ fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
     ]
 }
 
-/// Times, in seconds, that count as together where an axis would need a detour to lose the difference.
+/// Times, in seconds, that count as together where an axis would need a detour to lose the
+/// difference.
 ///
-/// A quarter of a cycle, in which it goes on behind its target as the target does. The time at which another axis comes
-/// to rest is known no better: near its end it is the third root of what a position is rounded by, over its jerk.
+/// A quarter of a cycle, in which it goes on behind its target as the target does. The time at
+/// which another axis comes to rest is known no better: near its end it is the third root of what a
+/// position is rounded by, over its jerk.
 const TOGETHER: f64 = 0.25 * CYCLE;
 
 /// Relative excess over a limit that counts as rounding of a target that is at the limit.

@@ -1,10 +1,11 @@
 //! From outside the limits back into them.
 //!
-//! States outside the limits come from measurements and from limits that were lowered. The convention is
-//! "inside again as early as possible": full jerk, then the acceleration limit, until the velocity is back at
-//! its limit and will stay there. It is a convention and not part of the optimum. A rule that only asks the
-//! velocity to converge to its limit can be shorter, but stays above the limit for longer. The state is never
-//! clamped, since a clamp is a step in what the robot sees.
+//! States outside the limits come from measurements and from limits that were lowered. The
+//! convention is "inside again as early as possible": full jerk, then the acceleration limit, until
+//! the velocity is back at its limit and will stay there. It is a convention and not part of the
+//! optimum. A rule that only asks the velocity to converge to its limit can be shorter, but stays
+//! above the limit for longer. The state is never clamped, since a clamp is a step in what the
+//! robot sees.
 
 use super::task::Task;
 
@@ -68,7 +69,8 @@ pub(super) fn into_limits(task: Task) -> (Pieces, Task) {
     (pieces, task)
 }
 
-/// Brings a velocity that is, or will be, above the limit back to it, in the frame in which it is positive.
+/// Brings a velocity that is, or will be, above the limit back to it, in the frame in which it is
+/// positive.
 fn slow_down(pieces: &mut Pieces, task: Task, sign: f64) -> Task {
     let Task { v, a, top, .. } = task.mirrored(sign);
     let to_acceleration_limit = a + 1.0;

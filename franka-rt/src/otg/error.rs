@@ -24,8 +24,8 @@ pub enum PlanError {
         /// The limit as given.
         value: f64,
     },
-    /// The target's velocity and acceleration cannot be met inside the limits: the acceleration is larger than its
-    /// limit, or the velocity would be on the way there or behind it.
+    /// The target's velocity and acceleration cannot be met inside the limits: the acceleration is
+    /// larger than its limit, or the velocity would be on the way there or behind it.
     #[error("the motion of the target of axis {axis} does not fit its limits")]
     TargetMotion {
         /// Axis, counted from zero; 0 for a straight line, which is planned as one.
@@ -39,8 +39,8 @@ pub enum PlanError {
         /// Axes there are.
         axes: usize,
     },
-    /// Distance or velocity and the limits lie so far apart that `f64` cannot hold the powers that the
-    /// solution is made of: more than 100 decades in units of `A^3/J^2` or `A^2/J`.
+    /// Distance or velocity and the limits lie so far apart that `f64` cannot hold the powers that
+    /// the solution is made of: more than 100 decades in units of `A^3/J^2` or `A^2/J`.
     #[error("state, target and limits of axis {axis} lie too many orders of magnitude apart")]
     OutOfRange {
         /// Axis, counted from zero; 0 for a straight line, which is planned as one.

@@ -1,9 +1,10 @@
 //! The motion that gets farthest in a given time and ends with a given velocity and acceleration.
 //!
-//! The building block for targets in motion. In the frame in which "far" is upwards it is a push and a turn, jerks
-//! `+ 0 - 0 - 0 +`: the costate of the acceleration is a parabola in time that opens upwards, so the jerk changes its
-//! sign at most twice, and holds are where the acceleration or the velocity is at its limit. Nothing else is optimal,
-//! and for one duration there is one of it.
+//! The building block for targets in motion. In the frame in which "far" is upwards it is a push
+//! and a turn, jerks `+ 0 - 0 - 0 +`: the costate of the acceleration is a parabola in time that
+//! opens upwards, so the jerk changes its sign at most twice, and holds are where the acceleration
+//! or the velocity is at its limit. Nothing else is optimal, and for one duration there is one of
+//! it.
 //!
 //! Both ends are extended by their jerk to the instant without acceleration, as in `least_time`:
 //!
@@ -11,17 +12,20 @@
 //! c0 = v0 - a0^2/2 at pi0 = a0 (a0^2/3 - v0)     cf = vf - af^2/2 at pif = d + af (af^2/3 - vf)     D = pif - pi0
 //! ```
 //!
-//! Let `x` be the acceleration before the first negative jerk, `-y` the one before the last positive jerk, `w` the
-//! velocity between at zero acceleration, `e = cf - c0`, and `T` the duration counted from the extended ends. The area
-//! of the acceleration asks for `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. Where
-//! the larger of the two reaches the limit the other one follows from `(1 + y)^2 = T - e` or `(1 + x)^2 = T + e`, where
-//! both do, from `2 w = T - 2 + c0 + cf`, and at the velocity limit the rest of the time is a cruise. All of it is
-//! closed, and continuous from case to case: there is nothing to search and no root to reject. `x` or `y` may be
-//! negative: an acceleration that never changes its sign.
+//! Let `x` be the acceleration before the first negative jerk, `-y` the one before the last
+//! positive jerk, `w` the velocity between at zero acceleration, `e = cf - c0`, and `T` the
+//! duration counted from the extended ends. The area of the acceleration asks for
+//! `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. Where the larger
+//! of the two reaches the limit the other one follows from `(1 + y)^2 = T - e` or
+//! `(1 + x)^2 = T + e`, where both do, from `2 w = T - 2 + c0 + cf`, and at the velocity limit the
+//! rest of the time is a cruise. All of it is closed, and continuous from case to case: there is
+//! nothing to search and no root to reject. `x` or `y` may be negative: an acceleration that never
+//! changes its sign.
 //!
-//! With time the end moves at the rate `w + x y/2` (or the velocity limit, in a cruise). It need not grow: whoever has
-//! to end with a negative velocity gets less far with more time, until the time is enough to go up in between. Where
-//! the rate can be zero is closed too: see [`Farthest::turning_points`].
+//! With time the end moves at the rate `w + x y/2` (or the velocity limit, in a cruise). It need
+//! not grow: whoever has to end with a negative velocity gets less far with more time, until the
+//! time is enough to go up in between. Where the rate can be zero is closed too: see
+//! [`Farthest::turning_points`].
 
 use super::least_time::Shape;
 use super::task::Task;
@@ -44,7 +48,8 @@ pub(super) struct Farthest {
 pub(super) struct Reach {
     /// How far beyond the target it ends.
     pub(super) beyond: f64,
-    /// Velocity between the two halves: the largest, where both have an acceleration of their own sign.
+    /// Velocity between the two halves: the largest, where both have an acceleration of their own
+    /// sign.
     pub(super) w: f64,
     first: (f64, f64),
     cruise: f64,
@@ -67,14 +72,16 @@ impl Farthest {
         }
     }
 
-    /// The farthest motion that takes `t`, which has to be a time in which the end's velocity can be reached.
+    /// The farthest motion that takes `t`, which has to be a time in which the end's velocity can
+    /// be reached.
     pub(super) fn reach(&self, t: f64) -> Reach {
         let Self { a0, af, c0, cf, .. } = *self;
         let whole = (t + a0 - af).max(0.0);
         let e = cf - c0;
         let q = 0.5 * whole;
         let difference = if q > 0.0 { e / q } else { 0.0 };
-        // Rounding may ask for a little less than what the ends have; the sum is the time and stays.
+        // Rounding may ask for a little less than what the ends have; the sum is the time and
+        // stays.
         let x = (0.5 * (q + difference)).max(a0).min(q + af);
         let y = q - x;
         let (x, first_hold, y, second_hold) = if x <= 1.0 && y <= 1.0 {
@@ -127,12 +134,13 @@ impl Farthest {
         }
     }
 
-    /// Durations between which the end moves one way as the duration grows, in no order and some for nothing; the last
-    /// is where the cruise begins.
+    /// Durations between which the end moves one way as the duration grows, in no order and some
+    /// for nothing; the last is where the cruise begins.
     ///
-    /// Without holds the rate `w + x y/2` is zero where `3 s^2 + 4 (c0 + cf) s + e^2 = 0` with `s = (x + y)^2`, with one
-    /// hold where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 = 0`, with both where `w = -1/2`. A root that belongs to
-    /// another case than the one it is the root of divides a monotone piece in two, which does no harm.
+    /// Without holds the rate `w + x y/2` is zero where `3 s^2 + 4 (c0 + cf) s + e^2 = 0` with
+    /// `s = (x + y)^2`, with one hold where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 = 0`, with both
+    /// where `w = -1/2`. A root that belongs to another case than the one it is the root of divides
+    /// a monotone piece in two, which does no harm.
     pub(super) fn turning_points(&self) -> [Option<f64>; 6] {
         let Self {
             a0,
@@ -198,8 +206,9 @@ impl Reach {
     }
 }
 
-/// Displacement of the transfer between velocity `c` and the one that follows from the peak acceleration `x` and its
-/// hold, both without acceleration at the end. For a negative `x`, what the other half has too much.
+/// Displacement of the transfer between velocity `c` and the one that follows from the peak
+/// acceleration `x` and its hold, both without acceleration at the end. For a negative `x`, what
+/// the other half has too much.
 fn half(c: f64, x: f64, hold: f64) -> f64 {
     let change = x * x + x * hold;
     (c + 0.5 * change) * (2.0 * x + hold)

@@ -9,22 +9,25 @@ use super::state::{State, check_finite};
 
 /// One nominal cycle of the robot, in seconds (FCI documentation: 1 kHz).
 ///
-/// The generator advances by this per command, whatever the time between two states: to the robot, two
-/// milliseconds' motion in one command is a doubled velocity.
+/// The generator advances by this per command, whatever the time between two states: to the robot,
+/// two milliseconds' motion in one command is a doubled velocity.
 pub const CYCLE: f64 = 1e-3;
 
-/// Moves `N` axes to a target that may change at any time, inside limits of velocity, acceleration and jerk.
+/// Moves `N` axes to a target that may change at any time, inside limits of velocity, acceleration
+/// and jerk.
 ///
 /// - Input: [`set_target`](Self::set_target), [`set_moving_target`](Self::set_moving_target),
 ///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state),
-///   [`set_position`](Self::set_position). Each plans anew from the present state, unless nothing changes.
-/// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) and [`segments`](Self::segments) to look
-///   ahead.
-/// - Getters: [`state`](Self::state), [`target`](Self::target), [`time_to_target`](Self::time_to_target),
-///   [`remaining`](Self::remaining), [`is_done`](Self::is_done).
+///   [`set_position`](Self::set_position). Each plans anew from the present state, unless nothing
+///   changes.
+/// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) and
+///   [`segments`](Self::segments) to look ahead.
+/// - Getters: [`state`](Self::state), [`target`](Self::target),
+///   [`time_to_target`](Self::time_to_target), [`remaining`](Self::remaining),
+///   [`is_done`](Self::is_done).
 ///
-/// All of it is bounded work without allocation, fit for the real-time thread. An error leaves the generator
-/// as it was.
+/// All of it is bounded work without allocation, fit for the real-time thread. An error leaves the
+/// generator as it was.
 ///
 /// ```
 /// use franka_rt::otg::{Generator, Limits, State};
@@ -65,8 +68,8 @@ impl<const N: usize> Generator<N> {
     /// Synchronisation is [`Synchronisation::Straight`].
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it lies more than 100 decades
-    /// from the limits.
+    /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it lies more than 100
+    /// decades from the limits.
     pub fn new(state: State<N>, limits: Limits<N>) -> Result<Self, PlanError> {
         Self::towards(state, limits, None)
     }
@@ -89,8 +92,8 @@ impl<const N: usize> Generator<N> {
         Ok(generator)
     }
 
-    /// Becomes a generator at `state` that moves to rest at `target`, or comes to rest in the least time: what a new one
-    /// would be, in place. A generator is some kilobytes large.
+    /// Becomes a generator at `state` that moves to rest at `target`, or comes to rest in the least
+    /// time: what a new one would be, in place. A generator is some kilobytes large.
     ///
     /// # Errors
     /// As [`new`](Self::new) and [`set_target`](Self::set_target); the motion in progress goes on.
@@ -141,7 +144,8 @@ impl<const N: usize> Generator<N> {
         self
     }
 
-    /// Moves to rest at `target` from the present state on. The target in force already is not planned again.
+    /// Moves to rest at `target` from the present state on. The target in force already is not
+    /// planned again.
     ///
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
@@ -156,20 +160,22 @@ impl<const N: usize> Generator<N> {
         self.plan_target(&State::at_rest(*target))
     }
 
-    /// Moves to `target`, to be there with its velocity and acceleration, in the least time in which all axes can. The
-    /// target in force already is not planned again.
+    /// Moves to `target`, to be there with its velocity and acceleration, in the least time in
+    /// which all axes can. The target in force already is not planned again.
     ///
-    /// Meant for following something that moves, with a new target before each arrival, and for passing through points
-    /// on the way to others. Without a new target the motion goes on past the old one for one cycle, and then comes to
-    /// rest in the least time: a program that stalls does not send an arm on for ever.
+    /// Meant for following something that moves, with a new target before each arrival, and for
+    /// passing through points on the way to others. Without a new target the motion goes on past
+    /// the old one for one cycle, and then comes to rest in the least time: a program that stalls
+    /// does not send an arm on for ever.
     ///
-    /// An axis that would be early cannot wait at a moving target. It makes room and comes again, which may lead it
-    /// beyond the target or the other way first.
+    /// An axis that would be early cannot wait at a moving target. It makes room and comes again,
+    /// which may lead it beyond the target or the other way first.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the limits do not allow the
-    /// target's motion, which without norms is if `|velocity| + acceleration^2 / (2 jerk limit)` exceeds the velocity
-    /// limit, or the acceleration its own. The motion in progress goes on.
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the
+    /// limits do not allow the target's motion, which without norms is if
+    /// `|velocity| + acceleration^2 / (2 jerk limit)` exceeds the velocity limit, or the
+    /// acceleration its own. The motion in progress goes on.
     pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
         if target.is_at_rest() {
             return self.set_target(&target.position);
@@ -183,13 +189,14 @@ impl<const N: usize> Generator<N> {
         self.plan_target(target)
     }
 
-    /// Changes the limits of the motion in progress, which keeps its target. Equal limits change nothing.
+    /// Changes the limits of the motion in progress, which keeps its target. Equal limits change
+    /// nothing.
     ///
     /// A state outside the new limits brakes back into them.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`], or [`PlanError::TargetMotion`] if the target moves faster than the new limits allow;
-    /// the limits before stay in force.
+    /// [`PlanError::OutOfRange`], or [`PlanError::TargetMotion`] if the target moves faster than
+    /// the new limits allow; the limits before stay in force.
     pub fn set_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
         if limits == self.limits {
             return Ok(());
@@ -209,31 +216,32 @@ impl<const N: usize> Generator<N> {
 
     /// Gives up the target and comes to rest in the least time.
     ///
-    /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its own if the
-    /// axes have the same ratio of acceleration to jerk, and about the difference of these ratios longer
-    /// otherwise. Off a line each axis stops by itself. Braking cannot fail: state and limits were checked when
-    /// they came in.
+    /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its
+    /// own if the axes have the same ratio of acceleration to jerk, and about the difference of
+    /// these ratios longer otherwise. Off a line each axis stops by itself. Braking cannot fail:
+    /// state and limits were checked when they came in.
     pub fn brake(&mut self) {
         if self.goal != Goal::Rest {
             self.plan_stop();
         }
     }
 
-    /// Re-anchors the generator at `state` and plans anew: to the target if there is one, else to rest in the
-    /// least time.
+    /// Re-anchors the generator at `state` and plans anew: to the target if there is one, else to
+    /// rest in the least time.
     ///
-    /// The output steps to `state`; that it is close to the last output is for the caller to see to.
+    /// The output steps to `state`; that it is close to the last output is for the caller to see
+    /// to.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`], [`PlanError::OutOfRange`] or, with norms, [`PlanError::TargetMotion`] if the state leaves
-    /// a straight line along which the target moves faster than its axes may on their own; the motion in progress goes
-    /// on.
+    /// [`PlanError::NotFinite`], [`PlanError::OutOfRange`] or, with norms,
+    /// [`PlanError::TargetMotion`] if the state leaves a straight line along which the target moves
+    /// faster than its axes may on their own; the motion in progress goes on.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         self.begin(state, self.limits, self.goal)
     }
 
-    /// Re-anchors the position and keeps velocity and acceleration: [`set_state`](Self::set_state) for a motion that
-    /// something else has held back or moved on.
+    /// Re-anchors the position and keeps velocity and acceleration: [`set_state`](Self::set_state)
+    /// for a motion that something else has held back or moved on.
     ///
     /// # Errors
     /// As [`set_state`](Self::set_state); the motion in progress goes on.
@@ -246,8 +254,9 @@ impl<const N: usize> Generator<N> {
 
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
-    /// The cycle in which the motion ends, and all after it, give exactly the target without velocity and
-    /// acceleration (the place behind it where the motion comes to rest, if the target moves).
+    /// The cycle in which the motion ends, and all after it, give exactly the target without
+    /// velocity and acceleration (the place behind it where the motion comes to rest, if the target
+    /// moves).
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
         self.state = self.plan.sample(self.elapsed());
@@ -264,10 +273,11 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// The motion in progress of one axis, as its pieces of constant jerk in order, from where it was planned to rest.
+    /// The motion in progress of one axis, as its pieces of constant jerk in order, from where it
+    /// was planned to rest.
     ///
-    /// Pieces may end up to a rounding apart. There are none for an axis that has not been told to move; behind the last
-    /// one an axis rests.
+    /// Pieces may end up to a rounding apart. There are none for an axis that has not been told to
+    /// move; behind the last one an axis rests.
     ///
     /// # Panics
     /// If there is no such axis.
@@ -294,8 +304,8 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Position at which the motion in progress comes to rest if nothing changes: the target, a place behind it if it
-    /// moves, or where braking ends.
+    /// Position at which the motion in progress comes to rest if nothing changes: the target, a
+    /// place behind it if it moves, or where braking ends.
     #[must_use]
     pub const fn end(&self) -> &[f64; N] {
         self.plan.end()
@@ -323,7 +333,8 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Time until rest, in seconds; zero once there. The output rests at the first whole cycle from then.
+    /// Time until rest, in seconds; zero once there. The output rests at the first whole cycle from
+    /// then.
     #[must_use]
     pub fn remaining(&self) -> f64 {
         if self.is_done() {

@@ -2,25 +2,26 @@
 //!
 //! For targets at rest two families with one parameter each suffice.
 //!
-//! **Velocity cap.** Transfer to a velocity `w`, cruise, stop. Eliminating the cruise from the equations of
-//! time and distance leaves one equation, which needs no division by `w`. Upwards (`w` at or above the
-//! velocity that remains when the acceleration is ramped out), with `c, pi` the start extended to zero
-//! acceleration as in step one and `A(d)` the area of [`stop_distance`](super::transfer::stop_distance):
+//! **Velocity cap.** Transfer to a velocity `w`, cruise, stop. Eliminating the cruise from the
+//! equations of time and distance leaves one equation, which needs no division by `w`. Upwards (`w`
+//! at or above the velocity that remains when the acceleration is ramped out), with `c, pi` the
+//! start extended to zero acceleration as in step one and `A(d)` the area of
+//! [`stop_distance`](super::transfer::stop_distance):
 //!
 //! ```text
 //! g(w) = A(w - c) + A(w) - (T + a) w + d - pi = 0
 //! ```
 //!
-//! and downwards `A(w) - A(c - w) - (T - a) w + d - pi`, with `c, pi` of a negative first jerk. `g` is convex
-//! or monotone where the cruise is not negative. If both transfers hold their acceleration it is a quadratic
-//! or linear equation. The cruise follows from the time equation, so the duration is exact and rounding goes
-//! into the position, where it is smallest.
+//! and downwards `A(w) - A(c - w) - (T - a) w + d - pi`, with `c, pi` of a negative first jerk. `g`
+//! is convex or monotone where the cruise is not negative. If both transfers hold their
+//! acceleration it is a quadratic or linear equation. The cruise follows from the time equation, so
+//! the duration is exact and rounding goes into the position, where it is smallest.
 //!
 //! **Late push**, where no cruise fits: see [`super::late_push`].
 //!
-//! Slowing time down instead (one factor for the whole profile) would change the velocity at the start, and
-//! lowering all three limits at once makes the duration discontinuous where a start no longer fits inside
-//! them.
+//! Slowing time down instead (one factor for the whole profile) would change the velocity at the
+//! start, and lowering all three limits at once makes the duration discontinuous where a start no
+//! longer fits inside them.
 
 use super::brake::Pieces;
 use super::late_push::late_push;
@@ -28,7 +29,8 @@ use super::least_time::{Least, Shape};
 use super::task::Task;
 use super::transfer::{ramp_and_hold, stop_distance_and_slope, transfer_time};
 
-/// A profile that lasts as long as asked for, in the frame of the least-time solution that it comes from.
+/// A profile that lasts as long as asked for, in the frame of the least-time solution that it comes
+/// from.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lasting {
     /// What comes before the shape.
@@ -58,7 +60,8 @@ impl Lasting {
     }
 }
 
-/// Stretches a least-time solution to `duration`, in units of the axis; to its own if that is longer.
+/// Stretches a least-time solution to `duration`, in units of the axis; to its own if that is
+/// longer.
 pub(super) fn lasting(least: &Least, duration: f64) -> Lasting {
     if duration - least.duration <= SAME * duration {
         return Lasting::of(least.shape);
@@ -115,7 +118,8 @@ impl Cap {
         )
     }
 
-    /// The root of the excess between `low`, where it is not negative, and `high`, where it is not positive.
+    /// The root of the excess between `low`, where it is not negative, and `high`, where it is not
+    /// positive.
     fn solve(&self, low: f64, high: f64) -> f64 {
         let (mut low, mut high) = (low, high);
         let guess = self.with_holds();
@@ -150,7 +154,8 @@ impl Cap {
         w
     }
 
-    /// The root if both transfers hold their acceleration: a quadratic upwards, a linear equation downwards.
+    /// The root if both transfers hold their acceleration: a quadratic upwards, a linear equation
+    /// downwards.
     fn with_holds(&self) -> f64 {
         let c = self.c;
         if self.sign > 0.0 {
@@ -195,8 +200,8 @@ mod tests {
     use super::*;
     use crate::otg::least_time::least_time;
 
-    /// Follows a solution; returns its duration, the task left at its end, and the largest acceleration,
-    /// velocity and distance beyond the target between segments.
+    /// Follows a solution; returns its duration, the task left at its end, and the largest
+    /// acceleration, velocity and distance beyond the target between segments.
     fn follow(task: &Task, solution: &Lasting) -> (f64, Task, f64, f64, f64) {
         let Lasting {
             before,
@@ -225,8 +230,8 @@ mod tests {
         (duration, left, a, v, beyond)
     }
 
-    /// A start inside its limits, with a target at a distance from the stop point that is small more often
-    /// than not.
+    /// A start inside its limits, with a target at a distance from the stop point that is small
+    /// more often than not.
     fn task() -> impl Strategy<Value = Task> {
         let distance = prop_oneof![1 => -5.0..-1.0, 1 => -1.0..2.0];
         let sign = prop_oneof![Just(1.0), Just(-1.0)];

@@ -1,18 +1,19 @@
 //! Step two where no cruise fits: slow down first, and go for the target late.
 //!
-//! Needed where an axis is slowing down into a target just past its stop point and should lose a little time, up to a
-//! fifth of the duration. It follows its least-time stop for a while, and then takes the least-time profile to the
-//! target from where that has led. The duration of the whole grows with the while: from the least at zero, since what
-//! follows a piece of one profile is a profile with that piece fixed, which cannot be better than one with a shorter
-//! piece fixed; and continuously, to that of coming to a rest and moving on from there. A longer one waits at that rest.
-//! So every duration has its profile. None overshoots: along a stop the stop point stays where it is, short of the
-//! target, and from there the way is a push and a stop.
+//! Needed where an axis is slowing down into a target just past its stop point and should lose a
+//! little time, up to a fifth of the duration. It follows its least-time stop for a while, and then
+//! takes the least-time profile to the target from where that has led. The duration of the whole
+//! grows with the while: from the least at zero, since what follows a piece of one profile is a
+//! profile with that piece fixed, which cannot be better than one with a shorter piece fixed; and
+//! continuously, to that of coming to a rest and moving on from there. A longer one waits at that
+//! rest. So every duration has its profile. None overshoots: along a stop the stop point stays
+//! where it is, short of the target, and from there the way is a push and a stop.
 //!
-//! A target that is the stop point itself has no way to be late without overshooting; what is said above then gives the
-//! stop, and a wait at the target.
+//! A target that is the stop point itself has no way to be late without overshooting; what is said
+//! above then gives the stop, and a wait at the target.
 //!
-//! Lowering the acceleration limit instead slows down more gently, but beyond the gentlest stop that ends at the target
-//! there is nothing left to lower: the axis would be early, or overshoot.
+//! Lowering the acceleration limit instead slows down more gently, but beyond the gentlest stop
+//! that ends at the target there is nothing left to lower: the axis would be early, or overshoot.
 
 use super::brake::Pieces;
 use super::given_duration::{Lasting, SAME};
@@ -21,7 +22,8 @@ use super::root::{Point, root};
 use super::task::Task;
 use super::transfer::stop;
 
-/// The profile of `duration` that follows the stop first, in the frame of `least`, which takes less.
+/// The profile of `duration` that follows the stop first, in the frame of `least`, which takes
+/// less.
 pub(super) fn late_push(least: &Least, duration: f64) -> Lasting {
     let task = least.task;
     let (sign, times) = stop(task.v, task.a);

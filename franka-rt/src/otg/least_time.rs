@@ -1,35 +1,37 @@
 //! Step one: the least-time profile of one axis.
 //!
-//! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` grows with `T`
-//! and is an interval. The optimum is therefore "push towards one side, then stop": the side is that of the
-//! target as seen from where an immediate stop would end. A target inside the braking distance needs no
-//! special case.
+//! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` grows
+//! with `T` and is an interval. The optimum is therefore "push towards one side, then stop": the
+//! side is that of the target as seen from where an immediate stop would end. A target inside the
+//! braking distance needs no special case.
 //!
-//! In the frame in which the push is upwards the jerks are `+ 0 - 0 - 0 +` (seven durations). Extending the
-//! first jerk to the instant where the acceleration is zero turns the start `(v, a)` into `(c, 0)` with
+//! In the frame in which the push is upwards the jerks are `+ 0 - 0 - 0 +` (seven durations).
+//! Extending the first jerk to the instant where the acceleration is zero turns the start `(v, a)`
+//! into `(c, 0)` with
 //!
 //! ```text
 //! c = v - a^2/2      at      pi = a (a^2/3 - v)
 //! ```
 //!
-//! With `x` the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the velocity between
-//! the two halves, the motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`, which grows with `w`.
-//! Comparing the target with that at the breakpoints names the one case that applies: a cruise or an
-//! acceleration hold, both closed, or neither, where the monotone and convex equation
+//! With `x` the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the velocity
+//! between the two halves, the motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`, which grows
+//! with `w`. Comparing the target with that at the breakpoints names the one case that applies: a
+//! cruise or an acceleration hold, both closed, or neither, where the monotone and convex equation
 //!
 //! ```text
 //! F(x) = pi + 2 c x + x^3 + stop(c + x^2) = d
 //! ```
 //!
-//! is solved by Newton steps from the right, which cannot leave the interval. `x` may be negative: an axis
-//! that brakes already and only needs to brake less. A search over peak velocities has no such profile, and
-//! is up to 28 % slower there. Trying all families and testing each result, the usual way, fails on their
-//! common boundaries by rounding.
+//! is solved by Newton steps from the right, which cannot leave the interval. `x` may be negative:
+//! an axis that brakes already and only needs to brake less. A search over peak velocities has no
+//! such profile, and is up to 28 % slower there. Trying all families and testing each result, the
+//! usual way, fails on their common boundaries by rounding.
 
 use super::task::Task;
 use super::transfer::{ramp_and_hold, stop_distance, transfer_distance};
 
-/// A push and a stop: jerks `first, 0, -first, 0, -1, 0, 1` in units of the limit, each for its duration.
+/// A push and a stop: jerks `first, 0, -first, 0, -1, 0, 1` in units of the limit, each for its
+/// duration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
     /// Sign of the first jerk.
@@ -46,8 +48,8 @@ impl Shape {
         self.t.iter().sum()
     }
 
-    /// Transfer from acceleration `a` to the velocity `cruise`, held for `time`, and transfer to rest; both
-    /// as ramp and hold.
+    /// Transfer from acceleration `a` to the velocity `cruise`, held for `time`, and transfer to
+    /// rest; both as ramp and hold.
     pub(super) fn two_transfers(
         a: f64,
         to_cruise: (f64, f64),
@@ -151,9 +153,9 @@ impl Start {
         self.turning_at(self.solve_ramp(d, to_top.min(1.0).sqrt()))
     }
 
-    /// The first transfer holds its acceleration. With both transfers' areas added, `stop` of `w` over the
-    /// saturated first one is a perfect square in `sqrt(w)` below saturation of the second, and a quadratic
-    /// in `w` above.
+    /// The first transfer holds its acceleration. With both transfers' areas added, `stop` of `w`
+    /// over the saturated first one is a perfect square in `sqrt(w)` below saturation of the
+    /// second, and a quadratic in `w` above.
     fn with_hold(&self, d: f64) -> Shape {
         let Self { a, c, pi, .. } = *self;
         let q = (d - pi - 0.5 * c * (1.0 - c)).max(0.0);
@@ -207,8 +209,8 @@ impl Start {
         if gap <= 0.0 || most <= least {
             return least;
         }
-        // Upper bounds: the tangent at the left end, since F is convex; and F' >= 6 x^2 for c >= 0, F' >= x^2
-        // otherwise.
+        // Upper bounds: the tangent at the left end, since F is convex; and F' >= 6 x^2 for c >= 0,
+        // F' >= x^2 otherwise.
         let mut x = most;
         if gap < slope * (most - least) {
             x = least + gap / slope;
@@ -238,6 +240,6 @@ impl Start {
     }
 }
 
-/// Newton steps that a convex search may take. Three to five are usual; near a double root each step only
-/// halves the rest.
+/// Newton steps that a convex search may take. Three to five are usual; near a double root each
+/// step only halves the rest.
 const MAX_NEWTON: usize = 60;

@@ -1,11 +1,11 @@
 //! Limits of the axes, each on its own or as norms over groups of axes.
 //!
-//! Some limits bind a norm: the speed of a hand, not each of its three components. Independent axes keep such
-//! a budget if each gets an equal share of it, the budget divided by the square root of the group's size:
-//! then no combination of the axes exceeds it. But shares waste up to `1 - 1/sqrt(3)`, 42 %, of the speed
-//! along a base axis. A straight line needs no shares: its direction is known, so the whole budget holds
-//! along it. [`Limits`] therefore keeps the budgets, uses the whole of them on straight lines, and the shares
-//! where axes move on their own.
+//! Some limits bind a norm: the speed of a hand, not each of its three components. Independent axes
+//! keep such a budget if each gets an equal share of it, the budget divided by the square root of
+//! the group's size: then no combination of the axes exceeds it. But shares waste up to
+//! `1 - 1/sqrt(3)`, 42 %, of the speed along a base axis. A straight line needs no shares: its
+//! direction is known, so the whole budget holds along it. [`Limits`] therefore keeps the budgets,
+//! uses the whole of them on straight lines, and the shares where axes move on their own.
 
 use super::error::{PlanError, Quantity};
 
@@ -21,9 +21,11 @@ pub struct AxisLimits {
 }
 
 impl AxisLimits {
-    /// Equal shares for `axes` axes of a budget that binds their Euclidean norm: divided by `sqrt(axes)`.
+    /// Equal shares for `axes` axes of a budget that binds their Euclidean norm: divided by
+    /// `sqrt(axes)`.
     ///
-    /// As long as each axis keeps its share, the norms of velocity, acceleration and jerk keep the budget.
+    /// As long as each axis keeps its share, the norms of velocity, acceleration and jerk keep the
+    /// budget.
     #[must_use]
     pub fn per_axis_for_norm(self, axes: usize) -> Self {
         self.scaled(1.0 / (axes.max(1) as f64).sqrt())
@@ -72,8 +74,8 @@ impl AxisLimits {
 
 /// Checked limits of `N` axes: positive and finite.
 ///
-/// Consecutive axes form groups. A group of one axis is limited by itself; in a larger group the budget binds
-/// the Euclidean norm over its axes.
+/// Consecutive axes form groups. A group of one axis is limited by itself; in a larger group the
+/// budget binds the Euclidean norm over its axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits<const N: usize> {
     /// What each axis may do on its own: its share of the group's budget.
@@ -116,14 +118,14 @@ impl<const N: usize> Limits<N> {
         }))
     }
 
-    /// Groups of consecutive axes, as pairs of size and budget; a budget binds the Euclidean norm over its
-    /// group.
+    /// Groups of consecutive axes, as pairs of size and budget; a budget binds the Euclidean norm
+    /// over its group.
     ///
     /// A Cartesian generator has two groups of three: translation and rotation.
     ///
     /// # Errors
-    /// [`PlanError::Limit`] for a budget that is not a positive finite number, with the first axis of its
-    /// group; [`PlanError::Groups`] if the sizes do not sum to `N`.
+    /// [`PlanError::Limit`] for a budget that is not a positive finite number, with the first axis
+    /// of its group; [`PlanError::Groups`] if the sizes do not sum to `N`.
     pub fn norms(groups: &[(usize, AxisLimits)]) -> Result<Self, PlanError> {
         let got = groups
             .iter()
@@ -158,7 +160,8 @@ impl<const N: usize> Limits<N> {
         self.shares[axis]
     }
 
-    /// Limits of the parameter `s` of a straight line `origin + s * direction` that uses the whole budgets.
+    /// Limits of the parameter `s` of a straight line `origin + s * direction` that uses the whole
+    /// budgets.
     ///
     /// A zero direction is not limited: infinite.
     pub(super) fn along(&self, direction: &[f64; N]) -> AxisLimits {

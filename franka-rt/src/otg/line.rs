@@ -1,12 +1,12 @@
 //! Straight lines: all axes as one.
 //!
-//! If the way to go, the velocities and the accelerations of all axes, now and at the target, are multiples of one vector, one scalar
-//! problem along it moves them in phase, and the path is a straight line. From rest this is always so. Its
-//! duration equals the time-synchronised one when one axis binds in all three limits, and is longer
-//! otherwise.
+//! If the way to go, the velocities and the accelerations of all axes, now and at the target, are
+//! multiples of one vector, one scalar problem along it moves them in phase, and the path is a
+//! straight line. From rest this is always so. Its duration equals the time-synchronised one when
+//! one axis binds in all three limits, and is longer otherwise.
 //!
-//! Rounding makes the axes of a moving line look not quite parallel, so the scalar state is kept and
-//! continued while targets stay on the line, instead of being derived from the axes again.
+//! Rounding makes the axes of a moving line look not quite parallel, so the scalar state is kept
+//! and continued while targets stay on the line, instead of being derived from the axes again.
 
 use super::state::{AxisState, State};
 
@@ -96,6 +96,6 @@ impl<const N: usize> Line<N> {
     }
 }
 
-/// Relative difference between components of parallel vectors: rounding of a few operations, times the length
-/// of a chain of re-plans.
+/// Relative difference between components of parallel vectors: rounding of a few operations, times
+/// the length of a chain of re-plans.
 const PARALLEL: f64 = 1e-13;

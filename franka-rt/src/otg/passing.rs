@@ -1,23 +1,27 @@
 //! Targets in motion: which durations are possible, and a profile for each.
 //!
-//! At a target with a velocity an axis cannot wait. One that would be early has to make room first and come again, so
-//! there may be durations that cannot be met between others that can: *blocked* ones. What remains true is that for one
-//! duration the positions that can be reached are an interval, since the dynamics are linear and the limits convex.
-//! Its ends are the farthest motions up and down (`farthest`), in closed form. Hence
+//! At a target with a velocity an axis cannot wait. One that would be early has to make room first
+//! and come again, so there may be durations that cannot be met between others that can: *blocked*
+//! ones. What remains true is that for one duration the positions that can be reached are an
+//! interval, since the dynamics are linear and the limits convex. Its ends are the farthest motions
+//! up and down (`farthest`), in closed form. Hence
 //!
 //! - a duration is possible if its interval contains the target: two evaluations, no case to try;
-//! - the interval's ends pass the target a few times at most, and in between durations stay possible or impossible.
-//!   Each end is monotone between its turning points, which are closed too, so one bracketed search per piece finds
-//!   them all: the least duration and the ends of the blocked intervals;
-//! - there is a profile for each possible duration: the mean of the two farthest motions, weighted so that it ends at the
-//!   target. A mean of motions inside convex limits is inside them. It is what always works; where a constant velocity
-//!   fits in between that is the better course ([`Plateau`]).
+//! - the interval's ends pass the target a few times at most, and in between durations stay
+//!   possible or impossible. Each end is monotone between its turning points, which are closed too,
+//!   so one bracketed search per piece finds them all: the least duration and the ends of the
+//!   blocked intervals;
+//! - there is a profile for each possible duration: the mean of the two farthest motions, weighted
+//!   so that it ends at the target. A mean of motions inside convex limits is inside them. It is
+//!   what always works; where a constant velocity fits in between that is the better course
+//!   ([`Plateau`]).
 //!
-//! The velocity of the end has to be in reach as well, which is the same problem one derivative lower and for the same
-//! reason has a blocked interval of its own if the target accelerates (`velocity_change`).
+//! The velocity of the end has to be in reach as well, which is the same problem one derivative
+//! lower and for the same reason has a blocked interval of its own if the target accelerates
+//! (`velocity_change`).
 //!
-//! Looking for all profiles that fit, the usual way, needs quartic and sixth-order equations in eleven families per
-//! direction, half of which fail by rounding where two families meet.
+//! Looking for all profiles that fit, the usual way, needs quartic and sixth-order equations in
+//! eleven families per direction, half of which fail by rounding where two families meet.
 
 use super::least_time::Shape;
 use super::plateau::Plateau;
@@ -26,8 +30,8 @@ use super::task::Task;
 
 /// One axis and a target that moves, in units of the axis.
 ///
-/// What follows from the task in a few operations is not kept: there is one of these for each axis of a plan, and most
-/// axes of most plans go to rest.
+/// What follows from the task in a few operations is not kept: there is one of these for each axis
+/// of a plan, and most axes of most plans go to rest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passing {
     task: Task,
@@ -53,8 +57,8 @@ pub(super) enum Way {
 }
 
 impl Passing {
-    /// The possible durations of a task inside its limits, for a target with velocity `vf` and acceleration `af` that
-    /// can be met inside them.
+    /// The possible durations of a task inside its limits, for a target with velocity `vf` and
+    /// acceleration `af` that can be met inside them.
     pub(super) fn new(task: &Task, vf: f64, af: f64) -> Self {
         Self {
             task: *task,
@@ -73,8 +77,8 @@ impl Passing {
         self.candidates.iter().next().unwrap_or(0.0)
     }
 
-    /// The least possible duration that is not less than `t`, or than a little before it: one that ends up to `slack` ahead
-    /// of `t` counts as `t`.
+    /// The least possible duration that is not less than `t`, or than a little before it: one that
+    /// ends up to `slack` ahead of `t` counts as `t`.
     pub(super) fn from(&self, t: f64, slack: f64) -> f64 {
         if self.possible().is_possible(t) || self.just_before(t, slack).is_some() {
             return t;
@@ -130,7 +134,8 @@ mod tests {
     proptest! {
         #![proptest_config(cases(3000))]
 
-        /// Rest is a motion too: the other solution, which shares none of the equations, has to agree.
+        /// Rest is a motion too: the other solution, which shares none of the equations, has to
+        /// agree.
         #[test]
         fn a_target_at_rest_takes_as_long_as_by_the_other_solution(
             exponent in -1.5_f64..2.5, coasting in -1.0_f64..1.0, bend in -1.0_f64..1.0, distance in -3.0_f64..1.0, up in any::<bool>(),
@@ -148,7 +153,8 @@ mod tests {
 
     #[test]
     fn an_axis_early_at_a_moving_target_has_durations_that_are_blocked() {
-        // At the target's velocity and a little behind its place: to be there later it has to go back first.
+        // At the target's velocity and a little behind its place: to be there later it has to go
+        // back first.
         let task = Task {
             d: 1e-3,
             v: 0.5,

@@ -13,8 +13,8 @@ use super::turn::lay_out_lead;
 /// How the axes of a motion to a target move together. All arrive at the same instant in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Synchronisation {
-    /// In phase, on a straight line, wherever the motion so far allows it, which it does from rest; else in
-    /// time only.
+    /// In phase, on a straight line, wherever the motion so far allows it, which it does from rest;
+    /// else in time only.
     #[default]
     Straight,
     /// In time only: as early as the slowest axis can arrive, on a curved path.
@@ -149,8 +149,8 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Lays out the axes so that all arrive when the slowest does, or as soon after as each of them can, `until`
-    /// seconds after the plan's start or later.
+    /// Lays out the axes so that all arrive when the slowest does, or as soon after as each of them
+    /// can, `until` seconds after the plan's start or later.
     fn move_axes(
         &mut self,
         state: &State<N>,
@@ -186,8 +186,8 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Replaces the plan by the least-time stop: along the line that the state is on, else of each axis on
-    /// its own.
+    /// Replaces the plan by the least-time stop: along the line that the state is on, else of each
+    /// axis on its own.
     pub(super) fn stop(&mut self, start: &Start<'_, N>) {
         if let Some((line, along)) = &start.line {
             lay_out_stop(
@@ -216,7 +216,8 @@ impl<const N: usize> Plan<N> {
         &self.end
     }
 
-    /// When the target is met, in seconds from its start: when all axes rest, unless the target moves.
+    /// When the target is met, in seconds from its start: when all axes rest, unless the target
+    /// moves.
     pub(super) const fn arrival(&self) -> f64 {
         self.arrival
     }
@@ -247,7 +248,8 @@ impl<const N: usize> Plan<N> {
         state
     }
 
-    /// The segments of one axis, from the plan's start on: those on a line first, then those of its own.
+    /// The segments of one axis, from the plan's start on: those on a line first, then those of its
+    /// own.
     pub(super) fn segments(&self, axis: usize) -> impl Iterator<Item = Segment> + '_ {
         let (line, own) = match &self.course {
             Course::Axes => (None, Some(0.0)),
@@ -288,8 +290,8 @@ impl<const N: usize> Plan<N> {
 
 /// The least duration from `at_least` on that all axes can take.
 ///
-/// An axis that cannot take a duration asks for the next one that it can, which is one of its candidates; the duration
-/// only grows, so each candidate is asked for once at most.
+/// An axis that cannot take a duration asks for the next one that it can, which is one of its
+/// candidates; the duration only grows, so each candidate is asked for once at most.
 fn common_duration<const N: usize>(axes: &[Result<Axis, Refusal>; N], at_least: f64) -> f64 {
     let mut duration = at_least;
     for _ in 0..N * CANDIDATES {
@@ -314,8 +316,9 @@ impl Refusal {
     }
 }
 
-/// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a duration costs
-/// no cycle.
+/// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a
+/// duration costs no cycle.
 ///
-/// A millionth of a cycle: what is left there is the third power of it, times a sixth of the jerk limit.
+/// A millionth of a cycle: what is left there is the third power of it, times a sixth of the jerk
+/// limit.
 const SLACK: f64 = 1e-9;

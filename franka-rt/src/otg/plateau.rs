@@ -1,22 +1,24 @@
 //! A motion to a target in motion that takes a given time, by way of a constant velocity.
 //!
-//! Transfer to a velocity `w`, stay there, transfer to the end's. With the first transfer in direction `s` and the second
-//! in direction `u`, and both ends extended by their jerks to zero acceleration (`c0 = v0 - s a0^2/2`,
-//! `cf = vf + u af^2/2`), the time and the distance left over are
+//! Transfer to a velocity `w`, stay there, transfer to the end's. With the first transfer in
+//! direction `s` and the second in direction `u`, and both ends extended by their jerks to zero
+//! acceleration (`c0 = v0 - s a0^2/2`, `cf = vf + u af^2/2`), the time and the distance left over
+//! are
 //!
 //! ```text
 //! cruise(w) = T + s a0 + u af - time(w - c0) - time(cf - w)
 //! excess(w) = M(c0, w) + w cruise(w) + M(w, cf) - D
 //! ```
 //!
-//! with `M` the displacement of a transfer. The farthest motions up and down are the two ends of this family, and where
-//! the cruise is not negative the excess grows with `w`: so there is one `w`, between theirs. A cruise is negative only
-//! for durations so close to that of the mere change of velocity that no plateau fits; then the mean of the two farthest
-//! motions serves.
+//! with `M` the displacement of a transfer. The farthest motions up and down are the two ends of
+//! this family, and where the cruise is not negative the excess grows with `w`: so there is one
+//! `w`, between theirs. A cruise is negative only for durations so close to that of the mere change
+//! of velocity that no plateau fits; then the mean of the two farthest motions serves.
 //!
-//! The mean would do for every duration, and without a search. But a plan made anew from a state on this motion goes on
-//! with the same velocity, while the mean of what is farthest from there has another course each time: planned anew in
-//! each cycle it swings from one end of the interval to the other.
+//! The mean would do for every duration, and without a search. But a plan made anew from a state on
+//! this motion goes on with the same velocity, while the mean of what is farthest from there has
+//! another course each time: planned anew in each cycle it swings from one end of the interval to
+//! the other.
 
 use super::least_time::Shape;
 use super::root::{Point, root};
@@ -59,7 +61,8 @@ impl Plateau {
     fn at(&self, w: f64) -> Transfers {
         let Task { d, v, a, .. } = self.task;
         let (vf, af) = (self.vf, self.af);
-        // Velocities that are left when the acceleration is ramped to zero, forwards and backwards in time.
+        // Velocities that are left when the acceleration is ramped to zero, forwards and backwards
+        // in time.
         let s = 1_f64.copysign(w - (v + 0.5 * a * a.abs()));
         let u = 1_f64.copysign((vf - 0.5 * af * af.abs()) - w);
         let (c0, cf) = (v - s * 0.5 * a * a, vf + u * 0.5 * af * af);

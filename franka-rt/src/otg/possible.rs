@@ -50,9 +50,9 @@ impl Possible {
         let mut breaks = Times::<BREAKS>::NONE;
         for (t, rounding) in self.change.crossings().into_iter().flatten() {
             breaks.insert(t);
-            // Whoever follows a plan is here from some point on: both sides end at the target but for rounding, and
-            // going for the rounding could cost a detour. The velocity's is the larger one, so the time is that which
-            // meets the position.
+            // Whoever follows a plan is here from some point on: both sides end at the target but
+            // for rounding, and going for the rounding could cost a detour. The velocity's is the
+            // larger one, so the time is that which meets the position.
             let up = self.up.reach(t);
             let later = -up.beyond / up.rate();
             if later.abs() <= rounding && t + later >= 0.0 {
@@ -158,8 +158,10 @@ impl Size {
 /// Four of the velocity and six turning points of each side.
 const BREAKS: usize = 16;
 
-/// Each break may be a candidate, and between two breaks each side may cross once; behind the last, too.
+/// Each break may be a candidate, and between two breaks each side may cross once; behind the last,
+/// too.
 const FOUND: usize = 48;
 
-/// Possible durations are three intervals at most; what rounding finds twice may take the places that are left.
+/// Possible durations are three intervals at most; what rounding finds twice may take the places
+/// that are left.
 pub(super) const CANDIDATES: usize = 8;

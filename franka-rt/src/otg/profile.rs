@@ -6,9 +6,10 @@ use super::state::AxisState;
 
 /// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
 ///
-/// Positions are kept relative to the start, so that a large offset rounds the result once and not in each
-/// segment. The last three segments of a motion to a target are laid out backwards from the target: it is met
-/// exactly, and what rounding there is lies at full speed, where it is relatively smallest.
+/// Positions are kept relative to the start, so that a large offset rounds the result once and not
+/// in each segment. The last three segments of a motion to a target are laid out backwards from the
+/// target: it is met exactly, and what rounding there is lies at full speed, where it is relatively
+/// smallest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Profile {
     origin: f64,
@@ -72,11 +73,11 @@ impl Profile {
         }
     }
 
-    /// Appends `t` seconds of exactly constant `velocity`, which the segments before lead to but for
-    /// rounding.
+    /// Appends `t` seconds of exactly constant `velocity`, which the segments before lead to but
+    /// for rounding.
     ///
-    /// A cruise may last millions of times longer than the ramps around it: the last bit of an acceleration
-    /// or velocity left from them would grow into a distance.
+    /// A cruise may last millions of times longer than the ramps around it: the last bit of an
+    /// acceleration or velocity left from them would grow into a distance.
     pub(super) fn cruise(&mut self, velocity: f64, t: f64) {
         if t > 0.0 {
             self.front.velocity = velocity;
@@ -92,7 +93,8 @@ impl Profile {
         }
     }
 
-    /// Appends jerks `jerk, 0, -jerk` for the times `t` that lead to `target`, or to as far `beyond` it.
+    /// Appends jerks `jerk, 0, -jerk` for the times `t` that lead to `target`, or to as far
+    /// `beyond` it.
     pub(super) fn lead_to(&mut self, target: AxisState, beyond: f64, jerk: f64, t: [f64; 3]) {
         self.end = target.position;
         self.front = AxisState {
@@ -116,11 +118,11 @@ impl Profile {
         self.end = self.origin + self.front.position;
     }
 
-    /// Becomes the mean of two motions from one state that take equally long, the first one with `weight`, the other
-    /// with the rest to one, and leads to `target`.
+    /// Becomes the mean of two motions from one state that take equally long, the first one with
+    /// `weight`, the other with the rest to one, and leads to `target`.
     ///
-    /// The states of its segments are means of theirs, not sums of what comes before: like theirs they are as exact at
-    /// the end as at the start, and after any cruise.
+    /// The states of its segments are means of theirs, not sums of what comes before: like theirs
+    /// they are as exact at the end as at the start, and after any cruise.
     pub(super) fn mean_of(&mut self, weight: f64, one: &Self, other: &Self, target: AxisState) {
         let mean = |a: f64, b: f64| weight * a + (1.0 - weight) * b;
         self.begin(AxisState {
@@ -217,8 +219,9 @@ impl Profile {
     }
 }
 
-/// Three to brake into the limits, thirteen of the mean of two shapes, four to come to rest behind a target in motion.
-/// A motion that begins with a part of a stop has three less of one shape more: thirteen in all.
+/// Three to brake into the limits, thirteen of the mean of two shapes, four to come to rest behind
+/// a target in motion. A motion that begins with a part of a stop has three less of one shape more:
+/// thirteen in all.
 const MAX_SEGMENTS: usize = 20;
 
 #[cfg(test)]

@@ -11,9 +11,9 @@ pub(super) struct Point {
 
 /// Finds where `function` is zero between two points at which it has different signs.
 ///
-/// Chandrupatla's method: inverse quadratic interpolation where three points allow it, else bisection (T. R.
-/// Chandrupatla, Advances in Engineering Software 28(3), 1997). Ends where a value is at most `close`, where the
-/// bracket is as narrow as `f64` resolves, or after [`MAX_STEPS`].
+/// Chandrupatla's method: inverse quadratic interpolation where three points allow it, else
+/// bisection (T. R. Chandrupatla, Advances in Engineering Software 28(3), 1997). Ends where a value
+/// is at most `close`, where the bracket is as narrow as `f64` resolves, or after [`MAX_STEPS`].
 pub(super) fn root(
     low: Point,
     high: Point,
@@ -52,8 +52,8 @@ fn nearer(a: Point, b: Point) -> Point {
     if a.value.abs() < b.value.abs() { a } else { b }
 }
 
-/// Where between `a` and `b` the root lies, as a fraction, by the parabola through three points if it is
-/// monotone there.
+/// Where between `a` and `b` the root lies, as a fraction, by the parabola through three points if
+/// it is monotone there.
 fn interpolate(a: Point, b: Point, c: Point) -> f64 {
     let (fa, fb, fc) = (a.value, b.value, c.value);
     let xi = (a.at - b.at) / (c.at - b.at);
@@ -66,8 +66,8 @@ fn interpolate(a: Point, b: Point, c: Point) -> f64 {
     }
 }
 
-/// Bound of a search. Bisection alone, to which the method falls back wherever interpolation does not help, needs 53
-/// steps from any bracket within a factor of two of its root; ten are usual.
+/// Bound of a search. Bisection alone, to which the method falls back wherever interpolation does
+/// not help, needs 53 steps from any bracket within a factor of two of its root; ten are usual.
 const MAX_STEPS: usize = 100;
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! How many passes the searches take, for the test that holds them against their ceilings. Nothing outside of tests.
+//! How many passes the searches take, for the test that holds them against their ceilings. Nothing
+//! outside of tests.
 
 #[cfg(test)]
 use core::cell::Cell;

@@ -1,8 +1,8 @@
 //! One axis and its target in units of its own limits.
 //!
-//! Fourth powers of raw quantities would mix fifteen decades. With the acceleration limit and the jerk as
-//! units only the velocity limit is left as a parameter, and positions count from where the axis is, so large
-//! offsets cost nothing.
+//! Fourth powers of raw quantities would mix fifteen decades. With the acceleration limit and the
+//! jerk as units only the velocity limit is left as a parameter, and positions count from where the
+//! axis is, so large offsets cost nothing.
 
 use super::limits::AxisLimits;
 use super::state::AxisState;
@@ -99,6 +99,6 @@ impl Task {
 /// Relative rounding of a position that some ten operations led to.
 pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Bound of distances and velocities in units of the limits, chosen so that no product of the solution
-/// overflows.
+/// Bound of distances and velocities in units of the limits, chosen so that no product of the
+/// solution overflows.
 const FAR: f64 = 1e100;

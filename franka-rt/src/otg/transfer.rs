@@ -1,8 +1,8 @@
 //! Transfers between two velocities, the building block of every profile.
 //!
-//! All in units in which the acceleration limit and the jerk are one: times in `A/J`, velocities in `A^2/J`,
-//! positions in `A^3/J^2`. A transfer that begins and ends without acceleration is point-symmetric, so its
-//! displacement is its mean velocity times its duration.
+//! All in units in which the acceleration limit and the jerk are one: times in `A/J`, velocities in
+//! `A^2/J`, positions in `A^3/J^2`. A transfer that begins and ends without acceleration is
+//! point-symmetric, so its displacement is its mean velocity times its duration.
 
 /// Duration of the transfer over a velocity difference `d >= 0`, from and to zero acceleration.
 pub(super) fn transfer_time(d: f64) -> f64 {
@@ -14,8 +14,8 @@ pub(super) fn transfer_distance(u: f64, w: f64) -> f64 {
     0.5 * (u + w) * transfer_time((w - u).abs())
 }
 
-/// Displacement of the stop from velocity `w >= 0`; also the area `|w - c| * time / 2` of any transfer over
-/// `|w - c|`.
+/// Displacement of the stop from velocity `w >= 0`; also the area `|w - c| * time / 2` of any
+/// transfer over `|w - c|`.
 pub(super) fn stop_distance(w: f64) -> f64 {
     stop_distance_and_slope(w).0
 }
@@ -46,7 +46,8 @@ pub(super) fn stop(v: f64, a: f64) -> (f64, [f64; 3]) {
     let remaining = v + 0.5 * a * a.abs();
     let sign = if remaining > 0.0 { -1.0 } else { 1.0 };
     let (b, d) = (sign * a, -sign * v);
-    // Peak of the acceleration without a hold; at least |b|, since the sign is that of the missing velocity.
+    // Peak of the acceleration without a hold; at least |b|, since the sign is that of the missing
+    // velocity.
     let square = (d + 0.5 * b * b).max(0.0);
     if square <= 1.0 {
         let peak = square.sqrt();

@@ -1,16 +1,18 @@
 //! Leaving a straight line that is faster than its axes on their own.
 //!
-//! Where a budget binds a norm, a line may use all of it, and each axis on its own only a share. The moment a
-//! new target lies off the line the axes must go their own ways, and the one along the line may be outside
-//! its share. Letting it brake while the others already accelerate would exceed the budget: with the jerk of
-//! its share it cannot take its acceleration back in time. So the motion first stays on the line, with the
-//! line's own jerk, until all axes are inside their shares.
+//! Where a budget binds a norm, a line may use all of it, and each axis on its own only a share.
+//! The moment a new target lies off the line the axes must go their own ways, and the one along the
+//! line may be outside its share. Letting it brake while the others already accelerate would exceed
+//! the budget: with the jerk of its share it cannot take its acceleration back in time. So the
+//! motion first stays on the line, with the line's own jerk, until all axes are inside their
+//! shares.
 
 use super::limits::AxisLimits;
 use super::profile::Profile;
 use super::state::AxisState;
 
-/// Lays out the shortest piece of the line after which every axis is inside its share and can stay there.
+/// Lays out the shortest piece of the line after which every axis is inside its share and can stay
+/// there.
 ///
 /// `full` and `shares` limit the parameter of the line, and `start` is inside `full`.
 pub(super) fn lay_out_lead(

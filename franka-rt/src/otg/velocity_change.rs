@@ -1,8 +1,9 @@
 //! When the velocity and the acceleration of a target can be met, wherever the axis is then.
 //!
-//! The position's problem one derivative lower. The velocities that can be reached in one duration are an interval; its
-//! ends are "acceleration up, then down" and the reverse, and the areas under them give the equations. A target that
-//! accelerates cannot be waited for with its acceleration either, so there may be a blocked interval here, too.
+//! The position's problem one derivative lower. The velocities that can be reached in one duration
+//! are an interval; its ends are "acceleration up, then down" and the reverse, and the areas under
+//! them give the equations. A target that accelerates cannot be waited for with its acceleration
+//! either, so there may be a blocked interval here, too.
 
 use super::task::{ROUNDING, Task};
 
@@ -11,8 +12,8 @@ use super::task::{ROUNDING, Task};
 pub(super) struct VelocityChange {
     a0: f64,
     af: f64,
-    /// Square of the acceleration in between, or what takes its place with a hold, that leads to the end's velocity:
-    /// the highest and the lowest.
+    /// Square of the acceleration in between, or what takes its place with a hold, that leads to
+    /// the end's velocity: the highest and the lowest.
     peak: f64,
     valley: f64,
     /// What the change is rounded relative to.
@@ -46,7 +47,8 @@ impl VelocityChange {
             && area(lowest) >= self.valley - tolerance
     }
 
-    /// Where possible durations begin or end, in no order, and what the rounding of velocities makes of them.
+    /// Where possible durations begin or end, in no order, and what the rounding of velocities
+    /// makes of them.
     pub(super) fn crossings(&self) -> [Option<(f64, f64)>; 4] {
         let Self { a0, af, .. } = *self;
         let shortest = (af - a0).abs();
@@ -76,23 +78,25 @@ impl VelocityChange {
     }
 }
 
-/// Area under an acceleration ramp to `x`, held at one for what `x` is more than that: in units of twice the area.
+/// Area under an acceleration ramp to `x`, held at one for what `x` is more than that: in units of
+/// twice the area.
 fn area(x: f64) -> f64 {
     let x = x.abs();
     if x <= 1.0 { x * x } else { 2.0 * x - 1.0 }
 }
 
-/// Velocity that the rounding of the task's velocity may come from: an axis that slows down was faster before. A limit
-/// that is much larger is seldom reached.
+/// Velocity that the rounding of the task's velocity may come from: an axis that slows down was
+/// faster before. A limit that is much larger is seldom reached.
 pub(super) fn typical_velocity(task: &Task) -> f64 {
     task.top.min(1e3)
 }
 
-/// Relative rounding of a state that some thousand plans led to, each from the state that the one before gave. Equal
-/// steps are rounded alike, so what they are rounded by adds up. For the durations at which both farthest motions end
-/// at the target: a motion is there from some point on, and has to stay.
+/// Relative rounding of a state that some thousand plans led to, each from the state that the one
+/// before gave. Equal steps are rounded alike, so what they are rounded by adds up. For the
+/// durations at which both farthest motions end at the target: a motion is there from some point
+/// on, and has to stay.
 pub(super) const DRIFT: f64 = 1024.0 * ROUNDING;
 
-/// Relative rounding of one plan, for all other durations. What is let pass here remains in the state, so it has to be
-/// little of what is let pass there.
+/// Relative rounding of one plan, for all other durations. What is let pass here remains in the
+/// state, so it has to be little of what is let pass there.
 pub(super) const TIGHT: f64 = 16.0 * ROUNDING;

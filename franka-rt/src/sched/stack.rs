@@ -1,18 +1,21 @@
-//! The stack of the thread: how much there is, and how much of it has its pages before the loop starts.
+//! The stack of the thread: how much there is, and how much of it has its pages before the loop
+//! starts.
 
 use core::hint::black_box;
 
-/// Stack touched before the loop starts unless said otherwise, in bytes. A cycle of target control uses some tens of
-/// kilobytes, a control function of the user's whatever it likes.
+/// Stack touched before the loop starts unless said otherwise, in bytes. A cycle of target control
+/// uses some tens of kilobytes, a control function of the user's whatever it likes.
 pub const DEFAULT: usize = 512 * 1024;
 
 /// The most that can be asked for, in bytes. More belongs on the heap, before the loop.
 pub const MAX: usize = 64 * 1024 * 1024;
 
-/// What the thread gets beyond what is touched, in bytes: for frames that only unoptimised builds need.
+/// What the thread gets beyond what is touched, in bytes: for frames that only unoptimised builds
+/// need.
 const RESERVE: usize = 1536 * 1024;
 
-/// What one frame of the walk covers, in bytes: a few pages, so that even the smallest wish is met to the page.
+/// What one frame of the walk covers, in bytes: a few pages, so that even the smallest wish is met
+/// to the page.
 const FRAME: usize = 16 * 1024;
 
 /// Size of a stack of which `touched` bytes are to be touched.
@@ -20,8 +23,8 @@ pub(super) const fn size(touched: usize) -> usize {
     touched + RESERVE
 }
 
-/// Writes to `bytes` of stack below the caller, rounded up to frames. A page that was written to once stays the
-/// thread's: no cycle meets it for the first time.
+/// Writes to `bytes` of stack below the caller, rounded up to frames. A page that was written to
+/// once stays the thread's: no cycle meets it for the first time.
 #[inline(never)]
 pub(super) fn touch(bytes: usize) {
     if bytes == 0 {
@@ -38,7 +41,8 @@ pub(super) fn touch(bytes: usize) {
 mod tests {
     use super::*;
 
-    /// Pages that the calling thread has met for the first time so far: minor faults, field 10 of proc_pid_stat(5).
+    /// Pages that the calling thread has met for the first time so far: minor faults, field 10 of
+    /// proc_pid_stat(5).
     fn faults() -> u64 {
         let stat = std::fs::read_to_string("/proc/thread-self/stat").expect("Linux has /proc");
         let fields = &stat[stat.rfind(')').expect("a name") + 1..];
@@ -46,7 +50,8 @@ mod tests {
         field.and_then(|count| count.parse().ok()).expect("a count")
     }
 
-    /// First meetings with a page while `used` bytes of stack are used, by a thread that has touched `touched` before.
+    /// First meetings with a page while `used` bytes of stack are used, by a thread that has
+    /// touched `touched` before.
     fn faults_of(touched: usize, used: usize) -> u64 {
         let thread = std::thread::Builder::new().stack_size(size(MAX / 16));
         let run = move || {

@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Runs `asked.enter()` in a thread of its own and returns what it got and what `/proc` says of that thread.
+/// Runs `asked.enter()` in a thread of its own and returns what it got and what `/proc` says of
+/// that thread.
 fn entered(asked: Scheduling) -> (Result<Granted, SchedError>, String, String) {
     std::thread::spawn(move || {
         let granted = asked.enter();
@@ -17,7 +18,8 @@ fn entered(asked: Scheduling) -> (Result<Granted, SchedError>, String, String) {
     .expect("entering does not panic")
 }
 
-/// Real-time priority and policy: fields 40 and 41 of proc_pid_stat(5), counted after the parenthesised name.
+/// Real-time priority and policy: fields 40 and 41 of proc_pid_stat(5), counted after the
+/// parenthesised name.
 fn priority_and_policy(stat: &str) -> (i32, i32) {
     let fields: Vec<&str> = stat[stat.rfind(')').expect("a name") + 1..]
         .split_whitespace()

@@ -1,15 +1,16 @@
 //! How a joint may approach a target near the end of its range.
 //!
-//! Towards the end of a joint's range the robot allows less and less speed: the braking parabola of its velocity
-//! envelope, less an offset. A plan that brakes evenly into a target at a distance `room` from that end keeps inside the
-//! envelope if, at every speed `v` of its braking,
+//! Towards the end of a joint's range the robot allows less and less speed: the braking parabola of
+//! its velocity envelope, less an offset. A plan that brakes evenly into a target at a distance
+//! `room` from that end keeps inside the envelope if, at every speed `v` of its braking,
 //!
 //! ```text
 //! (v + offset)^2 / (2 envelope deceleration)  <=  v^2 / (2 plan acceleration) + room
 //! ```
 //!
-//! which is what the envelope needs to stop on the left, and what the plan has on the right. A plan that does not keep to
-//! it brakes more gently: with `acceleration <= deceleration - offset^2 / (2 room)` it holds at every speed. Within some
+//! which is what the envelope needs to stop on the left, and what the plan has on the right. A plan
+//! that does not keep to it brakes more gently: with
+//! `acceleration <= deceleration - offset^2 / (2 room)` it holds at every speed. Within some
 //! milliradians of the end of the range no acceleration does.
 
 use franka_model::limits::JointLimits;
@@ -19,7 +20,8 @@ use crate::otg::AxisLimits;
 /// Speed kept from the envelope, `[rad/s]`: the measured velocity is not quite that of the plan.
 const MARGIN: f64 = 0.02;
 
-/// Least acceleration of a plan, `[rad/s^2]`. A target that asks for a gentler approach is not accepted.
+/// Least acceleration of a plan, `[rad/s^2]`. A target that asks for a gentler approach is not
+/// accepted.
 const GENTLEST: f64 = 0.3;
 
 /// The limits of a plan from `q` to `target`, made gentle enough for the end of the joint's range.
@@ -49,7 +51,8 @@ pub(super) fn limits(
     }
 }
 
-/// The range of targets, `[rad]`, that plans can approach: the joint's own, less a few milliradians.
+/// The range of targets, `[rad]`, that plans can approach: the joint's own, less a few
+/// milliradians.
 pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
     let room = robot.envelope.as_ref().map_or(0.0, |envelope| {
         let offset = envelope.offset[i] + MARGIN;
@@ -66,7 +69,8 @@ fn keeps(deceleration: f64, offset: f64, room: f64, plan: &AxisLimits) -> bool {
     let excess = |v: f64| {
         0.5 * (v + offset) * (v + offset) / deceleration - 0.5 * v * v / plan.acceleration - room
     };
-    // The excess is a parabola in the speed. It is greatest at an end of the interval or, if it opens downwards, here.
+    // The excess is a parabola in the speed. It is greatest at an end of the interval or, if it
+    // opens downwards, here.
     let closest = offset * plan.acceleration / (deceleration - plan.acceleration);
     let inside = closest > 0.0 && closest < plan.velocity;
     excess(0.0) <= 0.0 && excess(plan.velocity) <= 0.0 && !(inside && excess(closest) > 0.0)
@@ -77,7 +81,8 @@ mod tests {
     use super::*;
     use franka_model::{Model, READY};
 
-    /// How close the braking of a plan into `target` comes to the envelope, `[rad/s]`; negative beyond it.
+    /// How close the braking of a plan into `target` comes to the envelope, `[rad/s]`; negative
+    /// beyond it.
     fn clearance(i: usize, target: f64, plan: &AxisLimits) -> f64 {
         let limits = Model::fr3().joint_limits();
         let top = plan.velocity.min(limits.velocity[i] - MARGIN);

@@ -17,11 +17,12 @@ pub enum Backend {
     /// The law of the session, on this host.
     #[default]
     Torques,
-    /// The robot's own controller, which gets the setpoints. Its stiffness is the robot's: see `set_joint_impedance` and
-    /// `set_cartesian_impedance`; the gains of goals are without effect.
+    /// The robot's own controller, which gets the setpoints. Its stiffness is the robot's: see
+    /// `set_joint_impedance` and `set_cartesian_impedance`; the gains of goals are without effect.
     ///
-    /// Setpoints go on from where the robot itself takes them to be: when commands were lost, and the robot went on by
-    /// itself, the reference is put where it went. Its limiter is the backstop.
+    /// Setpoints go on from where the robot itself takes them to be: when commands were lost, and
+    /// the robot went on by itself, the reference is put where it went. Its limiter is the
+    /// backstop.
     RobotController(Setpoints),
 }
 
@@ -32,11 +33,12 @@ pub enum Setpoints {
     Joints,
     /// Poses of the end effector, for its Cartesian impedance controller. Poses only.
     ///
-    /// Each goes with its elbow, the angle of joint 3, which leaves the robot's own inverse kinematics nothing to choose: its
-    /// joints are those of the reference, and keep their limits. A stretched arm is refused, and joint 4 stays on its side of
+    /// Each goes with its elbow, the angle of joint 3, which leaves the robot's own inverse
+    /// kinematics nothing to choose: its joints are those of the reference, and keep their limits.
+    /// A stretched arm is refused, and joint 4 stays on its side of
     /// [`FLIP_ANGLE`]: the robot takes the elbow's side for that of the beginning. Where joint 3 rests while the arm moves about
-    /// its pose, which takes wide turns of the joints 3 and 5, an elbow tells little about the others: there the robot is the
-    /// judge, and [`Self::Joints`] the better choice.
+    /// its pose, which takes wide turns of the joints 3 and 5, an elbow tells little about the
+    /// others: there the robot is the judge, and [`Self::Joints`] the better choice.
     Poses,
 }
 
@@ -85,8 +87,8 @@ impl Backend {
         Ok(())
     }
 
-    /// What it allows the joints of `model`: the elbow that goes with poses has limits of its own, and no backstop stands between
-    /// these joints and the robot.
+    /// What it allows the joints of `model`: the elbow that goes with poses has limits of its own,
+    /// and no backstop stands between these joints and the robot.
     pub(super) fn limited(self, model: &Model) -> Option<Model> {
         if self != Self::RobotController(Setpoints::Poses) {
             return None;
@@ -102,7 +104,8 @@ impl Backend {
         Some(model.clone().with_joint_limits(limits))
     }
 
-    /// The answer that holds the arm: what the robot desires already, or no torques beside its gravity compensation.
+    /// The answer that holds the arm: what the robot desires already, or no torques beside its
+    /// gravity compensation.
     pub(super) fn holding(self, state: &RobotState) -> Answer {
         match self {
             Self::Torques => Answer::Torques(Torques([0.0; 7])),
@@ -125,7 +128,8 @@ fn elbow(q: &JointVector) -> [f64; 2] {
     [q[2], side(q)]
 }
 
-/// On which side of the stretched arm joint 4 is: as [`franka_model::elbow::elbow`], but never neither.
+/// On which side of the stretched arm joint 4 is: as [`franka_model::elbow::elbow`], but never
+/// neither.
 fn side(q: &JointVector) -> f64 {
     if q[3] < FLIP_ANGLE { -1.0 } else { 1.0 }
 }
@@ -133,19 +137,21 @@ fn side(q: &JointVector) -> f64 {
 /// Share of the elbow's velocity that joint 3 may take, where that is less than its own.
 const ELBOW: f64 = 0.95;
 
-/// How far the robot's setpoint may be from the one that it was sent, `[rad]`, for the two to count as the same: more than
-/// its echo is rounded by, and less than any cycle of a motion that matters.
+/// How far the robot's setpoint may be from the one that it was sent, `[rad]`, for the two to count
+/// as the same: more than its echo is rounded by, and less than any cycle of a motion that matters.
 const ECHO: f64 = 2e-6;
 
-/// The same of a pose and an elbow, `[m, rad]`. No backstop limits the joints behind a pose: what is overlooked here comes back
-/// in them as a jerk, at most a fifth of what the gentlest joint may have.
+/// The same of a pose and an elbow, `[m, rad]`. No backstop limits the joints behind a pose: what
+/// is overlooked here comes back in them as a jerk, at most a fifth of what the gentlest joint may
+/// have.
 const POSE_ECHO: f64 = 3e-7;
 
-/// How little the limiter may change a pose and an elbow, `[m, rad]`, for them to count as unchanged: the joints behind them feel
-/// some ten times as much, a jerk of 100 rad/s^3.
+/// How little the limiter may change a pose and an elbow, `[m, rad]`, for them to count as
+/// unchanged: the joints behind them feel some ten times as much, a jerk of 100 rad/s^3.
 const SAME: f64 = 1e-8;
 
-/// Share that is kept of what the limiter lets pass when joints are held back: it is found along a straight line.
+/// Share that is kept of what the limiter lets pass when joints are held back: it is found along a
+/// straight line.
 const EASE: f64 = 0.95;
 
 /// Times that joints are held back anew in a cycle.
@@ -154,8 +160,9 @@ const EASINGS: usize = 3;
 /// Nominal length of a cycle, `[s]`.
 const CYCLE: f64 = 1e-3;
 
-/// Share of the robot's acceleration and jerk that the backstop lets pass: the echo that it limits against is rounded to
-/// `f32` by a Franka Research 3, by up to 0.25 rad/s^2 of what it makes of two positions.
+/// Share of the robot's acceleration and jerk that the backstop lets pass: the echo that it limits
+/// against is rounded to `f32` by a Franka Research 3, by up to 0.25 rad/s^2 of what it makes of
+/// two positions.
 const BACKSTOP: f64 = 0.95;
 
 /// The bounds of the limiter behind the stream.
@@ -191,8 +198,9 @@ impl Stream {
         }
     }
 
-    /// Where the robot takes its setpoint to be, if that is not where `reference` is. Of Cartesian setpoints it is what was
-    /// commanded that is compared, and the robot's own joints that are taken over.
+    /// Where the robot takes its setpoint to be, if that is not where `reference` is. Of Cartesian
+    /// setpoints it is what was commanded that is compared, and the robot's own joints that are
+    /// taken over.
     pub(super) fn echo(
         &self,
         model: &Model,
@@ -212,7 +220,8 @@ impl Stream {
             }
         };
         let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
-        // The robot's velocity is the mean of its last cycle, the reference's that at the end of it.
+        // The robot's velocity is the mean of its last cycle, the reference's that at the end of
+        // it.
         differs.then(|| Reference {
             q,
             dq: dq + ddq * (0.5 * CYCLE),
@@ -220,8 +229,8 @@ impl Stream {
         })
     }
 
-    /// The command for `reference`, and whether the backstop changed it. A command that cannot be shaped, which takes a
-    /// state with numbers that are none, is the robot's own setpoint.
+    /// The command for `reference`, and whether the backstop changed it. A command that cannot be
+    /// shaped, which takes a state with numbers that are none, is the robot's own setpoint.
     pub(super) fn command(
         &mut self,
         model: &Model,
@@ -256,8 +265,9 @@ impl Stream {
 
     /// The pose and elbow of `reference` within the limits of both, and whether that took a change.
     ///
-    /// What the limiter makes of a pose is another one, for which the robot finds other joints, within no limits. So it is the joints
-    /// that are held back, towards where they get without a jerk, by as much as the limiter held back their pose.
+    /// What the limiter makes of a pose is another one, for which the robot finds other joints,
+    /// within no limits. So it is the joints that are held back, towards where they get without a
+    /// jerk, by as much as the limiter held back their pose.
     fn eased(
         &self,
         pose: impl Fn(&JointVector) -> CartesianPose,

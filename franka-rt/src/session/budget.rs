@@ -1,4 +1,5 @@
-//! How fast a goal may be approached: limits per joint, and limits for the norm of translation and rotation.
+//! How fast a goal may be approached: limits per joint, and limits for the norm of translation and
+//! rotation.
 
 use franka_model::Twist;
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
@@ -8,9 +9,9 @@ use crate::otg::AxisLimits;
 
 /// Limits of the reference: how fast the goal is approached.
 ///
-/// A stop, and a goal that comes while the arm moves faster than its budget allows, may use more acceleration and jerk
-/// than the budget has, up to the robot's limits. On the way to a pose each joint may use thrice its velocity, and the
-/// robot's acceleration.
+/// A stop, and a goal that comes while the arm moves faster than its budget allows, may use more
+/// acceleration and jerk than the budget has, up to the robot's limits. On the way to a pose each
+/// joint may use thrice its velocity, and the robot's acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Per joint, `[rad/s, rad/s^2, rad/s^3]`.
@@ -25,8 +26,9 @@ impl Budget {
     /// Share of the robot's joint limits that the default budget uses.
     pub const JOINT_SHARE: f64 = 0.2;
 
-    /// The default budget: a fifth of the robot's joint limits, 0.3 m/s, 0.5 m/s^2, 20 m/s^3 and 0.5 rad/s, 1 rad/s^2,
-    /// 20 rad/s^3. A person beside the arm can follow and stop a motion of this pace.
+    /// The default budget: a fifth of the robot's joint limits, 0.3 m/s, 0.5 m/s^2, 20 m/s^3 and
+    /// 0.5 rad/s, 1 rad/s^2, 20 rad/s^3. A person beside the arm can follow and stop a motion of
+    /// this pace.
     pub fn of(limits: &JointLimits) -> Self {
         Self {
             joints: core::array::from_fn(|i| AxisLimits {
@@ -47,8 +49,8 @@ impl Budget {
         }
     }
 
-    /// The same paths, walked `factor` times as fast: velocities times `factor`, accelerations times its square, jerks
-    /// times its cube.
+    /// The same paths, walked `factor` times as fast: velocities times `factor`, accelerations
+    /// times its square, jerks times its cube.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         let scale = |l: AxisLimits| AxisLimits {
@@ -63,8 +65,8 @@ impl Budget {
         }
     }
 
-    /// The budget with the accelerations and jerks of translation and rotation raised as [`able_to_stop`] does, where a
-    /// motion at `twist` and `acceleration` does not keep them.
+    /// The budget with the accelerations and jerks of translation and rotation raised as
+    /// [`able_to_stop`] does, where a motion at `twist` and `acceleration` does not keep them.
     pub(crate) fn able_to_stop(
         &self,
         twist: &Twist,
@@ -91,8 +93,9 @@ impl Budget {
         }
     }
 
-    /// Limits of the three axes of translation and the three of rotation for a plan from `velocity` along `way`, such
-    /// that even all axes at their limits at once stay inside the budgets of the norms.
+    /// Limits of the three axes of translation and the three of rotation for a plan from `velocity`
+    /// along `way`, such that even all axes at their limits at once stay inside the budgets of the
+    /// norms.
     pub(crate) fn axes(&self, translation: &Leg, rotation: &Leg) -> [AxisLimits; 6] {
         let (t, r) = (translation.shares(), rotation.shares());
         core::array::from_fn(|i| {
@@ -110,19 +113,19 @@ impl Budget {
     }
 }
 
-/// Time in which a motion that leaves its budget, or is to stop, can be brought to rest, `[s]`. A stop from the default
-/// joint velocities within the default joint accelerations takes as long.
+/// Time in which a motion that leaves its budget, or is to stop, can be brought to rest, `[s]`. A
+/// stop from the default joint velocities within the default joint accelerations takes as long.
 const STOP_TIME: f64 = 0.25;
 
 /// Time in which the acceleration of that stop is built up or taken back, `[s]`.
 const RAMP_TIME: f64 = 0.025;
 
-/// `limits`, with acceleration and jerk raised as far as it takes to stop from `velocity` and `acceleration` in about
-/// [`STOP_TIME`], up to the robot's `most`.
+/// `limits`, with acceleration and jerk raised as far as it takes to stop from `velocity` and
+/// `acceleration` in about [`STOP_TIME`], up to the robot's `most`.
 ///
-/// A goal may come, with a budget of its own, while the arm moves faster than that budget allows. Its small acceleration
-/// would then brake over a distance that nobody has asked for, and its small jerk would first let the acceleration of the
-/// motion before it run on.
+/// A goal may come, with a budget of its own, while the arm moves faster than that budget allows.
+/// Its small acceleration would then brake over a distance that nobody has asked for, and its small
+/// jerk would first let the acceleration of the motion before it run on.
 pub(crate) fn able_to_stop(
     limits: AxisLimits,
     velocity: f64,
@@ -153,10 +156,10 @@ pub(crate) struct Leg {
 impl Leg {
     /// The share of a norm budget that each axis gets. The squares sum to 1.
     ///
-    /// A third each would keep the norm, but a motion along one axis would then use 58 % of the budget. So the shares
-    /// follow the way to go: on a straight line each axis gets its part of the line and the line gets the whole
-    /// budget. While the axes move elsewhere, part of it follows the velocity, and part is spread evenly, so that a
-    /// sideways motion can be braked.
+    /// A third each would keep the norm, but a motion along one axis would then use 58 % of the
+    /// budget. So the shares follow the way to go: on a straight line each axis gets its part of
+    /// the line and the line gets the whole budget. While the axes move elsewhere, part of it
+    /// follows the velocity, and part is spread evenly, so that a sideways motion can be braked.
     fn shares(&self) -> Vector3<f64> {
         let (along_way, along_velocity) = if self.is_straight() {
             (0.99, 0.0)

@@ -1,4 +1,5 @@
-//! Checks of a goal where it is accepted, outside the thread: what passes here cannot fail in the cycle.
+//! Checks of a goal where it is accepted, outside the thread: what passes here cannot fail in the
+//! cycle.
 
 use core::time::Duration;
 
@@ -54,8 +55,8 @@ pub enum GoalError {
     /// A stiffness or damping is out of bounds.
     #[error(transparent)]
     Gains(#[from] GainError),
-    /// Gains whose joint springs act only in the null space of the end effector have no spring at the end effector: nothing
-    /// would take the arm to its target.
+    /// Gains whose joint springs act only in the null space of the end effector have no spring at
+    /// the end effector: nothing would take the arm to its target.
     #[error("no spring at the end effector, and those of the joints act in its null space only")]
     Unheld,
     /// A tolerance is not positive.
@@ -105,7 +106,8 @@ pub enum GoalError {
         /// The value given, `[N]`.
         got: f64,
     },
-    /// The robot's state names an end effector that is not a rigid transformation, or a load that is not finite.
+    /// The robot's state names an end effector that is not a rigid transformation, or a load that
+    /// is not finite.
     #[error("the robot's state names an end effector or a load that cannot be")]
     Tool,
 }
@@ -220,7 +222,8 @@ fn check_joints(q: &[f64; 7], model: &Model, state: &RobotState) -> Result<(), G
         if !got.is_finite() {
             return Err(GoalError::NotFinite);
         }
-        // An arm that stands nearer to the end of its range than it could go may stay there, or leave.
+        // An arm that stands nearer to the end of its range than it could go may stay there, or
+        // leave.
         let (lower, upper) = approach::range(i, limits);
         let stands = state.q[i].clamp(limits.lower[i], limits.upper[i]);
         let (lower, upper) = (lower.min(stands), upper.max(stands));

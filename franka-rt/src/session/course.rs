@@ -51,8 +51,8 @@ impl Step {
 impl Course {
     /// Turns towards a new goal from wherever the reference is and however it moves.
     ///
-    /// Goals are checked where they are accepted, so planning cannot fail but by a defect; the course then goes on to
-    /// where it was heading, which is safe and ends short of the goal.
+    /// Goals are checked where they are accepted, so planning cannot fail but by a defect; the
+    /// course then goes on to where it was heading, which is safe and ends short of the goal.
     pub(super) fn head_for(
         &mut self,
         model: &Model,
@@ -113,7 +113,8 @@ impl Course {
         Ok(())
     }
 
-    /// How the pose moves, and what is left of motions before it: what a course begins with that goes on over poses.
+    /// How the pose moves, and what is left of motions before it: what a course begins with that
+    /// goes on over poses.
     pub(super) fn pose(
         &self,
         model: &Model,
@@ -204,7 +205,8 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
     })
 }
 
-/// What a plan for the joints from the reference to `target`, or to rest in the least time, begins with, and its limits.
+/// What a plan for the joints from the reference to `target`, or to rest in the least time, begins
+/// with, and its limits.
 fn joints(
     model: &Model,
     reference: &Reference,
@@ -227,9 +229,9 @@ fn joints(
     Ok((state, Limits::per_axis(limits)?))
 }
 
-/// The limits of one joint's plan: those of the budget (and of `robot`, if they are narrower: a backend may allow less than the
-/// robot does), unless the joint moves and is only to stop, keeps another budget
-/// than this one, or would stop too late for the end of its range.
+/// The limits of one joint's plan: those of the budget (and of `robot`, if they are narrower: a
+/// backend may allow less than the robot does), unless the joint moves and is only to stop, keeps
+/// another budget than this one, or would stop too late for the end of its range.
 pub(super) fn limits_of_joint(
     i: usize,
     robot: &JointLimits,
@@ -253,7 +255,8 @@ pub(super) fn limits_of_joint(
     } else {
         q - robot.lower[i]
     };
-    // Twice the even deceleration to the end of the range: part of the way goes by while it is built up.
+    // Twice the even deceleration to the end of the range: part of the way goes by while it is
+    // built up.
     let last_moment = dq * dq > limits.acceleration * room;
     if stop || last_moment || !budget::keeps(&limits, dq, ddq) {
         let deceleration = if last_moment {

@@ -1,4 +1,5 @@
-//! A token that has to be kept alive, so that an arm does not go on for somebody who is no longer there.
+//! A token that has to be kept alive, so that an arm does not go on for somebody who is no longer
+//! there.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
@@ -7,11 +8,12 @@ use std::sync::Arc;
 /// Stands in the counter once the token is gone.
 const GONE: u64 = u64::MAX;
 
-/// The token: whoever holds it has to show life more often than every `silence`. Otherwise, and once it is dropped, the arm
-/// that is bound to it brakes and holds, and every goal ends as held, until there is life again. A token that was dropped
-/// never comes back.
+/// The token: whoever holds it has to show life more often than every `silence`. Otherwise, and
+/// once it is dropped, the arm that is bound to it brakes and holds, and every goal ends as held,
+/// until there is life again. A token that was dropped never comes back.
 ///
-/// The control thread watches it by the robot's clock, whatever the rest of the program is busy with.
+/// The control thread watches it by the robot's clock, whatever the rest of the program is busy
+/// with.
 #[derive(Debug)]
 pub struct Deadman {
     beats: Arc<AtomicU64>,
@@ -28,7 +30,8 @@ pub struct Grip {
 }
 
 impl Deadman {
-    /// A token that may be silent for so long, in whole milliseconds, and what a session is bound to it by.
+    /// A token that may be silent for so long, in whole milliseconds, and what a session is bound
+    /// to it by.
     pub fn new(silence: Duration) -> (Self, Grip) {
         let beats = Arc::new(AtomicU64::new(0));
         let token = Self {
@@ -68,7 +71,8 @@ impl Grip {
         self.silence
     }
 
-    /// Whether the token lives at the robot's time `now`, `[ms]`. Its silence counts from the first call on.
+    /// Whether the token lives at the robot's time `now`, `[ms]`. Its silence counts from the first
+    /// call on.
     pub(super) fn is_alive(&mut self, now: u64) -> bool {
         let beats = self.beats.load(Ordering::Relaxed);
         let since = match self.seen {

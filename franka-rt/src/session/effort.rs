@@ -1,4 +1,5 @@
-//! From a reference to torques: the law, then the guards of the torques, then what the robot accepts.
+//! From a reference to torques: the law, then the guards of the torques, then what the robot
+//! accepts.
 //!
 //! ```text
 //! springs and dampers -> clamp -> force cap -> + coriolis + M ddq_ref -> velocity barrier -> robot's range -> low-pass -> rate
@@ -28,8 +29,9 @@ pub(super) struct Effort {
 
 /// The acceleration that the arm is given the torque for.
 ///
-/// At the leash the reference goes where the arm is pushed, and its acceleration is that of the joints' bounds: torques for
-/// it would push back. There it fades, and comes back with the time for which the reference has been free.
+/// At the leash the reference goes where the arm is pushed, and its acceleration is that of the
+/// joints' bounds: torques for it would push back. There it fades, and comes back with the time for
+/// which the reference has been free.
 #[derive(Debug)]
 struct Inertia {
     /// `[rad/s^2]`.
@@ -56,7 +58,8 @@ impl Inertia {
 /// Cycles of a free reference after which its whole acceleration counts again.
 const RETURN: u32 = 300;
 
-/// Share of the way to its new value that the acceleration goes in a cycle meanwhile: it fades in about ten.
+/// Share of the way to its new value that the acceleration goes in a cycle meanwhile: it fades in
+/// about ten.
 const FADE: f64 = 0.1;
 
 impl Effort {
@@ -77,7 +80,8 @@ impl Effort {
         self.fade.towards(Tuning::new(&goal.gains, goal.force_cap));
     }
 
-    /// The torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and velocities.
+    /// The torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
+    /// velocities.
     pub(super) fn step(
         &mut self,
         reference: &Reference,
@@ -110,7 +114,8 @@ impl Effort {
             }
             _ => (tau, false),
         };
-        // What the motion itself takes stays outside the clamp and the cap, which are for the interaction.
+        // What the motion itself takes stays outside the clamp and the cap, which are for the
+        // interaction.
         let leashed = bindings.contains(Guard::Leash);
         let acceleration = self.inertia.step(&reference.ddq, leashed);
         let inertial = dynamics.mass * (acceleration * tuning.feedforward);

@@ -10,7 +10,8 @@ use crate::otg::AxisLimits;
 use crate::session::{Budget, DEFAULT_FORCE_CAP, Lead};
 use crate::slot::Words;
 
-/// Names one goal for the life of a connection. Updates of a followed target keep the name of the goal they belong to.
+/// Names one goal for the life of a connection. Updates of a followed target keep the name of the
+/// goal they belong to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GoalId(pub u64);
@@ -18,14 +19,15 @@ pub struct GoalId(pub u64);
 /// Where to go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// To rest, over the joints, in about a quarter of a second and under the robot's jerk limit, however gentle the goal's
-    /// budget is.
+    /// To rest, over the joints, in about a quarter of a second and under the robot's jerk limit,
+    /// however gentle the goal's budget is.
     Rest,
     /// To joint positions, `[rad]`.
     Joints([f64; 7]),
     /// To a pose of the end effector in the base frame, `O_T_EE`, metres.
     Pose(Isometry3<f64>),
-    /// Wherever a hand takes it: the reference goes with the arm along the free axes, and stays on the others.
+    /// Wherever a hand takes it: the reference goes with the arm along the free axes, and stays on
+    /// the others.
     Guide(Free),
 }
 
@@ -105,7 +107,8 @@ impl Default for Tolerance {
 pub struct Watchdog {
     /// How long nothing may come, by the robot's clock in whole milliseconds.
     pub silence: Duration,
-    /// What the arm does then. The motion ends once it rests, unless its session goes from goal to goal.
+    /// What the arm does then. The motion ends once it rests, unless its session goes from goal to
+    /// goal.
     pub stale: Stale,
 }
 
@@ -140,8 +143,8 @@ pub struct Goal {
     pub force_cap: Option<f64>,
     /// How far ahead of the arm its target may be.
     pub lead: Option<Lead>,
-    /// How often it was asked for something else, or for the same again: a target, an end. One that comes with the same
-    /// number was only tuned, which is no sign of life of a stream.
+    /// How often it was asked for something else, or for the same again: a target, an end. One that
+    /// comes with the same number was only tuned, which is no sign of life of a stream.
     pub revision: u64,
 }
 
@@ -149,8 +152,9 @@ impl Goal {
     /// Shortest silence that a watchdog or a deadman may be set to.
     pub const SILENCE_MIN: Duration = Duration::from_millis(10);
 
-    /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on the way to joint
-    /// positions and the end effector compliant otherwise, the default tolerance, and [`DEFAULT_FORCE_CAP`].
+    /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on
+    /// the way to joint positions and the end effector compliant otherwise, the default tolerance,
+    /// and [`DEFAULT_FORCE_CAP`].
     pub fn new(id: GoalId, target: Target, then: Then, limits: &JointLimits) -> Self {
         Self {
             id,
@@ -170,7 +174,8 @@ impl Goal {
         }
     }
 
-    /// The goal, taken back: the arm comes to rest. One that a hand has guided is held as others are.
+    /// The goal, taken back: the arm comes to rest. One that a hand has guided is held as others
+    /// are.
     pub(crate) fn at_rest(&self, then: Then) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),
@@ -185,8 +190,9 @@ impl Goal {
     }
 }
 
-/// Name, revision, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of budget, the gains, 2 of
-/// tolerance, the force cap (none is no number), 3 of the lead, which are zero where there is none.
+/// Name, revision, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of
+/// budget, the gains, 2 of tolerance, the force cap (none is no number), 3 of the lead, which are
+/// zero where there is none.
 impl Words for Goal {
     const WORDS: usize = 6 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
 

@@ -12,8 +12,8 @@ use crate::otg::{Generator, State};
 /// Cycles over which the spring of the goal before is let go.
 const LET_GO: u32 = 300;
 
-/// Square of the damping in the inverse of the Jacobian. It bounds the offset of a joint near a singular posture to some
-/// fifty times that of the end effector.
+/// Square of the damping in the inverse of the Jacobian. It bounds the offset of a joint near a
+/// singular posture to some fifty times that of the end effector.
 const SQUARED_DAMPING: f64 = 1e-4;
 
 /// Brings the reference to rest, then lets it go.
@@ -64,7 +64,8 @@ impl Guide {
         }
     }
 
-    /// One nominal millisecond on; tells whether something pushed the arm off what stays, by more than the leash.
+    /// One nominal millisecond on; tells whether something pushed the arm off what stays, by more
+    /// than the leash.
     pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> (Reference, bool) {
         let begun = match &mut self.stage {
             Stage::Braking(generator) if !generator.is_done() => {
@@ -164,7 +165,8 @@ impl Floating {
     }
 }
 
-/// The damped inverse of the Jacobian: the smallest change of the joints for one of the end effector.
+/// The damped inverse of the Jacobian: the smallest change of the joints for one of the end
+/// effector.
 struct Inverse(Option<nalgebra::Cholesky<f64, nalgebra::U6>>);
 
 impl Inverse {

@@ -1,4 +1,5 @@
-//! From a moving pose to moving joints: one step of differential inverse kinematics, inside the joints' bounds.
+//! From a moving pose to moving joints: one step of differential inverse kinematics, inside the
+//! joints' bounds.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox, Side};
 use franka_model::limits::JointLimits;
@@ -14,9 +15,9 @@ const CYCLE: f64 = 1e-3;
 /// Share of each joint's velocity limit that the reference may use.
 const VELOCITY_CAP: f64 = 0.7;
 
-/// How much faster than its budget a joint may move for the sake of a pose. On a straight line near a singular posture
-/// joints have to turn fast while the hand hardly moves, which nobody beside the arm expects. At 2 an arm that stretches
-/// at the default pace is held back needlessly.
+/// How much faster than its budget a joint may move for the sake of a pose. On a straight line near
+/// a singular posture joints have to turn fast while the hand hardly moves, which nobody beside the
+/// arm expects. At 2 an arm that stretches at the default pace is held back needlessly.
 const HASTE: f64 = 3.0;
 
 /// Share of each joint's acceleration limit that the reference may use.
@@ -28,27 +29,29 @@ const JERK_CAP: f64 = 0.9;
 /// Distance kept from the ends of each joint's range, `[rad]`.
 const POSITION_MARGIN: f64 = 0.05;
 
-/// Deceleration, `[rad/s^2]`, with which a joint has to be able to stop before that margin. Less than half of what the
-/// robot's velocity envelope reckons with at joint 2, its gentlest (2.585): the arm is a spring behind the reference and
-/// swings past it where it slows down.
+/// Deceleration, `[rad/s^2]`, with which a joint has to be able to stop before that margin. Less
+/// than half of what the robot's velocity envelope reckons with at joint 2, its gentlest (2.585):
+/// the arm is a spring behind the reference and swings past it where it slows down.
 const BRAKING: f64 = 1.2;
 
-/// Rate, `[1/s]`, at which an error between the joints and the pose that they follow dies out. It is fed only by
-/// rounding and by bounds that bound; a faster rate would turn those into jerks.
+/// Rate, `[1/s]`, at which an error between the joints and the pose that they follow dies out. It
+/// is fed only by rounding and by bounds that bound; a faster rate would turn those into jerks.
 const FEEDBACK: f64 = 100.0;
 
-/// Rate, `[1/s]`, at which the free direction of the arm returns to the posture where the motion began.
+/// Rate, `[1/s]`, at which the free direction of the arm returns to the posture where the motion
+/// began.
 const POSTURE: f64 = 1.0;
 
-/// Speed of the end effector, `[m/s]`, from which on the posture is followed at the full rate. It fades with the
-/// speed, so that an arm at its target rests.
+/// Speed of the end effector, `[m/s]`, from which on the posture is followed at the full rate. It
+/// fades with the speed, so that an arm at its target rests.
 const POSTURE_SPEED: f64 = 0.1;
 
-/// Time, `[s]`, in which a motion of the arm's free direction fades that a pose takes over from joints.
+/// Time, `[s]`, in which a motion of the arm's free direction fades that a pose takes over from
+/// joints.
 const FADE: f64 = 0.3;
 
-/// What is left of a motion over the joints that a pose has taken over: its part in the arm's free direction, which the
-/// pose says nothing about. It fades; dropped at once it would step.
+/// What is left of a motion over the joints that a pose has taken over: its part in the arm's free
+/// direction, which the pose says nothing about. It fades; dropped at once it would step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drift {
     velocity: JointVector,
@@ -87,7 +90,8 @@ impl Held {
     }
 }
 
-/// Moves the joints of `reference` towards `pose` for one cycle, and tells which bounds held them back.
+/// Moves the joints of `reference` towards `pose` for one cycle, and tells which bounds held them
+/// back.
 pub(super) fn follow(
     model: &Model,
     ee: &EndEffector,
@@ -101,7 +105,8 @@ pub(super) fn follow(
     let now = rigid(&now);
     let offset = pose.pose.translation.vector - now.translation.vector;
     let turn = rotation::error(&pose.pose.rotation, &now.rotation);
-    // What the pose itself moves by in this cycle is no error. Counted as one, it would kick whatever begins to follow it.
+    // What the pose itself moves by in this cycle is no error. Counted as one, it would kick
+    // whatever begins to follow it.
     let error =
         Twist::new(offset.x, offset.y, offset.z, turn.x, turn.y, turn.z) - pose.twist * CYCLE;
     let twist = pose.twist + error * FEEDBACK;
@@ -134,8 +139,8 @@ pub(super) fn follow(
     }
     let dq = solution.velocity;
     let next = Reference {
-        // As a plan of the joints goes on, which may have come before: a robot differences positions, and would take another rule
-        // for half of the acceleration in one cycle.
+        // As a plan of the joints goes on, which may have come before: a robot differences
+        // positions, and would take another rule for half of the acceleration in one cycle.
         q: reference.q + (reference.dq + dq) * (0.5 * CYCLE),
         dq,
         ddq: (dq - reference.dq) / CYCLE,
@@ -145,9 +150,9 @@ pub(super) fn follow(
 
 /// Velocities open to a joint in the next cycle.
 ///
-/// It keeps below its cap and able to stop before the end of its range, and it comes there with an acceleration that
-/// can be taken back in time. Where the bounds contradict each other jerk wins over acceleration, and both over velocity
-/// and position: they are what the robot feels at once.
+/// It keeps below its cap and able to stop before the end of its range, and it comes there with an
+/// acceleration that can be taken back in time. Where the bounds contradict each other jerk wins
+/// over acceleration, and both over velocity and position: they are what the robot feels at once.
 #[derive(Clone, Copy, Debug)]
 struct Interval {
     lower: Bound,
@@ -202,11 +207,12 @@ impl Interval {
     }
 }
 
-/// The greatest acceleration of the next cycle, `[rad/s^2]`, after which a velocity that has `room` left, `[rad/s]`, does
-/// not exceed its bound, if the acceleration then falls by `ramp` a cycle. Without room, the one that brings it back.
+/// The greatest acceleration of the next cycle, `[rad/s^2]`, after which a velocity that has `room`
+/// left, `[rad/s]`, does not exceed its bound, if the acceleration then falls by `ramp` a cycle.
+/// Without room, the one that brings it back.
 ///
-/// From an acceleration between `n` and `n + 1` ramps it takes `n` cycles to the last one that still accelerates, and
-/// `(n + 1) a - n (n + 1) / 2 ramp` is what all of them add up to.
+/// From an acceleration between `n` and `n + 1` ramps it takes `n` cycles to the last one that
+/// still accelerates, and `(n + 1) a - n (n + 1) / 2 ramp` is what all of them add up to.
 fn fastest(room: f64, ramp: f64) -> f64 {
     let rate = room / CYCLE;
     if rate <= 0.0 {
@@ -216,8 +222,8 @@ fn fastest(room: f64, ramp: f64) -> f64 {
     (rate + ramp * n * (n + 1.0) / 2.0) / (n + 1.0)
 }
 
-/// The same below a bound that falls with the deceleration of a joint that stops. At the bound the joint need not slow
-/// down before it moves.
+/// The same below a bound that falls with the deceleration of a joint that stops. At the bound the
+/// joint need not slow down before it moves.
 fn towards_stop(room: f64, ramp: f64) -> f64 {
     (fastest(room, ramp) - BRAKING).max((room / CYCLE).min(0.0))
 }

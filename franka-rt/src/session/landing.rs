@@ -13,7 +13,8 @@ pub(super) const REST_VELOCITY: f64 = 0.01;
 /// Time that the arm gets to settle once its reference has arrived.
 pub const SETTLE_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Cycles that the arm has to stay at the target and at rest: a swing through the target does not count.
+/// Cycles that the arm has to stay at the target and at rest: a swing through the target does not
+/// count.
 const HOLD_AT_TARGET: u64 = 250;
 
 /// The same for coming to rest without a target.
@@ -86,7 +87,8 @@ impl Landing {
             None if self.held >= HOLD_AT_REST => Settlement::AtRest,
             Some(error) if self.held >= HOLD_AT_TARGET => Settlement::Arrived(error),
             _ if u128::from(self.cycles) < SETTLE_TIMEOUT.as_millis() => return Verdict::Settling,
-            // An arm that does not rest after all this time is being moved by somebody: the reference rests.
+            // An arm that does not rest after all this time is being moved by somebody: the
+            // reference rests.
             None => Settlement::AtRest,
             Some(error) => Settlement::Short(error),
         };
@@ -94,8 +96,9 @@ impl Landing {
     }
 }
 
-/// Lets the spring go: the reference goes to where the arm was, so that the motion ends without a step in torque. An arm whose
-/// load is not what was declared still hangs on the spring then, and does not fall.
+/// Lets the spring go: the reference goes to where the arm was, so that the motion ends without a
+/// step in torque. An arm whose load is not what was declared still hangs on the spring then, and
+/// does not fall.
 #[derive(Debug)]
 pub(super) struct Release {
     arm: JointVector,

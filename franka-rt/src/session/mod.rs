@@ -1,16 +1,18 @@
-//! Target control: goals in, one continuous joint-space reference and the torques that follow it out.
+//! Target control: goals in, one continuous joint-space reference and the torques that follow it
+//! out.
 //!
 //! ```text
 //! goal slot -> lead -> course (joint generator | pose generator -> inverse kinematics) -> clearance -> leash -> law
 //!           -> shaping -> torques
 //! ```
 //!
-//! The state of a session is a joint reference `q, dq, ddq`. A course moves it: over seven joints for joint goals and
-//! for braking, over three axes of translation and three of rotation for poses. When the kind of goal changes, the new
-//! course starts from the position, velocity and acceleration of the reference, so nothing steps.
+//! The state of a session is a joint reference `q, dq, ddq`. A course moves it: over seven joints
+//! for joint goals and for braking, over three axes of translation and three of rotation for poses.
+//! When the kind of goal changes, the new course starts from the position, velocity and
+//! acceleration of the reference, so nothing steps.
 //!
-//! A goal that is to finish passes through the stages of `Stage`: under way, landing, releasing, finished. A newer
-//! goal takes the session back under way from any of them but the last.
+//! A goal that is to finish passes through the stages of `Stage`: under way, landing, releasing,
+//! finished. A newer goal takes the session back under way from any of them but the last.
 
 mod active;
 mod approach;
@@ -61,14 +63,15 @@ pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT};
 
 use active::Active;
 
-/// Time for which something may hold the course back: an obstacle by the leash, or the joints' bounds. A goal that is to
-/// finish and has not got on by then is braked, and lands where it is.
+/// Time for which something may hold the course back: an obstacle by the leash, or the joints'
+/// bounds. A goal that is to finish and has not got on by then is braked, and lands where it is.
 pub const STALL_TIMEOUT: Duration = SETTLE_TIMEOUT;
 
 /// What a session reports of its goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SessionEvent {
-    /// A goal that was to finish has come to its end; the session releases the arm unless a newer goal comes.
+    /// A goal that was to finish has come to its end; the session releases the arm unless a newer
+    /// goal comes.
     Settled {
         /// The goal.
         goal: GoalId,
@@ -77,8 +80,8 @@ pub enum SessionEvent {
         /// Time from the first cycle that saw the goal to the arrival, `[ms]` of the robot's clock.
         duration_ms: u64,
     },
-    /// The robot's state names an end effector that is not a rigid transformation, or a load that is not finite; the
-    /// session ends without a torque.
+    /// The robot's state names an end effector that is not a rigid transformation, or a load that
+    /// is not finite; the session ends without a torque.
     BadTool,
 }
 
@@ -89,7 +92,8 @@ pub enum Settlement {
     Arrived(PoseError),
     /// At rest where it was braked.
     AtRest,
-    /// The reference reached the target, the arm did not: something holds it, or its load is not what was declared.
+    /// The reference reached the target, the arm did not: something holds it, or its load is not
+    /// what was declared.
     Short(PoseError),
     /// Given up, and held: at the last target, or where it came to rest without its deadman.
     Held(Lapse),
@@ -111,10 +115,11 @@ pub enum Lapse {
     },
     /// The [`Deadman`] that the session is bound to fell silent, or was dropped.
     Deadman,
-    /// Something pushed the arm off its way by more than it is to swing back by itself: [`TRANSLATION_DEVIATION`],
-    /// [`ROTATION_DEVIATION`], [`JOINT_DEVIATION`].
+    /// Something pushed the arm off its way by more than it is to swing back by itself:
+    /// [`TRANSLATION_DEVIATION`], [`ROTATION_DEVIATION`], [`JOINT_DEVIATION`].
     CarriedOff,
-    /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`] and [`KEEP_OUT_STOP`].
+    /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`]
+    /// and [`KEEP_OUT_STOP`].
     Blocked,
 }
 
@@ -177,8 +182,8 @@ pub struct TargetSession {
 }
 
 impl TargetSession {
-    /// A session that follows the goals written to `goals`, for a robot that speaks `version`. The first goal has to be
-    /// there before the session runs.
+    /// A session that follows the goals written to `goals`, for a robot that speaks `version`. The
+    /// first goal has to be there before the session runs.
     pub fn new(model: Arc<Model>, version: Version, goals: SlotReader<Goal>) -> Self {
         Self {
             model,
@@ -195,17 +200,19 @@ impl TargetSession {
         }
     }
 
-    /// Holds the arm where a goal was given up that was to be held, until a newer one comes. By default the session ends
-    /// then.
+    /// Holds the arm where a goal was given up that was to be held, until a newer one comes. By
+    /// default the session ends then.
     #[must_use]
     pub fn going_on(mut self) -> Self {
         self.afterwards = Then::Stay;
         self
     }
 
-    /// Keeps the arm out of these regions; by default there are none. It always keeps clear of itself.
+    /// Keeps the arm out of these regions; by default there are none. It always keeps clear of
+    /// itself.
     ///
-    /// What is on the flange counts as the vendor's Hand if the robot knows of an end effector with a mass.
+    /// What is on the flange counts as the vendor's Hand if the robot knows of an end effector with
+    /// a mass.
     #[must_use]
     pub fn out_of(mut self, regions: KeepOut) -> Self {
         self.keep_out = regions;
@@ -231,9 +238,10 @@ impl TargetSession {
 
     /// Lets the session take up chunks.
     ///
-    /// The newest chunk of the goal in force moves the arm, whatever the goal's own target is; where it ends the arm rests,
-    /// and what follows the arrival does. Send the first chunk before its goal is written, and the arm does not set out for
-    /// the goal's target: [`Target::Rest`] suits most.
+    /// The newest chunk of the goal in force moves the arm, whatever the goal's own target is;
+    /// where it ends the arm rests, and what follows the arrival does. Send the first chunk before
+    /// its goal is written, and the arm does not set out for the goal's target: [`Target::Rest`]
+    /// suits most.
     #[must_use]
     pub fn with_chunks(mut self, chunks: ChunkReader) -> Self {
         self.chunks = Some(chunks);
@@ -253,7 +261,8 @@ impl TargetSession {
         self.follow(newer, state, record)
     }
 
-    /// Whether the goal that waits for its common start has been taken back, or another one has come in its place.
+    /// Whether the goal that waits for its common start has been taken back, or another one has
+    /// come in its place.
     pub(crate) fn is_withdrawn(&mut self) -> bool {
         let Some(goal) = self.read() else {
             return false;
@@ -273,7 +282,8 @@ impl TargetSession {
         self.follow(rest, state, record)
     }
 
-    /// Answers one state of a goal whose common start has failed: lands where the arm is held, unless another goal comes.
+    /// Answers one state of a goal whose common start has failed: lands where the arm is held,
+    /// unless another goal comes.
     pub(crate) fn give_up(
         &mut self,
         fault: StartFault,
@@ -294,7 +304,8 @@ impl TargetSession {
     fn read(&mut self) -> Option<Goal> {
         match self.goals.read_newer() {
             Read::Newer(goal) => Some(goal),
-            // A torn read keeps the previous goal for this cycle; the next cycle sees the new one whole.
+            // A torn read keeps the previous goal for this cycle; the next cycle sees the new one
+            // whole.
             Read::Same | Read::Torn => None,
         }
     }
@@ -360,8 +371,8 @@ impl TargetSession {
     }
 }
 
-/// The end effector and stiffness frame that a state names, orthonormalised, as protocol 10 rounds them to `f32`. `None`
-/// if one of them is not a rigid transformation.
+/// The end effector and stiffness frame that a state names, orthonormalised, as protocol 10 rounds
+/// them to `f32`. `None` if one of them is not a rigid transformation.
 fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
     let rigid = |column_major| {
         transform::isometry_from_array(column_major).map(|pose| transform::matrix(&pose))
@@ -372,7 +383,8 @@ fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
     })
 }
 
-/// The load of end effector and payload together that a state names. `None` if a number of it is not finite.
+/// The load of end effector and payload together that a state names. `None` if a number of it is
+/// not finite.
 fn load_of(state: &RobotState) -> Option<Load> {
     let total = state.total_load();
     let numbers = [&[total.m_total][..], &total.F_x_Ctotal, &total.I_total];
@@ -384,7 +396,8 @@ fn load_of(state: &RobotState) -> Option<Load> {
     })
 }
 
-/// A pose of the model as an isometry. The model's poses are products of rotations, so nothing is left to orthonormalise.
+/// A pose of the model as an isometry. The model's poses are products of rotations, so nothing is
+/// left to orthonormalise.
 fn rigid(pose: &Matrix4<f64>) -> Isometry3<f64> {
     let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
     Isometry3::from_parts(

@@ -1,9 +1,12 @@
-//! The generator of end-effector poses: three axes of translation, three of rotation, one synchronised plan.
+//! The generator of end-effector poses: three axes of translation, three of rotation, one
+//! synchronised plan.
 //!
-//! The orientation is generated in a chart around the orientation where the plan began, `R = exp(phi) R_anchor`, so
-//! that a rotation from rest turns about one fixed axis. Rotation vector and angular velocity are related by the left
-//! Jacobian of the rotation group, `omega = J(phi) phi'`; at `phi = 0` it is the identity and has no influence on the
-//! acceleration either. So a plan that begins in motion is seeded exactly by re-anchoring the chart where it begins.
+//! The orientation is generated in a chart around the orientation where the plan began,
+//! `R = exp(phi) R_anchor`, so that a rotation from rest turns about one fixed axis. Rotation
+//! vector and angular velocity are related by the left Jacobian of the rotation group,
+//! `omega = J(phi) phi'`; at `phi = 0` it is the identity and has no influence on the acceleration
+//! either. So a plan that begins in motion is seeded exactly by re-anchoring the chart where it
+//! begins.
 
 use franka_model::Twist;
 use franka_model::limits::CartesianLimits;
@@ -56,11 +59,12 @@ pub(crate) struct PoseGenerator {
 }
 
 impl PoseGenerator {
-    /// Begins at `start` and heads for `target` within `budget`. A start that moves faster than the budget allows is braked
-    /// with more than the budget's acceleration, up to the robot's `most`.
+    /// Begins at `start` and heads for `target` within `budget`. A start that moves faster than the
+    /// budget allows is braked with more than the budget's acceleration, up to the robot's `most`.
     ///
     /// # Errors
-    /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause one.
+    /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause
+    /// one.
     pub(crate) fn new(
         start: &PoseState,
         target: Isometry3<f64>,
@@ -169,8 +173,8 @@ impl PoseGenerator {
     }
 }
 
-/// What a plan for the six axes begins with, its limits and its target, with the chart anchored at the orientation of
-/// `start`.
+/// What a plan for the six axes begins with, its limits and its target, with the chart anchored at
+/// the orientation of `start`.
 fn plan(
     start: &PoseState,
     target: &Isometry3<f64>,

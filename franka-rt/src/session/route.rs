@@ -28,7 +28,8 @@ pub(super) struct Route {
     pub(super) course: Course,
     clearance: Clearance,
     pace: Pace,
-    /// Whether the pace is another one since the last step. The plan for it is made in the cycle after.
+    /// Whether the pace is another one since the last step. The plan for it is made in the cycle
+    /// after.
     repaced: bool,
     /// Cycles for which it still counts as hindered.
     hindered: u32,
@@ -48,7 +49,8 @@ enum Pace {
     Braked(u32),
 }
 
-/// Joint velocity, `[rad/s]`, that a reference may be put to rest from at once: 0.1 rad/s^2 in one cycle.
+/// Joint velocity, `[rad/s]`, that a reference may be put to rest from at once: 0.1 rad/s^2 in one
+/// cycle.
 const AT_REST: f64 = 1e-4;
 
 impl Route {
@@ -77,7 +79,8 @@ impl Route {
         self.course.head_for(model, ee, reference, &paced);
     }
 
-    /// Follows a chunk towards its end, `goal`. What was near stays near for now. Gives back the chunk before it.
+    /// Follows a chunk towards its end, `goal`. What was near stays near for now. Gives back the
+    /// chunk before it.
     pub(super) fn follow(
         &mut self,
         model: &Model,
@@ -117,7 +120,8 @@ impl Route {
         }
     }
 
-    /// The goal at the pace that what is near allows; one that was braked before something sets out slowly.
+    /// The goal at the pace that what is near allows; one that was braked before something sets out
+    /// slowly.
     fn paced(&mut self, goal: &Goal) -> Goal {
         self.repaced = false;
         if matches!(self.pace, Pace::Braked(_)) {
@@ -130,7 +134,8 @@ impl Route {
         }
     }
 
-    /// A goal that begins with a brake, which is to be no longer than the one that was seen to be clear.
+    /// A goal that begins with a brake, which is to be no longer than the one that was seen to be
+    /// clear.
     fn braking(&self, goal: &Goal) -> Goal {
         let mut budget = goal.budget;
         for (joint, judged) in budget.joints.iter_mut().zip(&self.judged.joints) {
@@ -141,7 +146,8 @@ impl Route {
         Goal { budget, ..*goal }
     }
 
-    /// Heads on for `goal` from a reference that something else has moved, if it is on its way or has been set moving.
+    /// Heads on for `goal` from a reference that something else has moved, if it is on its way or
+    /// has been set moving.
     pub(super) fn begin_again(
         &mut self,
         model: &Model,
@@ -225,7 +231,8 @@ impl Route {
         let step = self
             .course
             .step(model, ee, posture, reference, arm, arm.time);
-        // A brake is clear: that was made sure of before. Whoever guides the arm by hand sees where it goes.
+        // A brake is clear: that was made sure of before. Whoever guides the arm by hand sees where
+        // it goes.
         if matches!(goal.target, Target::Rest | Target::Guide(_)) {
             return step;
         }

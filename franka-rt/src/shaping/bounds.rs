@@ -8,8 +8,9 @@ use crate::shaping::limiter::{AxisBounds, CartesianBounds, JointBounds};
 
 /// Bounds of a robot's commands: its nominal limits less a margin.
 ///
-/// Every bound is the nominal one, which the robot checks, less [`CLIENT_MARGIN`]. On the FER a velocity also leaves room
-/// for what three lost commands add at the greatest acceleration. Source: libfranka 0.21 and 0.9, `rate_limiting.h`.
+/// Every bound is the nominal one, which the robot checks, less [`CLIENT_MARGIN`]. On the FER a
+/// velocity also leaves room for what three lost commands add at the greatest acceleration. Source:
+/// libfranka 0.21 and 0.9, `rate_limiting.h`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Rate of each joint's torque, `[N m/s]`.
@@ -58,7 +59,8 @@ impl VelocityBounds {
 }
 
 impl Bounds {
-    /// Of the FR3: velocities of the joints depend on their positions, and no lost command is provided for.
+    /// Of the FR3: velocities of the joints depend on their positions, and no lost command is
+    /// provided for.
     pub fn fr3() -> Self {
         Self::new(RobotKind::Fr3, 0.0)
     }
@@ -106,8 +108,8 @@ impl Bounds {
         }
     }
 
-    /// The same with the velocities of `joints`, such as those of the description that a robot serves. An FR3's client
-    /// takes nothing else from there.
+    /// The same with the velocities of `joints`, such as those of the description that a robot
+    /// serves. An FR3's client takes nothing else from there.
     #[must_use]
     pub fn with_envelope_of(mut self, joints: &JointLimits) -> Self {
         self.joint_velocity = VelocityBounds::Envelope {

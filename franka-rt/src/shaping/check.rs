@@ -2,7 +2,8 @@
 
 use crate::shaping::InvalidCommand;
 
-/// How far the norm of a row or column of a rotation may be from 1 (libfranka 0.21, `kOrthonormalThreshold`).
+/// How far the norm of a row or column of a rotation may be from 1 (libfranka 0.21,
+/// `kOrthonormalThreshold`).
 pub const ORTHONORMAL_TOLERANCE: f64 = 1e-5;
 
 /// Refuses numbers that are not finite.
@@ -43,10 +44,12 @@ pub fn elbow(elbow: &[f64; 2]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// Whether a 4x4 matrix, column-major, passes for a transformation: its last row is exactly `0 0 0 1`, and each row and
-/// column of its rotation has length 1 within [`ORTHONORMAL_TOLERANCE`].
+/// Whether a 4x4 matrix, column-major, passes for a transformation: its last row is exactly
+/// `0 0 0 1`, and each row and column of its rotation has length 1 within
+/// [`ORTHONORMAL_TOLERANCE`].
 ///
-/// As in libfranka, neither the angles between the columns nor the handedness count: a mirrored matrix passes.
+/// As in libfranka, neither the angles between the columns nor the handedness count: a mirrored
+/// matrix passes.
 pub fn is_homogeneous(column_major: &[f64; 16]) -> bool {
     let m = column_major;
     let square = |x: f64, y: f64, z: f64| (x * x + y * y) + z * z;

@@ -1,7 +1,7 @@
 //! First-order low-pass filters.
 //!
-//! `y = g x + (1 - g) y_last` with `g = T / (T + 1 / (2 pi f))`, for the sample time `T` and the cutoff frequency `f`. At
-//! 1 ms and 100 Hz `g` is 0.386.
+//! `y = g x + (1 - g) y_last` with `g = T / (T + 1 / (2 pi f))`, for the sample time `T` and the
+//! cutoff frequency `f`. At 1 ms and 100 Hz `g` is 0.386.
 
 use core::f64::consts::PI;
 
@@ -9,14 +9,15 @@ use crate::shaping::check::all_finite;
 use crate::shaping::rotation::{Rigid, slerp};
 use crate::shaping::{FilterFault, InvalidCommand, Signal};
 
-/// Cutoff frequency from which on a control loop does not filter, `[Hz]` (libfranka 0.21, `lowpass_filter.h`).
+/// Cutoff frequency from which on a control loop does not filter, `[Hz]` (libfranka 0.21,
+/// `lowpass_filter.h`).
 pub const MAX_CUTOFF_FREQUENCY: f64 = 1000.0;
 
 /// Cutoff frequency of a control loop by default, `[Hz]` (libfranka 0.21, `lowpass_filter.h`).
 pub const DEFAULT_CUTOFF_FREQUENCY: f64 = 100.0;
 
-/// Filters a number: `last` is the last filtered value, `sample_time` is in `[s]` and may be 0, `cutoff_frequency` in
-/// `[Hz]`.
+/// Filters a number: `last` is the last filtered value, `sample_time` is in `[s]` and may be 0,
+/// `cutoff_frequency` in `[Hz]`.
 ///
 /// # Errors
 /// [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.
@@ -48,7 +49,8 @@ pub fn low_pass_each<const N: usize>(
     Ok(core::array::from_fn(|i| mix(gain, current[i], last[i])))
 }
 
-/// Filters a pose, column-major: the translation as [`low_pass`], the orientation along the arc from that of `last`.
+/// Filters a pose, column-major: the translation as [`low_pass`], the orientation along the arc
+/// from that of `last`.
 ///
 /// The orientations are the nearest rotations of both poses; the last row is that of `current`.
 ///

@@ -1,4 +1,5 @@
-//! What a control loop makes of a returned command before it leaves: filtered, limited, checked. Pure functions.
+//! What a control loop makes of a returned command before it leaves: filtered, limited, checked.
+//! Pure functions.
 //!
 //! ```text
 //! command -> filter (low-pass against the state) -> limiter (velocity, acceleration, jerk) -> check -> robot
@@ -6,15 +7,17 @@
 //! ```
 //!
 //! * [`Shaper`]: the three steps for each kind of command, as libfranka's control loops take them.
-//! * [`limiter`]: commands inside bounds that are arguments: torques, scalars, joints, Cartesian velocity and pose.
+//! * [`limiter`]: commands inside bounds that are arguments: torques, scalars, joints, Cartesian
+//!   velocity and pose.
 //! * [`filter`]: first-order low-pass filters of scalars, arrays and poses.
 //! * [`Bounds`]: what the limiters of libfranka keep, for both robots.
 //! * [`check`]: whether a command is one at all.
 //!
-//! The references of filters and limiters are the *last commanded* values of the robot's state. Everything is arithmetic
-//! on arrays: nothing allocates, and nothing panics for any input. Formulas, order of operations and the treatment of
-//! NaN are those of libfranka 0.21 (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`); libfranka 0.9 differs
-//! in bounds and in how a motion begins. The robot enforces its own limits, whatever a client does.
+//! The references of filters and limiters are the *last commanded* values of the robot's state.
+//! Everything is arithmetic on arrays: nothing allocates, and nothing panics for any input.
+//! Formulas, order of operations and the treatment of NaN are those of libfranka 0.21
+//! (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`); libfranka 0.9 differs in bounds
+//! and in how a motion begins. The robot enforces its own limits, whatever a client does.
 
 mod bounds;
 pub mod check;

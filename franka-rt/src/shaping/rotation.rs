@@ -47,7 +47,8 @@ pub(super) fn pose(
     ]
 }
 
-/// The rotation nearest to a matrix: the orthogonal factor of its polar decomposition, turned where the matrix mirrors.
+/// The rotation nearest to a matrix: the orthogonal factor of its polar decomposition, turned where
+/// the matrix mirrors.
 ///
 /// Any finite matrix gives a rotation; NaN if an element is not finite.
 fn nearest_rotation(block: &Matrix3<f64>) -> Matrix3<f64> {
@@ -77,7 +78,8 @@ pub(super) fn slerp(
     };
     let of_to = if signed < 0.0 { -of_to } else { of_to };
     let sum = from.coords * of_from + to.coords * of_to;
-    // Its length is 1 but for rounding, where this step of Newton's is as good as a division by the root.
+    // Its length is 1 but for rounding, where this step of Newton's is as good as a division by the
+    // root.
     let sum = sum * (1.5 - 0.5 * sum.norm_squared());
     UnitQuaternion::new_unchecked(Quaternion::from(sum))
 }
@@ -101,8 +103,9 @@ pub(super) fn about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     )
 }
 
-/// The nearest rotation by `X <- X (1 - E / 2 + 3 E^2 / 8)` with `E = X'X - 1`: the start of the series of
-/// `X (X'X)^(-1/2)`, whose error cubes with each step. `None` where the block is not close to a rotation.
+/// The nearest rotation by `X <- X (1 - E / 2 + 3 E^2 / 8)` with `E = X'X - 1`: the start of the
+/// series of `X (X'X)^(-1/2)`, whose error cubes with each step. `None` where the block is not
+/// close to a rotation.
 fn polished(block: Matrix3<f64>) -> Option<Matrix3<f64>> {
     if block.determinant() <= 0.0 {
         return None;
@@ -167,8 +170,9 @@ impl Symmetric {
     }
 }
 
-/// The rotation that maximises `tr(R'M)`, which is the nearest one: the eigenvector of the largest eigenvalue of a
-/// symmetric matrix, read as a quaternion (Horn, J. Opt. Soc. Am. A 4, 1987, section 4).
+/// The rotation that maximises `tr(R'M)`, which is the nearest one: the eigenvector of the largest
+/// eigenvalue of a symmetric matrix, read as a quaternion (Horn, J. Opt. Soc. Am. A 4, 1987,
+/// section 4).
 #[cold]
 fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
     let not_a_number = Matrix3::repeat(f64::NAN);
@@ -202,11 +206,12 @@ fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
         .into_inner()
 }
 
-/// Where the series is used: within this of orthogonal, element sizes summed, three steps are enough.
+/// Where the series is used: within this of orthogonal, element sizes summed, three steps are
+/// enough.
 const POLISH_BELOW: f64 = 0.3;
 const POLISH_STEPS_MAX: usize = 4;
-/// What is this close to orthogonal, such as rotations rounded to `f32`, is as close after one more step as rounding
-/// allows.
+/// What is this close to orthogonal, such as rotations rounded to `f32`, is as close after one more
+/// step as rounding allows.
 const CUBES_AWAY: f64 = 5e-6;
 /// What products of rotations are off by.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -236,7 +241,8 @@ mod tests {
         (r.tr_mul(r) - Matrix3::identity()).amax() < 4e-15 && r.determinant() > 0.0
     }
 
-    /// `U V'` of the singular value decomposition, the last singular direction turned to make it a rotation.
+    /// `U V'` of the singular value decomposition, the last singular direction turned to make it a
+    /// rotation.
     fn by_singular_values(m: &Matrix3<f64>) -> Matrix3<f64> {
         let svd = m.svd(true, true);
         let (Some(mut u), Some(v_t)) = (svd.u, svd.v_t) else {
@@ -257,7 +263,8 @@ mod tests {
             let mut singular = m.singular_values();
             singular.as_mut_slice().sort_by(f64::total_cmp);
             let (least, middle) = (singular[0], singular[1]);
-            // The result is as well determined as the two smallest singular values are apart from opposite.
+            // The result is as well determined as the two smallest singular values are apart from
+            // opposite.
             let gap = if m.determinant() > 0.0 { middle + least } else { middle - least };
             prop_assume!(gap > 1e-3);
             prop_assert!(is_rotation(&nearest(&m)));

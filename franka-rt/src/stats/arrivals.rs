@@ -7,10 +7,11 @@ use super::cycle::CYCLE_NANOS;
 
 /// Learns from the arrivals of states when the next one is due.
 ///
-/// The robot sends on its own clock, a state per millisecond, and a state can only come later than it left. So the offset
-/// between the two clocks is that of the most punctual state of the recent past, and how much later than that one another
-/// came is what network, kernel and scheduler have added to it. The past is short, so that two clocks that drift apart
-/// (100 ppm make 6 us in 64 ms) and a robot that stood still for a while (a simulated one) do no harm for long.
+/// The robot sends on its own clock, a state per millisecond, and a state can only come later than
+/// it left. So the offset between the two clocks is that of the most punctual state of the recent
+/// past, and how much later than that one another came is what network, kernel and scheduler have
+/// added to it. The past is short, so that two clocks that drift apart (100 ppm make 6 us in 64 ms)
+/// and a robot that stood still for a while (a simulated one) do no harm for long.
 #[derive(Debug, Default)]
 pub(super) struct Arrivals {
     /// `message_id` and arrival that all offsets are counted from.
@@ -50,7 +51,8 @@ mod tests {
 
     const US: fn(u64) -> Duration = Duration::from_micros;
 
-    /// Arrivals of a robot whose clock runs fast by `ppm`, each late by what `late` says, in microseconds.
+    /// Arrivals of a robot whose clock runs fast by `ppm`, each late by what `late` says, in
+    /// microseconds.
     fn lateness(times: core::ops::Range<u64>, ppm: i64, late: impl Fn(u64) -> u64) -> Vec<u64> {
         let start = Instant::now();
         let mut arrivals = Arrivals::default();

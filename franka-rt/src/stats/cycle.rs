@@ -11,20 +11,22 @@ use crate::slot::Words;
 pub struct CycleTimes {
     /// `message_id` of the state that the command answers, `[ms]` of the robot's clock.
     pub time: u64,
-    /// From when the state was due to when the thread had it: network, kernel and waking up. A state is due a whole
-    /// number of milliseconds, by `message_id`, after the most punctual of the last 32 to 64 states. Zero for that one.
+    /// From when the state was due to when the thread had it: network, kernel and waking up. A
+    /// state is due a whole number of milliseconds, by `message_id`, after the most punctual of the
+    /// last 32 to 64 states. Zero for that one.
     pub late: Duration,
-    /// From when the thread had the state to the departure of the command: until the system call that sends had returned.
+    /// From when the thread had the state to the departure of the command: until the system call
+    /// that sends had returned.
     pub turnaround: Duration,
-    /// What was left until the next state was due: 1 ms - `late` - `turnaround`. The way to the robot and back is not in
-    /// it and has to fit into it.
+    /// What was left until the next state was due: 1 ms - `late` - `turnaround`. The way to the
+    /// robot and back is not in it and has to fit into it.
     pub slack: Slack,
     /// Where the time went; `None` without the feature `cycle-phases`.
     pub phases: Option<Phases>,
 }
 
-/// The time until the next state is due, when a command leaves. Negative: the command left later than that, which is an
-/// overrun.
+/// The time until the next state is due, when a command leaves. Negative: the command left later
+/// than that, which is an overrun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
@@ -40,13 +42,13 @@ pub struct Phases {
     pub orders: Duration,
     /// The state read from its bytes.
     pub decode: Duration,
-    /// The driver: session, generator, inverse kinematics, law, guards; or a function of the user's. Under active control,
-    /// also what the user's thread did until it wrote.
+    /// The driver: session, generator, inverse kinematics, law, guards; or a function of the
+    /// user's. Under active control, also what the user's thread did until it wrote.
     pub program: Duration,
     /// The command written into bytes and handed to the kernel.
     pub send: Duration,
-    /// What follows the command: log, newest state, rings, events, bell. It delays the next cycle if it is long. Under active
-    /// control it comes before the command.
+    /// What follows the command: log, newest state, rings, events, bell. It delays the next cycle
+    /// if it is long. Under active control it comes before the command.
     pub publish: Duration,
 }
 
@@ -83,7 +85,8 @@ impl CycleTimes {
         }
     }
 
-    /// From when the state was due to the end of all that is timed: the departure of the command, or of what follows it.
+    /// From when the state was due to the end of all that is timed: the departure of the command,
+    /// or of what follows it.
     pub fn total(&self) -> Duration {
         let work = self.phases.map_or(Duration::ZERO, |phases| phases.sum());
         self.late.saturating_add(self.turnaround.max(work))

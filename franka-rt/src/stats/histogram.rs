@@ -5,10 +5,11 @@ use core::time::Duration;
 
 use super::Counter;
 
-/// How often which duration occurred, to 1/16 of its value (exact below 16 ns), with exact minimum and maximum.
+/// How often which duration occurred, to 1/16 of its value (exact below 16 ns), with exact minimum
+/// and maximum.
 ///
-/// A value with its highest bit at position e >= 4 falls in one of 16 equal buckets of `[2^e, 2^(e+1))` nanoseconds.
-/// Durations of 2^40 ns (18 minutes) and more share the last bucket.
+/// A value with its highest bit at position e >= 4 falls in one of 16 equal buckets of
+/// `[2^e, 2^(e+1))` nanoseconds. Durations of 2^40 ns (18 minutes) and more share the last bucket.
 #[derive(Debug)]
 pub struct Histogram {
     buckets: Box<[AtomicU64]>,
@@ -30,7 +31,8 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// The numbers that a report names; `None` if there was no duration. Not for the real-time thread.
+    /// The numbers that a report names; `None` if there was no duration. Not for the real-time
+    /// thread.
     pub fn quantiles(&self) -> Option<Quantiles> {
         Some(Quantiles {
             p50: self.quantile(0.5)?,
@@ -76,8 +78,8 @@ impl Histogram {
         (self.count() > 0).then(|| Duration::from_nanos(self.max.load(Ordering::Relaxed)))
     }
 
-    /// A duration that the share `quantile` (in `[0, 1]`) of all did not exceed; at most 1/16 above the exact one.
-    /// `None` if there was none. Walks the buckets: not for the real-time thread.
+    /// A duration that the share `quantile` (in `[0, 1]`) of all did not exceed; at most 1/16 above
+    /// the exact one. `None` if there was none. Walks the buckets: not for the real-time thread.
     pub fn quantile(&self, quantile: f64) -> Option<Duration> {
         let max = self.max()?;
         let wanted = (quantile.clamp(0.0, 1.0) * self.count() as f64)

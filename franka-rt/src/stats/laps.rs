@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::{Phase, Phases};
 
-/// Times the phases of one cycle, each from the end of the one before. Without the feature it reads no clock, holds
-/// nothing and costs nothing.
+/// Times the phases of one cycle, each from the end of the one before. Without the feature it reads
+/// no clock, holds nothing and costs nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Laps {
     #[cfg(feature = "cycle-phases")]

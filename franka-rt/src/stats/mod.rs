@@ -8,11 +8,12 @@
 //!                                                   slack
 //! ```
 //!
-//! One writer, the thread; readers anywhere, at any time, without a lock. Every cell is an atomic of its own, so a
-//! reader may see a cycle half counted: good enough for numbers that are looked at, not computed with. The histograms
-//! are arrays of atomics with logarithmic buckets rather than the `hdrhistogram` crate's, whose plain cells a reader
-//! could only see through a lock or a copy made by the thread. What only makes sense as a whole, a cycle or the numbers
-//! of a motion, crosses in a [`slot`](crate::slot).
+//! One writer, the thread; readers anywhere, at any time, without a lock. Every cell is an atomic
+//! of its own, so a reader may see a cycle half counted: good enough for numbers that are looked
+//! at, not computed with. The histograms are arrays of atomics with logarithmic buckets rather than
+//! the `hdrhistogram` crate's, whose plain cells a reader could only see through a lock or a copy
+//! made by the thread. What only makes sense as a whole, a cycle or the numbers of a motion,
+//! crosses in a [`slot`](crate::slot).
 //!
 //! * [`Histogram`]: how often which duration occurred. [`CycleTimes`]: one cycle and its phases.
 //! * `arrivals`: when the next state is due. `meter`: the writing side of it all.
@@ -58,7 +59,8 @@ pub struct Stats {
     pub send_errors: Counter,
     /// Records that found their ring full.
     pub records_lost: Counter,
-    /// States that found the ring of all states full. They were answered, and the newest of them published.
+    /// States that found the ring of all states full. They were answered, and the newest of them
+    /// published.
     pub states_lost: Counter,
     /// Reports of the loop itself (not of the driver) that found the queue full.
     pub reports_lost: Counter,
@@ -66,8 +68,9 @@ pub struct Stats {
     pub interval: Histogram,
     /// Times from the receipt of a state to the departure of its command.
     pub turnaround: Histogram,
-    /// Times from the departure of a command to when the next state was due: see [`CycleTimes::slack`]. A command that
-    /// left later than that counts as zero here, and in [`Self::overrun`].
+    /// Times from the departure of a command to when the next state was due: see
+    /// [`CycleTimes::slack`]. A command that left later than that counts as zero here, and in
+    /// [`Self::overrun`].
     pub slack: Histogram,
     /// By how much commands left after the next state was due: as many as there are overruns.
     pub overrun: Histogram,
@@ -87,8 +90,8 @@ impl Stats {
         newest(&self.overran)
     }
 
-    /// The motion that runs, so far, or the last one; `None` before the first. Of a motion that has ended, the state that
-    /// showed its end is not counted here: its report counts it.
+    /// The motion that runs, so far, or the last one; `None` before the first. Of a motion that has
+    /// ended, the state that showed its end is not counted here: its report counts it.
     pub fn motion(&self) -> Option<MotionStatistics> {
         newest(&self.motion)
     }
@@ -116,7 +119,8 @@ impl Counter {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Adds, wrapping. For the one writer only: a load and a store, without the cost of a read-modify-write.
+    /// Adds, wrapping. For the one writer only: a load and a store, without the cost of a
+    /// read-modify-write.
     pub(crate) fn add(&self, more: u64) {
         if more != 0 {
             self.0

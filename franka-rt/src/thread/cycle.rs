@@ -46,7 +46,8 @@ pub(super) struct Cycle<C: Core> {
 }
 
 impl<C: Core> Cycle<C> {
-    /// Waits for a state, up to a tick, and does all that it calls for. Returns whether one came that could be read.
+    /// Waits for a state, up to a tick, and does all that it calls for. Returns whether one came
+    /// that could be read.
     pub(super) fn turn(&mut self) -> bool {
         let reception = self.exchange.receive();
         let now = Instant::now();
@@ -80,7 +81,8 @@ impl<C: Core> Cycle<C> {
         readable
     }
 
-    /// Answers a state, if the core does, and then sees to what has waited for that. Returns the times of the command.
+    /// Answers a state, if the core does, and then sees to what has waited for that. Returns the
+    /// times of the command.
     fn answer(
         &mut self,
         state: &RobotState,
@@ -196,7 +198,8 @@ impl<C: Core> Cycle<C> {
             .or(reception.error.map(LinkFault::Receive))
     }
 
-    /// Whether to ring for a state: for every one if somebody listens, and now and then if nobody does.
+    /// Whether to ring for a state: for every one if somebody listens, and now and then if nobody
+    /// does.
     fn is_ring_due(&mut self) -> bool {
         self.unheard += 1;
         let due = self.audience.is_there() || self.unheard >= UNHEARD_MAX;
@@ -223,7 +226,8 @@ impl<C: Core> Cycle<C> {
         queued
     }
 
-    /// Queues what the core has to say, as far as there is room; returns whether there was something.
+    /// Queues what the core has to say, as far as there is room; returns whether there was
+    /// something.
     fn pass_events_on(&mut self) -> bool {
         for passed in 0..EVENTS_PER_CYCLE {
             if self.notices.is_full() {
@@ -239,8 +243,8 @@ impl<C: Core> Cycle<C> {
     }
 }
 
-/// States after which the bell rings although nobody listens. The rings of the thread hold far more, and the wake-ups, twenty
-/// a second, take less than a thousandth of a core.
+/// States after which the bell rings although nobody listens. The rings of the thread hold far
+/// more, and the wake-ups, twenty a second, take less than a thousandth of a core.
 const UNHEARD_MAX: u32 = 50;
 
 /// Orders taken in one cycle at most; the rest waits for the next.

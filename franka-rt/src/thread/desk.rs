@@ -72,8 +72,9 @@ impl<T> Desk<T> {
         self.wanted.load(Ordering::Relaxed)
     }
 
-    /// The owner gives the value to whoever wants it and waits until it is back. `None` if `stop_wanted` says meanwhile that
-    /// it should not wait any more, or if the value does not come back.
+    /// The owner gives the value to whoever wants it and waits until it is back. `None` if
+    /// `stop_wanted` says meanwhile that it should not wait any more, or if the value does not come
+    /// back.
     pub(super) fn lend(&self, value: T, stop_wanted: impl Fn() -> bool) -> Option<T> {
         let mut place = self.lock();
         // Under the lock: whoever wants it later finds it on offer, or lent.
@@ -140,8 +141,8 @@ impl<T> Desk<T> {
 
     /// Waits for a change, for a tick at most.
     fn wait_a_tick<'a>(&'a self, place: MutexGuard<'a, Place<T>>) -> MutexGuard<'a, Place<T>> {
-        // loom knows no time. A tick of zero stands for one that is over once somebody else has run, and its condition
-        // variable takes any other for one that never ends.
+        // loom knows no time. A tick of zero stands for one that is over once somebody else has
+        // run, and its condition variable takes any other for one that never ends.
         #[cfg(loom)]
         if self.tick.is_zero() {
             drop(place);

@@ -9,9 +9,10 @@ use crate::stats::{Arrival, CycleTimes};
 
 /// A pure core: states, orders and silences in; commands, records and events out.
 ///
-/// [`Driver`] is the one that programs use. The trait lets the loop be tested, and its allocations be counted, beside
-/// cores that panic, answer everything or hold their events back. No method may allocate, free, lock, log or wait: they
-/// run on the real-time thread. Those with a body are for cores that keep counts.
+/// [`Driver`] is the one that programs use. The trait lets the loop be tested, and its allocations
+/// be counted, beside cores that panic, answer everything or hold their events back. No method may
+/// allocate, free, lock, log or wait: they run on the real-time thread. Those with a body are for
+/// cores that keep counts.
 pub trait Core: Send + 'static {
     /// What the world outside asks for.
     type Order: Send + 'static;
@@ -23,22 +24,25 @@ pub trait Core: Send + 'static {
     /// Takes an order.
     fn on_order(&mut self, order: Self::Order);
 
-    /// Tells that so many states came with the next one, and were skipped for it. Not called for none.
+    /// Tells that so many states came with the next one, and were skipped for it. Not called for
+    /// none.
     fn on_skipped(&mut self, _states: u64) {}
 
     /// Takes a state, newer than all before it, and returns the command that answers it.
     fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand>;
 
-    /// Tells that no state has come for `silence`, of this host's clock. Comes again and again while it lasts.
+    /// Tells that no state has come for `silence`, of this host's clock. Comes again and again
+    /// while it lasts.
     fn on_silence(&mut self, silence: Duration);
 
-    /// The silence that the core wants to hear of in time; the thread waits for states no longer than a fraction of it.
+    /// The silence that the core wants to hear of in time; the thread waits for states no longer
+    /// than a fraction of it.
     fn link_timeout(&self) -> Duration {
         LINK_TIMEOUT
     }
 
-    /// Does for a state, after [`Self::on_state`], what can wait until the command has left. `sent` has the times of the
-    /// command, if one left: all but those of what follows it.
+    /// Does for a state, after [`Self::on_state`], what can wait until the command has left. `sent`
+    /// has the times of the command, if one left: all but those of what follows it.
     fn after_send(&mut self, _state: &RobotState, _arrival: &Arrival, _sent: Option<&CycleTimes>) {}
 
     /// The record of the last cycle, after [`Self::after_send`].

@@ -9,7 +9,8 @@ use crate::sys;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinkFault {
-    /// A datagram of the robot is no state. Too short a one usually means a server of another version.
+    /// A datagram of the robot is no state. Too short a one usually means a server of another
+    /// version.
     #[error(transparent)]
     Datagram(#[from] DecodeError),
     /// A receive failed otherwise than by finding nothing; an errno value.
@@ -20,12 +21,14 @@ pub enum LinkFault {
     Send(#[from] SendError),
 }
 
-/// Lets the first of several equal faults in a row through, so that one that lasts is told once and not every cycle.
+/// Lets the first of several equal faults in a row through, so that one that lasts is told once and
+/// not every cycle.
 #[derive(Debug, Default)]
 pub(super) struct Latch(Option<LinkFault>);
 
 impl Latch {
-    /// Takes what happened (`None`: all went well) and returns it if it is not the same as the time before.
+    /// Takes what happened (`None`: all went well) and returns it if it is not the same as the time
+    /// before.
     pub(super) fn pass(&mut self, fault: Option<LinkFault>) -> Option<LinkFault> {
         let news = if self.0 == fault { None } else { fault };
         self.0 = fault;

@@ -16,11 +16,12 @@ use crate::stats::Stats;
 use crate::thread::{Core, Lender, LinkFault};
 use crate::wake::Wake;
 
-/// Everything that connects the world outside to one running thread. Take it apart: each field has its own user.
+/// Everything that connects the world outside to one running thread. Take it apart: each field has
+/// its own user.
 #[derive(Debug)]
 pub struct Handle<C: Core = Driver> {
-    /// Orders for the core. The thread takes them with the next state, or within [`crate::exchange::TICK`] while the
-    /// robot is silent.
+    /// Orders for the core. The thread takes them with the next state, or within
+    /// [`crate::exchange::TICK`] while the robot is silent.
     pub orders: rtrb::Producer<C::Order>,
     /// What the core and the loop report, oldest first.
     pub notices: rtrb::Consumer<Notice<C::Event>>,
@@ -29,10 +30,11 @@ pub struct Handle<C: Core = Driver> {
     pub records: rtrb::Consumer<C::Record>,
     /// The newest state.
     pub states: StateReader,
-    /// All states, oldest first. Those that find it full are missing, and counted in [`Stats::states_lost`].
+    /// All states, oldest first. Those that find it full are missing, and counted in
+    /// [`Stats::states_lost`].
     pub sequence: StateSequence,
-    /// Rings after every cycle that left a notice, or a state while there is an audience; for every fiftieth state without
-    /// one; and when the thread ends.
+    /// Rings after every cycle that left a notice, or a state while there is an audience; for every
+    /// fiftieth state without one; and when the thread ends.
     pub wake: Wake,
     /// Whether anybody wants to hear of every state. There is somebody at first.
     pub audience: Audience,
@@ -63,20 +65,21 @@ pub struct Thread<C> {
 }
 
 impl<C> Thread<C> {
-    /// Asks the thread to stop. It does so before its next cycle, within [`crate::exchange::TICK`] if the robot is
-    /// silent. A motion that runs is not finished first: the robot will miss its commands.
+    /// Asks the thread to stop. It does so before its next cycle, within [`crate::exchange::TICK`]
+    /// if the robot is silent. A motion that runs is not finished first: the robot will miss its
+    /// commands.
     pub fn stop(&self) {
         self.shared.ask_to_stop();
     }
 
-    /// Whether the loop has ended, because it was stopped or because the core panicked. The bell rings after this has
-    /// become true.
+    /// Whether the loop has ended, because it was stopped or because the core panicked. The bell
+    /// rings after this has become true.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended()
     }
 
-    /// Stops the thread, waits for it and returns the core. Blocks for a cycle or a tick; from async code, call it
-    /// where blocking is allowed.
+    /// Stops the thread, waits for it and returns the core. Blocks for a cycle or a tick; from
+    /// async code, call it where blocking is allowed.
     ///
     /// # Errors
     /// [`Lost`] if the core has panicked or is lent out.
@@ -103,13 +106,15 @@ impl<C> Drop for Thread<C> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Lost {
-    /// The core panicked, which ended the thread: no command is sent any more. A defect; the process goes on.
+    /// The core panicked, which ended the thread: no command is sent any more. A defect; the
+    /// process goes on.
     #[error("the control thread panicked: {message}")]
     Panicked {
         /// What the panic said.
         message: String,
     },
-    /// The cycle was lent out when the thread was stopped, and ends with its [`Lease`](super::Lease).
+    /// The cycle was lent out when the thread was stopped, and ends with its
+    /// [`Lease`](super::Lease).
     #[error("the control cycle is lent out")]
     Lent,
 }
@@ -133,8 +138,8 @@ pub struct StateReader {
 impl StateReader {
     /// The newest state, if this reader has not returned it yet. Never waits.
     ///
-    /// The thread may be writing at this very moment: after a few attempts the answer is `None`. A later
-    /// ring of the bell brings a listener back in any case.
+    /// The thread may be writing at this very moment: after a few attempts the answer is `None`. A
+    /// later ring of the bell brings a listener back in any case.
     pub fn newest(&mut self) -> Option<RobotState> {
         match self.slot.read_retry(ATTEMPTS) {
             // The thread publishes only what it has decoded itself.
@@ -162,7 +167,8 @@ impl StateSequence {
         RobotState::decode(self.version, &datagram.0[..self.size]).ok()
     }
 
-    /// How many have come and were not taken. The newest of them was the newest state before it was counted here.
+    /// How many have come and were not taken. The newest of them was the newest state before it was
+    /// counted here.
     pub fn waiting(&self) -> usize {
         self.ring.slots()
     }
@@ -175,10 +181,12 @@ impl StateSequence {
     }
 }
 
-/// Attempts to read a state that is being replaced. A write takes well under a microsecond, once per millisecond.
+/// Attempts to read a state that is being replaced. A write takes well under a microsecond, once
+/// per millisecond.
 const ATTEMPTS: usize = 16;
 
-/// A state as it came, in the front of the array. Decoded by each reader, which spares the thread a second conversion.
+/// A state as it came, in the front of the array. Decoded by each reader, which spares the thread a
+/// second conversion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Datagram(pub(super) [u8; RobotState::MAX_SIZE]);
 

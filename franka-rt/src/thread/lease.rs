@@ -5,8 +5,9 @@
 //!   Running ----------> Lent (this thread waits) ------> Running
 //! ```
 //!
-//! The thread hands the cycle over between two turns and waits until it comes back, or until it is told to stop. The lock
-//! of the [`Desk`] is taken at the two hand-overs only; a turn, whoever runs it, takes none.
+//! The thread hands the cycle over between two turns and waits until it comes back, or until it is
+//! told to stop. The lock of the [`Desk`] is taken at the two hand-overs only; a turn, whoever runs
+//! it, takes none.
 
 use std::sync::Arc;
 
@@ -29,8 +30,8 @@ impl<C: Core> Lender<C> {
         Self { desk }
     }
 
-    /// Takes the cycle over from its thread. Blocks until that has done its turn: a cycle, or a [`TICK`](crate::exchange::TICK) while the robot is
-    /// silent.
+    /// Takes the cycle over from its thread. Blocks until that has done its turn: a cycle, or a
+    /// [`TICK`](crate::exchange::TICK) while the robot is silent.
     ///
     /// # Errors
     /// [`BorrowError`].
@@ -56,7 +57,8 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
 
 /// The cycle of a control thread, in the hands of another. Dropping it gives it back.
 ///
-/// Whoever holds it *is* the cycle: states are read, published and counted in its turns and nowhere else.
+/// Whoever holds it *is* the cycle: states are read, published and counted in its turns and nowhere
+/// else.
 pub struct Lease<C: Core = Driver> {
     desk: Arc<Desk<Box<Cycle<C>>>>,
     /// `None` only while it is dropped.
@@ -64,8 +66,9 @@ pub struct Lease<C: Core = Driver> {
 }
 
 impl<C: Core> Lease<C> {
-    /// Waits for a state newer than all before, up to a [`TICK`](crate::exchange::TICK), and does what the thread does with it: orders, the core,
-    /// the command that this answers with at once if there is one, publishing. `None` if none came.
+    /// Waits for a state newer than all before, up to a [`TICK`](crate::exchange::TICK), and does
+    /// what the thread does with it: orders, the core, the command that this answers with at once
+    /// if there is one, publishing. `None` if none came.
     ///
     /// # Errors
     /// [`BorrowError::Ended`] if the thread was told to stop: give the cycle back.

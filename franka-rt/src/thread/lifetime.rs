@@ -1,6 +1,7 @@
 //! The two flags between the thread and its owner.
 //!
-//! Nothing here knows the thread: `tests/loom.rs` includes this file and explores what the flags order.
+//! Nothing here knows the thread: `tests/loom.rs` includes this file and explores what the flags
+//! order.
 
 #[cfg(not(loom))]
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,7 +17,8 @@ pub(super) struct Lifetime {
 }
 
 impl Lifetime {
-    /// Relaxed here and in [`Self::stop_wanted`]: nothing else is read on the strength of this flag.
+    /// Relaxed here and in [`Self::stop_wanted`]: nothing else is read on the strength of this
+    /// flag.
     pub(super) fn ask_to_stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
@@ -25,7 +27,8 @@ impl Lifetime {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Release, pairs with the Acquire in [`Self::has_ended`]: who sees the end sees what the thread left.
+    /// Release, pairs with the Acquire in [`Self::has_ended`]: who sees the end sees what the
+    /// thread left.
     pub(super) fn note_end(&self) {
         self.ended.store(true, Ordering::Release);
     }

@@ -5,7 +5,8 @@ use loom::sync::Arc;
 use loom::sync::atomic::{AtomicUsize, Ordering};
 use loom::thread;
 
-/// Who listens is counted before it enters; the bridge finds nobody and closes, while somebody comes.
+/// Who listens is counted before it enters; the bridge finds nobody and closes, while somebody
+/// comes.
 #[test]
 fn whoever_enters_while_the_last_one_leaves_is_there_in_the_end() {
     loom::model(|| {

@@ -1,8 +1,9 @@
 //! The bell: what is published before a ring is found by whoever looks after it.
 //!
-//! The bell itself is an eventfd, which only the kernel can be asked about. Its counter and its readiness are made of a
-//! lock and a condition variable here; what is explored is the order of our operations around it, which is that of the
-//! thread (publish, note the end, ring) and of the bridge (hear, silence, look).
+//! The bell itself is an eventfd, which only the kernel can be asked about. Its counter and its
+//! readiness are made of a lock and a condition variable here; what is explored is the order of our
+//! operations around it, which is that of the thread (publish, note the end, ring) and of the
+//! bridge (hear, silence, look).
 
 // Private to the crate, and free of everything else in it.
 #[path = "../../src/thread/lifetime.rs"]
@@ -38,8 +39,8 @@ impl Bell {
     }
 }
 
-/// A listener that looks once after each time it hears the bell has the newest value in the end, torn reads or not; one
-/// that misses it waits for good, which loom reports.
+/// A listener that looks once after each time it hears the bell has the newest value in the end,
+/// torn reads or not; one that misses it waits for good, which loom reports.
 #[test]
 fn whoever_looks_after_each_ring_finds_the_newest_value() {
     loom::model(|| {

@@ -1,4 +1,5 @@
-//! The desk where the cycle changes hands. What is lent here is a count of the turns that it has run.
+//! The desk where the cycle changes hands. What is lent here is a count of the turns that it has
+//! run.
 
 // Private to the crate, and free of everything else in it.
 #[path = "../../src/thread/desk.rs"]
@@ -19,8 +20,8 @@ const FOREVER: Duration = Duration::MAX;
 /// Ticks that are over at once.
 const AT_ONCE: Duration = Duration::ZERO;
 
-/// The owner's loop, for as long as somebody wants the value or `goes_on` says so; then it closes the desk. Returns the
-/// turns that were run in all, if the value is back.
+/// The owner's loop, for as long as somebody wants the value or `goes_on` says so; then it closes
+/// the desk. Returns the turns that were run in all, if the value is back.
 fn own(desk: &Desk<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
     let mut turns = Some(0);
     while let Some(value) = turns.filter(|_| goes_on()) {
@@ -41,7 +42,8 @@ fn take_a_turn(desk: &Desk<u64>) -> Result<(), BorrowError> {
     Ok(())
 }
 
-/// With ticks that never end, a notification that gets lost would leave somebody waiting for good, which loom reports.
+/// With ticks that never end, a notification that gets lost would leave somebody waiting for good,
+/// which loom reports.
 #[test]
 fn whoever_wants_it_gets_it() {
     loom::model(|| {

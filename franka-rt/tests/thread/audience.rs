@@ -5,7 +5,8 @@ use franka_rt::thread::{Core, Handle};
 
 use super::{Peer, Probe, VERSION, config, start, wait_for};
 
-/// Sends so many states, each after the one before has been published; ends the thread; returns how often the bell rang.
+/// Sends so many states, each after the one before has been published; ends the thread; returns how
+/// often the bell rang.
 fn rings<C: Core>(mut handle: Handle<C>, robot: &Peer, states: u64) -> u64 {
     for id in 1..=states {
         robot.send(id);

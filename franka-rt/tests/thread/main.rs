@@ -1,7 +1,7 @@
 //! The thread over real sockets, beside a robot that is a plain UDP socket in this process.
 //!
-//! Waits have generous deadlines and end as soon as what they wait for is there: the margins are for a loaded machine
-//! with two processors, not for the code.
+//! Waits have generous deadlines and end as soon as what they wait for is there: the margins are
+//! for a loaded machine with two processors, not for the code.
 
 mod audience;
 mod cores;

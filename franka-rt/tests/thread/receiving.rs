@@ -8,7 +8,8 @@ fn states_are_published_as_they_come() {
     let mut late_reader = handle.states.clone();
     let mut newest = 0;
     let mut sent = 0;
-    // At least 300, and then until the last one has been seen: a host that stands still for long loses states.
+    // At least 300, and then until the last one has been seen: a host that stands still for long
+    // loses states.
     wait_for("state that is the last one sent", || {
         if let Some(state) = handle.states.newest() {
             assert!(
@@ -56,7 +57,8 @@ fn states_are_published_as_they_come() {
 fn the_newest_of_a_burst_wins() {
     let (socket, port) = socket();
     let robot = Peer::new([127, 0, 0, 1], port);
-    // All of them wait in the kernel before there is a thread; 37 is prime to 50, so each id comes once.
+    // All of them wait in the kernel before there is a thread; 37 is prime to 50, so each id comes
+    // once.
     for i in 0..50 {
         robot.send(100 + i * 37 % 50);
     }
@@ -171,7 +173,8 @@ fn the_shortest_link_timeout_is_noticed_before_another_has_passed() {
     assert!(noticed[2] < 2 * LinkTimeout::MIN, "{noticed:?}");
 }
 
-/// Two states in each timeout, whatever a busy machine makes of the pauses: without a busy one in between, none is lost.
+/// Two states in each timeout, whatever a busy machine makes of the pauses: without a busy one in
+/// between, none is lost.
 #[test]
 fn a_link_within_the_shortest_timeout_is_not_lost() {
     let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");

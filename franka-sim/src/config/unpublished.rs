@@ -3,8 +3,8 @@
 use franka_model::{JointVector, Twist, joint_vector};
 use franka_proto::CollisionBehavior;
 
-/// Answers to what is not published about the robot. Each is an assumption and none has been measured;
-/// a client that depends on one of them may be tested against others.
+/// Answers to what is not published about the robot. Each is an assumption and none has been
+/// measured; a client that depends on one of them may be tested against others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unpublished {
     /// How far the first command of a motion may be from what the state publishes as commanded.
@@ -14,9 +14,9 @@ pub struct Unpublished {
     pub singular: f64,
     /// How the orientation goes on in a cycle whose command is lost.
     pub extrapolation: Extrapolation,
-    /// Cutoff of a first-order low-pass that the robot itself applies to commands, `[Hz]`; `None` for
-    /// commands taken as they come, the default. Protocol 5 begins with this and has a request to
-    /// change it.
+    /// Cutoff of a first-order low-pass that the robot itself applies to commands, `[Hz]`; `None`
+    /// for commands taken as they come, the default. Protocol 5 begins with this and has a request
+    /// to change it.
     pub command_filter: Option<f64>,
     /// What `control_command_success_rate` divides by while a motion is younger than its window of
     /// 100 cycles.
@@ -27,8 +27,8 @@ pub struct Unpublished {
     pub error_bits: ErrorBits,
     /// The modes besides Idle in which setters are taken.
     pub setters: Setters,
-    /// Stiffness of the internal joint impedance controller until a client sets another, `[N·m/rad]`.
-    /// Default: the values of libfranka 0.21, `examples_common.cpp`.
+    /// Stiffness of the internal joint impedance controller until a client sets another,
+    /// `[N·m/rad]`. Default: the values of libfranka 0.21, `examples_common.cpp`.
     pub joint_stiffness: JointVector,
     /// Likewise of the Cartesian one, in stiffness-frame axes, `[N/m, N·m/rad]`. Default: as there.
     pub cartesian_stiffness: Twist,
@@ -39,8 +39,8 @@ pub struct Unpublished {
     /// Joint acceleration from which the thresholds for acceleration phases hold, `[rad/s²]`: the
     /// desired one under the robot's own controllers, the measured one under a client's. Default 1.
     pub accelerating: f64,
-    /// Gain of the momentum observer behind `tau_ext_hat_filtered`, `[1/s]`: the inverse of the time
-    /// constant with which it follows. Default 100, about 16 Hz.
+    /// Gain of the momentum observer behind `tau_ext_hat_filtered`, `[1/s]`: the inverse of the
+    /// time constant with which it follows. Default 100, about 16 Hz.
     pub observer_gain: f64,
     /// When the arm counts as about to hit itself.
     pub self_collision: SelfCollision,
@@ -200,8 +200,9 @@ impl Default for SelfCollision {
 pub struct Instability {
     /// Velocity to either side that counts, `[rad/s]`. Default 0.15.
     pub velocity: f64,
-    /// Reversals within [`window`](Self::window). Default 8: with 0.15 rad/s to each side, 8 of them in
-    /// 0.1 s take 24 rad/s² on average; commands may have 20 at most, on the robot that allows most.
+    /// Reversals within [`window`](Self::window). Default 8: with 0.15 rad/s to each side, 8 of
+    /// them in 0.1 s take 24 rad/s² on average; commands may have 20 at most, on the robot that
+    /// allows most.
     pub reversals: u32,
     /// In milliseconds. Default 100.
     pub window: u32,

@@ -7,11 +7,12 @@ use super::Mechanism;
 use super::grip::{Grip, Progress};
 use crate::plant::FingerDrive;
 
-/// Two fingers that move at the speed they are told and stop at what is between them: in kinematics of their own, with an
-/// object of a given width, or in a plant that has fingers ([`Robot::couple`](crate::Robot::couple)), with what is there.
+/// Two fingers that move at the speed they are told and stop at what is between them: in kinematics
+/// of their own, with an object of a given width, or in a plant that has fingers
+/// ([`Robot::couple`](crate::Robot::couple)), with what is there.
 ///
-/// What is known of real hands stands with the methods of libfranka; the rest are choices made here,
-/// marked as such, and none has been measured.
+/// What is known of real hands stands with the methods of libfranka; the rest are choices made
+/// here, marked as such, and none has been measured.
 ///
 /// * Until a homing, `max_width` is 0 and every width above is refused.
 /// * A move that an object blocks goes on trying, and fails after [`Fingers::BLOCKED_MS`].
@@ -92,8 +93,9 @@ impl Fingers {
         self
     }
 
-    /// Puts an object between the fingers, in place of what is there. False, and nothing changes, if
-    /// its width `[m]` is not positive or wider than the fingers are open, or if the fingers are a plant's.
+    /// Puts an object between the fingers, in place of what is there. False, and nothing changes,
+    /// if its width `[m]` is not positive or wider than the fingers are open, or if the fingers are
+    /// a plant's.
     pub fn place_object(&mut self, width: f64) -> bool {
         let fits = width > 0.0 && width <= self.grip.width();
         match self.grip.object() {
@@ -105,7 +107,8 @@ impl Fingers {
         }
     }
 
-    /// Takes the object away: its width `[m]`, if there was one that is not a plant's. A grasp of it is lost.
+    /// Takes the object away: its width `[m]`, if there was one that is not a plant's. A grasp of
+    /// it is lost.
     pub fn take_object(&mut self) -> Option<f64> {
         self.grip.object()?.take()
     }
@@ -115,7 +118,8 @@ impl Fingers {
         self.grip.drive()
     }
 
-    /// Takes in how far the fingers of a plant are apart, `[m]`. From then on these are the fingers.
+    /// Takes in how far the fingers of a plant are apart, `[m]`. From then on these are the
+    /// fingers.
     pub(crate) fn feel(&mut self, width: f64) {
         self.grip.feel(width);
     }

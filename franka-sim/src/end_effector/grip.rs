@@ -169,17 +169,20 @@ impl Stall {
     }
 }
 
-/// Fingers of a plant are at a width if they are this near `[m]`. All below are choices of this simulator.
+/// Fingers of a plant are at a width if they are this near `[m]`. All below are choices of this
+/// simulator.
 const NEAR: f64 = 5e-4;
 
-/// Fingers that hold something have lost it once they have closed by this much `[m]`. More than contact gives way.
+/// Fingers that hold something have lost it once they have closed by this much `[m]`. More than
+/// contact gives way.
 const SLIP: f64 = 2e-3;
 
-/// Fingers are blocked that in this time have come less than this part of the way. It is longer than the motor takes to build up
-/// the force of a grasp.
+/// Fingers are blocked that in this time have come less than this part of the way. It is longer
+/// than the motor takes to build up the force of a grasp.
 const STALL_WINDOW_MS: u32 = 200;
 const STALLED: f64 = 0.05;
 
-/// How fingers stay that have nothing to do: as fast `[m/s]` and strongly `[N]` as it takes to stay in any posture.
+/// How fingers stay that have nothing to do: as fast `[m/s]` and strongly `[N]` as it takes to stay
+/// in any posture.
 const REST_SPEED: f64 = 0.02;
 const REST_FORCE: f64 = 2.0;

@@ -36,8 +36,8 @@ pub type Hand = EndEffector<Fingers>;
 /// A vacuum gripper and its server.
 pub type VacuumGripper = EndEffector<Suction>;
 
-/// Time between two states `[ms]` if nothing else is said. The vendor publishes no rate; clients wait for
-/// a second at most.
+/// Time between two states `[ms]` if nothing else is said. The vendor publishes no rate; clients
+/// wait for a second at most.
 pub const STATE_PERIOD: u32 = 20;
 
 /// What an end effector does with its requests, apart from all messages.

@@ -2,17 +2,20 @@
 
 use std::time::Duration;
 
-/// What happens to the datagrams of one direction. By default nothing: they arrive when they are sent.
+/// What happens to the datagrams of one direction. By default nothing: they arrive when they are
+/// sent.
 ///
-/// Probabilities are those of a comparison: 0 or less is never, 1 or more always, and what is not a number
-/// is never.
+/// Probabilities are those of a comparison: 0 or less is never, 1 or more always, and what is not a
+/// number is never.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
-    /// Which packets are lost. A datagram that does not fit into one packet is lost with any of them.
+    /// Which packets are lost. A datagram that does not fit into one packet is lost with any of
+    /// them.
     pub loss: Loss,
     /// How long the way takes.
     pub delay: Duration,
-    /// Up to this much later than sent, evenly distributed, a datagram gets to the line. The order stays.
+    /// Up to this much later than sent, evenly distributed, a datagram gets to the line. The order
+    /// stays.
     pub jitter: Duration,
     /// What the line takes, `[bit/s]`: datagrams that are sent together arrive one after the other.
     /// Infinite for a line that takes no time.
@@ -45,10 +48,10 @@ impl Default for Conditions {
 impl Conditions {
     /// A cable between the robot and a good network card.
     ///
-    /// Delay and jitter are half of what pings of 1200 bytes took to three FERs and back, 0.114 ms with a
-    /// deviation of 0.009 ms (libfranka, issue 120). The rate is that of gigabit Ethernet, at which the
-    /// 2497 bytes that a protocol 5 state is on the wire take 0.02 ms: control loops have been called again
-    /// after as little (franka_ros, issue 322: 0.023 ms).
+    /// Delay and jitter are half of what pings of 1200 bytes took to three FERs and back, 0.114 ms
+    /// with a deviation of 0.009 ms (libfranka, issue 120). The rate is that of gigabit Ethernet,
+    /// at which the 2497 bytes that a protocol 5 state is on the wire take 0.02 ms: control loops
+    /// have been called again after as little (franka_ros, issue 322: 0.023 ms).
     pub const fn cable() -> Self {
         Self {
             loss: Loss::Never,
@@ -83,13 +86,14 @@ pub enum Loss {
     Bursts(BurstLoss),
 }
 
-/// Losses that come in bursts: the two states of Gilbert (1960) and Elliott (1963). The network is good or
-/// bad, and may change before every packet.
+/// Losses that come in bursts: the two states of Gilbert (1960) and Elliott (1963). The network is
+/// good or bad, and may change before every packet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BurstLoss {
     /// Probability that a good network becomes bad, `[1/packet]`.
     pub begin: f64,
-    /// Probability that a bad network becomes good, `[1/packet]`: the inverse of a burst's mean length.
+    /// Probability that a bad network becomes good, `[1/packet]`: the inverse of a burst's mean
+    /// length.
     pub end: f64,
     /// Probability of losing a packet while good, `[1]`.
     pub good: f64,
@@ -98,8 +102,8 @@ pub struct BurstLoss {
 }
 
 impl BurstLoss {
-    /// Bursts of `length` packets in the mean, at least 1, in which all are lost, and between which none is,
-    /// so that `fraction` of all packets is lost, less than 1.
+    /// Bursts of `length` packets in the mean, at least 1, in which all are lost, and between which
+    /// none is, so that `fraction` of all packets is lost, less than 1.
     pub fn of(fraction: f64, length: f64) -> Self {
         let end = 1.0 / length;
         Self {
@@ -120,10 +124,11 @@ pub struct Reordering {
     pub delay: Duration,
 }
 
-/// Times in which an interface sends nothing, and after which it sends what was to be sent meanwhile, in order.
+/// Times in which an interface sends nothing, and after which it sends what was to be sent
+/// meanwhile, in order.
 ///
-/// A stall takes the shortest time and an exponentially distributed excess, up to the longest; the pauses
-/// between them are exponentially distributed.
+/// A stall takes the shortest time and an exponentially distributed excess, up to the longest; the
+/// pauses between them are exponentially distributed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stalls {
     /// How many begin in a second, in the mean, `[1/s]`.
@@ -139,13 +144,13 @@ pub struct Stalls {
 impl Stalls {
     /// Those of the FER's network interface.
     ///
-    /// Measured on robots: seven a second, of 2 to 7 ms, no state lost; the longest silence between two
-    /// states was 4.8 to 6.9 ms. That bounds the rest. Of `n` stalls, the longest takes
-    /// 2 ms + `excess` (ln `n` + 0.577) in the mean, and the silence half a millisecond more, since the last
-    /// state was before. In the middle between 4.8 and 6.9 ms, the excess is 0.57 ms if a
-    /// measurement took 30 s, and 0.69 ms if it took 10 s. The value is one between them that also leads to the
-    /// loss measured in clients. That stalls come independently of each other, and that their length falls
-    /// off exponentially, are choices.
+    /// Measured on robots: seven a second, of 2 to 7 ms, no state lost; the longest silence between
+    /// two states was 4.8 to 6.9 ms. That bounds the rest. Of `n` stalls, the longest takes 2 ms +
+    /// `excess` (ln `n` + 0.577) in the mean, and the silence half a millisecond more, since the
+    /// last state was before. In the middle between 4.8 and 6.9 ms, the excess is 0.57 ms if a
+    /// measurement took 30 s, and 0.69 ms if it took 10 s. The value is one between them that also
+    /// leads to the loss measured in clients. That stalls come independently of each other, and
+    /// that their length falls off exponentially, are choices.
     pub const FER: Self = Self {
         per_second: 7.0,
         shortest: Duration::from_millis(2),

@@ -46,7 +46,8 @@ impl Line {
 struct Schedule {
     stalls: Stalls,
     random: Random,
-    /// The first that is not known to be over. The first of all is laid out from the first datagram on.
+    /// The first that is not known to be over. The first of all is laid out from the first datagram
+    /// on.
     next: Option<Range<Duration>>,
 }
 

@@ -6,15 +6,16 @@
 //!                     (rate, stalls)   (per packet)                   (reordering)
 //! ```
 //!
-//! Datagrams and the time go in; what arrives comes out. A [`Network`] has no clock, no socket and no
-//! randomness but its seed's: the same datagrams at the same times always arrive the same way. Its two
-//! directions are [`Path`]s of their own, each under its own [`Conditions`].
+//! Datagrams and the time go in; what arrives comes out. A [`Network`] has no clock, no socket and
+//! no randomness but its seed's: the same datagrams at the same times always arrive the same way.
+//! Its two directions are [`Path`]s of their own, each under its own [`Conditions`].
 //!
-//! Time is that of the caller, counted from any moment, and must not run backwards. The server feeds a
-//! network from its sockets ([`Sim::network`](crate::Sim::network)); tests feed it in virtual time.
+//! Time is that of the caller, counted from any moment, and must not run backwards. The server
+//! feeds a network from its sockets ([`Sim::network`](crate::Sim::network)); tests feed it in
+//! virtual time.
 //!
-//! It is a model of datagrams only. The command connection (TCP) repairs what a network does to it, and
-//! passes by.
+//! It is a model of datagrams only. The command connection (TCP) repairs what a network does to it,
+//! and passes by.
 
 mod conditions;
 mod line;

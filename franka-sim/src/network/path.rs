@@ -12,8 +12,9 @@ use crate::noise::Random;
 
 /// What carries datagrams one way.
 ///
-/// [`send`](Self::send) is the input, [`take`](Self::take) the output; [`next_arrival`](Self::next_arrival) says when there
-/// will be one. [`cut`](Self::cut) and [`drop_next`](Self::drop_next) are for whoever wants a certain fault and not a likely one.
+/// [`send`](Self::send) is the input, [`take`](Self::take) the output;
+/// [`next_arrival`](Self::next_arrival) says when there will be one. [`cut`](Self::cut) and
+/// [`drop_next`](Self::drop_next) are for whoever wants a certain fault and not a likely one.
 #[derive(Debug, Clone)]
 pub struct Path {
     conditions: Conditions,
@@ -43,8 +44,8 @@ pub struct Tally {
     pub sent: u64,
     /// Those that do not arrive.
     pub lost: u64,
-    /// Those among them of which some packets arrive and others do not. A host throws such pieces away, so
-    /// that programs see what they see of any loss: nothing.
+    /// Those among them of which some packets arrive and others do not. A host throws such pieces
+    /// away, so that programs see what they see of any loss: nothing.
     pub halved: u64,
 }
 

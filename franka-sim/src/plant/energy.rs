@@ -109,8 +109,8 @@ impl Book {
     }
 }
 
-/// Swings every joint, a little faster from joint to joint, on top of what carries the arm, and brings the motion back to the
-/// ready pose.
+/// Swings every joint, a little faster from joint to joint, on top of what carries the arm, and
+/// brings the motion back to the ready pose.
 fn swing(book: &Book, time: f64) -> JointVector {
     let strength = JointVector::from([6.0, 6.0, 6.0, 6.0, 1.0, 1.0, 0.5]);
     let phase = JointVector::from_fn(|i, _| (time * (2.0 + i as f64)).cos());

@@ -47,9 +47,9 @@ impl Friction {
 
     /// The arm of the Franka Emika Robot.
     ///
-    /// Viscous values: `mujoco_menagerie`, `franka_emika_panda`, which has no Coulomb friction; those
-    /// are taken to be the [`FR3`](Self::FR3)'s, an arm of the same build. Smoothing and compensation
-    /// are choices of this simulator.
+    /// Viscous values: `mujoco_menagerie`, `franka_emika_panda`, which has no Coulomb friction;
+    /// those are taken to be the [`FR3`](Self::FR3)'s, an arm of the same build. Smoothing and
+    /// compensation are choices of this simulator.
     pub const FER: Self = Self {
         viscous: joint_vector([1.0; 7]),
         ..Self::FR3

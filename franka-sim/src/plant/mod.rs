@@ -1,10 +1,11 @@
 //! The physics under the robot's controllers.
 //!
 //! A [`Plant`] turns joint torques into motion. Nothing in it knows of the protocol, of desired
-//! values or of the model that the controllers believe in: it may carry a load that nobody declared.
+//! values or of the model that the controllers believe in: it may carry a load that nobody
+//! declared.
 //!
-//! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature `mujoco`) has
-//! surroundings that it touches, and fingers. Away from contact they move alike.
+//! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature
+//! `mujoco`) has surroundings that it touches, and fingers. Away from contact they move alike.
 
 #[cfg(test)]
 mod energy;
@@ -34,7 +35,8 @@ use franka_model::{JointVector, Load};
 /// The robot calls [`step`](Self::step) several times per millisecond, each time with the torques
 /// that its controllers compute from the newest positions and velocities.
 ///
-/// Who knows which plant a robot has gets at it by [`Any`]: see [`Robot::plant`](crate::Robot::plant).
+/// Who knows which plant a robot has gets at it by [`Any`]: see
+/// [`Robot::plant`](crate::Robot::plant).
 pub trait Plant: Any + Debug + Send {
     /// Joint positions, `[rad]`.
     fn q(&self) -> &JointVector;
@@ -50,9 +52,9 @@ pub trait Plant: Any + Debug + Send {
     /// the links.
     fn armature(&self) -> &JointVector;
 
-    /// Advances by `dt` seconds under the motors' torques and under torques from outside
-    /// (positive: they push the joint towards positive angles), `[N·m]`. What touches the arm in the
-    /// plant itself comes on top.
+    /// Advances by `dt` seconds under the motors' torques and under torques from outside (positive:
+    /// they push the joint towards positive angles), `[N·m]`. What touches the arm in the plant
+    /// itself comes on top.
     fn step(&mut self, motor: &JointVector, external: &JointVector, dt: f64);
 
     /// Puts the arm at rest at `q`, `[rad]`.

@@ -77,8 +77,8 @@ impl ArmParameters {
     }
 }
 
-/// Torques that depend on the motion itself, to be taken implicitly: at velocities that are `a·dt` away from where they
-/// were computed, they are larger by `slope·a·dt`.
+/// Torques that depend on the motion itself, to be taken implicitly: at velocities that are `a·dt`
+/// away from where they were computed, they are larger by `slope·a·dt`.
 pub(super) struct Resistance {
     /// Of the joints, on the motors' side of the sensors, `[N·m]`; subtract it.
     pub(super) friction: JointVector,
@@ -91,8 +91,8 @@ pub(super) struct Resistance {
 }
 
 impl Resistance {
-    /// What the sensors between gear and link read when motors of these torques accelerate by `ddq`: rotor and friction are on
-    /// the motor's side.
+    /// What the sensors between gear and link read when motors of these torques accelerate by
+    /// `ddq`: rotor and friction are on the motor's side.
     pub(super) fn sensed(
         &self,
         motor: &JointVector,

@@ -90,7 +90,8 @@ impl Robot {
         positive && combination && asynchronous
     }
 
-    /// Begins the motion that waits, if the arm is at rest; state `first_state` is the first to show it.
+    /// Begins the motion that waits, if the arm is at rest; state `first_state` is the first to
+    /// show it.
     fn start_waiting(&mut self, first_state: u64) {
         if !matches!(self.activity, Activity::Holding) {
             return;

@@ -1,5 +1,5 @@
-//! What a person beside the robot can do to the arm: push it, hold it, hang a load on it. What can be
-//! operated is in [`operation`](super::operation).
+//! What a person beside the robot can do to the arm: push it, hold it, hang a load on it. What can
+//! be operated is in [`operation`](super::operation).
 
 use franka_model::{JointVector, Load, Wrench};
 
@@ -22,8 +22,9 @@ impl Robot {
         self.touches.remove(touch)
     }
 
-    /// What a touch has done to the arm in the last millisecond, on the mean: a wrench `[force; torque]` about the place that is
-    /// touched, base axes, `[N, N·m]`. None once it has ended; of torques on joints it is zero.
+    /// What a touch has done to the arm in the last millisecond, on the mean: a wrench
+    /// `[force; torque]` about the place that is touched, base axes, `[N, N·m]`. None once it has
+    /// ended; of torques on joints it is zero.
     pub fn felt(&self, touch: TouchId) -> Option<Wrench> {
         self.touches.felt(touch)
     }
@@ -66,8 +67,9 @@ impl Robot {
         self.plant.attach(self.config.tool.load.combine(&load));
     }
 
-    /// Lets the fingers of the plant, if it has some, do what `hand` wants, and lets `hand` feel them. To be called once per
-    /// millisecond, between this robot's [`tick`](Self::tick) and the hand's.
+    /// Lets the fingers of the plant, if it has some, do what `hand` wants, and lets `hand` feel
+    /// them. To be called once per millisecond, between this robot's [`tick`](Self::tick) and the
+    /// hand's.
     pub fn couple(&mut self, hand: &mut Hand) {
         let fingers = hand.mechanism_mut();
         if let Some(width) = self.plant.drive_fingers(&fingers.drive()) {

@@ -133,8 +133,8 @@ impl Robot {
         Self::with_plant(config, Box::new(plant))
     }
 
-    /// A robot whose controllers believe in the arm of `config.kind`, and move `plant`: it is placed at rest in the
-    /// configured position, with the configured tool and payload.
+    /// A robot whose controllers believe in the arm of `config.kind`, and move `plant`: it is
+    /// placed at rest in the configured position, with the configured tool and payload.
     pub fn with_plant(config: Config, mut plant: Box<dyn Plant>) -> Self {
         plant.attach(config.tool.load.combine(&config.payload));
         plant.place(&config.q);
@@ -252,8 +252,8 @@ impl Robot {
         self.plant.as_ref()
     }
 
-    /// The same, to reach into its surroundings: what it is made of is the plant's own business, and what is done to the arm behind
-    /// the robot's back is a blow to it.
+    /// The same, to reach into its surroundings: what it is made of is the plant's own business,
+    /// and what is done to the arm behind the robot's back is a blow to it.
     pub fn plant_mut(&mut self) -> &mut dyn Plant {
         self.plant.as_mut()
     }

@@ -35,7 +35,8 @@ pub(super) struct Motion {
 pub(crate) enum Awaited {
     /// No command, or none that has not come yet.
     Nothing,
-    /// The first one of a motion: a client may look at several states before, and none of them is lost.
+    /// The first one of a motion: a client may look at several states before, and none of them is
+    /// lost.
     First,
     /// One more. Without it the cycle is lost.
     Next,

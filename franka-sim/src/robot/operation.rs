@@ -44,8 +44,8 @@ impl Robot {
     }
 
     /// Activates or deactivates a safety function that forbids motion, as set up in Desk. A Franka
-    /// Research 3 answers with statuses of its own; an FER has none and acts as if the user stop were
-    /// pressed.
+    /// Research 3 answers with statuses of its own; an FER has none and acts as if the user stop
+    /// were pressed.
     pub fn activate_safety_function(&mut self, active: bool) {
         self.lock.safety_function = active;
         if active {
@@ -70,8 +70,8 @@ impl Robot {
     /// Presses the guiding buttons, or lets go of them; whether the arm is guided then.
     ///
     /// A guided arm carries itself and its declared load, and goes where it is pushed, as far as
-    /// `SetGuidingMode` allows. That is possible with the brakes open while nothing moves, also after
-    /// a reflex and with the user stop pressed. When let go, the arm comes to rest and stays.
+    /// `SetGuidingMode` allows. That is possible with the brakes open while nothing moves, also
+    /// after a reflex and with the user stop pressed. When let go, the arm comes to rest and stays.
     pub fn guide(&mut self, pressed: bool) -> bool {
         match (&self.activity, pressed) {
             (Activity::Guided(_), true) => {}

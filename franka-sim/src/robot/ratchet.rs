@@ -1,7 +1,7 @@
 //! Bounds that something may be beyond and may leave, but not pass further.
 
-/// Watches a clearance: below `bound` it may not shrink by more than `allowed` from the largest that
-/// it has had there.
+/// Watches a clearance: below `bound` it may not shrink by more than `allowed` from the largest
+/// that it has had there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ratchet {
     best: f64,

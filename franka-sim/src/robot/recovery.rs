@@ -61,9 +61,9 @@ impl Robot {
     }
 
     /// Performs the recovery that needs a person, as Desk offers it: joints outside their range are
-    /// brought back into it, slowly, then errors are cleared. With no joint outside it does what the
-    /// automatic one does; without an error, before the arm has come to rest, and while the robot is
-    /// locked, nothing.
+    /// brought back into it, slowly, then errors are cleared. With no joint outside it does what
+    /// the automatic one does; without an error, before the arm has come to rest, and while the
+    /// robot is locked, nothing.
     pub fn recover_manually(&mut self) {
         let at_rest = matches!(self.activity, Activity::Holding);
         if self.robot_mode() != RobotMode::Reflex || !at_rest {

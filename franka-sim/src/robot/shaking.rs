@@ -50,7 +50,8 @@ impl Shaking {
 mod tests {
     use super::*;
 
-    /// After how many milliseconds a joint is found to shake that swings with this frequency, `[Hz]`.
+    /// After how many milliseconds a joint is found to shake that swings with this frequency,
+    /// `[Hz]`.
     fn swing(frequency: f64, velocity: f64) -> Option<usize> {
         let mut shaking = Shaking::new();
         (0..2000).find(|k| {

@@ -11,8 +11,8 @@ pub(super) use present::Touches;
 
 /// Something that acts on the arm from outside, at one place, for a while.
 ///
-/// Positive torques push joints towards positive angles; forces, positions and velocities are in base
-/// axes. All touches add up. Give one to [`Robot::touch`](super::Robot::touch):
+/// Positive torques push joints towards positive angles; forces, positions and velocities are in
+/// base axes. All touches add up. Give one to [`Robot::touch`](super::Robot::touch):
 ///
 /// ```
 /// use franka_model::{Frame, Wrench};
@@ -53,7 +53,8 @@ enum Effort {
     /// A spring whose point moves.
     Carry {
         path: Box<dyn FnMut(f64) -> Vector3<f64> + Send>,
-        /// Where the point is at the beginning of this millisecond, and how it goes on, `[m]`, `[m/s]`.
+        /// Where the point is at the beginning of this millisecond, and how it goes on, `[m]`,
+        /// `[m/s]`.
         point: Vector3<f64>,
         velocity: Vector3<f64>,
         spring: Spring,
@@ -99,8 +100,8 @@ impl Touch {
         Self::new(Effort::Wrench(wrench))
     }
 
-    /// A wrench as a function of the time since the touch began, `[s]` to `[N, N·m]`. It is asked once
-    /// per millisecond.
+    /// A wrench as a function of the time since the touch began, `[s]` to `[N, N·m]`. It is asked
+    /// once per millisecond.
     pub fn over_time(wrench: impl FnMut(f64) -> Wrench + Send + 'static) -> Self {
         Self::new(Effort::OverTime(Box::new(wrench)))
     }
@@ -114,9 +115,10 @@ impl Touch {
         })
     }
 
-    /// A spring of this stiffness, `[N/m]`, to a point that moves: a hand that leads the arm, or something that runs into it
-    /// and stays on it. `path` is a function of the time since the touch began, `[s]` to `[m]`; it is asked once per
-    /// millisecond. The damper acts on the velocity relative to the point's.
+    /// A spring of this stiffness, `[N/m]`, to a point that moves: a hand that leads the arm, or
+    /// something that runs into it and stays on it. `path` is a function of the time since the
+    /// touch began, `[s]` to `[m]`; it is asked once per millisecond. The damper acts on the
+    /// velocity relative to the point's.
     pub fn carry(path: impl FnMut(f64) -> Vector3<f64> + Send + 'static, stiffness: f64) -> Self {
         Self::new(Effort::Carry {
             path: Box::new(path),
@@ -159,8 +161,8 @@ impl Touch {
         })
     }
 
-    /// With this stiffness instead, `[N/m]`, and a damper to match: of a spring, a grip's translation
-    /// or a wall. Others have none.
+    /// With this stiffness instead, `[N/m]`, and a damper to match: of a spring, a grip's
+    /// translation or a wall. Others have none.
     pub fn stiffness(mut self, stiffness: f64) -> Self {
         match &mut self.effort {
             Effort::Spring { spring, .. }

@@ -14,7 +14,8 @@ use crate::config::{Config, Tool};
 pub(super) struct Watch {
     shape: Shape<'static>,
     pairs: Vec<Ratchet>,
-    /// Where the arm was last seen clear of itself, `[rad]`, and by how much more than the margin, `[m]`.
+    /// Where the arm was last seen clear of itself, `[rad]`, and by how much more than the margin,
+    /// `[m]`.
     clear: Option<(JointVector, f64)>,
     walls: Vec<Ratchet>,
     shaking: Shaking,
@@ -87,7 +88,8 @@ impl Watch {
     }
 
     fn closes_in_on_itself(&mut self, q: &JointVector, config: &Config) -> bool {
-        // Nearly always the arm has not moved far enough since it was clear to have become anything else.
+        // Nearly always the arm has not moved far enough since it was clear to have become anything
+        // else.
         if let Some((seen, spare)) = &self.clear
             && LEVER * (q - seen).abs().sum() < *spare
         {
@@ -148,8 +150,9 @@ fn depth(wall: &VirtualWall, position: &Vector3<f64>) -> f64 {
 /// what an arm at rest strays.
 const WALL_ALLOWANCE: f64 = 0.001;
 
-/// How far a point of arm and Hand can be from the axis of a joint, `[m]`, rounded up: the lengths and offsets from the shoulder
-/// outwards are 1.18 m. A joint that turns by an angle brings two bodies nearer by no more than this times the angle.
+/// How far a point of arm and Hand can be from the axis of a joint, `[m]`, rounded up: the lengths
+/// and offsets from the shoulder outwards are 1.18 m. A joint that turns by an angle brings two
+/// bodies nearer by no more than this times the angle.
 const LEVER: f64 = 1.25;
 
 #[cfg(test)]

@@ -53,8 +53,8 @@ impl Between {
         self.listener = None;
     }
 
-    /// How long nothing has to be done: until the next state arrives, and not long, since a command may come, whose
-    /// time of arrival is when it is read.
+    /// How long nothing has to be done: until the next state arrives, and not long, since a command
+    /// may come, whose time of arrival is when it is read.
     pub(super) fn pause(&self) -> Duration {
         let next = self.network.to_client.next_arrival();
         let left = next.map(|at| at.saturating_sub(self.origin.elapsed()));
@@ -62,5 +62,6 @@ impl Between {
     }
 }
 
-/// Time between two looks at the socket, and about what datagrams are later than the network has it.
+/// Time between two looks at the socket, and about what datagrams are later than the network has
+/// it.
 const GLANCE: Duration = Duration::from_micros(100);

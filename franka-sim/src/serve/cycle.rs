@@ -8,10 +8,11 @@ use crate::robot::{Awaited, Robot};
 
 /// How well a simulation has kept its millisecond.
 ///
-/// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) asks for another. When the host lets it sleep over deadlines, it publishes the
-/// states that are due in a burst, as a robot's network does after a stall; when more than
-/// [`Pace::BURST`] are due, it lets the rest of the lost time go. `message_id` advances by one per
-/// state in any case, so robot time then runs behind the clock on the wall.
+/// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) asks for
+/// another. When the host lets it sleep over deadlines, it publishes the states that are due in a
+/// burst, as a robot's network does after a stall; when more than [`Pace::BURST`] are due, it lets
+/// the rest of the lost time go. `message_id` advances by one per state in any case, so robot time
+/// then runs behind the clock on the wall.
 ///
 /// In [virtual time](super::Sim::virtual_time) there is no such clock, and nothing is late.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,7 +32,8 @@ impl Pace {
 
 const PERIOD: Duration = Duration::from_millis(1);
 
-/// Time on the wall between two states that take no answer, in virtual time: a client has to be able to read them.
+/// Time on the wall between two states that take no answer, in virtual time: a client has to be
+/// able to read them.
 const HASTE: Duration = Duration::from_micros(100);
 
 /// The devices, which share one clock.
@@ -62,7 +64,8 @@ impl Cycle {
         }
     }
 
-    /// Runs on the client's time instead, until the same end: see [`Sim::virtual_time`](super::Sim::virtual_time).
+    /// Runs on the client's time instead, until the same end: see
+    /// [`Sim::virtual_time`](super::Sim::virtual_time).
     pub(super) fn run_on_answers(mut self, patience: Duration) {
         let mut pace = Pace::default();
         let mut attempts = 0;
@@ -78,7 +81,8 @@ impl Cycle {
                     self.wait(Instant::now() + period);
                     continue;
                 }
-                // A client that looks at a state before it begins is soon shown the next one; one that is slow gets its time.
+                // A client that looks at a state before it begins is soon shown the next one; one
+                // that is slow gets its time.
                 Awaited::First => {
                     attempts += 1;
                     patience.min(PERIOD * 2_u32.saturating_pow(attempts))

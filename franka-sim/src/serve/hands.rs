@@ -6,9 +6,9 @@ use franka_proto::RobotError;
 use super::{Running, Stopped};
 use crate::robot::{Touch, TouchId};
 
-/// Hands on. Each acts between two milliseconds and returns when it has acted; what is not here goes
-/// through [`Running::with`]. All fail with [`Stopped`] if the simulation has ended, and what has once
-/// been polled may act although the future is dropped.
+/// Hands on. Each acts between two milliseconds and returns when it has acted; what is not here
+/// goes through [`Running::with`]. All fail with [`Stopped`] if the simulation has ended, and what
+/// has once been polled may act although the future is dropped.
 impl Running {
     /// [`Robot::touch`](crate::Robot::touch): push, pull, hold or block the arm.
     ///
@@ -107,11 +107,12 @@ impl Running {
         self.with(move |robot| robot.place(&q)).await
     }
 
-    /// Drops an object of this width between the fingers of the hand, `[m]`. False if it does not fit,
-    /// or if there is no hand. What it weighs is a matter of [`attach`](Self::attach).
+    /// Drops an object of this width between the fingers of the hand, `[m]`. False if it does not
+    /// fit, or if there is no hand. What it weighs is a matter of [`attach`](Self::attach).
     ///
-    /// False as well if the fingers are the plant's: between those goes a body of the scene (`MujocoArm::put_body`, by
-    /// [`with`](Self::with) and [`Robot::plant_mut`](crate::Robot::plant_mut)).
+    /// False as well if the fingers are the plant's: between those goes a body of the scene
+    /// (`MujocoArm::put_body`, by [`with`](Self::with) and
+    /// [`Robot::plant_mut`](crate::Robot::plant_mut)).
     ///
     /// # Errors
     /// [`Stopped`]

@@ -14,8 +14,8 @@ use tokio::time::{sleep, timeout};
 use super::device::Device;
 use super::portion::{Silence, portion};
 
-/// Connections that may be here at the same time. The next one is taken in and the oldest closed, so
-/// that any number of silent ones keeps nobody out.
+/// Connections that may be here at the same time. The next one is taken in and the oldest closed,
+/// so that any number of silent ones keeps nobody out.
 const GUESTS: usize = 64;
 
 /// How long the first message may take. Clients send it at once.
@@ -89,7 +89,8 @@ impl<D: Device> Lobby<D> {
             tracing::warn!("{GUESTS} connections to the {} say nothing", self.name);
             oldest.abort();
         }
-        // Without these options replies are slower, and a client that lost its network stays longer.
+        // Without these options replies are slower, and a client that lost its network stays
+        // longer.
         let (silence, count) = KEEPALIVE;
         let keepalive = TcpKeepalive::new()
             .with_time(silence)

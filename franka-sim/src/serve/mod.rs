@@ -71,7 +71,8 @@ impl Sim {
         Self::new(Config::default())
     }
 
-    /// A Franka Emika Robot (Panda) with a bare flange in the ready pose, on a free port of 127.0.0.1.
+    /// A Franka Emika Robot (Panda) with a bare flange in the ready pose, on a free port of
+    /// 127.0.0.1.
     pub fn fer() -> Self {
         Self::new(Config {
             kind: RobotKind::Fer,
@@ -118,7 +119,8 @@ impl Sim {
     }
 
     /// Serves a Franka Hand beside the robot, on this TCP port; 0 takes a free one. Hands listen on
-    /// 1338. Its mass and frame are those of [`Tool::hand`], to be mounted with [`tool`](Self::tool). If the
+    /// 1338. Its mass and frame are those of [`Tool::hand`], to be mounted with
+    ///       [`tool`](Self::tool). If the
     /// [plant](Self::plant) has fingers, they are the hand's.
     pub fn hand(mut self, fingers: Fingers, port: u16) -> Self {
         self.hand = Some((fingers, port));
@@ -180,35 +182,37 @@ impl Sim {
         self
     }
 
-    /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond. Without the
-    /// right to one, or beside Linux, that is logged, and the thread goes on without.
+    /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond. Without
+    /// the right to one, or beside Linux, that is logged, and the thread goes on without.
     pub fn realtime(mut self, realtime: bool) -> Self {
         self.realtime = realtime;
         self
     }
 
-    /// Lets robot time pass as fast as the client answers, instead of by the clock on the wall: for tests and for programs that
-    /// learn, which nobody watches.
+    /// Lets robot time pass as fast as the client answers, instead of by the clock on the wall: for
+    /// tests and for programs that learn, which nobody watches.
     ///
-    /// * In a motion whose every state takes an answer, the next millisecond begins as soon as the answer to the last state is
-    ///   there. However long the client takes for it, no command is late, up to `patience`: after that the cycle counts as
-    ///   lost, so a client that falls silent is noticed after 20 times that. A second is a good choice.
-    /// * Otherwise, at rest, braking, in a recovery, while a hand grasps, in an asynchronous motion, there are up to ten states
-    ///   per millisecond on the wall. A client that does not keep up misses some of them.
+    /// * In a motion whose every state takes an answer, the next millisecond begins as soon as the
+    ///   answer to the last state is there. However long the client takes for it, no command is
+    ///   late, up to `patience`: after that the cycle counts as lost, so a client that falls silent
+    ///   is noticed after 20 times that. A second is a good choice.
+    /// * Otherwise, at rest, braking, in a recovery, while a hand grasps, in an asynchronous
+    ///   motion, there are up to ten states per millisecond on the wall. A client that does not
+    ///   keep up misses some of them.
     ///
-    /// The times of a [`network`](Self::network) remain those of the wall. Seconds that a client counts by a clock of its own, and not
-    /// by the states, are no seconds of the robot.
+    /// The times of a [`network`](Self::network) remain those of the wall. Seconds that a client
+    /// counts by a clock of its own, and not by the states, are no seconds of the robot.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
         self.patience = Some(patience);
         self
     }
 
-    /// Lets states and commands pass this network, besides that between the sockets. Its time begins with the
-    /// robot's start.
+    /// Lets states and commands pass this network, besides that between the sockets. Its time
+    /// begins with the robot's start.
     ///
-    /// Datagrams are up to 0.2 ms later than the network has it, by what sleeping on the host is worth; the
-    /// thread then looks after them ten times a millisecond. The command connection is not affected, nor is that
-    /// of a hand.
+    /// Datagrams are up to 0.2 ms later than the network has it, by what sleeping on the host is
+    /// worth; the thread then looks after them ten times a millisecond. The command connection is
+    /// not affected, nor is that of a hand.
     pub fn network(mut self, network: Network) -> Self {
         self.network = Some(network);
         self

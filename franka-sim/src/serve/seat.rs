@@ -113,8 +113,9 @@ impl<D: Device> Seat<D> {
         self.device.awaits()
     }
 
-    /// Waits for the command that the newest state asks for, if it does, and no longer than `patience`. Orders and hands
-    /// are taken meanwhile as they are between two milliseconds. False at the end.
+    /// Waits for the command that the newest state asks for, if it does, and no longer than
+    /// `patience`. Orders and hands are taken meanwhile as they are between two milliseconds. False
+    /// at the end.
     pub(super) fn await_command(&mut self, patience: Duration, pace: Pace) -> bool {
         let begun = Instant::now();
         loop {

@@ -21,7 +21,8 @@ use super::lobby::{Lobby, Visitor};
 use super::portion::{Silence, portion};
 use super::seat::{Order, REPLIES};
 
-/// How long a client may leave no room for a reply. One that does not read must not keep others out.
+/// How long a client may leave no room for a reply. One that does not read must not keep others
+/// out.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// How long a second client waits for the first to be gone. One that reconnects arrives a moment
@@ -65,8 +66,8 @@ pub(super) async fn serve<D: Device>(
     }
 }
 
-/// Refused by a reset, which every client takes for the end of the connection. libfranka 0.21 waits for its first answer
-/// beyond an orderly end, for ever.
+/// Refused by a reset, which every client takes for the end of the connection. libfranka 0.21 waits
+/// for its first answer beyond an orderly end, for ever.
 fn refuse(visitor: Visitor, name: &str) {
     let peer = visitor.peer;
     tracing::warn!(%peer, "refused: the {name} has a client");

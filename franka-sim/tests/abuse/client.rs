@@ -100,7 +100,8 @@ impl Client {
         self.udp.send_to(bytes, self.robot).expect("sent");
     }
 
-    /// The command that holds the arm where it is, for every generator, in answer to the newest state.
+    /// The command that holds the arm where it is, for every generator, in answer to the newest
+    /// state.
     pub(crate) fn holding(&self) -> RobotCommand {
         RobotCommand {
             message_id: self.state.message_id,

@@ -17,7 +17,8 @@ fn runtime() -> Runtime {
     builder.build().expect("a runtime")
 }
 
-/// The robot, the hand and the vacuum gripper each serve a good client within a second: connection, state, request.
+/// The robot, the hand and the vacuum gripper each serve a good client within a second: connection,
+/// state, request.
 pub(crate) fn assert_served(binary: &Binary) {
     binary.assert_alive();
     runtime().block_on(async {

@@ -90,5 +90,6 @@ fn a_robot_that_has_served_takes_less_than_fifty_megabytes() {
     });
 }
 
-/// What an allocator may keep for itself `[KiB]`: a leak of 1 KiB per connection would show as 2000.
+/// What an allocator may keep for itself `[KiB]`: a leak of 1 KiB per connection would show as
+/// 2000.
 const GROWTH: usize = 512;

@@ -1,5 +1,5 @@
-//! The simulator's binary against clients that leave the protocol. After each of them a good client is served within a
-//! second, by the same process, which has not grown.
+//! The simulator's binary against clients that leave the protocol. After each of them a good client
+//! is served within a second, by the same process, which has not grown.
 //!
 //! | module | what it holds |
 //! |---|---|

@@ -173,7 +173,8 @@ impl Connection {
         bytes
     }
 
-    /// Waits for the reset, which some clients understand where they wait for ever beyond an orderly end.
+    /// Waits for the reset, which some clients understand where they wait for ever beyond an
+    /// orderly end.
     pub(crate) fn expect_reset(&mut self) {
         let end = self.stream.read(&mut [0; 1]).map_err(|error| error.kind());
         assert_eq!(end, Err(ErrorKind::ConnectionReset));

@@ -1,5 +1,5 @@
-//! What the simulators before this one left open, closed: a test per gap, in virtual time, through the sessions of both
-//! sides and the bytes between them.
+//! What the simulators before this one left open, closed: a test per gap, in virtual time, through
+//! the sessions of both sides and the bytes between them.
 //!
 //! | module | gaps |
 //! |---|---|
@@ -13,8 +13,8 @@
 //! | `fer` | the Franka Emika Robot |
 //! | `open` | what is not known of a robot: each an option, with the default that is documented |
 //!
-//! How large a push reads, how far it moves an impedance, and what a fall trips, on either plant, is in the library's own tests
-//! (`robot::tests::pushes`, `robot::tests::falling`).
+//! How large a push reads, how far it moves an impedance, and what a fall trips, on either plant,
+//! is in the library's own tests (`robot::tests::pushes`, `robot::tests::falling`).
 
 mod commands;
 mod contact;

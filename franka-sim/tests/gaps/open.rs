@@ -1,4 +1,5 @@
-//! The questions that nobody outside has an answer to: for each, the default that is documented and another choice.
+//! The questions that nobody outside has an answer to: for each, the default that is documented and
+//! another choice.
 
 use franka_model::{JointVector, READY, RobotKind, Twist};
 use franka_proto::{

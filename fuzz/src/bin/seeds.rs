@@ -1,4 +1,5 @@
-//! Writes the golden messages as seeds of all targets: `seeds DIRECTORY` makes `DIRECTORY/<target>/<message>`.
+//! Writes the golden messages as seeds of all targets: `seeds DIRECTORY` makes
+//! `DIRECTORY/<target>/<message>`.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};

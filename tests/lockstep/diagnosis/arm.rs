@@ -23,8 +23,8 @@ fn a_push_names_axis_force_and_threshold() {
             Callback::motion(version, |_, _| JointVelocities([0.0; 7])),
         );
         lockstep.run(100);
-        // The robot tells what it does to its surroundings: against a push in y, a force in -y. The hand points downwards,
-        // so that y of the stiffness frame is the other way round.
+        // The robot tells what it does to its surroundings: against a push in y, a force in -y. The
+        // hand points downwards, so that y of the stiffness frame is the other way round.
         lockstep.robot.touch(Touch::over_time(|t| {
             franka_model::Wrench::new(0.0, (400.0 * t).min(60.0), 0.0, 0.0, 0.0, 0.0)
         }));

@@ -74,8 +74,8 @@ fn commands_that_did_not_arrive_are_counted() {
 fn a_leap_after_a_loss_is_laid_to_the_loss() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        // Accelerates, so that what the robot makes up for the lost cycles goes on accelerating; the function does not
-        // know, and lets the velocity swing.
+        // Accelerates, so that what the robot makes up for the lost cycles goes on accelerating;
+        // the function does not know, and lets the velocity swing.
         let work = velocities(&mut lockstep, move |cycle| {
             let mut dq = [0.0; 7];
             dq[0] = 0.2 * (0.03 * f64::from(cycle)).sin() * (f64::from(cycle) / 500.0).min(1.0);

@@ -12,7 +12,8 @@ use franka_rt::session::GoalId;
 use franka_rt::shaping::Shaper;
 use franka_tests::lockstep::Lockstep;
 
-/// Cycles before something happens: enough for a success rate over a hundred of them, and for a log that has turned over.
+/// Cycles before something happens: enough for a success rate over a hundred of them, and for a log
+/// that has turned over.
 const QUIET: u32 = 150;
 
 /// Begins a motion under `callback`, whose commands are sent as they are.
@@ -24,7 +25,8 @@ pub(crate) fn begin(lockstep: &mut Lockstep, callback: Callback) -> GoalId {
     lockstep.control(program, request).expect("nothing moves")
 }
 
-/// The same under a function that returns the joint velocities, `[rad/s]`, of each cycle, which count from 1.
+/// The same under a function that returns the joint velocities, `[rad/s]`, of each cycle, which
+/// count from 1.
 fn velocities(
     lockstep: &mut Lockstep,
     mut at: impl FnMut(u32) -> [f64; 7] + Send + 'static,

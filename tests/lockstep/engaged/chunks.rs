@@ -1,5 +1,5 @@
-//! What ends chunks: a goal that is taken back or given up follows none any more, and one that is followed goes through its
-//! points.
+//! What ends chunks: a goal that is taken back or given up follows none any more, and one that is
+//! followed goes through its points.
 
 use std::time::Duration;
 

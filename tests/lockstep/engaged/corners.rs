@@ -1,5 +1,5 @@
-//! Corners of sessions that go from goal to goal: what meets a goal that was taken back, and what a session without its
-//! deadman makes of its end.
+//! Corners of sessions that go from goal to goal: what meets a goal that was taken back, and what a
+//! session without its deadman makes of its end.
 
 use std::time::Duration;
 

@@ -1,8 +1,9 @@
 //! Sessions that go from goal to goal.
 //!
-//! * `lapses`: silent streams and deadmen. `options`: gains, force cap and regions. `backends`: the robot's own controller, and
-//!   observers. `chunks`: what ends them. `corners`: what meets a goal that was taken back, and a session without its deadman. `waiting`: sessions that
-//!   begin while the arm is let go.
+//! * `lapses`: silent streams and deadmen. `options`: gains, force cap and regions. `backends`: the
+//!   robot's own controller, and observers. `chunks`: what ends them. `corners`: what meets a goal
+//!   that was taken back, and a session without its deadman. `waiting`: sessions that begin while
+//!   the arm is let go.
 
 mod backends;
 mod chunks;
@@ -56,7 +57,8 @@ fn watched(lockstep: &mut Lockstep, target: Target, milliseconds: u64, stale: St
     }
 }
 
-/// An arm engaged by a session that is bound to a deadman, which may be silent for so many milliseconds.
+/// An arm engaged by a session that is bound to a deadman, which may be silent for so many
+/// milliseconds.
 fn guarded(ready: &dyn Fn() -> Lockstep, milliseconds: u64) -> (Lockstep, GoalId, Deadman) {
     let (token, grip) = Deadman::new(Duration::from_millis(milliseconds));
     let mut lockstep = ready();
@@ -229,7 +231,8 @@ fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
     });
 }
 
-/// A policy that predicts a sine of joint 1 at 10 Hz, from observations that are 150 ms old: 16 points, 50 ms apart.
+/// A policy that predicts a sine of joint 1 at 10 Hz, from observations that are 150 ms old: 16
+/// points, 50 ms apart.
 #[test]
 fn chunks_of_a_slow_policy_become_one_smooth_motion() {
     for_each_robot(|ready| {

@@ -104,7 +104,8 @@ fn a_force_cap_is_tuned_within_its_bounds() {
                 "{outcome:?}"
             );
         }
-        // 12 N of push hold against the default cap, and not against one of 8 N, until it is taken away.
+        // 12 N of push hold against the default cap, and not against one of 8 N, until it is taken
+        // away.
         lockstep
             .robot
             .push_end_effector(Wrench::new(0.0, 12.0, 0.0, 0.0, 0.0, 0.0), 1_000_000);

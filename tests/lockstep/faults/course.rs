@@ -14,11 +14,13 @@ pub(crate) const CRUISE: u64 = 40;
 /// The moment of the last command, `[ms]` from the first.
 pub(crate) const END: u64 = 2 * REST + 2 * RAMP + CRUISE;
 
-/// Full speed of a joint, `[rad/s]`. The steepest acceleration is 3.9 rad/s², half of what any joint of either robot may do.
+/// Full speed of a joint, `[rad/s]`. The steepest acceleration is 3.9 rad/s², half of what any
+/// joint of either robot may do.
 const JOINT_SPEED: f64 = 0.05;
 /// Full speed of the end effector, `[m/s]`: some three times as many rad/s in a joint.
 const CARTESIAN_SPEED: f64 = 0.02;
-/// Torque on joint 1 in the place of full speed, `[N m]`. It grows by up to 0.24 N m in a millisecond.
+/// Torque on joint 1 in the place of full speed, `[N m]`. It grows by up to 0.24 N m in a
+/// millisecond.
 const TORQUE: f64 = 3.0;
 
 /// The joint that moves, or takes the torque.
@@ -51,7 +53,8 @@ pub(crate) fn full_speed(generator: MoveGeneratorMode) -> f64 {
     }
 }
 
-/// Way made at full speed 1 until `ms`, `[s]`: the sum over the cycles, as the robot takes differences.
+/// Way made at full speed 1 until `ms`, `[s]`: the sum over the cycles, as the robot takes
+/// differences.
 pub(crate) fn way(ms: u64) -> f64 {
     (1..=ms.min(END)).map(share).sum::<f64>() * 1e-3
 }

@@ -59,7 +59,8 @@ fn a_robot_that_closes_the_connection_ends_everything() {
                 trial.lockstep.client.close(REASON);
                 starts_over(trial, &closed(REASON));
             });
-            // The robot takes requests and commands, and sends states, until the client has closed its own side.
+            // The robot takes requests and commands, and sends states, until the client has closed
+            // its own side.
             matrix.case(format_args!("{variant}/{moment:?}/half"), || {
                 let mut trial = Trial::begin(variant, Deed::Faultless);
                 trial.until(moment);
@@ -68,7 +69,8 @@ fn a_robot_that_closes_the_connection_ends_everything() {
                     trial.lockstep.tick();
                     let activity = trial.lockstep.client.record.activity;
                     let commanded = matches!(activity, Activity::Running | Activity::Finishing);
-                    // Nobody is in charge of a program any more; an arm that follows goals is braked.
+                    // Nobody is in charge of a program any more; an arm that follows goals is
+                    // braked.
                     assert!(!commanded || variant.is_target(), "{activity:?}");
                 }
                 trial.lockstep.robot.disconnect();

@@ -15,7 +15,8 @@ pub(crate) enum Expect {
     Stopped,
     /// The robot did not begin, being in the mode of this name.
     Refused(&'static str),
-    /// The robot stopped itself, for all of the `certain` reasons and perhaps some of the `possible` ones.
+    /// The robot stopped itself, for all of the `certain` reasons and perhaps some of the
+    /// `possible` ones.
     Reflex { certain: Errors, possible: Errors },
     /// The robot was stopped by hand.
     UserStop,
@@ -84,8 +85,8 @@ fn reflex_reasons(error: &MotionError) -> Errors {
     control.failure.reflex_reason
 }
 
-/// The text of a reflex: libfranka 0.21, `robot_impl.cpp`. Before the first cycle it names no reasons,
-/// and has no log to take a rate from.
+/// The text of a reflex: libfranka 0.21, `robot_impl.cpp`. Before the first cycle it names no
+/// reasons, and has no log to take a rate from.
 fn reflex_text(trial: &Trial, errors: Errors) -> String {
     let rate = trial.success_rate();
     match (trial.cycles, trial.finishing) {

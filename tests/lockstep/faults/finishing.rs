@@ -40,8 +40,9 @@ fn a_motion_may_finish_in_its_first_cycle() {
     matrix.finish();
 }
 
-/// The command stands still from the finish on: its velocity drops to zero within a millisecond, which breaks every bound
-/// from the first derivative of what is commanded upwards. Torques alone have no such bound.
+/// The command stands still from the finish on: its velocity drops to zero within a millisecond,
+/// which breaks every bound from the first derivative of what is commanded upwards. Torques alone
+/// have no such bound.
 #[test]
 fn a_finish_on_a_moving_command_is_a_reflex() {
     let mut matrix = Matrix::new("moving");

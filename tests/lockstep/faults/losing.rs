@@ -1,6 +1,7 @@
 //! States and commands that are lost in a row.
 //!
-//! To the robot it is the same which of the two was lost: a state that does not arrive is not answered.
+//! To the robot it is the same which of the two was lost: a state that does not arrive is not
+//! answered.
 
 use franka_model::Model;
 use franka_proto::{MoveGeneratorMode, RobotError};
@@ -81,8 +82,8 @@ fn losses_in_mid_motion_are_bridged_or_named() {
     matrix.finish();
 }
 
-/// Before the first command the robot waits and counts nothing. A client that has heard nothing has not begun; one whose
-/// commands get lost has, and goes on without the robot.
+/// Before the first command the robot waits and counts nothing. A client that has heard nothing has
+/// not begun; one whose commands get lost has, and goes on without the robot.
 #[test]
 fn losses_at_the_start_are_no_cycles_for_the_robot() {
     let mut matrix = Matrix::new("lost-first");
@@ -113,8 +114,8 @@ fn losses_at_the_start_are_no_cycles_for_the_robot() {
     matrix.finish();
 }
 
-/// The finishing command is repeated until the robot shows that it has taken it. States that are lost meanwhile make no
-/// difference to a robot that has it.
+/// The finishing command is repeated until the robot shows that it has taken it. States that are
+/// lost meanwhile make no difference to a robot that has it.
 #[test]
 fn losses_at_the_finish_are_repeated_until_the_robot_gives_up() {
     let mut matrix = Matrix::new("lost-last");
@@ -132,7 +133,8 @@ fn losses_at_the_finish_are_repeated_until_the_robot_gives_up() {
                     }
                     let outcome = trial.outcome();
                     let expected = match lost {
-                        // A motion between sparse targets has no command per cycle that could be missed.
+                        // A motion between sparse targets has no command per cycle that could be
+                        // missed.
                         Lost::Commands
                             if count >= LOST_LIMIT && variant.way != Way::Asynchronous =>
                         {
@@ -149,7 +151,8 @@ fn losses_at_the_finish_are_repeated_until_the_robot_gives_up() {
     matrix.finish();
 }
 
-/// Torques that are lost are repeated, and those of target control are limited against what the robot has.
+/// Torques that are lost are repeated, and those of target control are limited against what the
+/// robot has.
 #[test]
 fn target_control_goes_on_after_all_losses_that_the_robot_bridges() {
     let mut matrix = Matrix::new("lost-target");

@@ -13,7 +13,8 @@ use crate::faults::trial::{Moment, Trial};
 use crate::faults::variant::{Gesture, Variant, Way};
 use crate::faults::{Matrix, course};
 
-/// Calls in which a function does what it should not: the first, the second, one in mid motion, the last.
+/// Calls in which a function does what it should not: the first, the second, one in mid motion, the
+/// last.
 const CALLS: [u64; 4] = [0, 1, 47, course::END];
 
 #[test]
@@ -104,7 +105,8 @@ fn a_function_that_commands_nan_in_any_cycle_is_told_and_the_robot_stopped() {
     matrix.finish();
 }
 
-/// What is not sent is a lost command: the motion goes on, as `writeOnce` leaves it to whoever called it.
+/// What is not sent is a lost command: the motion goes on, as `writeOnce` leaves it to whoever
+/// called it.
 #[test]
 fn a_nan_that_is_written_is_refused_and_the_motion_goes_on() {
     let mut matrix = Matrix::new("written-nan");

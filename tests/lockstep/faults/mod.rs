@@ -4,13 +4,15 @@
 //!   Variant (robot, way) x Moment (armed, cycle, finishing) x fault  ->  Expect (outcome and text)
 //! ```
 //!
-//! A case begins a motion of a [`Variant`](variant::Variant), runs it up to a [`Moment`](trial::Moment), does what its test
-//! is about, and holds the outcome against an [`Expect`](expect::Expect). Whatever the fault: everything resolves, once, in
-//! the words of the reference client where it has any; the thread is back to watching; and the next motion works, after a
-//! recovery or on a new connection if need be.
+//! A case begins a motion of a [`Variant`](variant::Variant), runs it up to a
+//! [`Moment`](trial::Moment), does what its test is about, and holds the outcome against an
+//! [`Expect`](expect::Expect). Whatever the fault: everything resolves, once, in the words of the
+//! reference client where it has any; the thread is back to watching; and the next motion works,
+//! after a recovery or on a new connection if need be.
 //!
-//! All failing cases of a test are told at its end. `FRANKA_FAULT=<name>` runs the cases whose names contain that text, and
-//! `FRANKA_FAULT_SEED=<number>` draws other cycles beside the fixed ones.
+//! All failing cases of a test are told at its end. `FRANKA_FAULT=<name>` runs the cases whose
+//! names contain that text, and `FRANKA_FAULT_SEED=<number>` draws other cycles beside the fixed
+//! ones.
 
 mod course;
 mod cutting;

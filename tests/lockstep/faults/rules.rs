@@ -1,8 +1,10 @@
-//! What a robot does when commands are lost, worked out on one number: the share of the course that has been made.
+//! What a robot does when commands are lost, worked out on one number: the share of the course that
+//! has been made.
 //!
-//! Source: FCI documentation, control parameters and "handling of packet losses". A lost command of a generator continues
-//! with the acceleration of the last; twenty in a row end the motion; and derivatives are backward differences, over what
-//! was continued as well. Lost torques are repeated.
+//! Source: FCI documentation, control parameters and "handling of packet losses". A lost command of
+//! a generator continues with the acceleration of the last; twenty in a row end the motion; and
+//! derivatives are backward differences, over what was continued as well. Lost torques are
+//! repeated.
 
 use franka_model::Model;
 use franka_model::limits::MotionLimits;
@@ -17,12 +19,14 @@ pub(crate) const LOST_LIMIT: u64 = 20;
 /// Length of a cycle, `[s]`.
 const CYCLE: f64 = 1e-3;
 
-/// How far each quantity stays away from its limit, on either side, in cases that are told apart here: a robot judges by what
-/// it publishes, in single precision, and the joints of a Cartesian motion are worked out from its beginning and its end.
+/// How far each quantity stays away from its limit, on either side, in cases that are told apart
+/// here: a robot judges by what it publishes, in single precision, and the joints of a Cartesian
+/// motion are worked out from its beginning and its end.
 const MARGIN: f64 = 0.005;
 
-/// Why the robot stops a motion along the course whose commands from `first` on, `[ms]`, are lost, `lost` of them; nothing
-/// if it goes on. `joints_per_way` are the joint positions of a Cartesian motion over its way, `[rad/m]`.
+/// Why the robot stops a motion along the course whose commands from `first` on, `[ms]`, are lost,
+/// `lost` of them; nothing if it goes on. `joints_per_way` are the joint positions of a Cartesian
+/// motion over its way, `[rad/m]`.
 ///
 /// # Panics
 /// If it is a near thing.

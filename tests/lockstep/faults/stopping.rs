@@ -6,8 +6,8 @@ use crate::faults::program::Deed;
 use crate::faults::trial::{Moment, Trial};
 use crate::faults::variant::Variant;
 
-/// A goal that the finishing command is out for was reached. A program's motion that the robot says it has stopped, it has
-/// not finished.
+/// A goal that the finishing command is out for was reached. A program's motion that the robot says
+/// it has stopped, it has not finished.
 fn expected(variant: Variant, moment: Moment) -> Expect {
     match moment {
         Moment::Finishing(_) if variant.is_target() => Expect::Done,

@@ -23,7 +23,8 @@ pub(crate) enum Moment {
     Armed(u64),
     /// This many states have been answered.
     Cycle(u64),
-    /// The finishing command is out for as many milliseconds, and has been lost each time; with 0 it is on its way.
+    /// The finishing command is out for as many milliseconds, and has been lost each time; with 0
+    /// it is on its way.
     Finishing(u64),
 }
 
@@ -275,7 +276,8 @@ impl Trial {
         panic!("it does not end: {lifecycle:?}");
     }
 
-    /// What libfranka appends to the text of a reflex: the rate of the last state but one, lowered by what was lost after it.
+    /// What libfranka appends to the text of a reflex: the rate of the last state but one, lowered
+    /// by what was lost after it.
     pub(crate) fn success_rate(&self) -> String {
         let [Some((before, rate)), Some((last, _))] = self.seen else {
             return String::new();
@@ -289,7 +291,8 @@ impl Trial {
         text
     }
 
-    /// Whatever happened, the next motion works, after a recovery if need be. No request is left without an answer.
+    /// Whatever happened, the next motion works, after a recovery if need be. No request is left
+    /// without an answer.
     pub(crate) fn works_again(mut self) {
         let lockstep = &mut self.lockstep;
         let resolved = lockstep.client.resolved();
@@ -323,5 +326,6 @@ impl Trial {
     }
 }
 
-/// Milliseconds in which whatever ends has ended: letting go of an arm that was led takes half a second.
+/// Milliseconds in which whatever ends has ended: letting go of an arm that was led takes half a
+/// second.
 const MOST: u64 = 3000;

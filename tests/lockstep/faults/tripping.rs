@@ -55,7 +55,8 @@ fn the_user_stop_at_any_moment_is_told() {
     matrix.finish();
 }
 
-/// The refusal comes after the robot has said that the motion has started, and no state ever shows it.
+/// The refusal comes after the robot has said that the motion has started, and no state ever shows
+/// it.
 #[test]
 fn a_cartesian_motion_does_not_begin_where_the_arm_is_singular() {
     let mut matrix = Matrix::new("singular");

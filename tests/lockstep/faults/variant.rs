@@ -22,7 +22,8 @@ pub(crate) enum Way {
     Target(Gesture),
 }
 
-/// What is commanded, and who turns it into torques. No generator, and an external controller, are torques alone.
+/// What is commanded, and who turns it into torques. No generator, and an external controller, are
+/// torques alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Channel {
     pub(crate) generator: MoveGeneratorMode,

@@ -3,7 +3,8 @@
 use franka_proto::{Errors, RobotError};
 use franka_rt::lifecycle::ControlError;
 
-/// Cycles without a command in a row after which a robot gives up, less two that the ends of a gap may add.
+/// Cycles without a command in a row after which a robot gives up, less two that the ends of a gap
+/// may add.
 const GAP: u64 = 18;
 
 /// Two gaps closer than this, `[ms]`, count as one.

@@ -1,12 +1,13 @@
 //! Random schedules of goals, stops and faults, each replayable from its seed.
 //!
-//! Every fourth schedule or more is calm: nothing goes wrong, so nothing may be reported as wrong. The others lose datagrams,
-//! push the arm, trip the robot and press its user stop. Whatever happens, every goal resolves once and fittingly, the arm
-//! comes to rest, and the next motion works. The harness holds every command and its reference against the limits
-//! meanwhile.
+//! Every fourth schedule or more is calm: nothing goes wrong, so nothing may be reported as wrong.
+//! The others lose datagrams, push the arm, trip the robot and press its user stop. Whatever
+//! happens, every goal resolves once and fittingly, the arm comes to rest, and the next motion
+//! works. The harness holds every command and its reference against the limits meanwhile.
 //!
-//! Ten thousand of them take minutes with an optimised build, with an arm of MuJoCo some four times as long; each test is one
-//! thread. `FRANKA_SCHEDULE_SEED` is the first seed and `FRANKA_SCHEDULES` how many follow:
+//! Ten thousand of them take minutes with an optimised build, with an arm of MuJoCo some four times
+//! as long; each test is one thread. `FRANKA_SCHEDULE_SEED` is the first seed and
+//! `FRANKA_SCHEDULES` how many follow:
 //!
 //! ```text
 //! FRANKA_SCHEDULE_SEED=1 FRANKA_SCHEDULES=10000 cargo test --release --package franka-tests --test lockstep \
@@ -15,10 +16,12 @@
 //!     --test lockstep arm_of_mujoco -- --nocapture
 //! ```
 //!
-//! `every_schedule_ends` are the motions. A schedule that fails prints its seed, which replays it with the same build.
+//! `every_schedule_ends` are the motions. A schedule that fails prints its seed, which replays it
+//! with the same build.
 //!
 //! * `motions`: motions that supersede one another, each with an end of its own.
-//! * `sessions`: sessions that go from goal to goal, of all kinds, with both backends. `given`: what each goal may come to.
+//! * `sessions`: sessions that go from goal to goal, of all kinds, with both backends. `given`:
+//!   what each goal may come to.
 //! * `causes`: what was done from outside, and what a robot owes to it.
 //! * `draw`: random goals.
 
@@ -91,7 +94,8 @@ fn schedules_of_sessions_end_as_well_with_an_arm_of_mujoco() {
     });
 }
 
-/// Plays so many schedules, or as many as the environment says: `FRANKA_SCHEDULES` from `FRANKA_SCHEDULE_SEED` on.
+/// Plays so many schedules, or as many as the environment says: `FRANKA_SCHEDULES` from
+/// `FRANKA_SCHEDULE_SEED` on.
 fn run(count: u64, mut play: impl FnMut(u64, &mut Tally)) {
     let number = |name| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let first: u64 = number("FRANKA_SCHEDULE_SEED").unwrap_or(1);

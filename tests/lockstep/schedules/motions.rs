@@ -13,8 +13,8 @@ use rand::{Rng, SeedableRng};
 use super::causes::Causes;
 use super::{Tally, draw, kind};
 
-/// Largest torque of a session's first command at rest, `[N m]`, for budgets up to the default: what the reference's own
-/// first millisecond asks of the dampers.
+/// Largest torque of a session's first command at rest, `[N m]`, for budgets up to the default:
+/// what the reference's own first millisecond asks of the dampers.
 const FIRST_TORQUE: f64 = 0.02;
 
 /// One schedule.
@@ -114,7 +114,8 @@ impl Motions {
                 self.causes.lose(self.lockstep.now(), count);
                 self.lockstep.link.drop_commands(count);
             }
-            // Only while torques are ours: how stiffly the robot itself holds is not what is tested here.
+            // Only while torques are ours: how stiffly the robot itself holds is not what is tested
+            // here.
             12..=13 if self.running => {
                 self.causes.push();
                 let force = Vector3::from_fn(|_, _| self.random.random_range(-25.0..25.0));

@@ -1,9 +1,10 @@
-//! Builds only if neither `franka-proto` nor `franka-model`, nor anything they depend on, uses the standard library or an
-//! allocator.
+//! Builds only if neither `franka-proto` nor `franka-model`, nor anything they depend on, uses the
+//! standard library or an allocator.
 //!
-//! The standard library defines a panic handler, and a program may have one: whoever brings it in collides with the
-//! one below, on every target. Whoever brings in `alloc` needs a global allocator, and there is none. A bare target proves
-//! the first by not having a standard library at all.
+//! The standard library defines a panic handler, and a program may have one: whoever brings it in
+//! collides with the one below, on every target. Whoever brings in `alloc` needs a global
+//! allocator, and there is none. A bare target proves the first by not having a standard library at
+//! all.
 
 #![no_std]
 

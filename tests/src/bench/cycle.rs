@@ -1,4 +1,5 @@
-//! The whole cycle of target control without the sockets, and what a control function costs around its own work.
+//! The whole cycle of target control without the sockets, and what a control function costs around
+//! its own work.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -11,8 +12,8 @@ use super::timed;
 use crate::bench::{Benchmark, Statistic};
 use crate::lockstep::{Part, Wander};
 
-/// A state decoded, answered by target control and the answer encoded; what the driver does after that; the same as the
-/// first under a control function that does nothing.
+/// A state decoded, answered by target control and the answer encoded; what the driver does after
+/// that; the same as the first under a control function that does nothing.
 pub fn all() -> Vec<Benchmark> {
     vec![
         target(
@@ -47,8 +48,8 @@ fn target(key: &'static str, part: Part, statistics: &'static [Statistic]) -> Be
     }
 }
 
-/// A function that returns the same torques whatever the state, and passes them through the limiter: what is left is what
-/// the driver does for any function.
+/// A function that returns the same torques whatever the state, and passes them through the
+/// limiter: what is left is what the driver does for any function.
 fn callback() -> Benchmark {
     let mut motion = Running::new();
     Benchmark {

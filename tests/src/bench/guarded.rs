@@ -1,7 +1,8 @@
 //! The cycle of target control with every guard on, for every kind of goal.
 //!
-//! A session is simulated in episodes from seeds, and an episode goes the same way each time: its cycle number n always has
-//! the same work before it. So a cycle can be measured again, in the state that its session had.
+//! A session is simulated in episodes from seeds, and an episode goes the same way each time: its
+//! cycle number n always has the same work before it. So a cycle can be measured again, in the
+//! state that its session had.
 
 use std::cell::RefCell;
 use std::cmp::Reverse;
@@ -48,7 +49,8 @@ pub fn all() -> Vec<Benchmark> {
     benchmarks
 }
 
-/// The mix, for counting instructions: a millisecond of one kind of goal after the other, of which only the cycle counts.
+/// The mix, for counting instructions: a millisecond of one kind of goal after the other, of which
+/// only the cycle counts.
 pub fn subjects() -> Vec<Subject> {
     let mut arms: Option<Vec<Guarded>> = None;
     let mut turn = 0;
@@ -95,7 +97,8 @@ struct Episode {
     seed: u64,
 }
 
-/// Runs so many cycles of an episode, and tells of each which it was and the nanoseconds that it took.
+/// Runs so many cycles of an episode, and tells of each which it was and the nanoseconds that it
+/// took.
 fn run(episode: Episode, cycles: usize, mut each: impl FnMut(usize, u64)) {
     let mut arm = Guarded::new(episode.errand, episode.seed);
     let mut cycle = 0;
@@ -143,7 +146,8 @@ impl Survey {
         all.copied().collect()
     }
 
-    /// Goes through all cycles, in each episode more than once, so that few are suspected only because something else ran.
+    /// Goes through all cycles, in each episode more than once, so that few are suspected only
+    /// because something else ran.
     fn survey(&mut self) {
         if !self.suspects.is_empty() {
             return;

@@ -11,7 +11,8 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Inputs, Statistic, Subject};
 
-/// All postures for a pose and a parameter of each kind, and the velocity problem with pinned joints.
+/// All postures for a pose and a parameter of each kind, and the velocity problem with pinned
+/// joints.
 pub fn all() -> Vec<Benchmark> {
     let mut benchmarks: Vec<_> = subjects().into_iter().map(Subject::p50).collect();
     benchmarks.push(worst_pinned());
@@ -45,8 +46,8 @@ pub fn subjects() -> Vec<Subject> {
     ]
 }
 
-/// Each state for itself, not knowing which bounds bind, so that the worst of them shows: the least of some repetitions
-/// of each, since a repetition may be interrupted.
+/// Each state for itself, not knowing which bounds bind, so that the worst of them shows: the least
+/// of some repetitions of each, since a repetition may be interrupted.
 fn worst_pinned() -> Benchmark {
     let states = pinned();
     let time = |state: &Pinned| {

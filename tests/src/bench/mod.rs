@@ -6,9 +6,10 @@
 //!   ...                                 -> median over the rounds -> flat keys
 //! ```
 //!
-//! Every round runs every benchmark once. What disturbs the machine for a while then disturbs one round of all
-//! benchmarks instead of one benchmark, and the median over the rounds leaves it out. Inputs are seeded and vary from
-//! call to call, so that a branch predictor that learns one input by heart gains nothing.
+//! Every round runs every benchmark once. What disturbs the machine for a while then disturbs one
+//! round of all benchmarks instead of one benchmark, and the median over the rounds leaves it out.
+//! Inputs are seeded and vary from call to call, so that a branch predictor that learns one input
+//! by heart gains nothing.
 //!
 //! | module | measures |
 //! |---|---|
@@ -40,8 +41,8 @@ pub use subject::Subject;
 
 /// One thing to measure.
 pub struct Benchmark {
-    /// First part of its keys, unit included; a statistic follows: `otg.replan_7_ns` gives `otg.replan_7_ns_p50`.
-    /// [`Statistic::RealTime`] adds nothing.
+    /// First part of its keys, unit included; a statistic follows: `otg.replan_7_ns` gives
+    /// `otg.replan_7_ns_p50`. [`Statistic::RealTime`] adds nothing.
     pub key: &'static str,
     /// What to report of a round.
     pub statistics: &'static [Statistic],
@@ -111,7 +112,8 @@ pub fn subjects() -> Vec<Subject> {
     subjects
 }
 
-/// Runs `rounds` interleaved rounds, at least one, and gives the median of each statistic over them.
+/// Runs `rounds` interleaved rounds, at least one, and gives the median of each statistic over
+/// them.
 pub fn measure(benchmarks: &mut [Benchmark], rounds: usize) -> BTreeMap<String, u64> {
     let mut values: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     for _ in 0..rounds.max(1) {
@@ -136,8 +138,8 @@ pub fn measure(benchmarks: &mut [Benchmark], rounds: usize) -> BTreeMap<String, 
 
 /// Times `samples` batches of `batch` calls each and gives the mean of each batch, in nanoseconds.
 ///
-/// Reading the clock costs about as much as writing a command: what takes less than a microsecond needs a batch to
-/// be seen, and gives up its percentiles above the median for it.
+/// Reading the clock costs about as much as writing a command: what takes less than a microsecond
+/// needs a batch to be seen, and gives up its percentiles above the median for it.
 pub fn timed(samples: usize, batch: u32, mut call: impl FnMut()) -> Vec<u64> {
     let sample = |_| {
         let start = Instant::now();

@@ -1,4 +1,5 @@
-//! Pose, Jacobian, mass, Coriolis and gravity of the FR3 under a load: one by one, as five calls, and in one pass.
+//! Pose, Jacobian, mass, Coriolis and gravity of the FR3 under a load: one by one, as five calls,
+//! and in one pass.
 
 use franka_model::{
     Dynamics, EndEffector, Frame, GRAVITY_EARTH, Jacobian, JointVector, Load, MassMatrix, Model,

@@ -1,8 +1,10 @@
-//! A new target for axes that are moving, and the first step towards it: the most that the generator does in one cycle.
+//! A new target for axes that are moving, and the first step towards it: the most that the
+//! generator does in one cycle.
 //!
-//! States are taken from random motions. Each sweep of a round measures every state once, so that no predictor learns a
-//! state by heart, and a state counts with its shortest time over the sweeps: the longer ones are those in which something
-//! else ran. What reading the clock takes is subtracted; for one axis it would be a third of the figure.
+//! States are taken from random motions. Each sweep of a round measures every state once, so that
+//! no predictor learns a state by heart, and a state counts with its shortest time over the sweeps:
+//! the longer ones are those in which something else ran. What reading the clock takes is
+//! subtracted; for one axis it would be a third of the figure.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -14,10 +16,11 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Statistic};
 
-/// One, three and seven axes with the limits of an arm, seven with limits over decades, and the worst of many states.
+/// One, three and seven axes with the limits of an arm, seven with limits over decades, and the
+/// worst of many states.
 ///
-/// One and seven axes are joints of the FR3, three the translation of the end effector in the default budget. The axes are
-/// synchronised in time only, which costs more than a straight line.
+/// One and seven axes are joints of the FR3, three the translation of the end effector in the
+/// default budget. The axes are synchronised in time only, which costs more than a straight line.
 pub fn all() -> Vec<Benchmark> {
     let joints = Model::fr3().joint_limits();
     let joint = move |axis: usize, _: &mut SmallRng| AxisLimits {
@@ -66,7 +69,8 @@ fn replan<const N: usize>(
     }
 }
 
-/// The first round goes through all states. It and all others measure those again that took longest, alone.
+/// The first round goes through all states. It and all others measure those again that took
+/// longest, alone.
 fn worst(
     key: &'static str,
     limits: impl Fn(usize, &mut SmallRng) -> AxisLimits + 'static,
@@ -130,8 +134,8 @@ fn clock() -> u64 {
     readings[500]
 }
 
-/// States of motions to one target after the other, some way into each motion: before, in and after its phase of constant
-/// velocity. After a while the next arm takes over.
+/// States of motions to one target after the other, some way into each motion: before, in and after
+/// its phase of constant velocity. After a while the next arm takes over.
 struct Cases<const N: usize, L> {
     random: SmallRng,
     limits: L,

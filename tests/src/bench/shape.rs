@@ -1,4 +1,5 @@
-//! What a control loop does to a returned command: filter, limiter and check of torques and of a pose.
+//! What a control loop does to a returned command: filter, limiter and check of torques and of a
+//! pose.
 
 use std::hint::black_box;
 

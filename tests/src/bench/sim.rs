@@ -1,6 +1,7 @@
 //! The simulated robot under target control in virtual time: how much faster than a robot.
 //!
-//! What counts is the processor's time: a second of robot time takes long enough for other programs to have a share of it.
+//! What counts is the processor's time: a second of robot time takes long enough for other programs
+//! to have a share of it.
 
 use std::time::Duration;
 

@@ -1,5 +1,6 @@
-//! Runs the benchmarks, or those whose keys begin with `PREFIX`: `bench OUTPUT.json [ROUNDS [PREFIX]]`. Prints the values and
-//! writes them as one flat JSON object.
+//! Runs the benchmarks, or those whose keys begin with `PREFIX`:
+//! `bench OUTPUT.json [ROUNDS [PREFIX]]`. Prints the values and writes them as one flat JSON
+//! object.
 
 use std::env;
 use std::fs;

@@ -1,8 +1,9 @@
-//! Counts instructions: `instructions` prints, for every call of the model that the benchmarks time and for the guarded
-//! cycle, how many machine instructions it takes. Time on a shared machine is noisy; this is not.
+//! Counts instructions: `instructions` prints, for every call of the model that the benchmarks time
+//! and for the guarded cycle, how many machine instructions it takes. Time on a shared machine is
+//! noisy; this is not.
 //!
-//! Needs `valgrind`. Every call is made a few and many times under its callgrind tool; the difference is that of the
-//! calls, without what starting and preparing the inputs takes.
+//! Needs `valgrind`. Every call is made a few and many times under its callgrind tool; the
+//! difference is that of the calls, without what starting and preparing the inputs takes.
 
 use std::env;
 use std::process::{Command, ExitCode};
@@ -54,7 +55,8 @@ fn table() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Instructions of a process that makes `calls` calls; those in the function `within` alone if there is one.
+/// Instructions of a process that makes `calls` calls; those in the function `within` alone if
+/// there is one.
 fn count(key: &str, within: Option<&str>, calls: u64) -> Option<u64> {
     let within = within.map(|within| format!("--toggle-collect={within}"));
     let output = Command::new("valgrind")

@@ -1,5 +1,5 @@
-//! All inverse kinematics solutions for a pose and an angle of joint 7 or joint 4, against an enumeration that a
-//! numerical search found nothing to add to.
+//! All inverse kinematics solutions for a pose and an angle of joint 7 or joint 4, against an
+//! enumeration that a numerical search found nothing to add to.
 
 use franka_model::analytic_ik::{self, Branch, Redundancy, Solution, Solutions};
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, joint_vector, transform};
@@ -7,14 +7,14 @@ use nalgebra::Matrix4;
 
 use super::{Case, Malformed, Node, Report};
 
-/// Of joint angles, `[rad]`: no pose of the file is nearer than 1e-7 to a double root, where rounding weighs a
-/// thousand times.
+/// Of joint angles, `[rad]`: no pose of the file is nearer than 1e-7 to a double root, where
+/// rounding weighs a thousand times.
 const ANGLE: f64 = 1e-10;
 /// Of the pose that a solution has, `[m]` and elements of the rotation.
 const POSE: f64 = 1e-12;
 
-/// Checks `ik_vectors.json`: the complete set of every pose for joint 7, which of it is within the limits of each
-/// robot, and the set for joint 4 where there is one.
+/// Checks `ik_vectors.json`: the complete set of every pose for joint 7, which of it is within the
+/// limits of each robot, and the set for joint 4 where there is one.
 pub(super) fn all(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     for vector in root.get("vectors")?.list()? {

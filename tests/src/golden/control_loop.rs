@@ -1,7 +1,8 @@
 //! Control functions against libfranka's control loops: `control_loop_vectors.json`.
 //!
-//! A trace is what a loop did with four states: which function it called with which state and time step, and what it sent
-//! once the values that they returned had passed filter, limiter and checks. Here the driver runs the same functions.
+//! A trace is what a loop did with four states: which function it called with which state and time
+//! step, and what it sent once the values that they returned had passed filter, limiter and checks.
+//! Here the driver runs the same functions.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -18,7 +19,8 @@ use franka_rt::shaping::Shaper;
 
 use super::{Case, Malformed, Node, Report};
 
-/// Of every number of a command, in its SI unit. The vectors allow 1e-12, and 1e-11 for poses, which go through quaternions.
+/// Of every number of a command, in its SI unit. The vectors allow 1e-12, and 1e-11 for poses,
+/// which go through quaternions.
 const TOLERANCE: f64 = 5e-15;
 
 /// Checks `control_loop_vectors.json`.

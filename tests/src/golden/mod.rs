@@ -5,8 +5,9 @@
 //!                 -> Suite::check (one per file) -> Report -> one line of output
 //! ```
 //!
-//! A suite is a row of [`SUITES`]: the file it reads, below the directory of the vectors, and the function that
-//! checks it. To add one, write `golden/<subject>.rs` with a function like this and add the row:
+//! A suite is a row of [`SUITES`]: the file it reads, below the directory of the vectors, and the
+//! function that checks it. To add one, write `golden/<subject>.rs` with a function like this and
+//! add the row:
 //!
 //! ```
 //! use franka_tests::golden::{Malformed, Node, Report};

@@ -30,7 +30,8 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// Where this value stands in its document, for example `samples[3].q`; `document` for the root.
+    /// Where this value stands in its document, for example `samples[3].q`; `document` for the
+    /// root.
     pub fn path(&self) -> &str {
         if self.path.is_empty() {
             "document"

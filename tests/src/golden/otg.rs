@@ -1,27 +1,30 @@
 //! The trajectory generator against time-optimal motions made with Ruckig 0.19.4.
 //!
-//! Optimal motions of one axis are unique, so all of it is compared. Motions of several axes are not: of the axes
-//! that wait for the slowest one only the common duration is, and what they must keep is checked.
+//! Optimal motions of one axis are unique, so all of it is compared. Motions of several axes are
+//! not: of the axes that wait for the slowest one only the common duration is, and what they must
+//! keep is checked.
 
 use franka_rt::otg::{CYCLE, Generator, Limits, PlanError, State, Synchronisation};
 
 use super::{Case, Malformed, Node, Report};
 
-/// Of durations, relative. The files hold what independent solutions agree on to 4e-8 at worst, near stop points
-/// and in their own arithmetic; the two generators agree to 1e-11.
+/// Of durations, relative. The files hold what independent solutions agree on to 4e-8 at worst,
+/// near stop points and in their own arithmetic; the two generators agree to 1e-11.
 const DURATION: f64 = 1e-9;
 /// Of samples, relative to the distance of the motion and to the limits.
 const SAMPLE: f64 = 1e-8;
 /// Of limits, relative.
 const EXCESS: f64 = 1e-9;
-/// Arrivals that the generator counts as simultaneous where an axis cannot wait, in seconds: a quarter of a cycle.
+/// Arrivals that the generator counts as simultaneous where an axis cannot wait, in seconds: a
+/// quarter of a cycle.
 const TOGETHER: f64 = 0.25 * CYCLE;
 /// Samples of a motion whose limits are checked.
 const SAMPLES: u32 = 200;
 /// Instants of the samples in the file, as parts of the duration.
 const INSTANTS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
-/// Checks `otg/single_axis.json`. Starts outside the limits are included: both generators brake by the same rule.
+/// Checks `otg/single_axis.json`. Starts outside the limits are included: both generators brake by
+/// the same rule.
 pub(super) fn single_axis(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     for node in root.get("cases")?.list()? {
@@ -41,11 +44,11 @@ pub(super) fn single_axis(root: &Node<'_>) -> Result<Report, Malformed> {
     Ok(report)
 }
 
-/// Checks `otg/single_axis_target_velocity.json`: the least motion, its mirror image in time, and the durations that are
-/// blocked.
+/// Checks `otg/single_axis_target_velocity.json`: the least motion, its mirror image in time, and
+/// the durations that are blocked.
 ///
-/// The mirror image in time ends with the acceleration that the case begins with. So it checks targets that accelerate,
-/// of which the file has none.
+/// The mirror image in time ends with the acceleration that the case begins with. So it checks
+/// targets that accelerate, of which the file has none.
 pub(super) fn target_velocity(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     for node in root.get("cases")?.list()? {
@@ -186,8 +189,9 @@ impl<const N: usize> Problem<N> {
         case.near("duration", &[got], &[duration], tolerance);
     }
 
-    /// The motion leads to the target: a millionth of the duration before it, it is as far away as the target's motion and
-    /// the jerk make it in that time, but for the rounding of positions. One that ends there ends there exactly.
+    /// The motion leads to the target: a millionth of the duration before it, it is as far away as
+    /// the target's motion and the jerk make it in that time, but for the rounding of positions.
+    /// One that ends there ends there exactly.
     fn check_end(&self, case: &mut Case<'_>, plan: &Generator<N>) {
         let duration = plan.time_to_target();
         if self.target.is_at_rest() {
@@ -270,8 +274,8 @@ impl Problem<1> {
         velocity.abs() + 0.5 * acceleration * acceleration / self.jerk[0] <= self.velocity[0]
     }
 
-    /// Which durations are possible shows beside an axis that takes a duration of our choice from rest to rest: both
-    /// arrive as soon after that as this one can.
+    /// Which durations are possible shows beside an axis that takes a duration of our choice from
+    /// rest to rest: both arrive as soon after that as this one can.
     fn check_blocked(
         &self,
         case: &mut Case<'_>,

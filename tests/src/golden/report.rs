@@ -33,7 +33,8 @@ pub struct Failure {
     pub what: String,
 }
 
-/// One case while it is checked. It passes if every comparison made on it does, and at least one was made.
+/// One case while it is checked. It passes if every comparison made on it does, and at least one
+/// was made.
 #[derive(Debug)]
 pub struct Case<'a> {
     report: &'a mut Report,
@@ -71,7 +72,8 @@ impl Report {
         self.passed
     }
 
-    /// The comparison of numbers nearest to its tolerance, or furthest beyond; `None` if all comparisons were exact.
+    /// The comparison of numbers nearest to its tolerance, or furthest beyond; `None` if all
+    /// comparisons were exact.
     pub fn worst(&self) -> Option<&Worst> {
         self.worst.as_ref()
     }
@@ -83,8 +85,8 @@ impl Report {
 }
 
 impl Case<'_> {
-    /// Compares numbers element by element: each may differ by `tolerance`, in their own unit. A number that is not
-    /// finite on one side only, or a different length, fails.
+    /// Compares numbers element by element: each may differ by `tolerance`, in their own unit. A
+    /// number that is not finite on one side only, or a different length, fails.
     pub fn near(&mut self, quantity: &str, got: &[f64], want: &[f64], tolerance: f64) {
         if got.len() != want.len() {
             let (got, want) = (got.len(), want.len());

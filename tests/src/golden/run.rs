@@ -64,7 +64,8 @@ fn verdict(path: &Path, suite: &Suite) -> Verdict {
     }
 }
 
-/// Whether a run proves nothing or something wrong: a failed case, an unreadable file, or every file absent.
+/// Whether a run proves nothing or something wrong: a failed case, an unreadable file, or every
+/// file absent.
 pub fn failed(outcomes: &[Outcome]) -> bool {
     outcomes.iter().all(Outcome::absent) || outcomes.iter().any(Outcome::failed)
 }

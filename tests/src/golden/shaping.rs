@@ -1,7 +1,7 @@
 //! The limiters and the bounds of commands against libfranka's: `rate_limiting_vectors.json`.
 //!
-//! Scalars and joints are compared to the last bit. What goes through rotations and norms is not the same arithmetic to
-//! the last bit, and gets [`CARTESIAN`].
+//! Scalars and joints are compared to the last bit. What goes through rotations and norms is not
+//! the same arithmetic to the last bit, and gets [`CARTESIAN`].
 
 use franka_model::limits::{BrakingEnvelope, CLIENT_MARGIN, JointLimits};
 use franka_model::{JointVector, Load, RobotKind};
@@ -12,7 +12,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Case, Malformed, Node, Report, shaping_errors};
 
-/// Of Cartesian values, `[m]`, `[m/s]`, `[rad/s]` and elements of rotations: some steps of a double at 1.
+/// Of Cartesian values, `[m]`, `[m/s]`, `[rad/s]` and elements of rotations: some steps of a double
+/// at 1.
 const CARTESIAN: f64 = 2e-14;
 /// Of the totals of loads, whose sums are in another order, `[kg m^2]`.
 const TOTALS: f64 = 1e-15;

@@ -1,4 +1,5 @@
-//! The protocol against complete messages and datagrams, both ways: values to bytes, bytes to values.
+//! The protocol against complete messages and datagrams, both ways: values to bytes, bytes to
+//! values.
 
 use franka_proto::framing::{Message, next_message};
 use franka_proto::{

@@ -1,4 +1,5 @@
-//! The client's half of a connection: driver, command session and motion state machine, on virtual time.
+//! The client's half of a connection: driver, command session and motion state machine, on virtual
+//! time.
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::time::Duration;
@@ -30,7 +31,8 @@ pub struct Client {
     pub now: Duration,
     /// How long it takes from a state to its answer, and to being ready for the next state.
     pub turnaround: Duration,
-    /// Whether the lifecycle hears nothing of the driver for now, as if its task did not get to run.
+    /// Whether the lifecycle hears nothing of the driver for now, as if its task did not get to
+    /// run.
     pub is_deaf: bool,
     /// When it has answered the newest state.
     pub(super) free: Duration,
@@ -109,8 +111,8 @@ impl Client {
         self.to_robot.pop_front()
     }
 
-    /// Takes bytes of the robot's stream, cut anywhere. What leaves the protocol ends the motion that it answers, or else the
-    /// connection, after which nothing is taken any more.
+    /// Takes bytes of the robot's stream, cut anywhere. What leaves the protocol ends the motion
+    /// that it answers, or else the connection, after which nothing is taken any more.
     pub fn on_bytes(&mut self, bytes: &[u8]) {
         let mut received = std::mem::take(&mut self.from_robot);
         received.extend_from_slice(bytes);
@@ -153,8 +155,8 @@ impl Client {
         }
     }
 
-    /// What the control thread does between a state and its command: takes the datagram, and returns the size of the
-    /// command that answers it, if one does.
+    /// What the control thread does between a state and its command: takes the datagram, and
+    /// returns the size of the command that answers it, if one does.
     ///
     /// A function of its own in every profile: instructions are counted by its name.
     ///
@@ -170,7 +172,8 @@ impl Client {
         answer.map(|answer| answer.encode(version, command).expect("it fits"))
     }
 
-    /// What the control thread does after that: in a world where states come when they are due, and answers take no time.
+    /// What the control thread does after that: in a world where states come when they are due, and
+    /// answers take no time.
     pub fn conclude(&mut self, answered: bool) {
         let state = &self.state;
         let arrival = Arrival {
@@ -186,8 +189,8 @@ impl Client {
         }
     }
 
-    /// Passes on what the driver has to tell, watches deadlines, and carries out what follows from both. Returns whether
-    /// anything did: the driver may have more to tell then.
+    /// Passes on what the driver has to tell, watches deadlines, and carries out what follows from
+    /// both. Returns whether anything did: the driver may have more to tell then.
     pub fn settle(&mut self) -> bool {
         while !self.is_deaf
             && let Some(event) = self.driver.take_event()
@@ -272,7 +275,8 @@ impl Client {
         self.outcomes.get(&id)
     }
 
-    /// Gives up waiting for replies to the motions so far: the lifecycle begins one after the other.
+    /// Gives up waiting for replies to the motions so far: the lifecycle begins one after the
+    /// other.
     fn forget_motions(&mut self) {
         for (id, _) in self.motions.drain() {
             self.session.abandon(id);

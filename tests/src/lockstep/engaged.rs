@@ -52,7 +52,8 @@ impl Lockstep {
         })
     }
 
-    /// Hands a goal to the session `engaged`: one that is awaited, or one that is held until the next.
+    /// Hands a goal to the session `engaged`: one that is awaited, or one that is held until the
+    /// next.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -85,7 +86,8 @@ impl Lockstep {
         self.submit_chunk(engaged, goal, chunk).map(|_| ())
     }
 
-    /// The same with a goal of the test's own, which names the chunk unless it goes on from another one.
+    /// The same with a goal of the test's own, which names the chunk unless it goes on from another
+    /// one.
     ///
     /// # Errors
     /// As the lifecycle.

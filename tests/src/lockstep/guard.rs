@@ -51,7 +51,8 @@ impl CommandGuard {
                 tau.is_finite() && tau.abs() <= limits.torque[i],
                 "{at}: joint {joint} gets {tau} N m"
             );
-            // The robot holds a command against the last one that it took, which an FR3 echoes as `f32`.
+            // The robot holds a command against the last one that it took, which an FR3 echoes as
+            // `f32`.
             let rate = (tau - state.tau_J_d[i]).abs() / CYCLE;
             assert!(
                 rate <= limits.torque_rate[i] + 0.01,

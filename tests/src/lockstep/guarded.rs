@@ -1,7 +1,7 @@
 //! Target control that never ends with every guard on, whatever it is given to do.
 //!
-//! Updates that stay away, a deadman that falls silent, pushes, regions in the way and targets far ahead are part of it: from
-//! time to time each of the guards binds.
+//! Updates that stay away, a deadman that falls silent, pushes, regions in the way and targets far
+//! ahead are part of it: from time to time each of the guards binds.
 
 use std::collections::HashSet;
 use std::time::Duration;
@@ -36,7 +36,8 @@ pub enum Errand {
     Chunks,
     /// A hand to guide it, and a pose now and then.
     Guide,
-    /// Joint positions and poses for the robot's own controller; under an odd seed poses alone, as Cartesian setpoints.
+    /// Joint positions and poses for the robot's own controller; under an odd seed poses alone, as
+    /// Cartesian setpoints.
     RobotController,
 }
 
@@ -67,7 +68,8 @@ pub struct Guarded {
     pub bound: HashSet<Guard>,
     /// What became of the chunks so far.
     pub fates: Vec<Fate>,
-    /// How often the robot has stopped the arm, which is then put back: pushed hard enough, it comes to a limit.
+    /// How often the robot has stopped the arm, which is then put back: pushed hard enough, it
+    /// comes to a limit.
     pub stops: u32,
     errand: Errand,
     backend: Backend,
@@ -309,7 +311,8 @@ impl Guarded {
         if self.random.random_bool(0.25) {
             chunk = chunk.replace();
         }
-        // Twice at once: the second supersedes the first. What is not in use comes back in the next cycle, so there is room.
+        // Twice at once: the second supersedes the first. What is not in use comes back in the next
+        // cycle, so there is room.
         let times = if self.random.random_bool(0.1) { 2 } else { 1 };
         for chunk in std::iter::repeat_n(chunk, times) {
             let sent = self.chunks.send(self.goal.id, chunk);

@@ -65,8 +65,8 @@ impl Link {
         self.drop_finishing = count;
     }
 
-    /// What a client takes that reads when something is there, from `free` on and before `end`: the newest of the states
-    /// that have come, if it is newer than `last`.
+    /// What a client takes that reads when something is there, from `free` on and before `end`: the
+    /// newest of the states that have come, if it is newer than `last`.
     pub(super) fn receive(
         &mut self,
         free: Duration,

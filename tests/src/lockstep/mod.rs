@@ -1,4 +1,5 @@
-//! Driver, command session and simulated robot in one thread on virtual time: exact, instant, replayable.
+//! Driver, command session and simulated robot in one thread on virtual time: exact, instant,
+//! replayable.
 //!
 //! ```text
 //!   Lifecycle --requests--> client::Session ~~bytes~~> Robot (simulated)
@@ -8,10 +9,12 @@
 //!   '---------------- Client ----------------'
 //! ```
 //!
-//! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`]: datagrams the simulator's
-//! network, which delays and loses what its seed says. One call of [`Lockstep::tick`] is one millisecond, from one cycle of
-//! the robot to the next; within it, datagrams arrive when they arrive. Whatever a test does, every command of target control that leaves
-//! the driver is held against the robot's limits. The [`Client`] half also runs beside robots that follow a script.
+//! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`]:
+//! datagrams the simulator's network, which delays and loses what its seed says. One call of
+//! [`Lockstep::tick`] is one millisecond, from one cycle of the robot to the next; within it,
+//! datagrams arrive when they arrive. Whatever a test does, every command of target control that
+//! leaves the driver is held against the robot's limits. The [`Client`] half also runs beside
+//! robots that follow a script.
 
 mod client;
 mod engaged;
@@ -123,13 +126,14 @@ impl Lockstep {
     /// One millisecond of everything.
     ///
     /// # Panics
-    /// If a command violates a limit of the robot, or the client's session meets a message it cannot read.
+    /// If a command violates a limit of the robot, or the client's session meets a message it
+    /// cannot read.
     pub fn tick(&mut self) {
         self.tick_around(|_, work| work());
     }
 
-    /// Like [`Self::tick`], with both parts of the control cycle run by `around`: to time them, or to count what they
-    /// allocate.
+    /// Like [`Self::tick`], with both parts of the control cycle run by `around`: to time them, or
+    /// to count what they allocate.
     ///
     /// # Panics
     /// See [`Self::tick`]; and if `around` does not run what it is given.
@@ -162,7 +166,8 @@ impl Lockstep {
         self.client.settle();
     }
 
-    /// Gives the client the states that come before the robot's next cycle. Returns whether any does.
+    /// Gives the client the states that come before the robot's next cycle. Returns whether any
+    /// does.
     fn take_states(&mut self, around: &mut impl FnMut(Part, &mut dyn FnMut())) -> bool {
         let end = self.next_cycle();
         let mut heard = false;
@@ -243,7 +248,8 @@ impl Lockstep {
         Ok(())
     }
 
-    /// Gives the connection up, if it lives, and opens another one to the same robot over a perfect link.
+    /// Gives the connection up, if it lives, and opens another one to the same robot over a perfect
+    /// link.
     ///
     /// # Panics
     /// If the handshake fails.
@@ -322,7 +328,8 @@ impl Lockstep {
         submitted.map(|()| goal.id)
     }
 
-    /// Starts a control function that begins together with the motions of other robots; see [`Self::control`].
+    /// Starts a control function that begins together with the motions of other robots; see
+    /// [`Self::control`].
     ///
     /// # Errors
     /// As the lifecycle.
@@ -349,8 +356,8 @@ impl Lockstep {
         self.submit(goal).expect("the goal is accepted")
     }
 
-    /// Starts a motion under a program of the test's own. From then on no command is held against the limits: the simulated
-    /// robot is the judge.
+    /// Starts a motion under a program of the test's own. From then on no command is held against
+    /// the limits: the simulated robot is the judge.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -458,8 +465,8 @@ pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     transform::isometry(&pose).expect("a rigid end effector")
 }
 
-/// How far the nearest links are apart that have two others between them, `[m]`; the Hand comes after link 7. What the
-/// robot's self-collision avoidance looks at.
+/// How far the nearest links are apart that have two others between them, `[m]`; the Hand comes
+/// after link 7. What the robot's self-collision avoidance looks at.
 pub fn self_distance(q: &JointVector) -> f64 {
     let number = |body| match body {
         Body::Link(link) => link,

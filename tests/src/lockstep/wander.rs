@@ -1,4 +1,5 @@
-//! Target control that never ends: targets of both kinds, steps and streams, at irregular times, under each law in turn.
+//! Target control that never ends: targets of both kinds, steps and streams, at irregular times,
+//! under each law in turn.
 
 use franka_model::READY;
 use franka_rt::law::{Gains, Law};

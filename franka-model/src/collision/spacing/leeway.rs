@@ -1,13 +1,14 @@
 //! How far joints may turn before anything comes near.
 //!
-//! A body moves against another by the joints between them, and by no more than the length of the lever with which each of
-//! these moves it. What moves by the same joints is kept together in a group.
+//! A body moves against another by the joints between them, and by no more than the length of the
+//! lever with which each of these moves it. What moves by the same joints is kept together in a
+//! group.
 
 use super::mounted::Mounted;
 use crate::JointVector;
 
-/// How far the joints may turn from a posture before anything is near: from each posture within, everything has more room
-/// than the limit for which it was made.
+/// How far the joints may turn from a posture before anything is near: from each posture within,
+/// everything has more room than the limit for which it was made.
 #[derive(Debug, Clone)]
 pub struct Leeway {
     q: JointVector,
@@ -20,7 +21,8 @@ impl Leeway {
         Self { q, spare }
     }
 
-    /// What may be near at a posture that is within `turns`, `[rad]`, none of them negative, of `q`.
+    /// What may be near at a posture that is within `turns`, `[rad]`, none of them negative, of
+    /// `q`.
     #[must_use]
     pub fn open(&self, spacing: &super::Spacing, q: &JointVector, turns: &JointVector) -> Open {
         self.open_below(0.0, spacing, q, turns)
@@ -79,7 +81,8 @@ pub(super) struct Groups {
     /// Numbers of the bodies, the inner one first; of two regions and the base alike 0.
     numbers: [(u8, u8); GROUPS_MAX],
     count: usize,
-    /// By joint, and by group, how far a turn moves the outer body against the inner one, `[m/rad]`.
+    /// By joint, and by group, how far a turn moves the outer body against the inner one,
+    /// `[m/rad]`.
     levers: [[f64; GROUPS_MAX]; 7],
 }
 
@@ -95,7 +98,8 @@ impl Groups {
         (1 << self.count) - 1
     }
 
-    /// Adds a capsule that keeps from something on the body with the number `inner`, and gives its group.
+    /// Adds a capsule that keeps from something on the body with the number `inner`, and gives its
+    /// group.
     pub(super) fn join(&mut self, inner: u8, outer: &Mounted) -> usize {
         let numbers = (inner, outer.number);
         let known = self.numbers[..self.count].iter();

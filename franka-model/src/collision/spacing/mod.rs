@@ -8,9 +8,10 @@
 //!             ──> leeway(limit)              how far the joints may turn before what is near
 //! ```
 //!
-//! Nearly all that could meet is far apart nearly always. One pass places the capsules; balls and boxes around them tell
-//! what is far, and what may be near is measured. What they tell at one posture remains as its [`Leeway`], which saves looking
-//! at most of it, or at all of it, at the next ones.
+//! Nearly all that could meet is far apart nearly always. One pass places the capsules; balls and
+//! boxes around them tell what is far, and what may be near is measured. What they tell at one
+//! posture remains as its [`Leeway`], which saves looking at most of it, or at all of it, at the
+//! next ones.
 
 mod leeway;
 mod mounted;
@@ -37,13 +38,14 @@ pub const REGIONS_MAX: usize = 4;
 /// Pairs of links, and of links and a tool, that any shape has.
 const PAIRS_MAX: usize = capsules::COVERING_PAIRS.len() + capsules::ARM_MAX * shape::TOOL_MAX;
 
-/// Room, `[m]`, beyond which a bound stands for what is left of a distance. Joints take a while to turn that far.
+/// Room, `[m]`, beyond which a bound stands for what is left of a distance. Joints take a while to
+/// turn that far.
 const AMPLE: f64 = 0.15;
 
 /// Who keeps what distance from whom: an arm from itself, and from regions.
 ///
-/// The distances are those of [`Placed`](super::Placed). What is left of one above the distance to be kept is called its
-/// room, and is negative where that is not kept.
+/// The distances are those of [`Placed`](super::Placed). What is left of one above the distance to
+/// be kept is called its room, and is negative where that is not kept.
 #[derive(Debug, Clone)]
 pub struct Spacing {
     /// The capsules that keep from each other.
@@ -52,7 +54,8 @@ pub struct Spacing {
     pair_count: usize,
     /// Distance that they keep, `[m]`.
     apart: f64,
-    /// The capsules that keep from regions, if there are any. The base stands where it stands: it is left out.
+    /// The capsules that keep from regions, if there are any. The base stands where it stands: it
+    /// is left out.
     cover: Crowd,
     regions: [Region; REGIONS_MAX],
     region_count: usize,
@@ -127,8 +130,8 @@ impl Crowd {
 }
 
 impl Spacing {
-    /// The pairs of `arm` that can meet keep `distance`, `[m]`, between bodies that are `links` or more links apart along the
-    /// chain; a tool comes after link 7. Closer ones may touch.
+    /// The pairs of `arm` that can meet keep `distance`, `[m]`, between bodies that are `links` or
+    /// more links apart along the chain; a tool comes after link 7. Closer ones may touch.
     pub fn within(arm: &Shape<'_>, distance: f64, links: u8) -> Self {
         let mut this = Self {
             arm: Crowd::of(arm),

@@ -13,7 +13,8 @@ use crate::scalar::sqrt;
 pub(super) struct Mounted {
     /// Of the link, counted from the base; that of a tool is 8.
     pub(super) number: u8,
-    /// Middle of the axis, `[m]`: in the frame of the link that it moves with; of the base, from the shoulder.
+    /// Middle of the axis, `[m]`: in the frame of the link that it moves with; of the base, from
+    /// the shoulder.
     middle: Vector3<f64>,
     /// From there to the end of the axis, `[m]`.
     half: Vector3<f64>,
@@ -98,7 +99,8 @@ impl Mounted {
         }
     }
 
-    /// How far the axis moves at most, `[m/rad]`, if joint number `joint` of those that move it turns, at any posture.
+    /// How far the axis moves at most, `[m/rad]`, if joint number `joint` of those that move it
+    /// turns, at any posture.
     pub(super) fn lever(&self, joint: usize) -> f64 {
         let ends = [self.middle - self.half, self.middle + self.half];
         let levers = ends.map(|end| lever(self.joints(), &end, joint));
@@ -106,16 +108,19 @@ impl Mounted {
     }
 }
 
-/// How far `point`, in the frame of a link, is at most from the axis of a joint before it, or of its own.
+/// How far `point`, in the frame of a link, is at most from the axis of a joint before it, or of
+/// its own.
 ///
-/// A point stays at its distance from every point of a joint's axis. So from the axis that is named here on to that of the
-/// joint it is that much further away at most as the points on them are apart.
+/// A point stays at its distance from every point of a joint's axis. So from the axis that is named
+/// here on to that of the joint it is that much further away at most as the points on them are
+/// apart.
 fn lever(link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
     let aside = length(point.x, point.y);
     let (away, axis) = match (link, joint) {
         _ if link == joint => return aside,
         (3, _) => (length(aside, point.z + UPPER_ARM), 3),
-        // Each of these axes is at right angles with the one before, and with the line between them.
+        // Each of these axes is at right angles with the one before, and with the line between
+        // them.
         (4, 3) => return length(ELBOW + aside, point.z),
         (4, _) => (length(length(UPPER_ARM, ELBOW) + aside, point.z), 3),
         (5, _) => (length(ELBOW + aside, FOREARM + point.z), 4),
@@ -125,8 +130,8 @@ fn lever(link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
     away + (joint..axis).map(step).sum::<f64>()
 }
 
-/// From the point on the axis of joint number `joint` to that on the next: the shoulder on the first three, the elbow on the
-/// fourth, the wrist on the fifth and the sixth.
+/// From the point on the axis of joint number `joint` to that on the next: the shoulder on the
+/// first three, the elbow on the fourth, the wrist on the fifth and the sixth.
 fn step(joint: usize) -> f64 {
     match joint {
         3 => length(UPPER_ARM, ELBOW),

@@ -72,7 +72,8 @@ impl Region {
         }
     }
 
-    /// What the distance of a capsule is at least, `[m]`. No bound at all where a box around its axis meets the region.
+    /// What the distance of a capsule is at least, `[m]`. No bound at all where a box around its
+    /// axis meets the region.
     #[inline(always)]
     pub(super) fn distance_at_least(&self, spot: &Spot, capsule: &Mounted) -> f64 {
         match self {
@@ -97,8 +98,8 @@ fn from_plane(normal: &Vector3<f64>, offset: f64, spot: &Spot, capsule: &Mounted
     dot(normal, &spot.middle) - dot(normal, &spot.half).abs() - offset - capsule.radius
 }
 
-/// Square of the distance of a box from another one with the same axes, between which `gaps` are left along these, negative
-/// where they lie side by side.
+/// Square of the distance of a box from another one with the same axes, between which `gaps` are
+/// left along these, negative where they lie side by side.
 #[inline(always)]
 fn beyond(gaps: &Vector3<f64>) -> f64 {
     let gaps = gaps.map(|x| if x > 0.0 { x } else { 0.0 });

@@ -145,7 +145,8 @@ fn a_position_that_is_no_number_gives_no_distance_that_looks_like_one() {
 
 #[test]
 fn the_covering_hand_contains_the_fingers_at_every_width() {
-    // Corners of the finger's boxes in the finger's frame: centre and half sides. The diagonal part is turned.
+    // Corners of the finger's boxes in the finger's frame: centre and half sides. The diagonal part
+    // is turned.
     let boxes: [([f64; 3], [f64; 3], f64); 4] = [
         ([0.0, 0.0185, 0.011], [0.011, 0.0075, 0.01], 0.0),
         ([0.0, 0.0068, 0.0022], [0.011, 0.0044, 0.0019], 0.0),

@@ -1,5 +1,5 @@
-//! Distances against minimisers that share nothing with the code but the numbers of the capsules, gradients
-//! against differences.
+//! Distances against minimisers that share nothing with the code but the numbers of the capsules,
+//! gradients against differences.
 
 mod awkward;
 mod obstacles;
@@ -78,8 +78,8 @@ fn placed_by_poses(shape: &Shape<'_>, q: &JointVector) -> Vec<(Body, Capsule)> {
 
 use std::vec::Vec;
 
-/// Compares the gradients of all distances at `q` with differences, and gives how many it compared and
-/// how many lie within a step of a kink.
+/// Compares the gradients of all distances at `q` with differences, and gives how many it compared
+/// and how many lie within a step of a kink.
 fn compare_gradients<P: PartialEq + core::fmt::Debug>(
     shape: &Shape<'_>,
     q: &JointVector,

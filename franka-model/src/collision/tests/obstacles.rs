@@ -11,7 +11,8 @@ fn from_box(pose: &Isometry3<f64>, half: &Vector3<f64>, point: &Vector3<f64>) ->
     outside + beyond.max().min(0.0)
 }
 
-/// How far the axis of a capsule has to move along `direction` (length 1) until it is out of the box.
+/// How far the axis of a capsule has to move along `direction` (length 1) until it is out of the
+/// box.
 fn way_out(
     pose: &Isometry3<f64>,
     half: &Vector3<f64>,

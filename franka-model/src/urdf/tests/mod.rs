@@ -28,7 +28,8 @@ fn inertial(body: &crate::RigidBody) -> String {
     )
 }
 
-/// The FR3 with what a vendor's text has around it: a `base` link, meshes, dampings, accelerometers.
+/// The FR3 with what a vendor's text has around it: a `base` link, meshes, dampings,
+/// accelerometers.
 fn text() -> String {
     let model = Model::fr3();
     let mut text =
@@ -202,7 +203,8 @@ fn no_prefix_and_no_single_deletion_of_a_text_panics() {
     for start in (0..text.len() - 40).step_by(7) {
         let mut damaged = text.clone();
         damaged.replace_range(start..start + 1 + start % 37, "");
-        // Some of it is white space or a mesh: then it is the same robot, or one with another number.
+        // Some of it is white space or a mesh: then it is the same robot, or one with another
+        // number.
         let _ = Model::from_urdf(&damaged);
     }
 }

@@ -69,8 +69,9 @@ impl Story {
         &self.entries.last().expect("never empty").state
     }
 
-    /// One cycle: the command that answers the newest state, at rest but for what `ask` makes of it, and the state after it,
-    /// which changes as `then` says. The numbers that a robot echoes are those of the command.
+    /// One cycle: the command that answers the newest state, at rest but for what `ask` makes of
+    /// it, and the state after it, which changes as `then` says. The numbers that a robot echoes
+    /// are those of the command.
     fn go(
         &mut self,
         ask: impl FnOnce(&RobotState, &mut RobotCommand),

@@ -3,7 +3,8 @@
 use super::random::stop_point;
 use crate::otg::{AxisLimits, AxisState, Generator, Limits, State, Synchronisation, steps};
 
-/// The most passes, in percent of what a search may take, over the motions from one state to a target beside an axis that takes `stretch` times as long.
+/// The most passes, in percent of what a search may take, over the motions from one state to a
+/// target beside an axis that takes `stretch` times as long.
 fn passes(limits: AxisLimits, state: AxisState, target: AxisState, stretch: f64) -> usize {
     let alone = Limits::per_axis([limits]).unwrap();
     let mut generator = Generator::new(super::random::one(state), alone).unwrap();

@@ -6,7 +6,8 @@ use super::random::{arm_limits, cases, many};
 use super::walk::check_step;
 use crate::otg::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// A change of mind: after so many cycles, targets (as fractions of a range) and a way of going there.
+/// A change of mind: after so many cycles, targets (as fractions of a range) and a way of going
+/// there.
 type Change = (usize, Vec<f64>);
 
 fn changes<const N: usize>() -> impl Strategy<Value = Vec<Change>> {
@@ -143,7 +144,7 @@ proptest! {
     }
 }
 
-/// Near its end a motion takes the third root of a rounding of the position, over the jerk, to make that
-/// rounding good: `4 * cbrt(16 eps * 2 / 100)` for positions up to 2 and jerks from 100. Fifty times that is
-/// one cycle.
+/// Near its end a motion takes the third root of a rounding of the position, over the jerk, to make
+/// that rounding good: `4 * cbrt(16 eps * 2 / 100)` for positions up to 2 and jerks from 100. Fifty
+/// times that is one cycle.
 const ROOT_OF_ROUNDING: f64 = 2e-5;

@@ -1,4 +1,5 @@
-//! Limits, distances and states at the ends of what there is: nothing may be refused, and all that moves arrives.
+//! Limits, distances and states at the ends of what there is: nothing may be refused, and all that
+//! moves arrives.
 
 use proptest::prelude::*;
 
@@ -6,8 +7,8 @@ use super::random::{cases, extreme_limits, many, many_moving, problems};
 use super::walk::check_motion;
 use crate::otg::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// Checks a motion unless it is over in a thousandth of a cycle: the end of a motion is brought forward by a millionth
-/// of one.
+/// Checks a motion unless it is over in a thousandth of a cycle: the end of a motion is brought
+/// forward by a millionth of one.
 fn check_visible<const N: usize>(generator: &Generator<N>) {
     if generator.remaining() > 1e-3 * CYCLE {
         check_motion(generator, 100);

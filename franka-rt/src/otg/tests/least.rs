@@ -7,8 +7,8 @@ use super::random::{Case, arm_limits, cases, extreme_limits, mixed_limits, one, 
 use super::walk::{check_motion, check_step};
 use crate::otg::{AxisLimits, AxisState, Generator, Limits};
 
-/// Bisection finds the duration to the rounding of positions over the velocity there, which near a stop point
-/// is a root.
+/// Bisection finds the duration to the rounding of positions over the velocity there, which near a
+/// stop point is a root.
 fn check_duration(case: &Case) -> Result<(), TestCaseError> {
     let duration = case.generator().duration();
     let expected = least_duration(case.state, case.target, case.limits);

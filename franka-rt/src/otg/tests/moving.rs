@@ -66,8 +66,9 @@ fn check<const N: usize>(
     Ok(())
 }
 
-/// Follows any motion that keeps the limits for a while, and takes the state that it leads to for the target: nobody
-/// may need longer for that than the motion did, and its duration has to be possible.
+/// Follows any motion that keeps the limits for a while, and takes the state that it leads to for
+/// the target: nobody may need longer for that than the motion did, and its duration has to be
+/// possible.
 fn certify(
     (limits, state, _): (Limits<1>, State<1>, [f64; 1]),
     legs: &[(f64, f64)],
@@ -132,7 +133,8 @@ fn replan<const N: usize>(
     Ok(())
 }
 
-/// A change of mind: after so many cycles, and for each axis a place, a speed, and whether it is to move at all.
+/// A change of mind: after so many cycles, and for each axis a place, a speed, and whether it is to
+/// move at all.
 type Change = (usize, Vec<(f64, f64, bool)>);
 
 /// Follows one target after the other, moving and resting, with gaps and bursts, to the end.

@@ -64,7 +64,8 @@ pub(super) fn one(state: AxisState) -> State<1> {
     }
 }
 
-/// A state inside `limits` that can stay there: `coasting` and `bend` are fractions of what it may have.
+/// A state inside `limits` that can stay there: `coasting` and `bend` are fractions of what it may
+/// have.
 fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64) -> AxisState {
     let sign = 1_f64.copysign(bend);
     let coasting = limits.velocity * coasting;
@@ -132,7 +133,8 @@ pub(super) fn target_motion(limits: AxisLimits, speed: f64, bend: f64) -> (f64, 
     (velocity, bend * limits.acceleration.min(room.sqrt()))
 }
 
-/// Limits, states and targets in motion of `N` axes; some targets move with constant velocity, some rest.
+/// Limits, states and targets in motion of `N` axes; some targets move with constant velocity, some
+/// rest.
 pub(super) fn many_moving<const N: usize>(
     limits: impl Strategy<Value = AxisLimits>,
 ) -> impl Strategy<Value = (Limits<N>, State<N>, State<N>)> {
@@ -152,8 +154,8 @@ pub(super) fn many_moving<const N: usize>(
     )
 }
 
-/// So many cases, without a file of seeds beside the source: a case that failed is printed, and becomes a
-/// test of its own.
+/// So many cases, without a file of seeds beside the source: a case that failed is printed, and
+/// becomes a test of its own.
 pub(in crate::otg) fn cases(count: u32) -> ProptestConfig {
     ProptestConfig {
         failure_persistence: None,

@@ -1,16 +1,18 @@
-//! Walks along a motion and checks that it is one: inside its limits, each state following from the one before.
+//! Walks along a motion and checks that it is one: inside its limits, each state following from the
+//! one before.
 
 use crate::otg::{Generator, Limits, State};
 
 /// Relative excess over a limit that is rounding.
 pub(super) const EXACT: f64 = 1e-9;
 
-/// Relative error of a position that is rounding, of the instants at which a plan changes course too. Seen: 2e-13, with
-/// limits from 1e-3 to 1e6.
+/// Relative error of a position that is rounding, of the instants at which a plan changes course
+/// too. Seen: 2e-13, with limits from 1e-3 to 1e6.
 const ROUNDING: f64 = 1e-12;
 
-/// Relative error of a jerk between two states: an instant at which a plan changes course is rounded, and the jerk counts it
-/// in full. Seen: 3.6e-10 in ten million plans, 1.1e-8 where one is made anew in each cycle.
+/// Relative error of a jerk between two states: an instant at which a plan changes course is
+/// rounded, and the jerk counts it in full. Seen: 3.6e-10 in ten million plans, 1.1e-8 where one is
+/// made anew in each cycle.
 const JERK: f64 = 1e-7;
 
 /// Checks the step of one axis from one state to another `dt` later.

@@ -8,7 +8,8 @@ use crate::session::course::Course;
 use crate::session::{Goal, Target, Then};
 
 impl Active {
-    /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is over.
+    /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is
+    /// over.
     pub(super) fn follow_chunks(&mut self, model: &Model, chunks: &mut ChunkReader, now: u64) {
         if let Some(left) = self.left.take() {
             left.end(chunks, now);

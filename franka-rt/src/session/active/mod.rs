@@ -34,7 +34,8 @@ pub(super) struct Active {
     pub(super) goal: Goal,
     /// Whether a course has been planned since the last answer, as before the first one.
     planned: bool,
-    /// Whether the reference stayed for a plan in the last cycle. Plans that come in each cycle are not to keep it for ever.
+    /// Whether the reference stayed for a plan in the last cycle. Plans that come in each cycle are
+    /// not to keep it for ever.
     stayed: bool,
     /// When the goal was first seen, `message_id` of the state.
     since: u64,
@@ -51,7 +52,8 @@ pub(super) struct Active {
     heard: u64,
     /// Why the goal was given up, and what the arm does since.
     lapse: Option<(Stale, Lapse)>,
-    /// Whether the goal was changed to one of coming to rest: chunks that waited for their time are none of it.
+    /// Whether the goal was changed to one of coming to rest: chunks that waited for their time are
+    /// none of it.
     taken_back: bool,
     /// Cycles in which the course was held back, less those since in which it was not.
     held_back: u64,
@@ -246,8 +248,8 @@ impl Active {
             target: self.aim,
             ..self.goal
         };
-        // A plan takes as long as a step: a reference that rests, and has not been moved meanwhile, makes its first one in the
-        // cycle after. So the first answer begins with no torque.
+        // A plan takes as long as a step: a reference that rests, and has not been moved meanwhile,
+        // makes its first one in the cycle after. So the first answer begins with no torque.
         let at_rest = self.reference == Reference::at_rest(self.reference.q);
         self.stayed = core::mem::take(&mut self.planned) && at_rest && !self.stayed;
         let course::Step {
@@ -276,7 +278,8 @@ impl Active {
             Drive::Torques(_) => {
                 leash::hold(&mut self.route.course, &mut self.reference, &q, &arm.pose)
             }
-            // What pulls is the robot's own controller, on whose setpoint the reference is anchored.
+            // What pulls is the robot's own controller, on whose setpoint the reference is
+            // anchored.
             Drive::Setpoints(_) => false,
         };
         bindings.set(Guard::Leash, leashed || guided);
@@ -312,7 +315,8 @@ impl Active {
         }
     }
 
-    /// Puts the reference where the robot's controller takes its setpoint to be, and goes on from there.
+    /// Puts the reference where the robot's controller takes its setpoint to be, and goes on from
+    /// there.
     fn reanchor(&mut self, model: &Model, state: &RobotState) {
         let Drive::Setpoints(stream) = &self.drive else {
             return;

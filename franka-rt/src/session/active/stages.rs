@@ -7,8 +7,8 @@ use crate::law::hybrid::Reference;
 use crate::session::landing::{Landing, Release, Verdict};
 use crate::session::{Lapse, STALL_TIMEOUT, SessionEvent, Settlement, Stale, Target, Then, rigid};
 
-/// Joint velocity, `[rad/s]`, below which the reference may be stopped in one cycle. Joints at their bounds may still creep
-/// after a pose has come to its end.
+/// Joint velocity, `[rad/s]`, below which the reference may be stopped in one cycle. Joints at
+/// their bounds may still creep after a pose has come to its end.
 const REFERENCE_REST: f64 = 1e-3;
 
 /// What the session does about its goal.
@@ -27,7 +27,8 @@ pub(super) enum Stage {
 }
 
 impl Active {
-    /// Moves through the stages of a goal that is to come to an end. The only place where the stage advances.
+    /// Moves through the stages of a goal that is to come to an end. The only place where the stage
+    /// advances.
     pub(super) fn advance_stage(
         &mut self,
         model: &Model,

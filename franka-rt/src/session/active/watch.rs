@@ -1,4 +1,5 @@
-//! Who watches over a goal: the lead of its target, the deviation of the arm, its watchdog and the deadman.
+//! Who watches over a goal: the lead of its target, the deviation of the arm, its watchdog and the
+//! deadman.
 
 use core::time::Duration;
 

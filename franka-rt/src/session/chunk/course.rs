@@ -18,8 +18,8 @@ use crate::session::kinematics::{self, Drift, Held};
 use crate::session::pose::PoseState;
 use crate::session::{Budget, GoalId, Target, approach, rigid};
 
-/// Deceleration, `[rad/s^2]`, with which a joint can stop before the end of its range: as for poses, well below what the
-/// robot's velocity envelope reckons with.
+/// Deceleration, `[rad/s^2]`, with which a joint can stop before the end of its range: as for
+/// poses, well below what the robot's velocity envelope reckons with.
 const BRAKING: f64 = 1.2;
 
 /// Follows the chunk in force, within a budget.
@@ -97,8 +97,8 @@ impl ChunkCourse {
         Self { goal, budget, play }
     }
 
-    /// Goes on from `reference` within another budget. The chunk keeps its times: what a slower budget leaves it behind by,
-    /// it makes up for.
+    /// Goes on from `reference` within another budget. The chunk keeps its times: what a slower
+    /// budget leaves it behind by, it makes up for.
     pub(in crate::session) fn keep_to(
         &mut self,
         model: &Model,
@@ -123,7 +123,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Goes on from `reference`, and the `pose` of its end effector, which something else has moved.
+    /// Goes on from `reference`, and the `pose` of its end effector, which something else has
+    /// moved.
     pub(in crate::session) fn begin_again(
         &mut self,
         model: &Model,
@@ -181,8 +182,8 @@ impl ChunkCourse {
         }
     }
 
-    /// The pose that the reference of the joints follows, if that is what the chunk moves, and what is left of motions
-    /// over the joints.
+    /// The pose that the reference of the joints follows, if that is what the chunk moves, and what
+    /// is left of motions over the joints.
     pub(in crate::session) fn pose(&self) -> Option<(PoseState, Drift)> {
         match &self.play {
             Play::Joints { .. } => None,
@@ -190,7 +191,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Moves that pose to `pose` with its velocity kept. What this leaves it behind by, it makes up for.
+    /// Moves that pose to `pose` with its velocity kept. What this leaves it behind by, it makes up
+    /// for.
     pub(in crate::session) fn reanchor(&mut self, pose: Isometry3<f64>) {
         if let Play::Poses { state, .. } = &mut self.play {
             state.pose = pose;
@@ -233,8 +235,8 @@ fn pose_limits(model: &Model, now: &PoseState, budget: &Budget) -> Budget {
     budget.able_to_stop(&now.twist, &now.acceleration, model.cartesian_limits())
 }
 
-/// What each joint may do on the way through `points`: its budget, unless it moves and does not keep that, made gentle
-/// enough for the points nearest to the ends of its range.
+/// What each joint may do on the way through `points`: its budget, unless it moves and does not
+/// keep that, made gentle enough for the points nearest to the ends of its range.
 fn joint_limits(
     robot: &JointLimits,
     points: &[Reference],
@@ -256,7 +258,8 @@ fn joint_limits(
     })
 }
 
-/// Each joint on its own. Where the motion between points leads out of a joint's range, the joint waits at the end of it.
+/// Each joint on its own. Where the motion between points leads out of a joint's range, the joint
+/// waits at the end of it.
 fn follow_joints(
     robot: &JointLimits,
     limits: &[AxisLimits; 7],
@@ -284,8 +287,9 @@ fn follow_joints(
     next
 }
 
-/// Translation and rotation, each by its norm. Angular velocity and acceleration are those in base axes, so that they keep
-/// the budget there; what a cycle's rotation vector lacks against them is of the third order.
+/// Translation and rotation, each by its norm. Angular velocity and acceleration are those in base
+/// axes, so that they keep the budget there; what a cycle's rotation vector lacks against them is
+/// of the third order.
 fn follow_pose(
     translation: &AxisLimits,
     turning: &AxisLimits,

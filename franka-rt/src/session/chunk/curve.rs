@@ -1,8 +1,9 @@
 //! The motion through the points of a chunk, twice continuously differentiable.
 //!
-//! Each point gets a velocity and an acceleration from its neighbours, and two points are joined by the fifth-degree
-//! polynomial that meets all six. Orientations are joined as rotation vectors in the chart around the earlier of the two,
-//! so none of them is singular whatever way the end effector turns in all. The motion rests at its last point.
+//! Each point gets a velocity and an acceleration from its neighbours, and two points are joined by
+//! the fifth-degree polynomial that meets all six. Orientations are joined as rotation vectors in
+//! the chart around the earlier of the two, so none of them is singular whatever way the end
+//! effector turns in all. The motion rests at its last point.
 
 use super::motion::Motion;
 
@@ -44,8 +45,8 @@ impl<M: Motion> Curve<M> {
         &self.states
     }
 
-    /// The state at `t`, seconds from the origin: the first before the first point's time, the last from the last one's
-    /// on.
+    /// The state at `t`, seconds from the origin: the first before the first point's time, the last
+    /// from the last one's on.
     pub(super) fn at(&self, t: f64) -> M {
         match self.times.partition_point(|&time| time <= t) {
             0 => *self.first(),

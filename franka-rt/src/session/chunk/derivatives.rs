@@ -1,20 +1,22 @@
 //! Derivatives of sampled values at a sample, from the samples around it.
 //!
-//! Weights by B. Fornberg, *Generation of Finite Difference Formulas on Arbitrarily Spaced Grids*, Math. Comp. 51, 1988.
+//! Weights by B. Fornberg, *Generation of Finite Difference Formulas on Arbitrarily Spaced Grids*,
+//! Math. Comp. 51, 1988.
 
 use nalgebra::SVector;
 
 /// The most samples that one derivative is made of.
 const SAMPLES: usize = 5;
 
-/// The largest ratio of two intervals over which five samples are used: on wilder grids a fourth-degree polynomial swings.
+/// The largest ratio of two intervals over which five samples are used: on wilder grids a
+/// fourth-degree polynomial swings.
 const EVEN: f64 = 3.0;
 
-/// First and second derivative at sample `i` of the values at `times`. `value` gives a sample in coordinates of the
-/// caller's choice.
+/// First and second derivative at sample `i` of the values at `times`. `value` gives a sample in
+/// coordinates of the caller's choice.
 ///
-/// Five samples where there are two on each side at similar distances, else three, or the slope of two. One sample has
-/// no motion.
+/// Five samples where there are two on each side at similar distances, else three, or the slope of
+/// two. One sample has no motion.
 pub(super) fn at<const D: usize>(
     times: &[f64],
     i: usize,

@@ -13,7 +13,8 @@ pub enum ChunkError {
         /// The most that a chunk may have, [`POINTS_MAX`](super::POINTS_MAX).
         most: usize,
     },
-    /// A number of a point is not finite, or larger than 1e6, or its quaternion is not of length one.
+    /// A number of a point is not finite, or larger than 1e6, or its quaternion is not of length
+    /// one.
     #[error(
         "point {point} holds a number that is not finite or far too large, or a rotation that is none"
     )]

@@ -7,11 +7,11 @@
 //!          <- ring of what is done with, to be freed outside
 //! ```
 //!
-//! * `value`, `error`: the chunk and what it may hold; `derivatives`, `curve`, `quintic`, `motion`: the motion through its
-//!   points, made outside the thread.
+//! * `value`, `error`: the chunk and what it may hold; `derivatives`, `curve`, `quintic`, `motion`:
+//!   the motion through its points, made outside the thread.
 //! * `ring`: across threads and back.
-//! * `player`: what is wanted at a time of the robot. Lost states need no more: the time jumps, and the servo makes up for
-//!   the distance.
+//! * `player`: what is wanted at a time of the robot. Lost states need no more: the time jumps, and
+//!   the servo makes up for the distance.
 //! * `servo`: what the limits allow of it. `course`: both, for joints and for poses.
 
 mod course;

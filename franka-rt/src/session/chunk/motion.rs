@@ -1,5 +1,5 @@
-//! What moves along a chunk: joints, or a pose; how to go from one of their states to another, and how the distance
-//! between two is let go.
+//! What moves along a chunk: joints, or a pose; how to go from one of their states to another, and
+//! how the distance between two is let go.
 
 use franka_model::{Twist, rotation};
 use nalgebra::{Isometry3, Translation3, Vector3};
@@ -84,7 +84,8 @@ impl From<Phase<7>> for Reference {
     }
 }
 
-/// Translation and rotation of one pose against another: the rotation vector turns the other one into this one.
+/// Translation and rotation of one pose against another: the rotation vector turns the other one
+/// into this one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseGap {
     translation: Phase<3>,
@@ -94,8 +95,8 @@ pub(super) struct PoseGap {
 impl Motion for PoseState {
     type Gap = PoseGap;
 
-    /// The rotation goes in the chart around the orientation of `from`, which the one of `to` has to be less than half a
-    /// turn away from.
+    /// The rotation goes in the chart around the orientation of `from`, which the one of `to` has
+    /// to be less than half a turn away from.
     fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self {
         let start = Phase {
             p: Vector3::zeros(),
@@ -173,7 +174,8 @@ impl PoseState {
         }
     }
 
-    /// Angular velocity and acceleration, which are those of the rotation vector in the chart around this orientation.
+    /// Angular velocity and acceleration, which are those of the rotation vector in the chart
+    /// around this orientation.
     pub(super) fn rotation(&self) -> Phase<3> {
         Phase {
             p: Vector3::zeros(),

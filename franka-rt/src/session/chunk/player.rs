@@ -9,8 +9,8 @@ use super::value::{Chunk, Origin, milliseconds};
 /// One cycle, `[s]`.
 const CYCLE: f64 = 1e-3;
 
-/// Time, `[s]`, in which the motion before is let go on the way to a first point that lies later than this: the motion
-/// would go on until half of the way there is over.
+/// Time, `[s]`, in which the motion before is let go on the way to a first point that lies later
+/// than this: the motion would go on until half of the way there is over.
 const LET_GO: f64 = 1.0;
 
 /// A chunk that has been taken up.
@@ -40,8 +40,8 @@ enum Entry<M: Motion> {
 }
 
 impl<M: Motion> Player<M> {
-    /// Takes up a chunk through `curve` in the answer to the state `now`, from a reference that was at `last` in the
-    /// answer before.
+    /// Takes up a chunk through `curve` in the answer to the state `now`, from a reference that was
+    /// at `last` in the answer before.
     pub(super) fn new(
         curve: Curve<M>,
         origin: Origin,
@@ -199,7 +199,8 @@ mod tests {
         };
         assert!(distance(&blended(0.119), &before) < 1e-9);
         assert!(distance(&blended(0.219), &player.curve.at(0.219)) < 1e-9);
-        // One millisecond at a time nothing jumps: velocities and accelerations are those of the positions.
+        // One millisecond at a time nothing jumps: velocities and accelerations are those of the
+        // positions.
         for now in 1121..1300 {
             let (a, b, c) = (player.at(now - 1), player.at(now), player.at(now + 1));
             let v = (c.q - a.q) / (2.0 * CYCLE);

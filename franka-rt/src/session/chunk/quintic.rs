@@ -1,5 +1,5 @@
-//! Fifth-degree polynomials between two states: the lowest degree that meets position, velocity and acceleration at
-//! both ends.
+//! Fifth-degree polynomials between two states: the lowest degree that meets position, velocity and
+//! acceleration at both ends.
 
 use nalgebra::SVector;
 

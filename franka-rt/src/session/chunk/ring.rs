@@ -1,13 +1,13 @@
-//! How chunks cross into the thread and back: by one ring each way, because the heap memory of their points may be
-//! neither made nor freed there.
+//! How chunks cross into the thread and back: by one ring each way, because the heap memory of
+//! their points may be neither made nor freed there.
 //!
 //! ```text
 //! ChunkWriter -> ring of chunks  -> ChunkReader: drained in each cycle, the newest counts
 //!             <- ring of returns <-              what is done with, and what became of it
 //! ```
 //!
-//! Every chunk that went in comes back, so the writer knows how many are out. It lets no more out than the way back
-//! holds, and the thread's end of it is never full.
+//! Every chunk that went in comes back, so the writer knows how many are out. It lets no more out
+//! than the way back holds, and the thread's end of it is never full.
 
 use super::value::Chunk;
 use crate::session::GoalId;
@@ -94,8 +94,8 @@ pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
 impl ChunkWriter {
     /// Sends `chunk` for `goal`. A newer chunk of a goal takes the place of those before it.
     ///
-    /// A chunk may be sent before its goal is seen, but not before it is written to the goals' slot: chunks of older
-    /// goals are returned as [`Fate::Stale`].
+    /// A chunk may be sent before its goal is seen, but not before it is written to the goals'
+    /// slot: chunks of older goals are returned as [`Fate::Stale`].
     ///
     /// # Errors
     /// [`Full`] with the chunk if [`CHUNKS_MAX`] of them have not been [collected](Self::collect).
@@ -126,8 +126,8 @@ impl ChunkWriter {
 }
 
 impl ChunkReader {
-    /// The newest chunk for `goal`, the one in force at the robot's time `now`, if it is new and may begin: that is, if
-    /// its first point's time has come, or `idle`, as no other chunk runs.
+    /// The newest chunk for `goal`, the one in force at the robot's time `now`, if it is new and
+    /// may begin: that is, if its first point's time has come, or `idle`, as no other chunk runs.
     ///
     /// What that makes superfluous goes back. Chunks of goals to come are kept.
     pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {

@@ -6,18 +6,21 @@
 //! jerk                 = what makes the acceleration the wanted one      within the jerk limit, and able to stop
 //! ```
 //!
-//! On the target, a target that keeps the limits is followed exactly: all of its motion is fed forward. Off it, the
-//! distance dies out, evenly decelerated from afar and exponentially in the end.
+//! On the target, a target that keeps the limits is followed exactly: all of its motion is fed
+//! forward. Off it, the distance dies out, evenly decelerated from afar and exponentially in the
+//! end.
 //!
-//! A generator that plans anew in each cycle to be at the target of the next one does not do this: a micrometre off, it
-//! cannot be there in one millisecond, and passes through where the target was later, or all axes wait for the last one
-//! and come again. A plan to a later point of the chunk would arrive early where the chunk is slow.
+//! A generator that plans anew in each cycle to be at the target of the next one does not do this:
+//! a micrometre off, it cannot be there in one millisecond, and passes through where the target was
+//! later, or all axes wait for the last one and come again. A plan to a later point of the chunk
+//! would arrive early where the chunk is slow.
 //!
-//! **Limits.** A state is admissible if acceleration and velocity keep their limits and still do if the acceleration is
-//! taken back as fast as the jerk allows, in whole cycles. Taking it back leads from an admissible state to an admissible
-//! one, so that there is always a jerk that does. The wanted jerk is used as far towards that one as it takes. All limits
-//! bind norms, which keeps this true for any number of axes: while the acceleration is taken back along its line, the
-//! velocity runs on a straight line between two admissible ones.
+//! **Limits.** A state is admissible if acceleration and velocity keep their limits and still do if
+//! the acceleration is taken back as fast as the jerk allows, in whole cycles. Taking it back leads
+//! from an admissible state to an admissible one, so that there is always a jerk that does. The
+//! wanted jerk is used as far towards that one as it takes. All limits bind norms, which keeps this
+//! true for any number of axes: while the acceleration is taken back along its line, the velocity
+//! runs on a straight line between two admissible ones.
 
 use nalgebra::SVector;
 
@@ -30,20 +33,22 @@ const CYCLE: f64 = 1e-3;
 /// Largest rate, `[1/s]`, at which a missing velocity is made up for.
 const RATE_MAX: f64 = 100.0;
 
-/// Share of the quotient of jerk and acceleration that the rate takes: what the acceleration can change at.
+/// Share of the quotient of jerk and acceleration that the rate takes: what the acceleration can
+/// change at.
 const RATE_SHARE: f64 = 0.5;
 
 /// How much slower the distance dies out than the velocity that is missing. At 3 nothing swings.
 const SLOWER: f64 = 3.0;
 
-/// Share of the acceleration that an approach from afar brakes with. The rest is for the target's own acceleration.
+/// Share of the acceleration that an approach from afar brakes with. The rest is for the target's
+/// own acceleration.
 const BRAKING_SHARE: f64 = 0.35;
 
 /// Halvings of the interval between the wanted jerk and the one that takes the acceleration back.
 const HALVINGS: usize = 12;
 
-/// One cycle on from `now`, towards `target`, where the target is to be in that cycle. `bound` takes a velocity to the
-/// nearest one that the place allows.
+/// One cycle on from `now`, towards `target`, where the target is to be in that cycle. `bound`
+/// takes a velocity to the nearest one that the place allows.
 pub(super) fn follow<const D: usize>(
     now: &Phase<D>,
     target: &Phase<D>,
@@ -72,8 +77,8 @@ pub(super) fn follow<const D: usize>(
     admissible(now, jerk, limits)
 }
 
-/// Velocity at which the distance to the target is made up for, and its derivative while the distance changes at
-/// `change`: `rate` times the distance, and from afar what `braking` can stop.
+/// Velocity at which the distance to the target is made up for, and its derivative while the
+/// distance changes at `change`: `rate` times the distance, and from afar what `braking` can stop.
 fn approach<const D: usize>(
     distance: &SVector<f64, D>,
     change: &SVector<f64, D>,
@@ -94,8 +99,8 @@ fn approach<const D: usize>(
     )
 }
 
-/// The state after one cycle of `jerk`, or of the one nearest to it on the way to taking the acceleration back that
-/// leads to an admissible state.
+/// The state after one cycle of `jerk`, or of the one nearest to it on the way to taking the
+/// acceleration back that leads to an admissible state.
 fn admissible<const D: usize>(
     now: &Phase<D>,
     jerk: SVector<f64, D>,

@@ -223,7 +223,8 @@ proptest! {
     }
 }
 
-/// Joint positions that a policy has in mind for the robot's time `now`: all joints on sines of 0.1 rad and 2 s.
+/// Joint positions that a policy has in mind for the robot's time `now`: all joints on sines of 0.1
+/// rad and 2 s.
 fn sine(now: u64) -> [f64; 7] {
     let phase = core::f64::consts::PI * (now as f64 * 1e-3);
     (READY + JointVector::repeat(0.1 * phase.sin())).into()
@@ -260,7 +261,8 @@ fn a_policy_of_10_hz_and_150_ms_latency_follows_a_sine_to_a_tenth_of_a_milliradi
     assert!(naive > 300.0 * worst, "{worst} against {naive}");
 }
 
-/// The same policy, whose points are set one by one as targets, each for its 50 ms, from the time of their arrival on.
+/// The same policy, whose points are set one by one as targets, each for its 50 ms, from the time
+/// of their arrival on.
 fn naive_error() -> f64 {
     let budget = Budget::of(Model::fr3().joint_limits());
     let limits = Limits::per_axis(budget.joints).unwrap();

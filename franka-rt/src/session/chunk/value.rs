@@ -17,18 +17,19 @@ use crate::session::{GoalError, Target, check};
 /// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.
 pub const POINTS_MAX: usize = 1024;
 
-/// The latest that a point may lie after its chunk's origin. What is later is no prediction but a mistake of units.
+/// The latest that a point may lie after its chunk's origin. What is later is no prediction but a
+/// mistake of units.
 pub const OFFSET_MAX: Duration = Duration::from_secs(60);
 
-/// How long a chunk is blended with what the arm does unless said otherwise: as long as one inference of a policy at
-/// 10 Hz.
+/// How long a chunk is blended with what the arm does unless said otherwise: as long as one
+/// inference of a policy at 10 Hz.
 pub const BLEND: Duration = Duration::from_millis(100);
 
 /// The least time between two points, `[s]`: one cycle, less the rounding of a conversion.
 const SPACING_MIN: f64 = 1e-3 - 1e-9;
 
-/// The largest number of a point, in its unit. None of an arm comes near it, and what becomes of it on the way still is a
-/// number.
+/// The largest number of a point, in its unit. None of an arm comes near it, and what becomes of it
+/// on the way still is a number.
 const NUMBER_MAX: f64 = 1e6;
 
 /// The largest angle between two points, `[rad]`.
@@ -43,18 +44,21 @@ pub(super) enum Origin {
     Robot(u64),
 }
 
-/// Points with times, joints or poses, that an arm is to move through: what a policy predicts from one observation.
+/// Points with times, joints or poses, that an arm is to move through: what a policy predicts from
+/// one observation.
 ///
-/// The points are joined by a motion that is twice continuously differentiable and rests at the last one. The arm follows
-/// it within the budget of the goal that the chunk belongs to, whatever the points ask for: where they ask for more, it
-/// lags, and makes up for that within the budget too. A chunk that ends faster than the budget can brake is overshot by
-/// what braking takes; send the next chunk before the last one ends, and it never comes to that.
+/// The points are joined by a motion that is twice continuously differentiable and rests at the
+/// last one. The arm follows it within the budget of the goal that the chunk belongs to, whatever
+/// the points ask for: where they ask for more, it lags, and makes up for that within the budget
+/// too. A chunk that ends faster than the budget can brake is overshot by what braking takes; send
+/// the next chunk before the last one ends, and it never comes to that.
 ///
-/// - **Latency.** [`observed_at`](Self::observed_at) names the state that the policy saw. Points whose time has passed
-///   when the chunk is taken up are skipped, and the motion is entered at the instant that the robot is at.
-/// - **Receding horizon.** A newer chunk takes the place of the one before it as soon as its first point's time has come,
-///   or at once if none is running. It is blended in over [`BLEND`]; see [`blend`](Self::blend) and
-///   [`replace`](Self::replace).
+/// - **Latency.** [`observed_at`](Self::observed_at) names the state that the policy saw. Points
+///   whose time has passed when the chunk is taken up are skipped, and the motion is entered at the
+///   instant that the robot is at.
+/// - **Receding horizon.** A newer chunk takes the place of the one before it as soon as its first
+///   point's time has come, or at once if none is running. It is blended in over [`BLEND`]; see
+///   [`blend`](Self::blend) and [`replace`](Self::replace).
 ///
 /// ```
 /// use core::time::Duration;
@@ -85,8 +89,8 @@ pub(super) enum Points {
 }
 
 impl Chunk {
-    /// Through joint positions, `[rad]`, each at its time after the chunk's origin. Their velocities are estimated from
-    /// their neighbours.
+    /// Through joint positions, `[rad]`, each at its time after the chunk's origin. Their
+    /// velocities are estimated from their neighbours.
     ///
     /// # Errors
     /// [`ChunkError`] names the first point that is wrong.
@@ -108,7 +112,8 @@ impl Chunk {
         ))
     }
 
-    /// The same with the joints' velocities, `[rad/s]`, given too. The arm rests at the last point nevertheless.
+    /// The same with the joints' velocities, `[rad/s]`, given too. The arm rests at the last point
+    /// nevertheless.
     ///
     /// # Errors
     /// As for [`joints`](Self::joints).
@@ -131,8 +136,8 @@ impl Chunk {
         ))
     }
 
-    /// Through poses of the end effector in the base frame, `O_T_EE`, metres, each at its time after the chunk's origin.
-    /// Their velocities are estimated from their neighbours.
+    /// Through poses of the end effector in the base frame, `O_T_EE`, metres, each at its time
+    /// after the chunk's origin. Their velocities are estimated from their neighbours.
     ///
     /// # Errors
     /// As for [`joints`](Self::joints), and [`ChunkError::Turn`].
@@ -160,8 +165,9 @@ impl Chunk {
         ))
     }
 
-    /// The same with the twists of the end effector given too: velocity of the frame's origin, `[m/s]`, and angular
-    /// velocity, `[rad/s]`, both in base axes. The arm rests at the last point nevertheless.
+    /// The same with the twists of the end effector given too: velocity of the frame's origin,
+    /// `[m/s]`, and angular velocity, `[rad/s]`, both in base axes. The arm rests at the last point
+    /// nevertheless.
     ///
     /// # Errors
     /// As for [`poses`](Self::poses).
@@ -187,23 +193,25 @@ impl Chunk {
         ))
     }
 
-    /// Counts the points' times from the robot's state `message_id`, `[ms]`: the one that the policy saw. Without it they
-    /// count from the cycle that takes the chunk up.
+    /// Counts the points' times from the robot's state `message_id`, `[ms]`: the one that the
+    /// policy saw. Without it they count from the cycle that takes the chunk up.
     #[must_use]
     pub fn observed_at(mut self, message_id: u64) -> Self {
         self.origin = Origin::Robot(message_id);
         self
     }
 
-    /// Replaces [`BLEND`]: the time over which the chunk is blended with what the arm does when it is taken up. What the
-    /// arm does goes on with its velocity and acceleration at first, and the difference to the chunk is then let go.
+    /// Replaces [`BLEND`]: the time over which the chunk is blended with what the arm does when it
+    /// is taken up. What the arm does goes on with its velocity and acceleration at first, and the
+    /// difference to the chunk is then let go.
     #[must_use]
     pub fn blend(mut self, over: Duration) -> Self {
         self.blend = over.min(OFFSET_MAX);
         self
     }
 
-    /// Does not blend: the arm turns to the chunk as fast as the budget allows. For chunks that correct the one before.
+    /// Does not blend: the arm turns to the chunk as fast as the budget allows. For chunks that
+    /// correct the one before.
     #[must_use]
     pub fn replace(self) -> Self {
         self.blend(Duration::ZERO)
@@ -227,8 +235,9 @@ impl Chunk {
         }
     }
 
-    /// Checks the chunk for a robot in `state`: every point for joints. For poses the last one, where the arm is to
-    /// rest; on the way to it inverse kinematics holds the arm inside its bounds, whatever it is asked for.
+    /// Checks the chunk for a robot in `state`: every point for joints. For poses the last one,
+    /// where the arm is to rest; on the way to it inverse kinematics holds the arm inside its
+    /// bounds, whatever it is asked for.
     ///
     /// # Errors
     /// [`GoalError`] of the first point that cannot be reached.

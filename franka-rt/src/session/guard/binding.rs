@@ -12,7 +12,8 @@ pub enum Guard {
     InverseKinematics,
     /// A spring and damper torque reached its clamp.
     TorqueClamp,
-    /// Spring and damper would have pressed with more force than the goal allows, and what was beyond it was taken off.
+    /// Spring and damper would have pressed with more force than the goal allows, and what was
+    /// beyond it was taken off.
     ForceCap,
     /// A joint came near the robot's velocity limit and was braked.
     VelocityBarrier,
@@ -26,9 +27,11 @@ pub enum Guard {
     Backstop,
     /// On the way to a pose a joint reached the cap of its velocity.
     JointVelocity,
-    /// On the way to a pose a joint came to the end of its range, or had to be able to stop before it.
+    /// On the way to a pose a joint came to the end of its range, or had to be able to stop before
+    /// it.
     PositionEnvelope,
-    /// The arm came near itself or a region to keep out of: the reference goes slowly, or brakes before it.
+    /// The arm came near itself or a region to keep out of: the reference goes slowly, or brakes
+    /// before it.
     Clearance,
     /// The arm was carried off from its way; its goal was given up for that.
     Deviation,

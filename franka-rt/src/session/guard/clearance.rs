@@ -1,20 +1,23 @@
-//! Clearance: the reference slows down towards the arm itself and towards regions that it is to keep out of, and comes to
-//! rest before it is too near.
+//! Clearance: the reference slows down towards the arm itself and towards regions that it is to
+//! keep out of, and comes to rest before it is too near.
 //!
-//! What has to stay clear is the whole way to rest. Before the reference takes a step, the brake from behind that step is
-//! planned, and its posture at rest and half way there are held against the arm's shape. A step from which the arm could
-//! not stop in time is not taken: the reference brakes from where it is, and the step before has shown that this is clear.
-//! So the distance is kept whatever moves the reference, and by the generator's own brake, which keeps the robot's limits;
-//! to less than a tenth of a millimetre at the default pace and half a millimetre at a quick one, by which the way to rest
-//! may sag between the two.
+//! What has to stay clear is the whole way to rest. Before the reference takes a step, the brake
+//! from behind that step is planned, and its posture at rest and half way there are held against
+//! the arm's shape. A step from which the arm could not stop in time is not taken: the reference
+//! brakes from where it is, and the step before has shown that this is clear. So the distance is
+//! kept whatever moves the reference, and by the generator's own brake, which keeps the robot's
+//! limits; to less than a tenth of a millimetre at the default pace and half a millimetre at a
+//! quick one, by which the way to rest may sag between the two.
 //!
-//! Only what comes nearer is held up. A motion out of a zone is free, also for an arm that begins inside.
+//! Only what comes nearer is held up. A motion out of a zone is free, also for an arm that begins
+//! inside.
 
 use franka_model::collision::{Arrangement, Leeway, Obstacle, Open, REGIONS_MAX, Shape, Spacing};
 use franka_model::{JointVector, RobotKind};
 
-/// Distance, `[m]`, that two links keep that have two others between them: what the robot's self-collision avoidance
-/// asks for is put at 0.05, and the arm is a spring that swings past its reference.
+/// Distance, `[m]`, that two links keep that have two others between them: what the robot's
+/// self-collision avoidance asks for is put at 0.05, and the arm is a spring that swings past its
+/// reference.
 pub const SELF_STOP: f64 = 0.06;
 
 /// Distance, `[m]`, that the capsules around the links keep from a region to keep out of.
@@ -26,15 +29,16 @@ pub const SLOW_ZONE: f64 = 0.06;
 /// Regions that a session can keep out of.
 pub const KEEP_OUT_MAX: usize = REGIONS_MAX;
 
-/// Regions that the arm and its Hand keep out of, in the base frame; room for [`KEEP_OUT_MAX`] of them.
+/// Regions that the arm and its Hand keep out of, in the base frame; room for [`KEEP_OUT_MAX`] of
+/// them.
 pub type KeepOut = [Option<Obstacle>; KEEP_OUT_MAX];
 
-/// How many links further along the chain another one has to be; a tool comes after link 7. Closer ones come near each
-/// other in postures that the arm takes every day.
+/// How many links further along the chain another one has to be; a tool comes after link 7. Closer
+/// ones come near each other in postures that the arm takes every day.
 const APART: u8 = 3;
 
-/// How much nearer, `[m]`, counts as nearer: above the rounding of distances, and below what a first cycle from rest leads
-/// to.
+/// How much nearer, `[m]`, counts as nearer: above the rounding of distances, and below what a
+/// first cycle from rest leads to.
 const NEARER: f64 = 1e-9;
 
 /// What one session keeps clear of.
@@ -81,7 +85,8 @@ impl Clearance {
         }
     }
 
-    /// What lies ahead of `next`, if the reference is at `now` and came to rest at `end` from `next`.
+    /// What lies ahead of `next`, if the reference is at `now` and came to rest at `end` from
+    /// `next`.
     pub(crate) fn ahead(
         &mut self,
         now: &JointVector,
@@ -91,7 +96,8 @@ impl Clearance {
         let half = (next + end) * 0.5;
         let way = (end - half).abs();
         let still = JointVector::zeros();
-        // Nearly always the arm has not come far enough since it was looked at last for anything else to be near.
+        // Nearly always the arm has not come far enough since it was looked at last for anything
+        // else to be near.
         if let Some(known) = &self.known {
             let open = known.leeway.open(&self.spacing, &half, &way);
             if open.is_empty() {
@@ -114,8 +120,8 @@ impl Clearance {
         self.on_the_way(now, (&middle, there), (end, open))
     }
 
-    /// Whether it is known without another look that nothing is too near ahead of `next`, if the reference came to rest at
-    /// `end` from there.
+    /// Whether it is known without another look that nothing is too near ahead of `next`, if the
+    /// reference came to rest at `end` from there.
     pub(crate) fn is_known_safe(&self, next: &JointVector, end: &JointVector) -> bool {
         let half = (next + end) * 0.5;
         let way = (end - half).abs();
@@ -127,10 +133,11 @@ impl Clearance {
         })
     }
 
-    /// What it means to go from `now` to `half` and to `end`, if no more than what is open may be near there.
+    /// What it means to go from `now` to `half` and to `end`, if no more than what is open may be
+    /// near there.
     ///
-    /// Only what is near there is compared with where it is now. Once something is known to be near, what could still make a
-    /// difference is what would be too near.
+    /// Only what is near there is compared with where it is now. Once something is known to be
+    /// near, what could still make a difference is what would be too near.
     fn on_the_way(
         &self,
         now: &JointVector,

@@ -1,7 +1,8 @@
 //! Deviation: an arm that is carried off too far is not swung back.
 //!
-//! The leash takes the reference along with an arm that is pushed, and the course begins again wherever it is let go. So
-//! nothing else bounds how far from its way an arm can be taken, and how far it then moves by itself.
+//! The leash takes the reference along with an arm that is pushed, and the course begins again
+//! wherever it is let go. So nothing else bounds how far from its way an arm can be taken, and how
+//! far it then moves by itself.
 
 use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
 use nalgebra::{Isometry3, Vector3};
@@ -35,8 +36,9 @@ impl Deviation {
         self.anchor = *reference;
     }
 
-    /// Whether the arm, at `q` and `measured`, is further than it may be from the way between where the reference was last
-    /// free and the target: an arm that comes along slowly is on its way, and not carried off.
+    /// Whether the arm, at `q` and `measured`, is further than it may be from the way between where
+    /// the reference was last free and the target: an arm that comes along slowly is on its way,
+    /// and not carried off.
     pub(crate) fn is_exceeded(
         &self,
         model: &Model,

@@ -1,23 +1,27 @@
-//! The force cap: spring and damper together press on whoever holds the end effector with no more than this force.
+//! The force cap: spring and damper together press on whoever holds the end effector with no more
+//! than this force.
 //!
-//! The leash bounds the spring alone. A quick push lets the damper add to it, and the springs of the joints press at the
-//! end effector too; this guard is about their sum, and about nothing else: what the motion itself takes, inertia and
-//! Coriolis torques, is added behind it.
+//! The leash bounds the spring alone. A quick push lets the damper add to it, and the springs of
+//! the joints press at the end effector too; this guard is about their sum, and about nothing else:
+//! what the motion itself takes, inertia and Coriolis torques, is added behind it.
 //!
-//! The force is that with which the torques press on a hand that holds the end effector at a point, `Lambda J M^-1 tau` with
-//! the `J` and `Lambda` of its position alone. That is the force of the equations of motion for a point that does not
-//! move while the rest of the arm may; at rest against a wall it is the force on the wall. It does not count torques that only turn
-//! the hand or move the elbow. Near singularities, where a small torque may press with any force along the direction that is lost,
-//! it is damped and reads low. Those of the position are few. With the rotation held as well there are many more, and a
-//! joint's way between two postures leads through them: there every torque counts as thousands of newtons.
+//! The force is that with which the torques press on a hand that holds the end effector at a point,
+//! `Lambda J M^-1 tau` with the `J` and `Lambda` of its position alone. That is the force of the
+//! equations of motion for a point that does not move while the rest of the arm may; at rest
+//! against a wall it is the force on the wall. It does not count torques that only turn the hand or
+//! move the elbow. Near singularities, where a small torque may press with any force along the
+//! direction that is lost, it is damped and reads low. Those of the position are few. With the
+//! rotation held as well there are many more, and a joint's way between two postures leads through
+//! them: there every torque counts as thousands of newtons.
 //!
-//! First the spring is cut down to the cap, then its sum with the damper. So at full force the damper still brakes an arm that
-//! goes back to its reference, and only what goes beyond the cap is lost: scaled together, spring and damper would be one
-//! constant force, under which nothing damps.
+//! First the spring is cut down to the cap, then its sum with the damper. So at full force the
+//! damper still brakes an arm that goes back to its reference, and only what goes beyond the cap is
+//! lost: scaled together, spring and damper would be one constant force, under which nothing damps.
 //!
-//! What goes beyond the cap is taken off as a force at the end effector, `J' (F - F')`. The torques that turn the hand and move
-//! the elbow stay, and so does the balance of an arm that leans on something. In the metric of the inertia, neither those
-//! of the springs nor those of the dampers grow.
+//! What goes beyond the cap is taken off as a force at the end effector, `J' (F - F')`. The torques
+//! that turn the hand and move the elbow stay, and so does the balance of an arm that leans on
+//! something. In the metric of the inertia, neither those of the springs nor those of the dampers
+//! grow.
 
 use core::ops::RangeInclusive;
 
@@ -31,14 +35,15 @@ pub const FORCE_CAP: RangeInclusive<f64> = 5.0..=200.0;
 
 /// The force cap of goals that do not say another, `[N]`.
 ///
-/// Just above the weight of the robot's whole payload of 3 kg, and above what the default gains come to when the arm is held
-/// back without a push. Motions within the default budget do not meet it (simulated: none of their cycles, also with 3 kg
-/// declared and with 0.5 kg undeclared), while a hand that pushes against a held arm at 0.25 m/s would meet 40 to 54 N without
-/// it, and 67 to 115 N if the joints are stiff.
+/// Just above the weight of the robot's whole payload of 3 kg, and above what the default gains
+/// come to when the arm is held back without a push. Motions within the default budget do not meet
+/// it (simulated: none of their cycles, also with 3 kg declared and with 0.5 kg undeclared), while
+/// a hand that pushes against a held arm at 0.25 m/s would meet 40 to 54 N without it, and 67 to
+/// 115 N if the joints are stiff.
 pub const DEFAULT_FORCE_CAP: f64 = 30.0;
 
-/// Holds the force of the torques of `springs` and of `dampers`, `[N m]`, under `cap`, `[N]`; gives their sum, and tells
-/// whether it bound.
+/// Holds the force of the torques of `springs` and of `dampers`, `[N m]`, under `cap`, `[N]`; gives
+/// their sum, and tells whether it bound.
 pub(crate) fn hold(
     springs: &JointVector,
     dampers: &JointVector,
@@ -159,7 +164,8 @@ mod tests {
             }
         }
 
-        /// Of a spring that is stretched too far the direction of the force stays, and a damper brakes it with all it has.
+        /// Of a spring that is stretched too far the direction of the force stays, and a damper
+        /// brakes it with all it has.
         #[test]
         fn a_damper_brakes_a_spring_at_full_force(
             offset in joints(0.4),
@@ -218,7 +224,8 @@ mod tests {
         assert_eq!(bound, 1, "binds from somewhere on");
     }
 
-    /// An arm let go a good way off its stiff reference, under a small cap: it comes to rest there and gains no energy.
+    /// An arm let go a good way off its stiff reference, under a small cap: it comes to rest there
+    /// and gains no energy.
     #[test]
     fn an_arm_at_full_force_does_not_swing_up() {
         const STEP: f64 = 1e-3;

@@ -1,5 +1,5 @@
-//! Lead: a streamed target that is far ahead of the arm is drawn nearer, so that one wild target cannot send the arm far
-//! once the stream stops.
+//! Lead: a streamed target that is far ahead of the arm is drawn nearer, so that one wild target
+//! cannot send the arm far once the stream stops.
 
 use franka_model::JointVector;
 use nalgebra::Isometry3;
@@ -9,9 +9,10 @@ use crate::session::guard::leash;
 
 /// How far ahead of the measured arm a target may be.
 ///
-/// A target that is further ahead is drawn nearer on the straight line to it, in every cycle anew while targets come:
-/// for [`LEAD_FRESH_MS`](crate::session::LEAD_FRESH_MS) after the newest one, the same target again included. Then it stays
-/// where it was last drawn to. So an arm whose targets stop coming goes on by no more than this.
+/// A target that is further ahead is drawn nearer on the straight line to it, in every cycle anew
+/// while targets come: for [`LEAD_FRESH_MS`](crate::session::LEAD_FRESH_MS) after the newest one,
+/// the same target again included. Then it stays where it was last drawn to. So an arm whose
+/// targets stop coming goes on by no more than this.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
     /// Of the end effector, for poses, `[m]`.
@@ -22,7 +23,8 @@ pub struct Lead {
     pub joints: f64,
 }
 
-/// Time after the newest target, `[ms]`, for which it is drawn anew. A stream of 5 Hz is followed without a pause.
+/// Time after the newest target, `[ms]`, for which it is drawn anew. A stream of 5 Hz is followed
+/// without a pause.
 pub const LEAD_FRESH_MS: u64 = 200;
 
 impl Lead {

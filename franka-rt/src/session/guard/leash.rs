@@ -1,5 +1,5 @@
-//! The leash: the reference never runs further ahead of the measured arm than this, so that an arm that is held back
-//! is pulled by a bounded spring and does not leap when it is let go.
+//! The leash: the reference never runs further ahead of the measured arm than this, so that an arm
+//! that is held back is pulled by a bounded spring and does not leap when it is let go.
 
 use franka_model::{JointVector, rotation};
 use nalgebra::{Isometry3, Translation3};
@@ -18,8 +18,8 @@ pub const ROTATION_LEASH: f64 = 0.15;
 /// Largest distance of a joint from its reference, `[rad]`.
 pub const JOINT_LEASH: f64 = 0.1;
 
-/// Longest distance from the joint reference's end effector to the pose that it follows, `[m]`. Half a millimetre to
-/// five make little difference; this is the tolerance of a goal.
+/// Longest distance from the joint reference's end effector to the pose that it follows, `[m]`.
+/// Half a millimetre to five make little difference; this is the tolerance of a goal.
 const TRANSLATION_TETHER: f64 = 1e-3;
 
 /// Largest angle between the two, `[rad]`.
@@ -27,7 +27,8 @@ const ROTATION_TETHER: f64 = 5e-3;
 
 /// Holds course and reference within the leash of the measured arm; tells whether that moved them.
 ///
-/// The course keeps its velocity and plans on from where it is held, so the arm follows smoothly once it is free.
+/// The course keeps its velocity and plans on from where it is held, so the arm follows smoothly
+/// once it is free.
 pub(crate) fn hold(
     course: &mut Course,
     reference: &mut Reference,
@@ -68,16 +69,17 @@ pub(crate) fn hold(
         }
         Course::Rest | Course::Joints(_) | Course::Guide(_) => Ok(()),
     };
-    // A measured state that is not finite; the robot will not send one, and the course then goes on as planned.
+    // A measured state that is not finite; the robot will not send one, and the course then goes on
+    // as planned.
     debug_assert!(planned.is_ok(), "{planned:?}");
     bound
 }
 
-/// Holds a pose that runs ahead of the joints that are to follow it, where their bounds keep them from `reached`, the pose
-/// of the joint reference; tells whether that moved it.
+/// Holds a pose that runs ahead of the joints that are to follow it, where their bounds keep them
+/// from `reached`, the pose of the joint reference; tells whether that moved it.
 ///
-/// Without it the pose would go on to its target, and the joints would chase it off the line, all of them at their
-/// bounds.
+/// Without it the pose would go on to its target, and the joints would chase it off the line, all
+/// of them at their bounds.
 pub(crate) fn tether(generator: &mut PoseGenerator, reached: &Isometry3<f64>) -> bool {
     let Some(pose) = tethered(&generator.pose(), reached) else {
         return false;
@@ -87,12 +89,14 @@ pub(crate) fn tether(generator: &mut PoseGenerator, reached: &Isometry3<f64>) ->
     true
 }
 
-/// The pose nearest to `pose` that does not run ahead of the joints at `reached`, if that is another one.
+/// The pose nearest to `pose` that does not run ahead of the joints at `reached`, if that is
+/// another one.
 pub(crate) fn tethered(pose: &Isometry3<f64>, reached: &Isometry3<f64>) -> Option<Isometry3<f64>> {
     within(pose, reached, TRANSLATION_TETHER, ROTATION_TETHER)
 }
 
-/// The pose nearest to `pose` within a leash of `anchor`, metres and radians long, if that is another one.
+/// The pose nearest to `pose` within a leash of `anchor`, metres and radians long, if that is
+/// another one.
 pub(crate) fn within(
     pose: &Isometry3<f64>,
     anchor: &Isometry3<f64>,

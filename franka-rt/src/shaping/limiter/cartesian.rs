@@ -8,7 +8,8 @@ use crate::shaping::check::{all_finite, is_homogeneous};
 use crate::shaping::rotation::{Rigid, about, pose};
 use crate::shaping::{CYCLE, InvalidCommand, lo};
 
-/// Share of the rotational bounds that a pose may use (libfranka 0.21, `kFactorCartesianRotationPoseInterface`).
+/// Share of the rotational bounds that a pose may use (libfranka 0.21,
+/// `kFactorCartesianRotationPoseInterface`).
 pub const POSE_ROTATION_SHARE: f64 = 0.99;
 
 /// Bounds on the norms of the end effector's linear and angular motion.
@@ -43,12 +44,12 @@ pub fn cartesian_velocity(
 
 /// Limits a pose, column-major, in the base frame, by the twist that leads there from `last_pose`.
 ///
-/// Of both poses the nearest rotation counts. The rotational bounds are taken times [`POSE_ROTATION_SHARE`]. `last_pose`
-/// is not checked.
+/// Of both poses the nearest rotation counts. The rotational bounds are taken times
+/// [`POSE_ROTATION_SHARE`]. `last_pose` is not checked.
 ///
 /// # Errors
-/// [`InvalidCommand::Pose`] if an element of `command` is not finite, then [`InvalidCommand::LimiterTransformation`] if
-/// it is no homogeneous transformation.
+/// [`InvalidCommand::Pose`] if an element of `command` is not finite, then
+/// [`InvalidCommand::LimiterTransformation`] if it is no homogeneous transformation.
 pub fn cartesian_pose(
     bounds: &CartesianBounds,
     command: &[f64; 16],
@@ -112,12 +113,13 @@ fn halves(twist: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
 
 /// Limits a velocity of three components by the norms of its derivatives.
 ///
-/// The acceleration keeps its direction and may be as large as the distance to the bound of the velocity, along that
-/// direction, allows: it falls with the distance at the rate of the jerk. Where the last velocity is so far outside that
-/// no acceleration in this direction leads back, the distance is NaN and does not bound.
+/// The acceleration keeps its direction and may be as large as the distance to the bound of the
+/// velocity, along that direction, allows: it falls with the distance at the rate of the jerk.
+/// Where the last velocity is so far outside that no acceleration in this direction leads back, the
+/// distance is NaN and does not bound.
 ///
-/// What libfranka computes from unit vectors times their lengths is computed here as shares of the vectors, in half the
-/// time: it differs by rounding.
+/// What libfranka computes from unit vectors times their lengths is computed here as shares of the
+/// vectors, in half the time: it differs by rounding.
 #[inline(always)]
 fn limit_vector(
     most: &MotionLimits,

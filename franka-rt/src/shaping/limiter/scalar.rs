@@ -55,7 +55,8 @@ impl JointBounds {
     }
 }
 
-/// Limits the rate of torques, `[N m]`, to `max_rate`, `[N m/s]`; also of any seven numbers to their greatest derivative.
+/// Limits the rate of torques, `[N m]`, to `max_rate`, `[N m/s]`; also of any seven numbers to
+/// their greatest derivative.
 ///
 /// # Errors
 /// [`InvalidCommand::NotFinite`] if a torque of `command` is not finite.
@@ -72,18 +73,20 @@ pub fn torques(
     }))
 }
 
-/// `command` as far from `last` as `max_rate` allows in a cycle, and whether that is less far than it was.
+/// `command` as far from `last` as `max_rate` allows in a cycle, and whether that is less far than
+/// it was.
 pub(crate) fn limit_rate(command: f64, last: f64, max_rate: f64) -> (f64, bool) {
     let rate = (command - last) / CYCLE;
     let limited = hi(lo(rate, max_rate), -max_rate);
     (last + limited * CYCLE, limited != rate)
 }
 
-/// A torque rate, `[N m/s]`, that keeps `max_rate` also where the last torque is known as its `f32` echo only.
+/// A torque rate, `[N m/s]`, that keeps `max_rate` also where the last torque is known as its `f32`
+/// echo only.
 ///
-/// A robot of protocol 10 sends its last torque as an `f32`, but judges the rate against the `f64` that it received: half
-/// a step of the `f32` less per cycle. At 80 N m that is 5e-3 N m/s, more than the margin of libfranka, whose limiter does
-/// not know this.
+/// A robot of protocol 10 sends its last torque as an `f32`, but judges the rate against the `f64`
+/// that it received: half a step of the `f32` less per cycle. At 80 N m that is 5e-3 N m/s, more
+/// than the margin of libfranka, whose limiter does not know this.
 pub fn within_echo(max_rate: f64, last: f64) -> f64 {
     let echo_error = f64::from(f32::EPSILON) * last.abs() / 2.0;
     hi(max_rate - echo_error / CYCLE, 0.0)
@@ -181,9 +184,9 @@ pub fn joint_positions(
     }))
 }
 
-/// The acceleration is bounded by the jerk first, then by what keeps the velocity below its upper bound, and at last by
-/// what keeps it above its lower bound. Near a bound the acceleration falls in proportion to the distance, at the rate
-/// that the jerk allows.
+/// The acceleration is bounded by the jerk first, then by what keeps the velocity below its upper
+/// bound, and at last by what keeps it above its lower bound. Near a bound the acceleration falls
+/// in proportion to the distance, at the rate that the jerk allows.
 fn limit_velocity(
     bounds: &AxisBounds,
     command: f64,

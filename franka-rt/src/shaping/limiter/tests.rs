@@ -1,4 +1,5 @@
-//! What limited commands keep, whatever is commanded: walks from rest in which every result is the next last value.
+//! What limited commands keep, whatever is commanded: walks from rest in which every result is the
+//! next last value.
 
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
 use franka_model::{JointVector, READY, RobotKind, Twist, rotation, transform};
@@ -8,7 +9,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::shaping::{Bounds, CYCLE};
 
-/// Shares of a bound to command: moderate, far outside, beyond what squares can hold, and hardly any.
+/// Shares of a bound to command: moderate, far outside, beyond what squares can hold, and hardly
+/// any.
 fn share() -> impl Strategy<Value = f64> {
     prop_oneof![
         8 => -1.5..1.5,
@@ -123,7 +125,8 @@ proptest! {
         }
     }
 
-    /// Where the envelope takes the velocity back faster than the jerk allows, the jerk is exceeded, as in libfranka.
+    /// Where the envelope takes the velocity back faster than the jerk allows, the jerk is
+    /// exceeded, as in libfranka.
     #[test]
     fn joint_positions_keep_velocity_and_acceleration_and_without_an_envelope_the_jerk(
         shares in commands::<7>(share()),
@@ -224,8 +227,8 @@ proptest! {
     }
 }
 
-/// Sends every joint of the FR3 against the end of its range, upwards or downwards, and gives where each stands after
-/// six seconds and by how much it passed its envelope, `[rad/s]`.
+/// Sends every joint of the FR3 against the end of its range, upwards or downwards, and gives where
+/// each stands after six seconds and by how much it passed its envelope, `[rad/s]`.
 fn against_the_end(direction: f64) -> ([f64; 7], [f64; 7]) {
     let limits = JointLimits::of(RobotKind::Fr3);
     let bounds = Bounds::fr3();
@@ -261,7 +264,8 @@ fn a_joint_sent_against_the_end_of_its_range_stops_before_it() {
     }
 }
 
-/// What the module says about the limiters of libfranka: the acceleration bound yields downwards only.
+/// What the module says about the limiters of libfranka: the acceleration bound yields downwards
+/// only.
 #[test]
 fn joints_5_and_7_of_the_fr3_pass_their_upper_end() {
     let limits = JointLimits::of(RobotKind::Fr3);

@@ -83,10 +83,11 @@ impl Conventions {
 }
 
 impl Shaper {
-    /// The shaper of a robot that speaks `version`: with or without limiter, and with a filter if `cutoff_frequency`,
-    /// `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
+    /// The shaper of a robot that speaks `version`: with or without limiter, and with a filter if
+    /// `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
     ///
-    /// A cutoff frequency that is not positive is reported with the first command, as libfranka does.
+    /// A cutoff frequency that is not positive is reported with the first command, as libfranka
+    /// does.
     pub fn new(version: Version, limit_rate: bool, cutoff_frequency: f64) -> Self {
         let Conventions {
             bounds,
@@ -103,14 +104,15 @@ impl Shaper {
         }
     }
 
-    /// The shaper that libfranka's control loops use by default: [`DEFAULT_CUTOFF_FREQUENCY`], and a limiter where
-    /// [`limits_by_default`](Self::limits_by_default) says so.
+    /// The shaper that libfranka's control loops use by default: [`DEFAULT_CUTOFF_FREQUENCY`], and
+    /// a limiter where [`limits_by_default`](Self::limits_by_default) says so.
     pub fn by_default(version: Version) -> Self {
         let limit_rate = Self::limits_by_default(version);
         Self::new(version, limit_rate, DEFAULT_CUTOFF_FREQUENCY)
     }
 
-    /// Whether libfranka's control loops limit by default: up to version 0.9 for the FER they do, for the FR3 not.
+    /// Whether libfranka's control loops limit by default: up to version 0.9 for the FER they do,
+    /// for the FR3 not.
     pub fn limits_by_default(version: Version) -> bool {
         Conventions::of(version).limit_rate
     }
@@ -122,8 +124,9 @@ impl Shaper {
         self
     }
 
-    /// Replaces the velocities of the joints where the robot's depend on position and it says itself how: those of
-    /// `joints`, from its description. Without effect on a robot whose velocities are the same everywhere.
+    /// Replaces the velocities of the joints where the robot's depend on position and it says
+    /// itself how: those of `joints`, from its description. Without effect on a robot whose
+    /// velocities are the same everywhere.
     #[must_use]
     pub fn with_limits_of(mut self, joints: &JointLimits) -> Self {
         if matches!(self.bounds.joint_velocity, VelocityBounds::Envelope { .. }) {
@@ -143,7 +146,8 @@ impl Shaper {
     /// Shapes torques against the last ones, `tau_J_d` of the state.
     ///
     /// # Errors
-    /// [`InvalidCommand`] if a number of the command, or of what it is shaped against, is not finite.
+    /// [`InvalidCommand`] if a number of the command, or of what it is shaped against, is not
+    /// finite.
     pub fn torques(
         &self,
         command: &Torques,
@@ -163,8 +167,8 @@ impl Shaper {
         Ok(Torques(tau))
     }
 
-    /// Shapes joint positions against the last ones, `q_d` of the state and its derivatives. `first` is whether no
-    /// command of the motion came before.
+    /// Shapes joint positions against the last ones, `q_d` of the state and its derivatives.
+    /// `first` is whether no command of the motion came before.
     ///
     /// # Errors
     /// As of [`torques`](Self::torques).
@@ -206,11 +210,12 @@ impl Shaper {
         Ok(JointVelocities(dq))
     }
 
-    /// Shapes a pose against the last one, `O_T_EE_c` of the state and its derivatives, and its elbow against `elbow_c`.
-    /// `first` is whether no command of the motion came before.
+    /// Shapes a pose against the last one, `O_T_EE_c` of the state and its derivatives, and its
+    /// elbow against `elbow_c`. `first` is whether no command of the motion came before.
     ///
     /// # Errors
-    /// As of [`torques`](Self::torques); also if the pose is no transformation, or the elbow has no sign.
+    /// As of [`torques`](Self::torques); also if the pose is no transformation, or the elbow has no
+    /// sign.
     pub fn cartesian_pose(
         &self,
         command: &CartesianPose,
@@ -231,7 +236,8 @@ impl Shaper {
         })
     }
 
-    /// Shapes a twist against the last one, `O_dP_EE_c` of the state and its derivative, and its elbow against `elbow_c`.
+    /// Shapes a twist against the last one, `O_dP_EE_c` of the state and its derivative, and its
+    /// elbow against `elbow_c`.
     ///
     /// # Errors
     /// As of [`torques`](Self::torques); also if the elbow has no sign.
@@ -256,8 +262,8 @@ impl Shaper {
         })
     }
 
-    /// Filters and limits a pose. Both steps need the nearest rotations of their poses, a fair share of the work: what
-    /// one has found, the other takes over.
+    /// Filters and limits a pose. Both steps need the nearest rotations of their poses, a fair
+    /// share of the work: what one has found, the other takes over.
     fn pose(
         &self,
         command: &[f64; 16],

@@ -57,7 +57,8 @@ fn the_filter_comes_before_the_limiter() {
     let mut state = at_rest();
     state.tau_J_d = [0.0; 7];
     let shaper = Shaper::new(Version::V5, true, 100.0);
-    // Filtered to 0.386 N m, which is inside the rate; limited first it would be filtered from 0.999999.
+    // Filtered to 0.386 N m, which is inside the rate; limited first it would be filtered from
+    // 0.999999.
     let gentle = shaper.torques(&Torques([1.0; 7]), &state).expect("finite");
     assert!((gentle.0[0] - 0.385_869_545_095_037_5).abs() < 1e-15);
     let harsh = shaper.torques(&Torques([10.0; 7]), &state).expect("finite");
@@ -313,7 +314,8 @@ fn any_pose() -> impl Strategy<Value = [f64; 16]> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
-    /// Whatever the program and the robot say: no panic, and what passes is finite and a valid command.
+    /// Whatever the program and the robot say: no panic, and what passes is finite and a valid
+    /// command.
     #[test]
     fn no_input_at_all_gives_an_invalid_command_or_a_panic(
         numbers in prop::collection::vec(any_number(), 7 * 4 + 6 * 3),

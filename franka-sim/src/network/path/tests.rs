@@ -17,7 +17,8 @@ fn ms(milliseconds: u64) -> Duration {
     Duration::from_millis(milliseconds)
 }
 
-/// Sends so many datagrams of this size, one a millisecond, each with its number, and takes what arrives.
+/// Sends so many datagrams of this size, one a millisecond, each with its number, and takes what
+/// arrives.
 fn pass(path: &mut Path, count: u64, size: usize) -> Vec<(Duration, u64)> {
     let mut arrived = Vec::new();
     for n in 0..count {

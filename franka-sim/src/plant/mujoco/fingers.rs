@@ -1,4 +1,5 @@
-//! The Franka Hand in the scene: its shapes, the joints of its fingers and the motor that drives both.
+//! The Franka Hand in the scene: its shapes, the joints of its fingers and the motor that drives
+//! both.
 
 use franka_model::collision::{Body, Capsule};
 use mujoco_rs::prelude::{MjData, MjModel};
@@ -9,8 +10,9 @@ use super::scene::{SceneError, joint};
 use crate::Fingers;
 use crate::plant::FingerDrive;
 
-/// The body of the Hand in its own frame. Source: fitted to the vendor's collision mesh (`franka_description` 1.0.1, `hand`); the
-/// mesh sticks out by up to 15 mm, which is not added here: the fingers leave the body below that.
+/// The body of the Hand in its own frame. Source: fitted to the vendor's collision mesh
+/// (`franka_description` 1.0.1, `hand`); the mesh sticks out by up to 15 mm, which is not added
+/// here: the fingers leave the body below that.
 pub(super) const HAND: Capsule =
     Capsule::new([-0.0007, -0.0702, 0.0228], [0.0001, 0.0673, 0.0254], 0.0363);
 
@@ -20,7 +22,8 @@ pub(super) fn write_hand(text: &mut String) {
     let turn = quaternion(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn));
     add(text, format_args!("<body name='hand' quat='{turn}'>"));
     write_capsule(text, &geom(Body::Tool, 0), &HAND);
-    // The right finger is the left one turned about the axis of the Hand, so that both open in the positive direction.
+    // The right finger is the left one turned about the axis of the Hand, so that both open in the
+    // positive direction.
     for (name, turn) in JOINTS.into_iter().zip(["1 0 0 0", "0 0 0 1"]) {
         let stroke = Fingers::STROKE / 2.0;
         add(
@@ -118,18 +121,22 @@ impl FingerJoints {
 
 const JOINTS: [&str; 2] = ["finger_left", "finger_right"];
 
-/// Where the fingers slide, above the origin of the Hand, `[m]`. Source: `franka_description` 1.0.1, `franka_hand.xacro`.
+/// Where the fingers slide, above the origin of the Hand, `[m]`. Source: `franka_description`
+/// 1.0.1, `franka_hand.xacro`.
 const FINGER_HEIGHT: f64 = 0.0584;
 
-/// Mass of one finger, `[kg]`, and its moments of inertia, `[kg·m²]`: as little as MuJoCo takes. What the fingers weigh is in
-/// the load of [`Tool::hand`](crate::Tool::hand), and what it takes to slide them is nearly all the motor's.
+/// Mass of one finger, `[kg]`, and its moments of inertia, `[kg·m²]`: as little as MuJoCo takes.
+/// What the fingers weigh is in the load of [`Tool::hand`](crate::Tool::hand), and what it takes to
+/// slide them is nearly all the motor's.
 const NEXT_TO_NOTHING: f64 = 1e-12;
 
-/// Inertia of the motor, felt at each finger, `[kg]`. A choice of this simulator: no source gives one.
+/// Inertia of the motor, felt at each finger, `[kg]`. A choice of this simulator: no source gives
+/// one.
 const FINGER_ARMATURE: f64 = 0.5;
 
-/// The four boxes of a finger: screw mount, carriage, diagonal, rubber tip. Source: `franka_description` 1.0.1,
-/// `franka_hand.xacro`. The tip is stiffer than MuJoCo's contacts are otherwise, so that 100 N press it in by 0.2 mm.
+/// The four boxes of a finger: screw mount, carriage, diagonal, rubber tip. Source:
+/// `franka_description` 1.0.1, `franka_hand.xacro`. The tip is stiffer than MuJoCo's contacts are
+/// otherwise, so that 100 N press it in by 0.2 mm.
 const BOXES: &str = "\
     <geom type='box' size='0.011 0.0075 0.01' pos='0 0.0185 0.011'/>\
     <geom type='box' size='0.011 0.0044 0.0019' pos='0 0.0068 0.0022'/>\
@@ -138,8 +145,9 @@ const BOXES: &str = "\
     <geom type='box' size='0.00875 0.0076 0.00925' pos='0 0.00758 0.04525' condim='4' \
     friction='0 0.005 0.0001' solref='0.005 1' solimp='0.95 0.99 0.001' solmix='100'/>";
 
-/// Of the motor's speed controller; choices of this simulator. Speed wanted per way to go, `[1/s]`; force per speed that is
-/// missing, `[N·s/m]`, and per way that is missing, `[N/m]`. A blocked finger has built up 70 N after 0.2 s.
+/// Of the motor's speed controller; choices of this simulator. Speed wanted per way to go, `[1/s]`;
+/// force per speed that is missing, `[N·s/m]`, and per way that is missing, `[N/m]`. A blocked
+/// finger has built up 70 N after 0.2 s.
 const APPROACH: f64 = 30.0;
 const PROPORTIONAL: f64 = 100.0;
 const INTEGRAL: f64 = 6000.0;

@@ -165,7 +165,8 @@ pub(super) fn write_capsule(text: &mut String, name: &str, capsule: &Capsule) {
     );
 }
 
-/// Mass and principal moments. MuJoCo's own search for the principal axes is good for eight digits only.
+/// Mass and principal moments. MuJoCo's own search for the principal axes is good for eight digits
+/// only.
 fn inertial(text: &mut String, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>) {
     let symmetric = (inertia + inertia.transpose()) / 2.0;
     let principal = symmetric.symmetric_eigen();

@@ -16,16 +16,16 @@ use super::{ArmParameters, FingerDrive, Plant};
 use fingers::FingerJoints;
 use scene::{JOINT, Places};
 
-/// The links of [`Model::realisable`](franka_model::Model::realisable) in MuJoCo, with the rotors, friction and end stops of a
-/// [`RigidArm`](super::RigidArm) and the surroundings of a [`Scene`].
+/// The links of [`Model::realisable`](franka_model::Model::realisable) in MuJoCo, with the rotors,
+/// friction and end stops of a [`RigidArm`](super::RigidArm) and the surroundings of a [`Scene`].
 ///
-/// Away from contact it is the same arm: each step solves the same equation in the same way, with inertia and bias forces that
-/// are MuJoCo's own. Friction and end stops of the joints enter as forces, and their slopes as dampers that the
-/// integrator takes implicitly.
+/// Away from contact it is the same arm: each step solves the same equation in the same way, with
+/// inertia and bias forces that are MuJoCo's own. Friction and end stops of the joints enter as
+/// forces, and their slopes as dampers that the integrator takes implicitly.
 ///
 /// The links touch what is around them, and the outer ones the inner ones, with the capsules of
-/// [`Shape::covering`](franka_model::collision::Shape::covering), which are up to 3.4 cm thicker than the links. The Hand
-/// and its fingers have shapes of their own (see [`Scene::with_hand`]).
+/// [`Shape::covering`](franka_model::collision::Shape::covering), which are up to 3.4 cm thicker
+/// than the links. The Hand and its fingers have shapes of their own (see [`Scene::with_hand`]).
 #[derive(Debug)]
 pub struct MujocoArm {
     kind: RobotKind,
@@ -80,8 +80,8 @@ impl MujocoArm {
         Ok(arm)
     }
 
-    /// Pose of a body of the scene, in the base frame, as it was when the last step began; `None` if there is no body of this
-    /// name. The robot's own have names that begin with `franka_`.
+    /// Pose of a body of the scene, in the base frame, as it was when the last step began; `None`
+    /// if there is no body of this name. The robot's own have names that begin with `franka_`.
     pub fn body_pose(&self, name: &str) -> Option<Isometry3<f64>> {
         let id = scene::body(self.data.model(), name)?;
         let position = Vector3::from(self.data.xpos()[id]);
@@ -90,8 +90,8 @@ impl MujocoArm {
         Some(Isometry3::from_parts(position.into(), rotation))
     }
 
-    /// Puts a body of the scene that has a free joint somewhere else, at rest: its pose in the base frame. False if there is
-    /// no such body. What is in its way there pushes it out.
+    /// Puts a body of the scene that has a free joint somewhere else, at rest: its pose in the base
+    /// frame. False if there is no such body. What is in its way there pushes it out.
     ///
     /// ```no_run
     /// # use std::any::Any;
@@ -116,7 +116,8 @@ impl MujocoArm {
         true
     }
 
-    /// What contact exerted on the joints in the last step, `[N·m]`; positive torques push towards positive angles.
+    /// What contact exerted on the joints in the last step, `[N·m]`; positive torques push towards
+    /// positive angles.
     pub fn contact_torque(&self) -> JointVector {
         let force = self.data.qfrc_constraint();
         self.places.dof.map(|dof| force[dof]).into()
@@ -182,8 +183,8 @@ impl Plant for MujocoArm {
     /// Makes the scene anew, which takes milliseconds.
     ///
     /// # Panics
-    /// If no body has this load (a number that is not finite, a negative mass), or if the file of the scene is no longer what
-    /// it was.
+    /// If no body has this load (a number that is not finite, a negative mass), or if the file of
+    /// the scene is no longer what it was.
     fn attach(&mut self, load: Load) {
         if load == self.load {
             return;

@@ -12,10 +12,10 @@ use crate::plant::ArmParameters;
 
 /// What stands around the arm, and whether a Franka Hand is on its flange.
 ///
-/// Surroundings are MJCF, the format of MuJoCo's models. Its world is the robot's base frame: x forwards, z up, in metres.
-/// Bodies with a free joint are objects that the arm can push and grasp. Everything in MJCF can be used;
-/// of `<option>`, the simulator sets `timestep`, `integrator`, `gravity`, `cone` and `impratio` itself. Names that begin with
-/// `franka_` are the robot's.
+/// Surroundings are MJCF, the format of MuJoCo's models. Its world is the robot's base frame: x
+/// forwards, z up, in metres. Bodies with a free joint are objects that the arm can push and grasp.
+/// Everything in MJCF can be used; of `<option>`, the simulator sets `timestep`, `integrator`,
+/// `gravity`, `cone` and `impratio` itself. Names that begin with `franka_` are the robot's.
 ///
 /// ```xml
 /// <mujoco>
@@ -61,7 +61,8 @@ pub enum SceneError {
 }
 
 impl Scene {
-    /// A table of two by two metres, in the middle of which the robot stands: its top is the plane z = 0. This is the default.
+    /// A table of two by two metres, in the middle of which the robot stands: its top is the plane
+    /// z = 0. This is the default.
     pub fn table() -> Self {
         Self::default()
     }
@@ -87,11 +88,12 @@ impl Scene {
         }
     }
 
-    /// With the body and the two fingers of a Franka Hand on the flange, which a [`Hand`](crate::Hand) then moves. The mass of
-    /// the Hand is not among it: that is the load of [`Tool::hand`](crate::Tool::hand).
+    /// With the body and the two fingers of a Franka Hand on the flange, which a
+    /// [`Hand`](crate::Hand) then moves. The mass of the Hand is not among it: that is the load of
+    /// [`Tool::hand`](crate::Tool::hand).
     ///
-    /// The fingers have no friction of their own: in MuJoCo the larger friction of two surfaces counts, so how well an object is
-    /// held is what the object's `friction` says.
+    /// The fingers have no friction of their own: in MuJoCo the larger friction of two surfaces
+    /// counts, so how well an object is held is what the object's `friction` says.
     #[must_use]
     pub fn with_hand(mut self) -> Self {
         self.has_hand = true;
@@ -125,7 +127,8 @@ impl Scene {
         options.gravity = parameters.gravity_earth.into();
         // Takes the dampers of the joints implicitly.
         options.integrator = mjtIntegrator::mjINT_IMPLICITFAST as i32;
-        // Without these two a grasp creeps: friction is as soft as contact, and weaker along diagonals.
+        // Without these two a grasp creeps: friction is as soft as contact, and weaker along
+        // diagonals.
         options.cone = mjtCone::mjCONE_ELLIPTIC as i32;
         options.impratio = 10.0;
         // A simulation that has become unstable must not look like one that begins anew.
@@ -190,7 +193,8 @@ fn find(model: &MjModel, kind: MjtObjBase, name: &str) -> Result<usize, SceneErr
     model.name_to_id(kind, &name).ok_or(SceneError::Lacks(name))
 }
 
-/// Names of the robot's parts begin with this, and those of joints and their dampers go on with that.
+/// Names of the robot's parts begin with this, and those of joints and their dampers go on with
+/// that.
 const PREFIX: &str = "franka_";
 pub(super) const JOINT: &str = "joint";
 

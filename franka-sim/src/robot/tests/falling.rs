@@ -1,4 +1,5 @@
-//! A hand that comes down on a table, on every plant: the thresholds that were set end it, those 30 % higher do not.
+//! A hand that comes down on a table, on every plant: the thresholds that were set end it, those 30
+//! % higher do not.
 
 use std::any::Any;
 
@@ -84,7 +85,8 @@ struct Landing {
     state: RobotState,
 }
 
-/// Comes down on the table: that of the scene, or where there is no scene, one that only the fingertips meet.
+/// Comes down on the table: that of the scene, or where there is no scene, one that only the
+/// fingertips meet.
 fn come_down(pair: &mut Pair, descent: Descent, threshold: Threshold) -> Landing {
     pair.request(&Request::SetCollisionBehavior(threshold.behavior()));
     let plant: &dyn Any = pair.robot.plant();

@@ -6,8 +6,8 @@ use crate::plant::{MujocoArm, Scene};
 use super::*;
 use crate::config::Tool;
 
-/// A robot of every kind on every plant, with its client, and what it is. Those in MuJoCo stand on the table, and have the
-/// Hand's body and fingers if that is the tool.
+/// A robot of every kind on every plant, with its client, and what it is. Those in MuJoCo stand on
+/// the table, and have the Hand's body and fingers if that is the tool.
 pub(super) fn robots(config: &Config) -> Vec<(String, Pair)> {
     let mut robots = Vec::new();
     for kind in RobotKind::ALL {

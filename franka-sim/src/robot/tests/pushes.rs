@@ -108,7 +108,8 @@ fn a_clients_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness
     }
 }
 
-/// Pushes in every direction, one after the other, until the arm has gone as far as it does, and back.
+/// Pushes in every direction, one after the other, until the arm has gone as far as it does, and
+/// back.
 fn gives_way(name: &str, pair: &mut Pair, mut command: impl FnMut(&Pair) -> RobotCommand) {
     let mut run = |pair: &mut Pair, cycles, watch: &mut dyn FnMut(&Pair, usize)| {
         for cycle in 0..cycles {

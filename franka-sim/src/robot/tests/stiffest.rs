@@ -15,7 +15,8 @@ fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
     }
 }
 
-/// A blow to every joint, then how fast the joints still are half a second later, at most `[rad/s]`.
+/// A blow to every joint, then how fast the joints still are half a second later, at most
+/// `[rad/s]`.
 fn ringing(pair: &mut Pair, mut command: impl FnMut(&Pair) -> RobotCommand) -> f64 {
     let blow = JointVector::from([20.0, -20.0, 20.0, 20.0, -5.0, 5.0, 3.0]);
     pair.robot.push_joints(blow, 20);
@@ -58,8 +59,8 @@ fn the_stiffest_cartesian_impedance_does_not_ring() {
     });
 }
 
-/// The gains of libfranka 0.21, `joint_impedance_control.cpp`, applied once per millisecond to a state that is a cycle old, and
-/// four times their stiffness with twice their damping.
+/// The gains of libfranka 0.21, `joint_impedance_control.cpp`, applied once per millisecond to a
+/// state that is a cycle old, and four times their stiffness with twice their damping.
 #[test]
 fn a_clients_stiff_impedance_does_not_ring() {
     for factor in [1.0, 2.0] {

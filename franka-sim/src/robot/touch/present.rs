@@ -20,7 +20,8 @@ struct Present {
     since: u64,
     /// Of a touch as a function of time, in this millisecond.
     wrench: Wrench,
-    /// What it has done to the arm in this millisecond: the mean of the last `steps` steps, about its place, base axes.
+    /// What it has done to the arm in this millisecond: the mean of the last `steps` steps, about
+    /// its place, base axes.
     felt: Wrench,
     steps: u32,
 }
@@ -85,7 +86,8 @@ impl Touches {
         }
     }
 
-    /// Their torques on the joints in this state of the arm, `[N·m]`, so many seconds into the millisecond.
+    /// Their torques on the joints in this state of the arm, `[N·m]`, so many seconds into the
+    /// millisecond.
     pub(in crate::robot) fn torque(
         &mut self,
         model: &Model,

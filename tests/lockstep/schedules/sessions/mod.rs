@@ -1,7 +1,7 @@
 //! Sessions that go from goal to goal, and all that can happen to them.
 //!
-//! What is done next is drawn here, and here time passes. `goals` and `streams` do it to the session, `mishaps` from outside,
-//! and `ends` sees to the end.
+//! What is done next is drawn here, and here time passes. `goals` and `streams` do it to the
+//! session, `mishaps` from outside, and `ends` sees to the end.
 
 mod ends;
 mod goals;
@@ -137,7 +137,8 @@ impl<'a> Sessions<'a> {
             over: false,
         });
         self.add(Given::new(id, Work::Session, Then::Hold, now));
-        // It holds the arm, or the robot has refused: one that was pushed may trip after it has shown itself idle.
+        // It holds the arm, or the robot has refused: one that was pushed may trip after it has
+        // shown itself idle.
         while self.lockstep.client.record.goal != id.0 && self.lockstep.client.outcome(id).is_none()
         {
             self.tick();

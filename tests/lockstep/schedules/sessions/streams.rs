@@ -57,7 +57,8 @@ impl Sessions<'_> {
         (given.then == Then::Hold && !given.cancelled && !guided).then_some(current)
     }
 
-    /// Some chunks one after the other, as of a policy: most come before the one before them has ended.
+    /// Some chunks one after the other, as of a policy: most come before the one before them has
+    /// ended.
     pub(super) fn chunk(&mut self) {
         for _ in 0..self.random.random_range(1..6) {
             let Some(session) = &self.session else {

@@ -1,5 +1,5 @@
-//! franka-rs with its default options, on the orders of whoever runs this: one line each on the standard input, answered by
-//! one line on the standard output.
+//! franka-rs with its default options, on the orders of whoever runs this: one line each on the
+//! standard input, answered by one line on the standard output.
 //!
 //! | order | what it does | answer |
 //! |---|---|---|

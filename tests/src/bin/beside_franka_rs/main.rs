@@ -1,7 +1,8 @@
-//! Our target control beside that of franka-rs, each with its defaults, on the same simulated robots:
-//! `beside_franka_rs PROGRAM`, where `PROGRAM` is that of `tests/peers/franka_rs`.
+//! Our target control beside that of franka-rs, each with its defaults, on the same simulated
+//! robots: `beside_franka_rs PROGRAM`, where `PROGRAM` is that of `tests/peers/franka_rs`.
 //!
-//! A step of 5 cm, and a hand that pushes an arm which is to stay where it is. One line each says what came out.
+//! A step of 5 cm, and a hand that pushes an arm which is to stay where it is. One line each says
+//! what came out.
 
 mod ours;
 mod theirs;
@@ -33,7 +34,8 @@ type Kind = fn() -> Sim;
 /// How a step came out.
 #[derive(Clone, Copy, Debug)]
 struct Stepped {
-    /// When the arm was within 1 mm of the target for good, `[s]` from the first cycle that knew of it.
+    /// When the arm was within 1 mm of the target for good, `[s]` from the first cycle that knew of
+    /// it.
     within: f64,
     /// How far off it was in the end, `[m]`.
     off: f64,
@@ -47,7 +49,8 @@ const WATCHED: f64 = 2.5;
 /// The step, `[m]`, base frame.
 const STEP: [f64; 3] = [0.0, 0.0, 0.05];
 
-/// Time of the hand at its pace that is left out of what it feels, `[ms]`: contact and arm still swing then.
+/// Time of the hand at its pace that is left out of what it feels, `[ms]`: contact and arm still
+/// swing then.
 const SWING: u64 = 100;
 
 /// How long a client may take for anything.
@@ -97,7 +100,8 @@ fn told(name: &str, start: Instant, outcome: anyhow::Result<String>) -> bool {
     }
 }
 
-/// A robot whose time goes on as its client answers: no command is late, however busy the machine is.
+/// A robot whose time goes on as its client answers: no command is late, however busy the machine
+/// is.
 async fn simulated(kind: Kind) -> anyhow::Result<Running> {
     let sim = kind().tool(Tool::hand()).virtual_time(PATIENCE);
     Ok(sim.start().await?)
@@ -150,7 +154,8 @@ async fn push(kind: Kind, way: Vector3<f64>, arguments: &Arguments) -> anyhow::R
     Ok(summary)
 }
 
-/// The force that a hand meets at its pace, `[N]`, along `way`: the mean, to which what accelerates the arm adds nothing.
+/// The force that a hand meets at its pace, `[N]`, along `way`: the mean, to which what accelerates
+/// the arm adds nothing.
 async fn felt(sim: &Running, way: Vector3<f64>) -> anyhow::Result<f64> {
     let begin = sim.state().await?;
     let pose = begin.O_T_EE;

@@ -1,4 +1,5 @@
-//! What one simulated arm costs its host, and how punctual it is: the simulator measured instead of its clients.
+//! What one simulated arm costs its host, and how punctual it is: the simulator measured instead of
+//! its clients.
 
 use std::path::Path;
 use std::process::Command;
@@ -56,7 +57,8 @@ pub(crate) struct Weighed {
     pub(crate) state_deviation: Option<Quantiles>,
 }
 
-/// From a start of the program to a client that has connected and has its first state, over some starts, in nanoseconds.
+/// From a start of the program to a client that has connected and has its first state, over some
+/// starts, in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Starts {
     /// How many.

@@ -81,7 +81,8 @@ impl Case {
         }
     }
 
-    /// Measures the client for `time`, against a simulator of its own; the project's programs are in `programs`.
+    /// Measures the client for `time`, against a simulator of its own; the project's programs are
+    /// in `programs`.
     pub(crate) fn measure(&self, programs: &Path, time: Duration) -> anyhow::Result<Measured> {
         let (_simulator, robot) = simulator(&programs.join("franka-sim"))?;
         let listen = SocketAddr::new(loopback_address(std::process::id()), PORT);
@@ -138,9 +139,11 @@ impl Case {
     }
 }
 
-/// The vendor's client knows one port only, so that relays side by side need addresses of their own.
+/// The vendor's client knows one port only, so that relays side by side need addresses of their
+/// own.
 fn loopback_address(process: u32) -> IpAddr {
-    // 127.2.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or 255.
+    // 127.2.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or
+    // 255.
     let (high, low) = ((process / 254) % 256, process % 254 + 1);
     Ipv4Addr::new(127, 2, high as u8, low as u8).into()
 }

@@ -1,4 +1,5 @@
-//! The client that takes the least of a robot: connected, it notes when states arrive, and commands nothing.
+//! The client that takes the least of a robot: connected, it notes when states arrive, and commands
+//! nothing.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};

@@ -34,7 +34,8 @@ impl Process {
         Ok(clock_gettime(clock)?.into())
     }
 
-    /// The highest `SCHED_FIFO` priority of its threads; `None` if all run under the normal scheduler.
+    /// The highest `SCHED_FIFO` priority of its threads; `None` if all run under the normal
+    /// scheduler.
     pub(crate) fn fifo_priority(&self) -> anyhow::Result<Option<u32>> {
         let mut highest = None;
         for thread in fs::read_dir(format!("/proc/{}/task", self.child.id()))? {
@@ -88,8 +89,8 @@ impl Drop for Process {
     }
 }
 
-/// The simulator that clients are measured against; a robot sends its states whatever else the machine does, so it is
-/// preferred too.
+/// The simulator that clients are measured against; a robot sends its states whatever else the
+/// machine does, so it is preferred too.
 pub(crate) fn simulator(program: &Path) -> anyhow::Result<(Process, SocketAddr)> {
     let mut command = under_fifo(SIMULATOR_PRIORITY, program);
     ready(command.args(["--port", "0", "--no-gripper"]))
@@ -116,7 +117,8 @@ pub(crate) fn under_fifo(priority: u32, program: &Path) -> Command {
     command
 }
 
-/// Real-time priority under policy 1: fields 40 and 41 of proc_pid_stat(5), counted behind the name in parentheses.
+/// Real-time priority under policy 1: fields 40 and 41 of proc_pid_stat(5), counted behind the name
+/// in parentheses.
 fn fifo_priority(stat: &str) -> Option<u32> {
     let (_, rest) = stat.rsplit_once(')')?;
     let mut fields = rest.split_whitespace().skip(40 - 3);

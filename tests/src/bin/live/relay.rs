@@ -1,11 +1,12 @@
 //! Between client and robot: passes everything on, and notes what passes and when.
 //!
-//! A relay measures every client at the same place, whatever it is written in, and needs nothing of client or robot. It
-//! costs each datagram a hop, which is not part of what is measured: a turnaround begins when the relay hands a state to
-//! the kernel, and ends with the stamp that the kernel gives the command. The relay's own scheduling is in neither.
+//! A relay measures every client at the same place, whatever it is written in, and needs nothing of
+//! client or robot. It costs each datagram a hop, which is not part of what is measured: a
+//! turnaround begins when the relay hands a state to the kernel, and ends with the stamp that the
+//! kernel gives the command. The relay's own scheduling is in neither.
 //!
-//! The UDP port that a client announces in `Connect` is replaced by the relay's own; the rest of the stream passes as it
-//! is.
+//! The UDP port that a client announces in `Connect` is replaced by the relay's own; the rest of
+//! the stream passes as it is.
 
 use std::any::Any;
 use std::io::{self, Read as _, Write as _};
@@ -260,7 +261,8 @@ fn read_message(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
     Ok(received)
 }
 
-/// Replaces the UDP port in `Connect` by `port`; returns the version and the port that the client announced.
+/// Replaces the UDP port in `Connect` by `port`; returns the version and the port that the client
+/// announced.
 fn replace_port(hello: &mut [u8], port: u16) -> io::Result<(Version, u16)> {
     let payload = &mut hello[Header::SIZE..];
     let Ok((request, _)) = ConnectRequest::mut_from_prefix(payload) else {

@@ -13,7 +13,8 @@ use crate::trace::Quantiles;
 /// A client and what came of measuring it.
 type Row = (Case, anyhow::Result<Measured>);
 
-/// Where it was measured, the table, and how the clients compare with the echo under the same scheduler.
+/// Where it was measured, the table, and how the clients compare with the echo under the same
+/// scheduler.
 pub(crate) fn markdown(rows: &[Row], time: Duration) -> String {
     let mut text = format!("{}; {} s each\n\n", machine(), time.as_secs());
     text += "| client | scheduler | success rate, mean / least | lost of states | interval p50 / p99 / p99.9 / max, µs | turnaround p50 / p99 / p99.9 / max, µs | times the echo's p50 / p99 | CPU, % of a core |\n";

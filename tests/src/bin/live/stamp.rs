@@ -1,7 +1,8 @@
 //! Datagrams with the kernel's time of arrival.
 //!
-//! The kernel stamps a datagram when the network layer takes it in. On the loopback device that happens within the
-//! sender's own system call: when the receiver gets around to reading does not matter.
+//! The kernel stamps a datagram when the network layer takes it in. On the loopback device that
+//! happens within the sender's own system call: when the receiver gets around to reading does not
+//! matter.
 
 use std::io::{self, IoSliceMut};
 use std::net::UdpSocket;

@@ -69,7 +69,8 @@ pub(crate) struct Quantiles {
 }
 
 impl Trace {
-    /// What the client did with the states that left from `begin` on and before `end`, both since the epoch.
+    /// What the client did with the states that left from `begin` on and before `end`, both since
+    /// the epoch.
     ///
     /// # Errors
     /// If there is not one state with an answer.
@@ -140,7 +141,8 @@ mod tests {
         Duration::from_micros(number)
     }
 
-    /// A hundred states, a millisecond apart; each answered after as many microseconds as it has in its number.
+    /// A hundred states, a millisecond apart; each answered after as many microseconds as it has in
+    /// its number.
     fn hundred() -> Trace {
         let numbers = 1..=100;
         Trace {

@@ -56,7 +56,8 @@ async fn connect(address: &str, fifo: bool) -> anyhow::Result<Robot> {
     Ok(builder.connect().await?)
 }
 
-/// `SCHED_FIFO` has no priority 0: asking for it is refused, even to root, and the thread stays under the normal scheduler.
+/// `SCHED_FIFO` has no priority 0: asking for it is refused, even to root, and the thread stays
+/// under the normal scheduler.
 const NO_PRIORITY: i32 = 0;
 
 /// Time between targets.

@@ -1,6 +1,7 @@
 //! The least that any client does: one receive and one send per state, on one thread.
 //!
-//! Nothing is decoded, checked or computed. A command differs from the one before in the `message_id` that it repeats.
+//! Nothing is decoded, checked or computed. A command differs from the one before in the
+//! `message_id` that it repeats.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Ipv4Addr, TcpStream, UdpSocket};

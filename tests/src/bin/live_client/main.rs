@@ -1,6 +1,7 @@
 //! A client of a robot for as long as it is told to: `live_client CLIENT ADDRESS SECONDS [--fifo]`.
 //!
-//! A process of its own, so that its processor time is its own too. What it does is measured from outside.
+//! A process of its own, so that its processor time is its own too. What it does is measured from
+//! outside.
 
 mod driver;
 mod echo;

@@ -102,7 +102,8 @@ impl<'a, const N: usize> Loop<'a, N> {
         Ok(())
     }
 
-    /// One target after the other, each planned anew in every cycle by a generator that knows nothing but the state.
+    /// One target after the other, each planned anew in every cycle by a generator that knows
+    /// nothing but the state.
     fn plans_anew(&mut self, random: &mut SmallRng) -> Result<(), PlanError> {
         for _ in 0..3 {
             let target = self.new_target(random)?;
@@ -116,7 +117,8 @@ impl<'a, const N: usize> Loop<'a, N> {
                 self.generator.set_moving_target(&target)?;
                 self.planned(false);
                 self.tally.anew += 1;
-                // On a line that rounding does not see any more the axes go on by themselves, and earlier.
+                // On a line that rounding does not see any more the axes go on by themselves, and
+                // earlier.
                 let late = (self.generator.time_to_target() - duration) / CYCLE + k as f64;
                 self.tally.late.see(late, self.watch.seed());
                 if late > 1.0 {

@@ -1,10 +1,12 @@
-//! Drives the trajectory generator through random closed loops for as long as it is told to: `otg_soak [REPLANS] [SEED]`.
+//! Drives the trajectory generator through random closed loops for as long as it is told to:
+//! `otg_soak [REPLANS] [SEED]`.
 //!
 //! ```text
 //! seed -> Problem: axes, limits, start -> Episode: targets, gaps, new limits, cycles -> Watch: checks -> Tally
 //! ```
 //!
-//! Each episode has a seed of its own. A failure names it, and `otg_soak replay SEED` runs that one alone.
+//! Each episode has a seed of its own. A failure names it, and `otg_soak replay SEED` runs that one
+//! alone.
 
 mod episode;
 mod oracle;

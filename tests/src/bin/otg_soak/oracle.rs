@@ -1,12 +1,13 @@
-//! The least duration to rest by plain bisection: push for a while, then stop. Shares nothing with the generator.
+//! The least duration to rest by plain bisection: push for a while, then stop. Shares nothing with
+//! the generator.
 
 use franka_rt::otg::AxisLimits;
 
 /// Position, velocity and acceleration.
 pub(crate) type Motion = [f64; 3];
 
-/// The least duration from a state that can stay inside the limits to rest `distance` away, and whether the way there
-/// leads past the target first.
+/// The least duration from a state that can stay inside the limits to rest `distance` away, and
+/// whether the way there leads past the target first.
 pub(crate) fn least_duration(start: Motion, distance: f64, limits: AxisLimits) -> f64 {
     let side = if distance >= stop_point(start, limits) {
         1.0

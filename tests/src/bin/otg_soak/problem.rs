@@ -66,7 +66,8 @@ fn motion(random: &mut SmallRng, limits: AxisLimits) -> (f64, f64) {
     (velocity, acceleration)
 }
 
-/// A new target, as far away as the axes get in some tenths of a second to some seconds, or very near.
+/// A new target, as far away as the axes get in some tenths of a second to some seconds, or very
+/// near.
 ///
 /// Axes at rest keep their place now and then; `moving` targets move along some axes.
 pub(crate) fn target<const N: usize>(

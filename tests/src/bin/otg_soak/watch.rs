@@ -127,7 +127,8 @@ impl<const N: usize> Watch<N> {
             let (to, jerk) = (target.axis(i), generator.limits().axis(i).jerk);
             let expected = to.position - left * (to.velocity - 0.5 * left * to.acceleration);
             let miss = before.position[i] - expected;
-            // Where an axis cannot wait for the others it may be there up to a quarter of a cycle before them.
+            // Where an axis cannot wait for the others it may be there up to a quarter of a cycle
+            // before them.
             let early = if to.velocity != 0.0 && N > 1 {
                 (miss / to.velocity).clamp(0.0, 0.25 * CYCLE)
             } else {
@@ -203,7 +204,8 @@ impl<const N: usize> Watch<N> {
                     format!("axis {i} exceeds a limit by {excess:e}: {p:?} {q:?}"),
                 );
             }
-            // Trapezoids differ from the integrals by no more than the bounded next derivative allows.
+            // Trapezoids differ from the integrals by no more than the bounded next derivative
+            // allows.
             let bend = 0.25 * l.jerk * CYCLE * CYCLE * (1.0 + EXACT);
             let fastest = l.velocity.max(p.velocity.abs());
             let gap =
@@ -247,7 +249,8 @@ impl<const N: usize> Watch<N> {
     }
 }
 
-/// Whether an axis that stops does not turn round first. One that does may be at its target before it can.
+/// Whether an axis that stops does not turn round first. One that does may be at its target before
+/// it can.
 fn goes_on([_, v, a]: [f64; 3], limits: AxisLimits) -> bool {
     v * (v + 0.5 * a * a.abs() / limits.jerk) >= 0.0
 }

@@ -1,4 +1,5 @@
-//! The same exchange, in the two places where it could be: newest state in, one command out, nothing computed.
+//! The same exchange, in the two places where it could be: newest state in, one command out,
+//! nothing computed.
 
 use std::io;
 use std::net::{SocketAddr, UdpSocket};

@@ -1,9 +1,10 @@
-//! What a busy program costs whom: `starvation [SECONDS]` exchanges states and commands at 1 kHz, on the control thread and,
-//! beside it, in a task of the program's own runtime; each with that runtime idle, and with all its workers blocked for 20
-//! of every 100 milliseconds. Prints a line for each.
+//! What a busy program costs whom: `starvation [SECONDS]` exchanges states and commands at 1 kHz,
+//! on the control thread and, beside it, in a task of the program's own runtime; each with that
+//! runtime idle, and with all its workers blocked for 20 of every 100 milliseconds. Prints a line
+//! for each.
 //!
-//! The robot here sends a state per millisecond and takes a command for each. One that has not come when the next state
-//! leaves is lost, as it is for a robot.
+//! The robot here sends a state per millisecond and takes a command for each. One that has not come
+//! when the next state leaves is lost, as it is for a robot.
 
 mod clients;
 mod robot;

@@ -48,7 +48,8 @@ pub(crate) fn run(port: u16, time: Duration) -> io::Result<Outcome> {
     Ok(Outcome::of(&sent, &arrived))
 }
 
-/// The robot is another computer: what this one is busy with does not reach it, where the system grants that.
+/// The robot is another computer: what this one is busy with does not reach it, where the system
+/// grants that.
 fn prefer() {
     let granted = preferred(Some(PRIORITY)).enter();
     granted.expect("nothing is enforced");
