@@ -4,7 +4,7 @@
 
 use std::fmt::Write as _;
 
-use franka_rt::otg::{CYCLE, Generator, Limits, State};
+use franka_otg::{CYCLE, Generator, Limits, State};
 
 fn main() -> anyhow::Result<()> {
     let file = std::env::args().nth(1);

@@ -105,6 +105,7 @@ pub use franka_model::model_library::{LibraryError, ModelLibrary};
 #[cfg(feature = "urdf")]
 pub use franka_model::urdf::UrdfError;
 pub use franka_model::{JointVector, Model};
+pub use franka_otg::AxisLimits;
 pub use franka_proto::gripper::{Grasp, State as GripperState};
 pub use franka_proto::vacuum::{Profile, State as VacuumGripperState, Vacuum};
 pub use franka_proto::{
@@ -119,7 +120,6 @@ pub use franka_rt::diagnosis::{self, Diagnosis};
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::law::{GainError, Gains, Law};
 pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
-pub use franka_rt::otg::AxisLimits;
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{
     BLEND, Backend, Bindings, Budget, CHUNKS_MAX, Chunk, ChunkError, DEFAULT_FORCE_CAP, Deadman,

@@ -13,7 +13,6 @@
 //!   checks of their commands.
 //! * [`law`]: joint torques from a reference and a state.
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
-//! * [`otg`]: jerk-limited trajectories to rest.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
 //!   Pure.
 //! * [`diagnosis`]: why the robot ended a motion, read off its last cycles. Pure.
@@ -32,7 +31,6 @@ pub mod driver;
 pub mod exchange;
 pub mod law;
 pub mod lifecycle;
-pub mod otg;
 mod panic;
 pub mod sched;
 pub mod session;

@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use franka_model::collision::{Obstacle, Shape};
 use franka_model::{JointVector, READY, RobotKind};
+use franka_otg::AxisLimits;
 use franka_proto::RobotMode;
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::{Engagement, MotionError};
-use franka_rt::otg::AxisLimits;
 use franka_rt::session::{
     Chunk, GoalId, Guard, KEEP_OUT_STOP, KeepOut, Lapse, SELF_STOP, Target, Then,
 };

@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use franka_rt::otg::{CYCLE, Generator, Limits, State, Synchronisation};
+use franka_otg::{CYCLE, Generator, Limits, State, Synchronisation};
 
 /// A number in -1..1 that looks random (an LCG with the constants of MMIX).
 fn next(seed: &mut u64) -> f64 {

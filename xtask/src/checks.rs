@@ -57,7 +57,10 @@ impl Check {
                 "lints, documentation and tests of the MuJoCo plant",
             ),
             Self::Loom => ("loom", "interleavings of what crosses threads"),
-            Self::NoStd => ("no-std", "protocol and model without the standard library"),
+            Self::NoStd => (
+                "no-std",
+                "protocol, model and generator without the standard library",
+            ),
             Self::Fuzz => ("fuzz", "any bytes for the protocol"),
             Self::Peers => ("peers", "other clients against the simulator"),
         }

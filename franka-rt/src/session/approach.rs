@@ -14,8 +14,7 @@
 //! milliradians of the end of the range no acceleration does.
 
 use franka_model::limits::JointLimits;
-
-use crate::otg::AxisLimits;
+use franka_otg::AxisLimits;
 
 /// Speed kept from the envelope, `[rad/s]`: the measured velocity is not quite that of the plan.
 const MARGIN: f64 = 0.02;

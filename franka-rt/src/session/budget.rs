@@ -3,9 +3,8 @@
 
 use franka_model::Twist;
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
+use franka_otg::AxisLimits;
 use nalgebra::Vector3;
-
-use crate::otg::AxisLimits;
 
 /// Limits of the reference: how fast the goal is approached.
 ///

@@ -5,10 +5,10 @@ use core::time::Duration;
 
 use franka_model::collision::Obstacle;
 use franka_model::{EndEffector, JointVector, Model, inverse_kinematics};
+use franka_otg::AxisLimits;
 use franka_proto::RobotState;
 
 use crate::law::{GainError, Law};
-use crate::otg::AxisLimits;
 use crate::session::{Budget, CHUNKS_MAX, FORCE_CAP, Goal, KeepOut, Target, Watchdog, approach};
 
 /// Why a goal is not accepted. Nothing has moved.

@@ -2,9 +2,9 @@
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
+use franka_otg::{AxisLimits, AxisState, Generator, Limits, PlanError, State};
 
 use crate::law::hybrid::Reference;
-use crate::otg::{self, AxisLimits, AxisState, Generator, Limits, PlanError, State};
 use crate::session::active::Measured;
 use crate::session::chunk::ChunkCourse;
 use crate::session::guard::leash;
@@ -201,7 +201,7 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
             acceleration: reference.ddq[i],
         };
         let limits = limits_of_joint(i, robot, reference, budget.joints[i], true);
-        otg::rest_of(state, limits)
+        franka_otg::rest_of(state, limits)
     })
 }
 

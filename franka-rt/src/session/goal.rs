@@ -3,10 +3,10 @@
 use core::time::Duration;
 
 use franka_model::limits::JointLimits;
+use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use crate::law::Gains;
-use crate::otg::AxisLimits;
 use crate::session::{Budget, DEFAULT_FORCE_CAP, Lead};
 use crate::slot::Words;
 

@@ -1,13 +1,13 @@
 //! Hand guiding: the reference goes with the arm, except along the axes that are to stay.
 
 use franka_model::{JointVector, Twist, rotation};
+use franka_otg::{Generator, State};
 use nalgebra::{Isometry3, Matrix6, Vector3};
 
 use super::active::Measured;
 use super::goal::Free;
 use super::guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
 use crate::law::hybrid::Reference;
-use crate::otg::{Generator, State};
 
 /// Cycles over which the spring of the goal before is let go.
 const LET_GO: u32 = 300;

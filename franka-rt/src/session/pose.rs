@@ -11,9 +11,9 @@
 use franka_model::Twist;
 use franka_model::limits::CartesianLimits;
 use franka_model::rotation;
+use franka_otg::{Generator, Limits, PlanError, State};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
-use crate::otg::{Generator, Limits, PlanError, State};
 use crate::session::Budget;
 use crate::session::budget::Leg;
 

@@ -1,9 +1,9 @@
 //! A course that keeps clear of the arm itself and of the regions to keep out of.
 
 use franka_model::{EndEffector, JointVector, Model};
+use franka_otg::AxisLimits;
 
 use crate::law::hybrid::Reference;
-use crate::otg::AxisLimits;
 use crate::session::active::Measured;
 use crate::session::chunk::{ChunkCourse, ChunkStart};
 use crate::session::course::{self, Course};

@@ -1,5 +1,5 @@
-//! Builds only if neither `franka-proto` nor `franka-model`, nor anything they depend on, uses the
-//! standard library or an allocator.
+//! Builds only if none of `franka-proto`, `franka-model` and `franka-otg`, nor anything they depend
+//! on, uses the standard library or an allocator.
 //!
 //! The standard library defines a panic handler, and a program may have one: whoever brings it in
 //! collides with the one below, on every target. Whoever brings in `alloc` needs a global
@@ -9,6 +9,7 @@
 #![no_std]
 
 use franka_model as _;
+use franka_otg as _;
 use franka_proto as _;
 
 #[panic_handler]

@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use franka_model::Model;
-use franka_rt::otg::{AxisLimits, Generator, Limits, State, Synchronisation};
+use franka_otg::{AxisLimits, Generator, Limits, State, Synchronisation};
 use franka_rt::session::Budget;
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 

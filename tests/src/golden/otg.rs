@@ -4,7 +4,7 @@
 //! not: of the axes that wait for the slowest one only the common duration is, and what they must
 //! keep is checked.
 
-use franka_rt::otg::{CYCLE, Generator, Limits, PlanError, State, Synchronisation};
+use franka_otg::{CYCLE, Generator, Limits, PlanError, State, Synchronisation};
 
 use super::{Case, Malformed, Node, Report};
 

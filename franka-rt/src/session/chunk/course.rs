@@ -2,6 +2,7 @@
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
+use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Translation3, vector};
 
 use super::motion::stacked;
@@ -11,7 +12,6 @@ use super::ring::{ChunkReader, Fate};
 use super::servo;
 use super::value::{Chunk, Points};
 use crate::law::hybrid::Reference;
-use crate::otg::AxisLimits;
 use crate::session::course::{Step, limits_of_joint};
 use crate::session::guard::leash;
 use crate::session::kinematics::{self, Drift, Held};

@@ -22,10 +22,10 @@
 //! true for any number of axes: while the acceleration is taken back along its line, the velocity
 //! runs on a straight line between two admissible ones.
 
+use franka_otg::AxisLimits;
 use nalgebra::SVector;
 
 use super::quintic::Phase;
-use crate::otg::AxisLimits;
 
 /// One cycle, `[s]`.
 const CYCLE: f64 = 1e-3;

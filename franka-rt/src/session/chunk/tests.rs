@@ -4,6 +4,7 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, READY, rotation};
+use franka_otg::{CYCLE, Generator, Limits, State};
 use franka_proto::{RobotState, Version};
 use nalgebra::{Isometry3, Translation3, Vector3};
 use proptest::prelude::*;
@@ -13,7 +14,6 @@ use super::motion::stacked;
 use super::{Chunk, ChunkReader, ChunkWriter, Fate, chunk_ring};
 use crate::driver::Record;
 use crate::law::hybrid::Reference;
-use crate::otg::{CYCLE, Generator, Limits, State};
 use crate::session::kinematics::Drift;
 use crate::session::pose::PoseState;
 use crate::session::{

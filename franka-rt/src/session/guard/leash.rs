@@ -2,10 +2,10 @@
 //! that is held back is pulled by a bounded spring and does not leap when it is let go.
 
 use franka_model::{JointVector, rotation};
+use franka_otg::State;
 use nalgebra::{Isometry3, Translation3};
 
 use crate::law::hybrid::Reference;
-use crate::otg::State;
 use crate::session::course::Course;
 use crate::session::pose::PoseGenerator;
 

@@ -1,6 +1,6 @@
 //! One generator and what happens to it.
 
-use franka_rt::otg::{CYCLE, Generator, Limits, PlanError, State, Synchronisation};
+use franka_otg::{CYCLE, Generator, Limits, PlanError, State, Synchronisation};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 

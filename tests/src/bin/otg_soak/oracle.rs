@@ -1,7 +1,7 @@
 //! The least duration to rest by plain bisection: push for a while, then stop. Shares nothing with
 //! the generator.
 
-use franka_rt::otg::AxisLimits;
+use franka_otg::AxisLimits;
 
 /// Position, velocity and acceleration.
 pub(crate) type Motion = [f64; 3];

@@ -1,6 +1,6 @@
 //! Random limits, states and targets.
 
-use franka_rt::otg::{AxisLimits, Limits, State};
+use franka_otg::{AxisLimits, Limits, State};
 use rand::Rng;
 use rand::rngs::SmallRng;
 

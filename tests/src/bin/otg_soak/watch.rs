@@ -1,6 +1,6 @@
 //! Holds every plan, every cycle and every arrival against what the generator promises.
 
-use franka_rt::otg::{AxisLimits, AxisState, CYCLE, Generator, Limits, State, Synchronisation};
+use franka_otg::{AxisLimits, AxisState, CYCLE, Generator, Limits, State, Synchronisation};
 
 use crate::oracle::{least_duration, stop_point};
 use crate::tally::Tally;

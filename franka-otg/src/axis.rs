@@ -1,0 +1,259 @@
+//! One axis from its state to its target: brake, least time, given duration, laid out as a profile.
+
+use crate::brake::{Pieces, into_limits};
+use crate::generator::CYCLE;
+use crate::given_duration::lasting;
+use crate::least_time::{Least, Shape, least_time};
+use crate::limits::AxisLimits;
+use crate::passing::{Passing, Way};
+use crate::profile::Profile;
+use crate::state::AxisState;
+use crate::task::{ROUNDING, Task};
+use crate::transfer::stop;
+
+/// The solved problem of one axis.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Axis {
+    start: AxisState,
+    target: AxisState,
+    limits: AxisLimits,
+    /// Unit of time.
+    unit: f64,
+    brake: Pieces,
+    /// Duration of the brake, in that unit.
+    braking: f64,
+    motion: Motion,
+}
+
+/// What follows the brake.
+#[derive(Debug, Clone, Copy)]
+enum Motion {
+    ToRest(Least),
+    Through(Passing),
+}
+
+/// Why an axis has no plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Refusal {
+    /// The numbers are too far apart.
+    OutOfRange,
+    /// The target moves in a way that the limits do not allow.
+    TargetMotion,
+}
+
+impl Axis {
+    /// Finds the least-time motion.
+    pub(crate) fn new(
+        start: AxisState,
+        target: AxisState,
+        limits: AxisLimits,
+    ) -> Result<Self, Refusal> {
+        let (task, unit) = Task::new(start, target.position, limits).ok_or(Refusal::OutOfRange)?;
+        let (brake, task) = into_limits(task);
+        let motion = if target.is_at_rest() {
+            Motion::ToRest(least_time(task))
+        } else {
+            let v = target.velocity / (limits.acceleration * unit);
+            let a = target.acceleration / limits.acceleration;
+            // It has to be reached from inside, and left again.
+            let fastest = v.abs() + 0.5 * a * a;
+            if a.abs() > 1.0 + AT_LIMIT || fastest > task.top * (1.0 + AT_LIMIT) {
+                return Err(Refusal::TargetMotion);
+            }
+            let size = start.position.abs().max(target.position.abs());
+            let task = Task {
+                top: task.top.max(fastest),
+                fuzz: ROUNDING * size / (limits.jerk * unit * unit * unit),
+                ..task
+            };
+            Motion::Through(Passing::new(&task, v, a))
+        };
+        Ok(Self {
+            start,
+            target,
+            limits,
+            unit,
+            braking: brake.duration(),
+            brake,
+            motion,
+        })
+    }
+
+    /// Its least duration, in seconds.
+    pub(crate) fn least_duration(&self) -> f64 {
+        let least = match &self.motion {
+            Motion::ToRest(least) => least.duration,
+            Motion::Through(passing) => passing.least(),
+        };
+        self.unit * (self.braking + least)
+    }
+
+    /// The least duration that it can take and that is not less than `duration`, which is not less
+    /// than the least.
+    pub(crate) fn from(&self, duration: f64) -> f64 {
+        let Motion::Through(passing) = &self.motion else {
+            return duration;
+        };
+        let left = duration / self.unit - self.braking;
+        let possible = passing.from(left, self.slack());
+        if possible == left {
+            duration
+        } else {
+            self.unit * (self.braking + possible)
+        }
+    }
+
+    /// [`TOGETHER`] in units of the axis.
+    fn slack(&self) -> f64 {
+        TOGETHER / self.unit
+    }
+
+    /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes
+    /// longer.
+    ///
+    /// Behind a target in motion it goes on for a cycle and then comes to rest in the least time.
+    pub(crate) fn lay_out(&self, duration: f64, profile: &mut Profile) {
+        let left = duration / self.unit - self.braking;
+        match &self.motion {
+            Motion::ToRest(least) => {
+                self.begin(profile);
+                let solution = lasting(least, left);
+                let jerk = least.sign * self.limits.jerk;
+                profile.push_pieces(&solution.before, jerk, self.unit);
+                self.lay_out_shape(least.sign * solution.sign, &solution.shape, 0.0, profile);
+            }
+            Motion::Through(passing) => {
+                match passing.way(left.max(passing.least()), self.slack()) {
+                    Way::Shape(sign, shape) => {
+                        self.begin(profile);
+                        self.lay_out_shape(sign, &shape, 0.0, profile);
+                    }
+                    Way::Mean { up, down, weight } => {
+                        let up = self.farthest(1.0, &up.0, up.1);
+                        let down = self.farthest(-1.0, &down.0, down.1);
+                        profile.mean_of(weight, &up, &down, self.target);
+                    }
+                }
+                lay_out_beyond(self.limits, profile);
+            }
+        }
+    }
+
+    fn begin(&self, profile: &mut Profile) {
+        profile.begin(self.start);
+        profile.push_pieces(&self.brake, self.limits.jerk, self.unit);
+    }
+
+    /// A motion that gets `beyond` the target in a direction.
+    fn farthest(&self, sign: f64, shape: &Shape, beyond: f64) -> Profile {
+        let mut profile = Profile::at_rest(0.0);
+        self.begin(&mut profile);
+        self.lay_out_shape(sign, shape, sign * beyond, &mut profile);
+        profile
+    }
+
+    /// Appends a shape in the direction of `sign` that leads as far `beyond` the target, in units
+    /// of the axis.
+    fn lay_out_shape(&self, sign: f64, shape: &Shape, beyond: f64, profile: &mut Profile) {
+        let unit = self.unit;
+        let up = sign * self.limits.jerk;
+        let per_velocity = self.limits.jerk * unit * unit;
+        let [t1, t2, t3, t4, t5, t6, t7] = shape.t.map(|t| t * unit);
+        let first = shape.first * up;
+        profile.push(first, t1);
+        profile.push(0.0, t2);
+        profile.push(-first, t3);
+        profile.cruise(sign * per_velocity * shape.cruise, t4);
+        let beyond = beyond * per_velocity * unit;
+        profile.lead_to(self.target, beyond, -up, [t5, t6, t7]);
+    }
+}
+
+/// Whether the numbers are close enough together to plan from `start`.
+pub(crate) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
+    Task::new(start, start.position, limits).is_some()
+}
+
+/// Lays out the least-time stop, from a state that [`can_stop`] or that a plan from such a state
+/// leads to.
+pub(crate) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut Profile) {
+    profile.begin(start);
+    append_stop(limits, profile);
+}
+
+/// Appends what follows a target in motion: a cycle and what counts as together more of its
+/// acceleration, if the limits allow it, and the least-time stop.
+///
+/// The first command that counts as at the target is sent up to one cycle after the last axis is
+/// there. Whoever sets a new target then finds the axis where the old one would be, not already
+/// slowing down.
+fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
+    let AxisState {
+        velocity,
+        acceleration,
+        ..
+    } = profile.front().after(0.0, CYCLE + TOGETHER);
+    let change = 0.5 * acceleration * acceleration / limits.jerk;
+    if velocity.abs() + change <= limits.velocity * (1.0 + AT_LIMIT) {
+        profile.push(0.0, CYCLE + TOGETHER);
+    }
+    append_stop(limits, profile);
+}
+
+fn append_stop(limits: AxisLimits, profile: &mut Profile) {
+    for (jerk, t) in stop_pieces(profile.front(), limits) {
+        profile.push(jerk, t);
+    }
+    profile.finish_here();
+}
+
+/// Returns the position at which the least-time stop from `start` ends, without a plan.
+#[must_use]
+pub fn rest_of(start: AxisState, limits: AxisLimits) -> f64 {
+    if start.is_at_rest() {
+        return start.position;
+    }
+    let front = AxisState {
+        position: 0.0,
+        ..start
+    };
+    let pieces = stop_pieces(front, limits).into_iter();
+    let way = pieces.fold(
+        front,
+        |state, (jerk, t)| {
+            if t > 0.0 { state.after(jerk, t) } else { state }
+        },
+    );
+    start.position + way.position
+}
+
+/// The jerks of the least-time stop and how long each lasts, in seconds: back into the acceleration
+/// limit first.
+fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
+    let (task, unit) = Task::unchecked(front, front.position, limits);
+    let excess = task.a.abs() - 1.0;
+    let ramp = -1_f64.copysign(task.a);
+    let task = if excess > 0.0 {
+        task.after(ramp, excess)
+    } else {
+        task
+    };
+    let (sign, [t1, t2, t3]) = stop(task.v, task.a);
+    [
+        (ramp * limits.jerk, excess * unit),
+        (sign * limits.jerk, t1 * unit),
+        (0.0, t2 * unit),
+        (-sign * limits.jerk, t3 * unit),
+    ]
+}
+
+/// Times, in seconds, that count as together where an axis would need a detour to lose the
+/// difference.
+///
+/// A quarter of a cycle, in which it goes on behind its target as the target does. The time at
+/// which another axis comes to rest is known no better: near its end it is the third root of what a
+/// position is rounded by, over its jerk.
+const TOGETHER: f64 = 0.25 * CYCLE;
+
+/// Relative excess over a limit that counts as rounding of a target that is at the limit.
+const AT_LIMIT: f64 = 1e-12;

@@ -1,0 +1,216 @@
+//! The motion that gets farthest in a given time and ends with a given velocity and acceleration.
+//!
+//! The building block for targets in motion. In the frame in which "far" is upwards it is a push
+//! and a turn, jerks `+ 0 - 0 - 0 +`: the costate of the acceleration is a parabola in time that
+//! opens upwards, so the jerk changes its sign at most twice, and holds are where the acceleration
+//! or the velocity is at its limit. Nothing else is optimal, and for one duration there is one of
+//! it.
+//!
+//! Both ends are extended by their jerk to the instant without acceleration, as in `least_time`:
+//!
+//! ```text
+//! c0 = v0 - a0^2/2 at pi0 = a0 (a0^2/3 - v0)     cf = vf - af^2/2 at pif = d + af (af^2/3 - vf)     D = pif - pi0
+//! ```
+//!
+//! Let `x` be the acceleration before the first negative jerk, `-y` the one before the last
+//! positive jerk, `w` the velocity between at zero acceleration, `e = cf - c0`, and `T` the
+//! duration counted from the extended ends. The area of the acceleration asks for
+//! `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. Where the larger
+//! of the two reaches the limit the other one follows from `(1 + y)^2 = T - e` or
+//! `(1 + x)^2 = T + e`, where both do, from `2 w = T - 2 + c0 + cf`, and at the velocity limit the
+//! rest of the time is a cruise. All of it is closed, and continuous from case to case: there is
+//! nothing to search and no root to reject. `x` or `y` may be negative: an acceleration that never
+//! changes its sign.
+//!
+//! With time the end moves at the rate `w + x y/2` (or the velocity limit, in a cruise). It need
+//! not grow: whoever has to end with a negative velocity gets less far with more time, until the
+//! time is enough to go up in between. Where the rate can be zero is closed too: see
+//! [`Farthest::turning_points`].
+
+use crate::least_time::Shape;
+use crate::scalar::sqrt;
+use crate::task::Task;
+use crate::transfer::{ramp_and_hold, transfer_time};
+
+/// Both ends of a motion, in the frame in which it goes up, extended to zero acceleration.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Farthest {
+    a0: f64,
+    af: f64,
+    c0: f64,
+    cf: f64,
+    /// Distance between the extended ends if the motion ends at the target.
+    d: f64,
+    top: f64,
+}
+
+/// The farthest motion of one duration.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reach {
+    /// How far beyond the target it ends.
+    pub(crate) beyond: f64,
+    /// Velocity between the two halves: the largest, where both have an acceleration of their own
+    /// sign.
+    pub(crate) w: f64,
+    first: (f64, f64),
+    cruise: f64,
+    second: (f64, f64),
+}
+
+impl Farthest {
+    /// For a task whose target moves with velocity `vf` and acceleration `af`.
+    pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
+        let (v0, a0) = (task.v, task.a);
+        let before = a0 * (a0 * a0 / 3.0 - v0);
+        let after = af * (af * af / 3.0 - vf);
+        Self {
+            a0,
+            af,
+            c0: v0 - 0.5 * a0 * a0,
+            cf: vf - 0.5 * af * af,
+            d: task.d + after - before,
+            top: task.top,
+        }
+    }
+
+    /// The farthest motion that takes `t`, which has to be a time in which the end's velocity can
+    /// be reached.
+    pub(crate) fn reach(&self, t: f64) -> Reach {
+        let Self { a0, af, c0, cf, .. } = *self;
+        let whole = (t + a0 - af).max(0.0);
+        let e = cf - c0;
+        let q = 0.5 * whole;
+        let difference = if q > 0.0 { e / q } else { 0.0 };
+        // Rounding may ask for a little less than what the ends have; the sum is the time and
+        // stays.
+        let x = (0.5 * (q + difference)).max(a0).min(q + af);
+        let y = q - x;
+        let (x, first_hold, y, second_hold) = if x <= 1.0 && y <= 1.0 {
+            (x, 0.0, y, 0.0)
+        } else {
+            // Each hold is the time that the rest leaves.
+            let w = 0.5 * (whole - 2.0 + c0 + cf);
+            let (first, second) = (w - c0 - 1.0, w - cf - 1.0);
+            if first >= 0.0 && second >= 0.0 {
+                (1.0, first, 1.0, second)
+            } else if e > 0.0 {
+                let y = (sqrt((whole - e).max(0.0)) - 1.0).max(-af).min(1.0);
+                (1.0, (whole - 2.0 - 2.0 * y).max(0.0), y, 0.0)
+            } else {
+                let x = (sqrt((whole + e).max(0.0)) - 1.0).max(a0).min(1.0);
+                (x, 0.0, 1.0, (whole - 2.0 - 2.0 * x).max(0.0))
+            }
+        };
+        let w = if first_hold > 0.0 {
+            c0 + 1.0 + first_hold
+        } else {
+            c0 + x * x
+        };
+        if w > self.top && x > 0.0 && y > 0.0 {
+            return self.cruising(whole);
+        }
+        let distance = half(c0, x, first_hold) + half(cf, y, second_hold);
+        Reach {
+            beyond: distance - self.d,
+            w,
+            first: (x, first_hold),
+            cruise: 0.0,
+            second: (y, second_hold),
+        }
+    }
+
+    /// The same where the velocity limit is reached.
+    fn cruising(&self, whole: f64) -> Reach {
+        let (c0, cf, w) = (self.c0, self.cf, self.top);
+        let (x, first_hold) = ramp_and_hold(w - c0);
+        let (y, second_hold) = ramp_and_hold(w - cf);
+        let cruise = (whole - 2.0 * (x + y) - first_hold - second_hold).max(0.0);
+        let distance = half(c0, x, first_hold) + half(cf, y, second_hold) + w * cruise;
+        Reach {
+            beyond: distance - self.d,
+            w,
+            first: (x, first_hold),
+            cruise,
+            second: (y, second_hold),
+        }
+    }
+
+    /// Durations between which the end moves one way as the duration grows, in no order and some
+    /// for nothing; the last is where the cruise begins.
+    ///
+    /// Without holds the rate `w + x y/2` is zero where `3 s^2 + 4 (c0 + cf) s + e^2 = 0` with
+    /// `s = (x + y)^2`, with one hold where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 = 0`, with both
+    /// where `w = -1/2`. A root that belongs to another case than the one it is the root of divides
+    /// a monotone piece in two, which does no harm.
+    pub(crate) fn turning_points(&self) -> [Option<f64>; 6] {
+        let Self {
+            a0,
+            af,
+            c0,
+            cf,
+            top,
+            ..
+        } = *self;
+        let (e, sum) = (cf - c0, c0 + cf);
+        let mut wholes = [None; 6];
+        let square = 4.0 * sum * sum - 3.0 * e * e;
+        if sum < 0.0 && square >= 0.0 {
+            let s = (-2.0 * sum + sqrt(square)) / 3.0;
+            wholes[0] = Some(2.0 * sqrt(s));
+            wholes[1] = Some(2.0 * sqrt(e * e / (3.0 * s)));
+        }
+        // The end with the smaller change of velocity is the one that does not hold.
+        let c = if e > 0.0 { cf } else { c0 };
+        if c <= 1.0 / 16.0 {
+            let root = sqrt(1.0 / 16.0 - c);
+            wholes[2] = Some((0.75 + root) * (0.75 + root) + e.abs());
+            wholes[3] = Some((0.75 - root) * (0.75 - root) + e.abs());
+        }
+        wholes[4] = Some(1.0 - sum);
+        wholes[5] = Some(transfer_time((top - c0).max(0.0)) + transfer_time((top - cf).max(0.0)));
+        wholes.map(|whole| whole.map(|whole| whole - a0 + af))
+    }
+
+    /// When a motion that ends `short` of the target at `t`, cruising, reaches it if it cruises on.
+    pub(crate) fn cruise_on(&self, t: f64, short: f64) -> f64 {
+        t + short / self.top
+    }
+}
+
+impl Reach {
+    /// How fast the end moves as the duration grows.
+    pub(crate) fn rate(&self) -> f64 {
+        if self.cruise > 0.0 {
+            self.w
+        } else {
+            self.w + 0.5 * self.first.0 * self.second.0
+        }
+    }
+
+    /// The shape of the motion from acceleration `a0` to `af`.
+    pub(crate) fn shape(&self, ends: &Farthest) -> Shape {
+        let ((x, first_hold), (y, second_hold)) = (self.first, self.second);
+        // Where an acceleration never changes its sign there is one negative jerk, from x to -y.
+        let (t3, t5) = if x < 0.0 {
+            (0.0, (x + y).max(0.0))
+        } else if y < 0.0 {
+            ((x + y).max(0.0), 0.0)
+        } else {
+            (x, y)
+        };
+        let (t1, t7) = ((x - ends.a0).max(0.0), (y + ends.af).max(0.0));
+        Shape {
+            first: 1.0,
+            t: [t1, first_hold, t3, self.cruise, t5, second_hold, t7],
+            cruise: self.w,
+        }
+    }
+}
+
+/// Displacement of the transfer between velocity `c` and the one that follows from the peak
+/// acceleration `x` and its hold, both without acceleration at the end. For a negative `x`, what
+/// the other half has too much.
+fn half(c: f64, x: f64, hold: f64) -> f64 {
+    let change = x * x + x * hold;
+    (c + 0.5 * change) * (2.0 * x + hold)
+}

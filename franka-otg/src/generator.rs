@@ -1,0 +1,390 @@
+//! The generator: a plan, and the cycle that it has reached.
+
+use crate::axis::can_stop;
+use crate::error::{PlanError, Quantity};
+use crate::limits::Limits;
+use crate::plan::{Plan, Start, Synchronisation};
+use crate::segment::Segment;
+use crate::state::{State, check_finite};
+
+/// One nominal cycle of the robot, in seconds (FCI documentation: 1 kHz).
+///
+/// The generator advances by this per command, whatever the time between two states: to the robot,
+/// two milliseconds' motion in one command is a doubled velocity.
+pub const CYCLE: f64 = 1e-3;
+
+/// Moves `N` axes to a target that may change at any time, inside limits of velocity, acceleration
+/// and jerk.
+///
+/// - Input: [`set_target`](Self::set_target), [`set_moving_target`](Self::set_moving_target),
+///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state),
+///   [`set_position`](Self::set_position). Each plans anew from the present state, unless nothing
+///   changes.
+/// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) and
+///   [`segments`](Self::segments) to look ahead.
+/// - Getters: [`state`](Self::state), [`target`](Self::target),
+///   [`time_to_target`](Self::time_to_target), [`remaining`](Self::remaining),
+///   [`is_done`](Self::is_done).
+///
+/// All of it is bounded work without allocation, fit for the real-time thread. An error leaves the
+/// generator as it was.
+///
+/// ```
+/// use franka_otg::{Generator, Limits, State};
+///
+/// let limits = Limits::from_arrays([2.0; 2], [10.0; 2], [5000.0; 2])?;
+/// let mut generator = Generator::new(State::at_rest([0.0, 0.5]), limits)?;
+/// generator.set_target(&[0.3, -0.2])?;
+/// while !generator.is_done() {
+///     generator.step();
+/// }
+/// assert_eq!(generator.state(), &State::at_rest([0.3, -0.2]));
+/// # Ok::<(), franka_otg::PlanError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Generator<const N: usize> {
+    limits: Limits<N>,
+    synchronisation: Synchronisation,
+    goal: Goal<N>,
+    plan: Plan<N>,
+    /// Cycles since the plan was made.
+    cycle: u64,
+    /// The state at that cycle.
+    state: State<N>,
+}
+
+/// What the plan is for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Goal<const N: usize> {
+    /// The state that the caller asked for.
+    Target(State<N>),
+    /// Rest wherever it is reached first.
+    Rest,
+}
+
+impl<const N: usize> Generator<N> {
+    /// A generator at `state` without a target: if it moves, it comes to rest in the least time.
+    ///
+    /// Synchronisation is [`Synchronisation::Straight`].
+    ///
+    /// # Errors
+    /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it lies more than 100
+    /// decades from the limits.
+    pub fn new(state: State<N>, limits: Limits<N>) -> Result<Self, PlanError> {
+        Self::towards(state, limits, None)
+    }
+
+    /// [`new`](Self::new), with a target at rest if there is one.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) and [`set_target`](Self::set_target).
+    pub fn towards(
+        state: State<N>,
+        limits: Limits<N>,
+        target: Option<&[f64; N]>,
+    ) -> Result<Self, PlanError> {
+        let mut generator = Self {
+            limits,
+            synchronisation: Synchronisation::default(),
+            goal: Goal::Rest,
+            plan: Plan::at_rest(state.position),
+            cycle: 0,
+            state,
+        };
+        generator.restart(state, limits, target)?;
+        Ok(generator)
+    }
+
+    /// Becomes a generator at `state` that moves to rest at `target`, or comes to rest in the least
+    /// time: what a new one would be, in place. A generator is some kilobytes large.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) and [`set_target`](Self::set_target); the motion in progress goes on.
+    pub fn restart(
+        &mut self,
+        state: State<N>,
+        limits: Limits<N>,
+        target: Option<&[f64; N]>,
+    ) -> Result<(), PlanError> {
+        let goal = match target {
+            None => Goal::Rest,
+            Some(target) => {
+                check_finite(target, Quantity::Target)?;
+                Goal::Target(State::at_rest(*target))
+            }
+        };
+        self.begin(state, limits, goal)
+    }
+
+    fn begin(
+        &mut self,
+        state: State<N>,
+        limits: Limits<N>,
+        goal: Goal<N>,
+    ) -> Result<(), PlanError> {
+        state.check()?;
+        check_range(&state, &limits)?;
+        let start = Start {
+            state,
+            line: None,
+            limits: &limits,
+        };
+        match &goal {
+            Goal::Target(target) => self.plan.go_to(target, &start, self.synchronisation)?,
+            Goal::Rest => self.plan.stop(&start),
+        }
+        self.limits = limits;
+        self.goal = goal;
+        self.cycle = 0;
+        self.state = state;
+        Ok(())
+    }
+
+    /// The same generator with another way of moving the axes together, from the next plan on.
+    #[must_use]
+    pub fn with_synchronisation(mut self, synchronisation: Synchronisation) -> Self {
+        self.synchronisation = synchronisation;
+        self
+    }
+
+    /// Moves to rest at `target` from the present state on. The target in force already is not
+    /// planned again.
+    ///
+    /// # Errors
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
+    pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
+        if let Goal::Target(now) = &self.goal
+            && now.position == *target
+            && now.is_at_rest()
+        {
+            return Ok(());
+        }
+        check_finite(target, Quantity::Target)?;
+        self.plan_target(&State::at_rest(*target))
+    }
+
+    /// Moves to `target`, to be there with its velocity and acceleration, in the least time in
+    /// which all axes can. The target in force already is not planned again.
+    ///
+    /// Meant for following something that moves, with a new target before each arrival, and for
+    /// passing through points on the way to others. Without a new target the motion goes on past
+    /// the old one for one cycle, and then comes to rest in the least time: a program that stalls
+    /// does not send an arm on for ever.
+    ///
+    /// An axis that would be early cannot wait at a moving target. It makes room and comes again,
+    /// which may lead it beyond the target or the other way first.
+    ///
+    /// # Errors
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the
+    /// limits do not allow the target's motion, which without norms is if
+    /// `|velocity| + acceleration^2 / (2 jerk limit)` exceeds the velocity limit, or the
+    /// acceleration its own. The motion in progress goes on.
+    pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
+        if target.is_at_rest() {
+            return self.set_target(&target.position);
+        }
+        if self.goal == Goal::Target(*target) {
+            return Ok(());
+        }
+        check_finite(&target.position, Quantity::Target)?;
+        check_finite(&target.velocity, Quantity::TargetVelocity)?;
+        check_finite(&target.acceleration, Quantity::TargetAcceleration)?;
+        self.plan_target(target)
+    }
+
+    /// Changes the limits of the motion in progress, which keeps its target. Equal limits change
+    /// nothing.
+    ///
+    /// A state outside the new limits brakes back into them.
+    ///
+    /// # Errors
+    /// [`PlanError::OutOfRange`], or [`PlanError::TargetMotion`] if the target moves faster than
+    /// the new limits allow; the limits before stay in force.
+    pub fn set_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
+        if limits == self.limits {
+            return Ok(());
+        }
+        check_range(&self.state, &limits)?;
+        let before = core::mem::replace(&mut self.limits, limits);
+        match self.goal {
+            Goal::Target(target) => self
+                .plan_target(&target)
+                .inspect_err(|_| self.limits = before),
+            Goal::Rest => {
+                self.plan_stop();
+                Ok(())
+            }
+        }
+    }
+
+    /// Gives up the target and comes to rest in the least time.
+    ///
+    /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its
+    /// own if the axes have the same ratio of acceleration to jerk, and about the difference of
+    /// these ratios longer otherwise. Off a line each axis stops by itself. Braking cannot fail:
+    /// state and limits were checked when they came in.
+    pub fn brake(&mut self) {
+        if self.goal != Goal::Rest {
+            self.plan_stop();
+        }
+    }
+
+    /// Re-anchors the generator at `state` and plans anew: to the target if there is one, else to
+    /// rest in the least time.
+    ///
+    /// The output steps to `state`; that it is close to the last output is for the caller to see
+    /// to.
+    ///
+    /// # Errors
+    /// [`PlanError::NotFinite`], [`PlanError::OutOfRange`] or, with norms,
+    /// [`PlanError::TargetMotion`] if the state leaves a straight line along which the target moves
+    /// faster than its axes may on their own; the motion in progress goes on.
+    pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
+        self.begin(state, self.limits, self.goal)
+    }
+
+    /// Re-anchors the position and keeps velocity and acceleration: [`set_state`](Self::set_state)
+    /// for a motion that something else has held back or moved on.
+    ///
+    /// # Errors
+    /// As [`set_state`](Self::set_state); the motion in progress goes on.
+    pub fn set_position(&mut self, position: [f64; N]) -> Result<(), PlanError> {
+        self.set_state(State {
+            position,
+            ..self.state
+        })
+    }
+
+    /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
+    ///
+    /// The cycle in which the motion ends, and all after it, give exactly the target without
+    /// velocity and acceleration (the place behind it where the motion comes to rest, if the target
+    /// moves).
+    pub fn step(&mut self) -> &State<N> {
+        self.cycle = self.cycle.saturating_add(1);
+        self.state = self.plan.sample(self.elapsed());
+        &self.state
+    }
+
+    /// The state `t` seconds from now if nothing changes; a negative `t` means now.
+    #[must_use]
+    pub fn sample(&self, t: f64) -> State<N> {
+        if t > 0.0 {
+            self.plan.sample(self.elapsed() + t)
+        } else {
+            self.state
+        }
+    }
+
+    /// The motion in progress of one axis, as its pieces of constant jerk in order, from where it
+    /// was planned to rest.
+    ///
+    /// Pieces may end up to a rounding apart. There are none for an axis that has not been told to
+    /// move; behind the last one an axis rests.
+    ///
+    /// # Panics
+    /// If there is no such axis.
+    pub fn segments(&self, axis: usize) -> impl Iterator<Item = Segment> + '_ {
+        let elapsed = self.elapsed();
+        self.plan.segments(axis).map(move |segment| Segment {
+            start: segment.start - elapsed,
+            ..segment
+        })
+    }
+
+    /// The present state.
+    #[must_use]
+    pub const fn state(&self) -> &State<N> {
+        &self.state
+    }
+
+    /// Position that the motion in progress leads to: that of the target, or where braking ends.
+    #[must_use]
+    pub const fn target(&self) -> &[f64; N] {
+        match &self.goal {
+            Goal::Target(target) => &target.position,
+            Goal::Rest => self.plan.end(),
+        }
+    }
+
+    /// Position at which the motion in progress comes to rest if nothing changes: the target, a
+    /// place behind it if it moves, or where braking ends.
+    #[must_use]
+    pub const fn end(&self) -> &[f64; N] {
+        self.plan.end()
+    }
+
+    /// The limits in force.
+    #[must_use]
+    pub const fn limits(&self) -> &Limits<N> {
+        &self.limits
+    }
+
+    /// Duration of the motion in progress from where it was planned, in seconds.
+    #[must_use]
+    pub const fn duration(&self) -> f64 {
+        self.plan.duration()
+    }
+
+    /// Time until the target is met, or rest is if there is none, in seconds; zero from then on.
+    #[must_use]
+    pub fn time_to_target(&self) -> f64 {
+        if self.is_done() {
+            0.0
+        } else {
+            (self.plan.arrival() - self.elapsed()).max(0.0)
+        }
+    }
+
+    /// Time until rest, in seconds; zero once there. The output rests at the first whole cycle from
+    /// then.
+    #[must_use]
+    pub fn remaining(&self) -> f64 {
+        if self.is_done() {
+            0.0
+        } else {
+            (self.plan.duration() - self.elapsed()).max(0.0)
+        }
+    }
+
+    /// Whether the present state is at rest at the end of the motion.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        self.state.position == *self.plan.end() && self.state.is_at_rest()
+    }
+
+    fn elapsed(&self) -> f64 {
+        self.cycle as f64 * CYCLE
+    }
+
+    fn plan_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
+        let start = Start {
+            state: self.state,
+            line: self.plan.line_at(self.elapsed()),
+            limits: &self.limits,
+        };
+        self.plan.go_to(target, &start, self.synchronisation)?;
+        self.goal = Goal::Target(*target);
+        self.cycle = 0;
+        Ok(())
+    }
+
+    fn plan_stop(&mut self) {
+        let start = Start {
+            state: self.state,
+            line: self.plan.line_at(self.elapsed()),
+            limits: &self.limits,
+        };
+        self.plan.stop(&start);
+        self.goal = Goal::Rest;
+        self.cycle = 0;
+    }
+}
+
+/// Refuses a state too many orders of magnitude from its limits to stop from.
+fn check_range<const N: usize>(state: &State<N>, limits: &Limits<N>) -> Result<(), PlanError> {
+    match (0..N).find(|&i| !can_stop(state.axis(i), limits.axis(i))) {
+        Some(axis) => Err(PlanError::OutOfRange { axis }),
+        None => Ok(()),
+    }
+}

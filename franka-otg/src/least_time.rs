@@ -1,0 +1,246 @@
+//! Step one: the least-time profile of one axis.
+//!
+//! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` grows
+//! with `T` and is an interval. The optimum is therefore "push towards one side, then stop": the
+//! side is that of the target as seen from where an immediate stop would end. A target inside the
+//! braking distance needs no special case.
+//!
+//! In the frame in which the push is upwards the jerks are `+ 0 - 0 - 0 +` (seven durations).
+//! Extending the first jerk to the instant where the acceleration is zero turns the start `(v, a)`
+//! into `(c, 0)` with
+//!
+//! ```text
+//! c = v - a^2/2      at      pi = a (a^2/3 - v)
+//! ```
+//!
+//! With `x` the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the velocity
+//! between the two halves, the motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`, which grows
+//! with `w`. Comparing the target with that at the breakpoints names the one case that applies: a
+//! cruise or an acceleration hold, both closed, or neither, where the monotone and convex equation
+//!
+//! ```text
+//! F(x) = pi + 2 c x + x^3 + stop(c + x^2) = d
+//! ```
+//!
+//! is solved by Newton steps from the right, which cannot leave the interval. `x` may be negative:
+//! an axis that brakes already and only needs to brake less. A search over peak velocities has no
+//! such profile, and is up to 28 % slower there. Trying all families and testing each result, the
+//! usual way, fails on their common boundaries by rounding.
+
+use crate::scalar::{cbrt, sqrt};
+use crate::task::Task;
+use crate::transfer::{ramp_and_hold, stop_distance, transfer_distance};
+
+/// A push and a stop: jerks `first, 0, -first, 0, -1, 0, 1` in units of the limit, each for its
+/// duration.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shape {
+    /// Sign of the first jerk.
+    pub(crate) first: f64,
+    /// The seven durations, none negative.
+    pub(crate) t: [f64; 7],
+    /// Velocity between the two halves: during the fourth, if that is not zero.
+    pub(crate) cruise: f64,
+}
+
+impl Shape {
+    /// Sum of the durations.
+    pub(crate) fn duration(&self) -> f64 {
+        self.t.iter().sum()
+    }
+
+    /// Transfer from acceleration `a` to the velocity `cruise`, held for `time`, and transfer to
+    /// rest; both as ramp and hold.
+    pub(crate) fn two_transfers(
+        a: f64,
+        to_cruise: (f64, f64),
+        (cruise, time): (f64, f64),
+        to_rest: (f64, f64),
+    ) -> Self {
+        let ((x, first_hold), (y, second_hold)) = (to_cruise, to_rest);
+        // A negative x is an acceleration that never reaches zero: one negative jerk from x to -y.
+        let (t3, t5) = if x < 0.0 {
+            (0.0, (x + y).max(0.0))
+        } else {
+            (x, y)
+        };
+        let t1 = (x - a).max(0.0);
+        Self {
+            first: 1.0,
+            t: [t1, first_hold, t3, time, t5, second_hold, y],
+            cruise,
+        }
+    }
+}
+
+/// The least-time solution of a task inside its limits.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Least {
+    /// Direction of the push, 1 or -1; the rest is in the frame in which it is upwards.
+    pub(crate) sign: f64,
+    /// The task in that frame.
+    pub(crate) task: Task,
+    /// Its solution.
+    pub(crate) shape: Shape,
+    /// Sum of the durations.
+    pub(crate) duration: f64,
+}
+
+/// Solves a task that is inside its limits.
+pub(crate) fn least_time(task: Task) -> Least {
+    let (stop, rounding) = task.stop_point();
+    let fuzz = task.fuzz + if task.fuzz > 0.0 { rounding } else { 0.0 };
+    let (sign, mut task, is_stop) = if (task.d - stop).abs() <= fuzz {
+        // Going for the last rounding would cost its square root in time.
+        let sign = 1_f64.copysign(task.coasting_velocity());
+        let stopping = Task { d: stop, ..task };
+        (sign, stopping.mirrored(sign), true)
+    } else {
+        let sign = if task.d >= stop { 1.0 } else { -1.0 };
+        (sign, task.mirrored(sign), false)
+    };
+    task.top = task.top.max(0.0);
+    let start = Start::of(&task);
+    let shape = if is_stop {
+        start.turning_at(start.least_ramp())
+    } else {
+        start.solve(task.d)
+    };
+    Least {
+        sign,
+        task,
+        shape,
+        duration: shape.duration(),
+    }
+}
+
+/// A start with its first jerk extended to zero acceleration.
+struct Start {
+    a: f64,
+    /// Velocity there.
+    c: f64,
+    /// Position there.
+    pi: f64,
+    top: f64,
+}
+
+impl Start {
+    fn of(task: &Task) -> Self {
+        let a = task.a;
+        Self {
+            a,
+            c: task.v - 0.5 * a * a,
+            pi: a * (a * a / 3.0 - task.v),
+            top: task.top,
+        }
+    }
+
+    /// The shape for the distance `d`, at or above the stop point.
+    fn solve(&self, d: f64) -> Shape {
+        let Self { a, c, pi, top } = *self;
+        let to_top = (top - c).max(0.0);
+        let at_top = pi + transfer_distance(c, top) + stop_distance(top);
+        if d >= at_top {
+            let (up, down) = (ramp_and_hold(to_top), ramp_and_hold(top));
+            let time = (d - at_top) / top;
+            return Shape::two_transfers(a, up, (top, time), down);
+        }
+        if to_top > 1.0 {
+            let w = c + 1.0;
+            if w < 0.0 || d >= pi + 2.0 * c + 1.0 + stop_distance(w) {
+                return self.with_hold(d);
+            }
+        }
+        self.turning_at(self.solve_ramp(d, sqrt(to_top.min(1.0))))
+    }
+
+    /// The first transfer holds its acceleration. With both transfers' areas added, `stop` of `w`
+    /// over the saturated first one is a perfect square in `sqrt(w)` below saturation of the
+    /// second, and a quadratic in `w` above.
+    fn with_hold(&self, d: f64) -> Shape {
+        let Self { a, c, pi, .. } = *self;
+        let q = (d - pi - 0.5 * c * (1.0 - c)).max(0.0);
+        let s = sqrt(2.0 * q);
+        let m = 2.0 * s / (1.0 + sqrt(1.0 + 4.0 * s));
+        let (w, down) = if m <= 1.0 {
+            (m * m, (m, 0.0))
+        } else {
+            let w = 2.0 * q / (1.0 + sqrt(1.0 + 4.0 * q));
+            (w, (1.0, (w - 1.0).max(0.0)))
+        };
+        let up = (1.0, (w - c - 1.0).max(0.0));
+        Shape::two_transfers(a, up, (w, 0.0), down)
+    }
+
+    /// The profile without cruise and first hold whose acceleration turns at `x`.
+    fn turning_at(&self, x: f64) -> Shape {
+        let w = (self.c + x * x).max(0.0);
+        Shape::two_transfers(self.a, (x, 0.0), (w, 0.0), ramp_and_hold(w))
+    }
+
+    /// The smallest acceleration to turn at: an immediate stop.
+    fn least_ramp(&self) -> f64 {
+        if self.c < 0.0 {
+            self.a.max(sqrt(-self.c))
+        } else {
+            self.a
+        }
+    }
+
+    /// `F(x)` and its derivative.
+    fn end(&self, x: f64) -> (f64, f64) {
+        let w = (self.c + x * x).max(0.0);
+        let before = self.pi + x * (2.0 * self.c + x * x);
+        if w <= 1.0 {
+            let m = sqrt(w);
+            (before + w * m, (x + m) * (x + 2.0 * m))
+        } else {
+            (before + 0.5 * w * (w + 1.0), (x + 1.0) * (x + 2.0 * w))
+        }
+    }
+
+    /// Solves `F(x) = d` between the least ramp and `most`, where `F(most) >= d`.
+    fn solve_ramp(&self, d: f64, most: f64) -> f64 {
+        if self.c == 0.0 && self.a == 0.0 && d <= 2.0 {
+            return cbrt(0.5 * d.max(0.0)); // from rest: F(x) = 2 x^3
+        }
+        let least = self.least_ramp();
+        let (low, slope) = self.end(least);
+        let gap = d - low;
+        if gap <= 0.0 || most <= least {
+            return least;
+        }
+        // Upper bounds: the tangent at the left end, since F is convex; and F' >= 6 x^2 for c >= 0,
+        // F' >= x^2 otherwise.
+        let mut x = most;
+        if gap < slope * (most - least) {
+            x = least + gap / slope;
+        }
+        let cubic = if self.c >= 0.0 {
+            let from_zero = d - self.end(0.0).0;
+            if least < 0.0 && from_zero <= 0.0 {
+                0.0
+            } else {
+                cbrt(0.5 * (from_zero.max(0.0)))
+            }
+        } else {
+            cbrt(least * least * least + 3.0 * gap)
+        };
+        x = x.min(cubic).max(least);
+        for _ in 0..MAX_NEWTON {
+            let (value, slope) = self.end(x);
+            let step = (value - d) / slope;
+            // From the right all steps lead down until rounding reverses one.
+            if step > 2.0 * f64::EPSILON * x.abs() {
+                x = (x - step).max(least);
+            } else {
+                break;
+            }
+        }
+        x
+    }
+}
+
+/// Newton steps that a convex search may take. Three to five are usual; near a double root each
+/// step only halves the rest.
+const MAX_NEWTON: usize = 60;

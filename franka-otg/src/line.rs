@@ -1,0 +1,101 @@
+//! Straight lines: all axes as one.
+//!
+//! If the way to go, the velocities and the accelerations of all axes, now and at the target, are
+//! multiples of one vector, one scalar problem along it moves them in phase, and the path is a
+//! straight line. From rest this is always so. Its duration equals the time-synchronised one when
+//! one axis binds in all three limits, and is longer otherwise.
+//!
+//! Rounding makes the axes of a moving line look not quite parallel, so the scalar state is kept
+//! and continued while targets stay on the line, instead of being derived from the axes again.
+
+use crate::state::{AxisState, State};
+
+/// The line `origin + s * direction`, its direction scaled to a largest component of one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line<const N: usize> {
+    origin: [f64; N],
+    direction: [f64; N],
+    /// The axis whose component is the largest.
+    main: usize,
+}
+
+impl<const N: usize> Line<N> {
+    /// The line along which `state` moves and `target` lies, with the state along it.
+    ///
+    /// `None` if there is none, or if nothing moves and nothing is to move.
+    pub(crate) fn through(state: &State<N>, target: &State<N>) -> Option<(Self, AxisState)> {
+        let way: [f64; N] = core::array::from_fn(|i| target.position[i] - state.position[i]);
+        let vectors = [
+            way,
+            state.velocity,
+            state.acceleration,
+            target.velocity,
+            target.acceleration,
+        ];
+        let along = vectors
+            .iter()
+            .find(|vector| vector.iter().any(|x| *x != 0.0))?;
+        let main = (0..N).reduce(|best, i| {
+            if along[i].abs() > along[best].abs() {
+                i
+            } else {
+                best
+            }
+        })?;
+        let direction = along.map(|x| x / along[main]);
+        let line = Self {
+            origin: state.position,
+            direction,
+            main,
+        };
+        vectors
+            .iter()
+            .all(|vector| line.is_parallel(vector))
+            .then(|| {
+                let along = AxisState {
+                    position: 0.0,
+                    velocity: state.velocity[main],
+                    acceleration: state.acceleration[main],
+                };
+                (line, along)
+            })
+    }
+
+    /// Component by component, so that no unit or limit of one axis judges another.
+    fn is_parallel(&self, vector: &[f64; N]) -> bool {
+        (0..N).all(|i| {
+            let expected = vector[self.main] * self.direction[i];
+            (vector[i] - expected).abs() <= PARALLEL * expected.abs()
+        })
+    }
+
+    /// The state along the line of a `target` that lies on it and moves along it.
+    pub(crate) fn state_of(&self, target: &State<N>) -> Option<AxisState> {
+        let to = target.axis(self.main);
+        let s = to.position - self.origin[self.main];
+        let on_it = (0..N).all(|i| {
+            let (target, step) = (target.position[i], s * self.direction[i]);
+            let size = target.abs() + self.origin[i].abs() + step.abs();
+            (self.origin[i] + step - target).abs() <= 4.0 * f64::EPSILON * size
+        });
+        let parallel = self.is_parallel(&target.velocity) && self.is_parallel(&target.acceleration);
+        (on_it && parallel).then_some(AxisState { position: s, ..to })
+    }
+
+    /// The state of all axes where the line's own state is `along`.
+    pub(crate) fn state(&self, along: AxisState) -> State<N> {
+        State {
+            position: core::array::from_fn(|i| self.origin[i] + along.position * self.direction[i]),
+            velocity: self.direction.map(|x| along.velocity * x),
+            acceleration: self.direction.map(|x| along.acceleration * x),
+        }
+    }
+
+    pub(crate) const fn direction(&self) -> &[f64; N] {
+        &self.direction
+    }
+}
+
+/// Relative difference between components of parallel vectors: rounding of a few operations, times
+/// the length of a chain of re-plans.
+const PARALLEL: f64 = 1e-13;

@@ -1,0 +1,324 @@
+//! A motion of all axes over time.
+
+use crate::axis::{Axis, Refusal, lay_out_stop};
+use crate::error::PlanError;
+use crate::limits::Limits;
+use crate::line::Line;
+use crate::possible::CANDIDATES;
+use crate::profile::Profile;
+use crate::segment::Segment;
+use crate::state::{AxisState, State};
+use crate::turn::lay_out_lead;
+
+/// How the axes of a motion to a target move together. All arrive at the same instant in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Synchronisation {
+    /// In phase, on a straight line, wherever the motion so far allows it, which it does from rest;
+    /// else in time only.
+    #[default]
+    Straight,
+    /// In time only: as early as the slowest axis can arrive, on a curved path.
+    Time,
+}
+
+/// A motion that is being followed, as a function of the time since it was planned.
+#[derive(Debug, Clone)]
+pub(crate) struct Plan<const N: usize> {
+    course: Course<N>,
+    /// Motion along the line of the course.
+    along: Profile,
+    /// Motion of each axis on its own.
+    axes: [Profile; N],
+    /// When the target is met, in seconds from the start.
+    arrival: f64,
+    /// Where it comes to rest: the target, or behind it.
+    end: [f64; N],
+    duration: f64,
+}
+
+#[derive(Debug, Clone)]
+enum Course<const N: usize> {
+    /// Each axis on its own.
+    Axes,
+    /// On a straight line.
+    Line(Line<N>),
+    /// On a straight line up to a time in seconds, then each axis on its own.
+    Turn(Line<N>, f64),
+}
+
+/// What a plan starts from.
+pub(crate) struct Start<'a, const N: usize> {
+    pub(crate) state: State<N>,
+    /// The straight line that the state is on, and the state along it.
+    pub(crate) line: Option<(Line<N>, AxisState)>,
+    pub(crate) limits: &'a Limits<N>,
+}
+
+impl<const N: usize> Plan<N> {
+    /// Staying at `position`.
+    pub(crate) fn at_rest(position: [f64; N]) -> Self {
+        Self {
+            course: Course::Axes,
+            along: Profile::at_rest(0.0),
+            axes: position.map(Profile::at_rest),
+            arrival: 0.0,
+            end: position,
+            duration: 0.0,
+        }
+    }
+
+    /// Replaces the plan by the motion to `target`, and to rest behind it if it moves.
+    ///
+    /// # Errors
+    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the plan is then unchanged.
+    pub(crate) fn go_to(
+        &mut self,
+        target: &State<N>,
+        start: &Start<'_, N>,
+        synchronisation: Synchronisation,
+    ) -> Result<(), PlanError> {
+        // A single axis is its own line.
+        if synchronisation == Synchronisation::Straight && N > 1 {
+            let kept = start.line.as_ref().and_then(|(line, along)| {
+                let to = line.state_of(target)?;
+                Some((*line, *along, to))
+            });
+            let straight = kept.or_else(|| {
+                let (line, along) = Line::through(&start.state, target)?;
+                let to = line.state_of(target)?;
+                Some((line, along, to))
+            });
+            if let Some((line, along, to)) = straight {
+                return self.follow_line(line, along, to, target, start.limits);
+            }
+        }
+        match &start.line {
+            Some((line, along)) if start.limits.has_norms() => {
+                self.turn_off(line, *along, target, start.limits)
+            }
+            _ => {
+                self.move_axes(&start.state, target, start.limits, 0.0)?;
+                self.course = Course::Axes;
+                Ok(())
+            }
+        }
+    }
+
+    fn follow_line(
+        &mut self,
+        line: Line<N>,
+        along: AxisState,
+        to: AxisState,
+        target: &State<N>,
+        limits: &Limits<N>,
+    ) -> Result<(), PlanError> {
+        let axis = Axis::new(along, to, limits.along(line.direction()))
+            .map_err(|refusal| refusal.of_axis(0))?;
+        let least = axis.least_duration();
+        axis.lay_out(least, &mut self.along);
+        self.duration = self.along.duration();
+        if target.is_at_rest() {
+            self.arrival = self.duration;
+            self.end = target.position;
+        } else {
+            self.arrival = least;
+            self.end = line.state(AxisState::at_rest(self.along.end())).position;
+        }
+        self.course = Course::Line(line);
+        Ok(())
+    }
+
+    fn turn_off(
+        &mut self,
+        line: &Line<N>,
+        along: AxisState,
+        target: &State<N>,
+        limits: &Limits<N>,
+    ) -> Result<(), PlanError> {
+        let (full, shares) = (
+            limits.along(line.direction()),
+            limits.shares_along(line.direction()),
+        );
+        let mut lead = Profile::at_rest(0.0);
+        lay_out_lead(along, full, shares, &mut lead);
+        let until = lead.duration();
+        let state = line.state(lead.front());
+        self.move_axes(&state, target, limits, until)?;
+        self.along = lead;
+        self.course = Course::Turn(*line, until);
+        Ok(())
+    }
+
+    /// Lays out the axes so that all arrive when the slowest does, or as soon after as each of them
+    /// can, `until` seconds after the plan's start or later.
+    fn move_axes(
+        &mut self,
+        state: &State<N>,
+        target: &State<N>,
+        limits: &Limits<N>,
+        until: f64,
+    ) -> Result<(), PlanError> {
+        let axes: [_; N] =
+            core::array::from_fn(|i| Axis::new(state.axis(i), target.axis(i), limits.axis(i)));
+        let mut duration = 0.0_f64;
+        for (i, axis) in axes.iter().enumerate() {
+            match axis {
+                Ok(axis) => duration = duration.max(axis.least_duration()),
+                Err(refusal) => return Err(refusal.of_axis(i)),
+            }
+        }
+        let moves = !target.is_at_rest();
+        if moves {
+            duration = common_duration(&axes, duration);
+        }
+        for (axis, profile) in axes.iter().flatten().zip(&mut self.axes) {
+            axis.lay_out(duration, profile);
+        }
+        self.arrival = until + duration;
+        self.duration = self.arrival;
+        self.end = target.position;
+        if moves {
+            for (i, profile) in self.axes.iter().enumerate() {
+                self.duration = self.duration.max(until + profile.duration());
+                self.end[i] = profile.end();
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces the plan by the least-time stop: along the line that the state is on, else of each
+    /// axis on its own.
+    pub(crate) fn stop(&mut self, start: &Start<'_, N>) {
+        if let Some((line, along)) = &start.line {
+            lay_out_stop(
+                *along,
+                start.limits.along(line.direction()),
+                &mut self.along,
+            );
+            self.duration = self.along.duration();
+            self.arrival = self.duration;
+            self.end = line.state(AxisState::at_rest(self.along.end())).position;
+            self.course = Course::Line(*line);
+            return;
+        }
+        self.duration = 0.0;
+        for (i, profile) in self.axes.iter_mut().enumerate() {
+            lay_out_stop(start.state.axis(i), start.limits.axis(i), profile);
+            self.duration = self.duration.max(profile.duration());
+            self.end[i] = profile.end();
+        }
+        self.arrival = self.duration;
+        self.course = Course::Axes;
+    }
+
+    /// Where it comes to rest.
+    pub(crate) const fn end(&self) -> &[f64; N] {
+        &self.end
+    }
+
+    /// When the target is met, in seconds from its start: when all axes rest, unless the target
+    /// moves.
+    pub(crate) const fn arrival(&self) -> f64 {
+        self.arrival
+    }
+
+    /// When all axes rest, in seconds from its start.
+    pub(crate) const fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The state `t >= 0` seconds after its start; exactly at rest at the end from the duration on.
+    pub(crate) fn sample(&self, t: f64) -> State<N> {
+        if t >= self.duration - SLACK {
+            return State::at_rest(self.end);
+        }
+        match &self.course {
+            Course::Axes => self.sample_axes(t),
+            Course::Line(line) => line.state(self.along.sample(t)),
+            Course::Turn(line, until) if t < *until => line.state(self.along.sample(t)),
+            Course::Turn(_, until) => self.sample_axes(t - until),
+        }
+    }
+
+    fn sample_axes(&self, t: f64) -> State<N> {
+        let mut state = State::at_rest(self.end);
+        for (i, profile) in self.axes.iter().enumerate() {
+            state.set_axis(i, profile.sample(t));
+        }
+        state
+    }
+
+    /// The segments of one axis, from the plan's start on: those on a line first, then those of its
+    /// own.
+    pub(crate) fn segments(&self, axis: usize) -> impl Iterator<Item = Segment> + '_ {
+        let (line, own) = match &self.course {
+            Course::Axes => (None, Some(0.0)),
+            Course::Line(line) => (Some(line), None),
+            Course::Turn(line, until) => (Some(line), Some(*until)),
+        };
+        let on_line = line.into_iter().flat_map(move |line| {
+            self.along.segments().map(move |segment| Segment {
+                state: line.state(segment.state).axis(axis),
+                jerk: segment.jerk * line.direction()[axis],
+                ..segment
+            })
+        });
+        let on_its_own = own.into_iter().flat_map(move |until| {
+            self.axes[axis].segments().map(move |segment| Segment {
+                start: until + segment.start,
+                ..segment
+            })
+        });
+        on_line.chain(on_its_own)
+    }
+
+    /// The straight line that the motion is on at `t`, and the state along it; `None` at rest.
+    pub(crate) fn line_at(&self, t: f64) -> Option<(Line<N>, AxisState)> {
+        let until = match &self.course {
+            Course::Axes => return None,
+            Course::Line(_) => self.duration - SLACK,
+            Course::Turn(_, until) => *until,
+        };
+        match &self.course {
+            Course::Line(line) | Course::Turn(line, _) if t < until => {
+                Some((*line, self.along.sample(t)))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The least duration from `at_least` on that all axes can take.
+///
+/// An axis that cannot take a duration asks for the next one that it can, which is one of its
+/// candidates; the duration only grows, so each candidate is asked for once at most.
+fn common_duration<const N: usize>(axes: &[Result<Axis, Refusal>; N], at_least: f64) -> f64 {
+    let mut duration = at_least;
+    for _ in 0..N * CANDIDATES {
+        let next = axes
+            .iter()
+            .flatten()
+            .fold(duration, |duration, axis| axis.from(duration));
+        if next == duration {
+            break;
+        }
+        duration = next;
+    }
+    duration
+}
+
+impl Refusal {
+    fn of_axis(self, axis: usize) -> PlanError {
+        match self {
+            Self::OutOfRange => PlanError::OutOfRange { axis },
+            Self::TargetMotion => PlanError::TargetMotion { axis },
+        }
+    }
+}
+
+/// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a
+/// duration costs no cycle.
+///
+/// A millionth of a cycle: what is left there is the third power of it, times a sixth of the jerk
+/// limit.
+const SLACK: f64 = 1e-9;

@@ -1,0 +1,115 @@
+//! A motion to a target in motion that takes a given time, by way of a constant velocity.
+//!
+//! Transfer to a velocity `w`, stay there, transfer to the end's. With the first transfer in
+//! direction `s` and the second in direction `u`, and both ends extended by their jerks to zero
+//! acceleration (`c0 = v0 - s a0^2/2`, `cf = vf + u af^2/2`), the time and the distance left over
+//! are
+//!
+//! ```text
+//! cruise(w) = T + s a0 + u af - time(w - c0) - time(cf - w)
+//! excess(w) = M(c0, w) + w cruise(w) + M(w, cf) - D
+//! ```
+//!
+//! with `M` the displacement of a transfer. The farthest motions up and down are the two ends of
+//! this family, and where the cruise is not negative the excess grows with `w`: so there is one
+//! `w`, between theirs. A cruise is negative only for durations so close to that of the mere change
+//! of velocity that no plateau fits; then the mean of the two farthest motions serves.
+//!
+//! The mean would do for every duration, and without a search. But a plan made anew from a state on
+//! this motion goes on with the same velocity, while the mean of what is farthest from there has
+//! another course each time: planned anew in each cycle it swings from one end of the interval to
+//! the other.
+
+use crate::least_time::Shape;
+use crate::root::{Point, root};
+use crate::task::Task;
+use crate::transfer::{ramp_and_hold, transfer_distance, transfer_time};
+
+/// A motion of one duration, by way of one velocity still to be found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plateau {
+    task: Task,
+    vf: f64,
+    af: f64,
+    time: f64,
+}
+
+impl Plateau {
+    pub(crate) fn new(task: &Task, vf: f64, af: f64, time: f64) -> Self {
+        Self {
+            task: *task,
+            vf,
+            af,
+            time,
+        }
+    }
+
+    /// The motion, as a direction and the shape in it, if one fits between two velocities.
+    pub(crate) fn between(&self, low: f64, high: f64) -> Option<(f64, Shape)> {
+        let point = |at| Point {
+            at,
+            value: self.at(at).excess,
+        };
+        let (low, high) = (point(low), point(high));
+        if low.value > 0.0 || high.value < 0.0 {
+            return None;
+        }
+        let w = root(low, high, 0.0, |w| self.at(w).excess);
+        self.shape(w)
+    }
+
+    fn at(&self, w: f64) -> Transfers {
+        let Task { d, v, a, .. } = self.task;
+        let (vf, af) = (self.vf, self.af);
+        // Velocities that are left when the acceleration is ramped to zero, forwards and backwards
+        // in time.
+        let s = 1_f64.copysign(w - (v + 0.5 * a * a.abs()));
+        let u = 1_f64.copysign((vf - 0.5 * af * af.abs()) - w);
+        let (c0, cf) = (v - s * 0.5 * a * a, vf + u * 0.5 * af * af);
+        let (first, second) = ((s * (w - c0)).max(0.0), (u * (cf - w)).max(0.0));
+        let cruise = self.time + s * a + u * af - transfer_time(first) - transfer_time(second);
+        let before = a * (a * a / 3.0 - s * v);
+        let after = d + af * (af * af / 3.0 + u * vf);
+        let way = transfer_distance(c0, w) + w * cruise + transfer_distance(w, cf);
+        Transfers {
+            signs: (s, u),
+            changes: (first, second),
+            cruise,
+            excess: way - (after - before),
+        }
+    }
+
+    fn shape(&self, w: f64) -> Option<(f64, Shape)> {
+        let Transfers {
+            signs: (s, u),
+            changes,
+            cruise,
+            ..
+        } = self.at(w);
+        if cruise < 0.0 {
+            return None;
+        }
+        let ((x, first_hold), (y, second_hold)) =
+            (ramp_and_hold(changes.0), ramp_and_hold(changes.1));
+        let (t1, t7) = ((x - s * self.task.a).max(0.0), (y - u * self.af).max(0.0));
+        // In the frame in which the second transfer leads downwards.
+        let sign = -u;
+        let shape = Shape {
+            first: sign * s,
+            t: [t1, first_hold, x, cruise, y, second_hold, t7],
+            cruise: sign * w,
+        };
+        Some((sign, shape))
+    }
+}
+
+/// The motion by way of one velocity.
+struct Transfers {
+    /// Directions of the first and the second transfer.
+    signs: (f64, f64),
+    /// Velocity differences of the two, with extended ends.
+    changes: (f64, f64),
+    cruise: f64,
+    /// How far beyond the target it ends.
+    excess: f64,
+}

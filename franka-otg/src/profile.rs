@@ -1,0 +1,254 @@
+//! One axis over time: segments of constant jerk.
+
+use crate::brake::Pieces;
+use crate::segment;
+use crate::state::AxisState;
+
+/// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
+///
+/// Positions are kept relative to the start, so that a large offset rounds the result once and not
+/// in each segment. The last three segments of a motion to a target are laid out backwards from the
+/// target: it is met exactly, and what rounding there is lies at full speed, where it is relatively
+/// smallest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Profile {
+    origin: f64,
+    end: f64,
+    segments: [Segment; MAX_SEGMENTS],
+    len: usize,
+    duration: f64,
+    /// State after the last segment laid out forwards, relative to the origin.
+    front: AxisState,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    start: f64,
+    jerk: f64,
+    /// State at the start, relative to the origin.
+    state: AxisState,
+}
+
+impl Segment {
+    /// The state `t` after the start of the profile, relative to the origin.
+    fn at(&self, t: f64) -> AxisState {
+        self.state.after(self.jerk, t - self.start)
+    }
+}
+
+impl Profile {
+    /// No motion, at `position`.
+    pub(crate) const fn at_rest(position: f64) -> Self {
+        Self {
+            origin: position,
+            end: position,
+            segments: [Segment {
+                start: 0.0,
+                jerk: 0.0,
+                state: AxisState::at_rest(0.0),
+            }; MAX_SEGMENTS],
+            len: 0,
+            duration: 0.0,
+            front: AxisState::at_rest(0.0),
+        }
+    }
+
+    /// Forgets all segments and begins at `state`.
+    pub(crate) fn begin(&mut self, state: AxisState) {
+        self.origin = state.position;
+        self.end = state.position;
+        self.len = 0;
+        self.duration = 0.0;
+        self.front = AxisState {
+            position: 0.0,
+            ..state
+        };
+    }
+
+    /// Appends a segment of `jerk` for `t` seconds.
+    pub(crate) fn push(&mut self, jerk: f64, t: f64) {
+        if t > 0.0 {
+            self.place(jerk, t, self.front);
+            self.front = self.front.after(jerk, t);
+        }
+    }
+
+    /// Appends `t` seconds of exactly constant `velocity`, which the segments before lead to but
+    /// for rounding.
+    ///
+    /// A cruise may last millions of times longer than the ramps around it: the last bit of an
+    /// acceleration or velocity left from them would grow into a distance.
+    pub(crate) fn cruise(&mut self, velocity: f64, t: f64) {
+        if t > 0.0 {
+            self.front.velocity = velocity;
+            self.front.acceleration = 0.0;
+            self.push(0.0, t);
+        }
+    }
+
+    /// Appends pieces in units of the axis: `jerk` in the unit of jerk, times in `unit` of time.
+    pub(crate) fn push_pieces(&mut self, pieces: &Pieces, jerk: f64, unit: f64) {
+        for (sign, t) in pieces.iter() {
+            self.push(sign * jerk, t * unit);
+        }
+    }
+
+    /// Appends jerks `jerk, 0, -jerk` for the times `t` that lead to `target`, or to as far
+    /// `beyond` it.
+    pub(crate) fn lead_to(&mut self, target: AxisState, beyond: f64, jerk: f64, t: [f64; 3]) {
+        self.end = target.position;
+        self.front = AxisState {
+            position: target.position - self.origin + beyond,
+            ..target
+        };
+        let mut states = [self.front; 4];
+        let jerks = [jerk, 0.0, -jerk];
+        for i in (0..3).rev() {
+            states[i] = states[i + 1].after(jerks[i], -t[i]);
+        }
+        for i in 0..3 {
+            if t[i] > 0.0 {
+                self.place(jerks[i], t[i], states[i]);
+            }
+        }
+    }
+
+    /// Takes where the segments lead, made exactly at rest, for the end.
+    pub(crate) fn finish_here(&mut self) {
+        self.end = self.origin + self.front.position;
+    }
+
+    /// Becomes the mean of two motions from one state that take equally long, the first one with
+    /// `weight`, the other with the rest to one, and leads to `target`.
+    ///
+    /// The states of its segments are means of theirs, not sums of what comes before: like theirs
+    /// they are as exact at the end as at the start, and after any cruise.
+    pub(crate) fn mean_of(&mut self, weight: f64, one: &Self, other: &Self, target: AxisState) {
+        let mean = |a: f64, b: f64| weight * a + (1.0 - weight) * b;
+        self.begin(AxisState {
+            position: one.origin,
+            ..AxisState::at_rest(0.0)
+        });
+        let (mut i, mut j, mut t) = (0, 0, 0.0);
+        while i < one.len && j < other.len {
+            let (a, b) = (&one.segments[i], &other.segments[j]);
+            let ends = [one.end_of(i), other.end_of(j)];
+            let next = ends[0].min(ends[1]);
+            if next > t {
+                let (p, q) = (a.at(t), b.at(t));
+                let state = AxisState {
+                    position: mean(p.position, q.position),
+                    velocity: mean(p.velocity, q.velocity),
+                    acceleration: mean(p.acceleration, q.acceleration),
+                };
+                self.place(mean(a.jerk, b.jerk), next - t, state);
+                t = next;
+            }
+            i += usize::from(ends[0] <= next);
+            j += usize::from(ends[1] <= next);
+        }
+        self.lead_to(target, 0.0, 0.0, [0.0; 3]);
+    }
+
+    /// Its segments, from its start on.
+    pub(crate) fn segments(&self) -> impl Iterator<Item = segment::Segment> + '_ {
+        self.segments[..self.len]
+            .iter()
+            .enumerate()
+            .map(|(i, segment)| segment::Segment {
+                start: segment.start,
+                duration: self.end_of(i) - segment.start,
+                state: AxisState {
+                    position: self.origin + segment.state.position,
+                    ..segment.state
+                },
+                jerk: segment.jerk,
+            })
+    }
+
+    /// When a segment ends.
+    fn end_of(&self, segment: usize) -> f64 {
+        match self.segments[..self.len].get(segment + 1) {
+            Some(next) => next.start,
+            None => self.duration,
+        }
+    }
+
+    fn place(&mut self, jerk: f64, t: f64, state: AxisState) {
+        if let Some(segment) = self.segments.get_mut(self.len) {
+            *segment = Segment {
+                start: self.duration,
+                jerk,
+                state,
+            };
+            self.len += 1;
+            self.duration += t;
+        }
+    }
+
+    /// The state after what is laid out forwards, relative to the origin.
+    pub(crate) const fn front(&self) -> AxisState {
+        self.front
+    }
+
+    /// Position at which it ends.
+    pub(crate) const fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// When it ends, in seconds from its start.
+    pub(crate) const fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The state `t >= 0` seconds after the start; exactly the end from the duration on.
+    pub(crate) fn sample(&self, t: f64) -> AxisState {
+        if t >= self.duration {
+            return AxisState::at_rest(self.end);
+        }
+        let later = self.segments[..self.len]
+            .iter()
+            .skip(1)
+            .take_while(|segment| segment.start <= t)
+            .count();
+        let relative = self.segments[later.min(MAX_SEGMENTS - 1)].at(t);
+        AxisState {
+            position: self.origin + relative.position,
+            ..relative
+        }
+    }
+}
+
+/// Three to brake into the limits, thirteen of the mean of two shapes, four to come to rest behind
+/// a target in motion. A motion that begins with a part of a stop has three less of one shape more:
+/// thirteen in all.
+const MAX_SEGMENTS: usize = 20;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_profile_stays_where_it_is() {
+        let profile = Profile::at_rest(0.1);
+        for t in [0.0, 1.0, f64::INFINITY] {
+            assert_eq!(profile.sample(t), AxisState::at_rest(0.1));
+        }
+    }
+
+    #[test]
+    fn segments_join_and_the_end_is_exact() {
+        let mut profile = Profile::at_rest(0.0);
+        profile.begin(AxisState::at_rest(0.3));
+        profile.push(2.0, 1.0);
+        profile.push(-2.0, 1.0);
+        profile.lead_to(AxisState::at_rest(4.3), 0.0, -2.0, [1.0, 0.0, 1.0]);
+        assert_eq!(profile.duration(), 4.0);
+        for (t, p) in [(1.0, 0.3 + 1.0 / 3.0), (2.0, 2.3), (3.0, 4.3 - 1.0 / 3.0)] {
+            for t in [t - 1e-12, t, t + 1e-12] {
+                assert!((profile.sample(t).position - p).abs() < 1e-11, "{t}");
+            }
+        }
+        assert_eq!(profile.sample(4.0), AxisState::at_rest(4.3));
+    }
+}

@@ -1,0 +1,23 @@
+//! How many passes the searches take, for the test that holds them against their ceilings. Nothing
+//! outside of tests.
+
+#[cfg(test)]
+use core::cell::Cell;
+
+#[cfg(test)]
+std::thread_local! {
+    static MOST: Cell<usize> = const { Cell::new(0) };
+}
+
+/// A search that may take `ceiling` passes is in its pass number `pass`, counted from zero.
+#[cfg_attr(not(test), expect(unused_variables, reason = "only tests count"))]
+pub(crate) fn see(pass: usize, ceiling: usize) {
+    #[cfg(test)]
+    MOST.set(MOST.get().max(100 * (pass + 1) / ceiling));
+}
+
+/// The most passes of a search in this thread since the last call, in percent of its ceiling.
+#[cfg(test)]
+pub(crate) fn take_most() -> usize {
+    MOST.replace(0)
+}

@@ -1,0 +1,73 @@
+//! How far the searches stay below the ceilings that bound them.
+
+use super::random::stop_point;
+use crate::{AxisLimits, AxisState, Generator, Limits, State, Synchronisation, steps};
+
+/// The most passes, in percent of what a search may take, over the motions from one state to a
+/// target beside an axis that takes `stretch` times as long.
+fn passes(limits: AxisLimits, state: AxisState, target: AxisState, stretch: f64) -> usize {
+    let alone = Limits::per_axis([limits]).unwrap();
+    let mut generator = Generator::new(super::random::one(state), alone).unwrap();
+    let one = super::random::one(target);
+    generator.set_moving_target(&one).unwrap();
+    let ramp = 0.25 * stretch * generator.time_to_target();
+    if ramp > 0.0 {
+        let beside = AxisLimits {
+            velocity: 2.0 * ramp * ramp,
+            acceleration: 2.0 * ramp,
+            jerk: 1.0,
+        };
+        let both = |one: AxisState, position| State {
+            position: [one.position, position],
+            velocity: [one.velocity, 0.0],
+            acceleration: [one.acceleration, 0.0],
+        };
+        let limits = Limits::per_axis([limits, beside]).unwrap();
+        Generator::new(both(state, 0.0), limits)
+            .unwrap()
+            .with_synchronisation(Synchronisation::Time)
+            .set_moving_target(&both(target, 2.0 * ramp.powi(3)))
+            .unwrap();
+    }
+    steps::take_most()
+}
+
+#[test]
+fn no_search_on_a_grid_comes_near_its_ceiling() {
+    let mut most = 0;
+    for top in [1e-6, 1e-3, 0.03, 0.3, 1.0, 3.0, 30.0, 1e3, 1e6] {
+        let limits = AxisLimits {
+            velocity: top,
+            acceleration: 1.0,
+            jerk: 1.0,
+        };
+        for speed in [-1.0, -0.5, -1e-9, 0.0, 1e-6, 0.3, 0.999_999, 1.0] {
+            for bend in [-1.0, -0.6, -1e-9, 0.0, 1e-3, 0.8, 1.0] {
+                let room = f64::sqrt(2.0 * top * (1.0 - f64::abs(speed)));
+                let state = AxisState {
+                    position: 0.0,
+                    velocity: top * speed,
+                    acceleration: bend * room.min(1.0),
+                };
+                let stop = stop_point(limits, state);
+                let scale = top * (1.0 + top.min(1.0));
+                for distance in [1e-15, 1e-9, 1e-4, 0.1, 0.9, 1.0, 10.0, 1e4] {
+                    for side in [-1.0, 1.0] {
+                        for moves in [0.0, 1e-9, 0.4, 1.0, -0.7] {
+                            let target = AxisState {
+                                position: stop + side * distance * scale,
+                                velocity: moves * top,
+                                acceleration: 0.0,
+                            };
+                            for stretch in [1.0 + 1e-9, 1.01, 1.2, 3.0] {
+                                most = most.max(passes(limits, state, target, stretch));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(most > 3, "the searches are counted");
+    assert!(most <= 80, "a search takes {most} % of the passes it may");
+}

@@ -1,0 +1,136 @@
+//! Straight lines, and norms.
+
+use proptest::prelude::*;
+
+use super::random::{arm_limits, cases, many};
+use super::walk::check_step;
+use crate::{AxisLimits, CYCLE, Generator, Limits, State, Synchronisation};
+
+/// Largest distance of a position from the line through `from` and `to`, which are apart.
+fn distance_from_line<const N: usize>(from: &[f64; N], to: &[f64; N], position: &[f64; N]) -> f64 {
+    let square: f64 = (0..N).map(|i| (to[i] - from[i]).powi(2)).sum();
+    let along: f64 = (0..N)
+        .map(|i| (position[i] - from[i]) * (to[i] - from[i]))
+        .sum();
+    let distance = |i: usize| (position[i] - from[i] - along / square * (to[i] - from[i])).abs();
+    (0..N).map(distance).fold(0.0, f64::max)
+}
+
+fn norm<const N: usize>(vector: &[f64; N]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+const BUDGET: AxisLimits = AxisLimits {
+    velocity: 0.6,
+    acceleration: 4.0,
+    jerk: 1000.0,
+};
+
+fn point() -> impl Strategy<Value = [f64; 3]> {
+    [-0.6..0.6, -0.6..0.6, -0.6..0.6]
+}
+
+proptest! {
+    #![proptest_config(cases(100))]
+
+    #[test]
+    fn from_rest_the_path_is_straight((limits, state, target) in many::<7>(arm_limits())) {
+        let start = state.position;
+        let mut generator = Generator::new(State::at_rest(start), limits).unwrap();
+        generator.set_target(&target).unwrap();
+        let size = 1.0 + norm(&target);
+        while !generator.is_done() {
+            let before = *generator.state();
+            let after = *generator.step();
+            check_step(&limits, &before, &after, CYCLE, size);
+            prop_assert!(distance_from_line(&start, &target, &after.position) <= 4e-15 * size);
+        }
+    }
+
+    #[test]
+    fn new_targets_on_the_line_keep_it(
+        start in point(), way in point(), stops in proptest::collection::vec((1_usize..300, -3.0..3.0), 1..5),
+    ) {
+        let limits = Limits::from_arrays([1.0, 0.8, 0.5], [5.0, 4.0, 6.0], [900.0, 800.0, 700.0]).unwrap();
+        let mut generator = Generator::new(State::at_rest(start), limits).unwrap();
+        let at = |s: f64| core::array::from_fn(|i| start[i] + s * way[i]);
+        generator.set_target(&at(1.0)).unwrap();
+        for (cycles, s) in stops {
+            for _ in 0..cycles {
+                let before = *generator.state();
+                let after = *generator.step();
+                check_step(&limits, &before, &after, CYCLE, 4.0);
+                prop_assert!(distance_from_line(&start, &at(1.0), &after.position) <= 1e-14);
+            }
+            generator.set_target(&at(s)).unwrap();
+        }
+    }
+
+    #[test]
+    fn a_line_takes_no_longer_than_independent_axes_if_one_axis_binds(start in point(), target in point()) {
+        let limits = Limits::from_arrays([1.0; 3], [5.0; 3], [1000.0; 3]).unwrap();
+        let duration = |synchronisation| {
+            let mut generator = Generator::new(State::at_rest(start), limits)
+                .unwrap()
+                .with_synchronisation(synchronisation);
+            generator.set_target(&target).unwrap();
+            generator.duration()
+        };
+        let (line, time) = (duration(Synchronisation::Straight), duration(Synchronisation::Time));
+        prop_assert!((line - time).abs() <= 1e-13, "{line} {time}");
+    }
+
+    #[test]
+    fn norms_keep_their_budget_whatever_the_targets(
+        targets in proptest::collection::vec((0_usize..400, point()), 1..8), brake_after in 0_usize..400,
+    ) {
+        let limits = Limits::<3>::norms(&[(3, BUDGET)]).unwrap();
+        let mut generator = Generator::new(State::at_rest([0.0; 3]), limits).unwrap();
+        let check = |generator: &mut Generator<3>| -> Result<(), TestCaseError> {
+            let before = *generator.state();
+            let after = *generator.step();
+            let jerk = core::array::from_fn(|i| (after.acceleration[i] - before.acceleration[i]) / CYCLE);
+            prop_assert!(norm::<3>(&after.velocity) <= BUDGET.velocity * (1.0 + 1e-9));
+            prop_assert!(norm::<3>(&after.acceleration) <= BUDGET.acceleration * (1.0 + 1e-9));
+            prop_assert!(norm::<3>(&jerk) <= BUDGET.jerk * (1.0 + 1e-9));
+            Ok(())
+        };
+        for (cycles, target) in &targets {
+            generator.set_target(target).unwrap();
+            for _ in 0..*cycles {
+                check(&mut generator)?;
+            }
+        }
+        for _ in 0..brake_after {
+            check(&mut generator)?;
+        }
+        generator.brake();
+        while !generator.is_done() {
+            check(&mut generator)?;
+        }
+    }
+}
+
+#[test]
+fn a_line_along_one_axis_uses_the_whole_norm() {
+    let limits = Limits::<3>::norms(&[(3, BUDGET)]).unwrap();
+    let mut generator = Generator::new(State::at_rest([0.0; 3]), limits).unwrap();
+    generator.set_target(&[0.0, 1.0, 0.0]).unwrap();
+    let fastest = generator.sample(0.5 * generator.duration()).velocity;
+    assert_eq!(fastest, [0.0, BUDGET.velocity, 0.0]);
+}
+
+#[test]
+fn an_axis_without_a_way_to_go_does_not_move_a_bit() {
+    let limits = Limits::from_arrays([1.0; 3], [5.0; 3], [1000.0; 3]).unwrap();
+    for synchronisation in [Synchronisation::Straight, Synchronisation::Time] {
+        let start = State::at_rest([0.1, 0.7, 0.3]);
+        let mut generator = Generator::new(start, limits)
+            .unwrap()
+            .with_synchronisation(synchronisation);
+        generator.set_target(&[0.5, 0.7, -0.2]).unwrap();
+        while !generator.is_done() {
+            assert_eq!(generator.step().axis(1), start.axis(1));
+        }
+    }
+}

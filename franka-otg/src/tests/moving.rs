@@ -1,0 +1,258 @@
+//! Targets in motion, from outside.
+
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::random::{
+    arm_limits, cases, extreme_limits, many, many_moving, mixed_limits, target_motion,
+};
+use super::walk::{check_motion, check_step};
+use crate::{AxisState, CYCLE, Generator, Limits, State, Synchronisation};
+
+fn towards<const N: usize>(limits: Limits<N>, state: State<N>, target: &State<N>) -> Generator<N> {
+    let mut generator = Generator::new(state, limits)
+        .unwrap()
+        .with_synchronisation(Synchronisation::Time);
+    generator.set_moving_target(target).unwrap();
+    generator
+}
+
+/// One axis of a problem, which may take its own time.
+fn alone<const N: usize>(
+    limits: &Limits<N>,
+    state: &State<N>,
+    target: &State<N>,
+    axis: usize,
+) -> Generator<1> {
+    let one = |state: &State<N>| super::random::one(state.axis(axis));
+    let limits = Limits::per_axis([limits.axis(axis)]).unwrap();
+    towards(limits, one(state), &one(target))
+}
+
+/// A motion that keeps its limits and is at its target when it says so.
+fn check<const N: usize>(
+    (limits, state, target): (Limits<N>, State<N>, State<N>),
+) -> Result<(), TestCaseError> {
+    let generator = towards(limits, state, &target);
+    check_motion(&generator, 300);
+    let arrival = generator.time_to_target();
+    let met = generator.sample(arrival * (1.0 + f64::EPSILON));
+    for i in 0..N {
+        let slowest = alone(&limits, &state, &target, i).time_to_target();
+        prop_assert!(
+            slowest <= arrival * (1.0 + 1e-12),
+            "axis {i} takes {slowest}, not {arrival}"
+        );
+        let (got, to) = (met.axis(i), target.axis(i));
+        // What a rounding of the duration makes of a velocity and an acceleration.
+        let rounding = 64.0 * f64::EPSILON;
+        let limits = limits.axis(i);
+        let size = to.position.abs() + state.position[i].abs() + limits.velocity * arrival;
+        prop_assert!(
+            (got.position - to.position).abs() <= rounding * size,
+            "{got:?} {to:?}"
+        );
+        let size = limits.velocity + limits.acceleration * arrival;
+        prop_assert!(
+            (got.velocity - to.velocity).abs() <= rounding * size,
+            "{got:?} {to:?}"
+        );
+        // An acceleration of the target is met to a few picoseconds.
+        let size = limits.acceleration + limits.jerk * (arrival + 1e3);
+        prop_assert!(
+            (got.acceleration - to.acceleration).abs() <= rounding * size,
+            "{got:?} {to:?}"
+        );
+    }
+    Ok(())
+}
+
+/// Follows any motion that keeps the limits for a while, and takes the state that it leads to for
+/// the target: nobody may need longer for that than the motion did, and its duration has to be
+/// possible.
+fn certify(
+    (limits, state, _): (Limits<1>, State<1>, [f64; 1]),
+    legs: &[(f64, f64)],
+) -> Result<(), TestCaseError> {
+    let top = limits.axis(0);
+    let unit = top.velocity / top.acceleration + top.acceleration / top.jerk;
+    let mut guide = Generator::new(state, limits).unwrap();
+    let (mut now, mut took) = (state, 0.0);
+    for &(distance, part) in legs {
+        guide.set_state(now).unwrap();
+        let target = now.position[0] + distance * unit * top.velocity;
+        guide.set_target(&[target]).unwrap();
+        let t = part * guide.duration();
+        now = guide.sample(t);
+        took += t;
+    }
+    let target = now.axis(0);
+    let change = 0.5 * target.acceleration * target.acceleration / top.jerk;
+    // A start may be one that no motion inside the limits leads to, and so may be what follows it.
+    prop_assume!(target.velocity.abs() + change <= top.velocity);
+    let least = towards(limits, state, &now).time_to_target();
+    prop_assert!(least <= took * (1.0 + 1e-9), "{least} instead of {took}");
+    // Beside an axis that takes as long from rest to rest, both take as long.
+    let ramp = 0.25 * took;
+    let beside = Limits::from_arrays(
+        [top.velocity, 2.0 * ramp * ramp],
+        [top.acceleration, 2.0 * ramp],
+        [top.jerk, 1.0],
+    )
+    .unwrap();
+    let both = |one: &State<1>, position| State {
+        position: [one.position[0], position],
+        velocity: [one.velocity[0], 0.0],
+        acceleration: [one.acceleration[0], 0.0],
+    };
+    let both = towards(beside, both(&state, 0.0), &both(&now, 2.0 * ramp.powi(3)));
+    let got = both.time_to_target();
+    prop_assert!(
+        (got - took).abs() <= 1e-9 * took,
+        "{got} instead of {took}, least {least}"
+    );
+    Ok(())
+}
+
+/// Plans anew in each cycle: the arrival must not move.
+fn replan<const N: usize>(
+    (limits, state, target): (Limits<N>, State<N>, State<N>),
+) -> Result<(), TestCaseError> {
+    let mut generator = towards(limits, state, &target);
+    let duration = generator.time_to_target();
+    for k in 1..((duration / CYCLE) as usize).min(3000) {
+        let before = *generator.state();
+        let now = *generator.step();
+        check_step(&limits, &before, &now, CYCLE, 8.0);
+        generator.set_state(now).unwrap();
+        let late = generator.time_to_target() + CYCLE * k as f64 - duration;
+        prop_assert!(
+            late.abs() <= ROOT_OF_ROUNDING,
+            "{late:e} late after {k} cycles of {duration}"
+        );
+    }
+    Ok(())
+}
+
+/// A change of mind: after so many cycles, and for each axis a place, a speed, and whether it is to
+/// move at all.
+type Change = (usize, Vec<(f64, f64, bool)>);
+
+/// Follows one target after the other, moving and resting, with gaps and bursts, to the end.
+fn follow<const N: usize>(
+    (limits, state, _): (Limits<N>, State<N>, [f64; N]),
+    changes: &[Change],
+) -> Result<(), TestCaseError> {
+    let mut generator = Generator::new(state, limits).unwrap();
+    let step = |generator: &mut Generator<N>| -> Result<(), TestCaseError> {
+        let before = *generator.state();
+        let to = *generator.target();
+        let after = *generator.step();
+        check_step(&limits, &before, &after, CYCLE, 8.0);
+        for (i, (to, end)) in to.iter().zip(generator.end()).enumerate() {
+            // An axis at rest with nowhere to go keeps every bit.
+            let stays = end == to && before.axis(i) == AxisState::at_rest(*to);
+            prop_assert!(
+                !stays || after.axis(i) == before.axis(i),
+                "{:?}",
+                after.axis(i)
+            );
+        }
+        Ok(())
+    };
+    for (cycles, axes) in changes {
+        let mut target = State::at_rest(generator.state().position);
+        for (i, &(position, speed, changes)) in axes.iter().enumerate() {
+            if changes {
+                target.position[i] = position;
+                (target.velocity[i], target.acceleration[i]) =
+                    target_motion(limits.axis(i), speed.max(0.0), 0.5 * speed);
+            }
+        }
+        generator.set_moving_target(&target).unwrap();
+        for _ in 0..*cycles {
+            step(&mut generator)?;
+        }
+    }
+    for _ in 0..(generator.remaining() / CYCLE).ceil() as usize {
+        prop_assert!(!generator.is_done());
+        step(&mut generator)?;
+    }
+    prop_assert!(generator.is_done());
+    prop_assert_eq!(generator.state(), &State::at_rest(*generator.end()));
+    Ok(())
+}
+
+fn changes<const N: usize>() -> impl Strategy<Value = Vec<Change>> {
+    let axis = (-2.0..2.0, -1.0..1.0, any::<bool>());
+    let cycles = prop_oneof![0_usize..4, 0_usize..300];
+    proptest::collection::vec((cycles, proptest::collection::vec(axis, N)), 1..6)
+}
+
+fn leg() -> impl Strategy<Value = (f64, f64)> {
+    let distance = prop_oneof![-3.0..3.0, -0.1..0.1];
+    (distance, prop_oneof![4 => 0.0..1.0, 1 => Just(1.0)])
+}
+
+proptest! {
+    #![proptest_config(cases(1000))]
+
+    #[test]
+    fn one_axis_meets_its_target(problem in many_moving::<1>(mixed_limits())) {
+        check(problem)?;
+    }
+
+    #[test]
+    fn seven_axes_meet_their_targets_together(problem in many_moving::<7>(arm_limits())) {
+        check(problem)?;
+    }
+
+    #[test]
+    fn three_axes_with_mixed_limits_meet_their_targets_together(problem in many_moving::<3>(mixed_limits())) {
+        check(problem)?;
+    }
+
+    #[test]
+    fn limits_nine_decades_apart_are_kept(problem in many_moving::<1>(extreme_limits())) {
+        check(problem)?;
+    }
+
+    #[test]
+    fn no_motion_inside_the_limits_is_faster(
+        problem in many::<1>(mixed_limits()), legs in proptest::collection::vec(leg(), 1..4),
+    ) {
+        certify(problem, &legs)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(100))]
+
+    #[test]
+    fn one_axis_follows_what_moves_and_what_rests(
+        problem in many::<1>(arm_limits()), changes in changes::<1>(),
+    ) {
+        follow(problem, &changes)?;
+    }
+
+    #[test]
+    fn six_axes_follow_what_moves_and_what_rests(
+        problem in many::<6>(arm_limits()), changes in changes::<6>(),
+    ) {
+        follow(problem, &changes)?;
+    }
+
+    #[test]
+    fn one_axis_replanned_in_each_cycle_arrives_when_planned(problem in many_moving::<1>(arm_limits())) {
+        replan(problem)?;
+    }
+
+    #[test]
+    fn seven_axes_replanned_in_each_cycle_arrive_when_planned(problem in many_moving::<7>(arm_limits())) {
+        replan(problem)?;
+    }
+}
+
+/// As for targets at rest: what a rounding of the position costs in time near the end.
+const ROOT_OF_ROUNDING: f64 = 2e-5;

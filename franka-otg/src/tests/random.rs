@@ -1,0 +1,164 @@
+//! Random limits, states and targets.
+
+use proptest::prelude::*;
+
+use crate::{AxisLimits, AxisState, Generator, Limits, State};
+
+/// A number whose logarithm is uniform over `10^low..10^high`.
+fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
+    (low..high).prop_map(|exponent| 10_f64.powf(exponent))
+}
+
+fn limits(
+    velocity: (f64, f64),
+    acceleration: (f64, f64),
+    jerk: (f64, f64),
+) -> impl Strategy<Value = AxisLimits> {
+    let velocity = decades(velocity.0, velocity.1);
+    let acceleration = decades(acceleration.0, acceleration.1);
+    let jerk = decades(jerk.0, jerk.1);
+    (velocity, acceleration, jerk).prop_map(|(velocity, acceleration, jerk)| AxisLimits {
+        velocity,
+        acceleration,
+        jerk,
+    })
+}
+
+/// Limits as joints and tools of an arm have them, down to a tenth of full speed.
+pub(super) fn arm_limits() -> impl Strategy<Value = AxisLimits> {
+    limits((-1.0, 0.7), (0.0, 1.3), (2.0, 4.0))
+}
+
+/// Limits that reach each other or not: every family of profiles occurs.
+pub(super) fn mixed_limits() -> impl Strategy<Value = AxisLimits> {
+    limits((-1.0, 1.0), (-1.0, 1.5), (0.0, 4.0))
+}
+
+/// Limits up to nine decades apart.
+pub(super) fn extreme_limits() -> impl Strategy<Value = AxisLimits> {
+    limits((-3.0, 6.0), (-3.0, 6.0), (-3.0, 6.0))
+}
+
+/// One axis: limits, a state that can stay inside them, and a target.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Case {
+    pub(super) limits: AxisLimits,
+    pub(super) state: AxisState,
+    pub(super) target: f64,
+}
+
+impl Case {
+    pub(super) fn generator(&self) -> Generator<1> {
+        let limits = Limits::per_axis([self.limits]).unwrap();
+        let mut generator = Generator::new(one(self.state), limits).unwrap();
+        generator.set_target(&[self.target]).unwrap();
+        generator
+    }
+}
+
+pub(super) fn one(state: AxisState) -> State<1> {
+    State {
+        position: [state.position],
+        velocity: [state.velocity],
+        acceleration: [state.acceleration],
+    }
+}
+
+/// A state inside `limits` that can stay there: `coasting` and `bend` are fractions of what it may
+/// have.
+fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64) -> AxisState {
+    let sign = 1_f64.copysign(bend);
+    let coasting = limits.velocity * coasting;
+    // The velocity on the way to zero acceleration must not start outside either.
+    let room = (2.0 * limits.jerk * (limits.velocity + sign * coasting)).sqrt();
+    let acceleration = bend * limits.acceleration.min(room);
+    let lost = 0.5 * acceleration * acceleration.abs() / limits.jerk;
+    AxisState {
+        position,
+        velocity: (coasting - lost).clamp(-limits.velocity, limits.velocity),
+        acceleration,
+    }
+}
+
+/// Where an axis with these limits comes to rest if it gives up.
+pub(super) fn stop_point(limits: AxisLimits, state: AxisState) -> f64 {
+    let limits = Limits::per_axis([limits]).unwrap();
+    Generator::new(one(state), limits).unwrap().target()[0]
+}
+
+/// States inside the limits, with targets from far to within a millionth of where a stop would end.
+pub(super) fn problems(limits: impl Strategy<Value = AxisLimits>) -> impl Strategy<Value = Case> {
+    let fraction = || prop_oneof![4 => -1.0..1.0, 1 => Just(1.0), 1 => Just(0.0)];
+    let distance = (prop_oneof![3 => -1.0..1.5, 2 => -6.0..-1.0], any::<bool>());
+    (limits, fraction(), fraction(), distance).prop_map(
+        |(limits, coasting, bend, (exponent, up))| {
+            let state = inside(limits, 0.25, coasting, bend);
+            let AxisLimits {
+                velocity,
+                acceleration,
+                jerk,
+            } = limits;
+            let scale = velocity
+                * (velocity / acceleration + acceleration.min((velocity * jerk).sqrt()) / jerk);
+            let distance = scale * 10_f64.powf(exponent);
+            let stop = stop_point(limits, state);
+            Case {
+                limits,
+                state,
+                target: if up { stop + distance } else { stop - distance },
+            }
+        },
+    )
+}
+
+/// Limits, states and targets of `N` axes.
+pub(super) fn many<const N: usize>(
+    limits: impl Strategy<Value = AxisLimits>,
+) -> impl Strategy<Value = (Limits<N>, State<N>, [f64; N])> {
+    proptest::collection::vec(problems(limits), N).prop_map(|cases| {
+        let limits = Limits::per_axis(core::array::from_fn(|i| cases[i].limits)).unwrap();
+        let state = State {
+            position: core::array::from_fn(|i| cases[i].state.position),
+            velocity: core::array::from_fn(|i| cases[i].state.velocity),
+            acceleration: core::array::from_fn(|i| cases[i].state.acceleration),
+        };
+        (limits, state, core::array::from_fn(|i| cases[i].target))
+    })
+}
+
+/// A motion that a target may have: it can be met inside `limits`, and left.
+pub(super) fn target_motion(limits: AxisLimits, speed: f64, bend: f64) -> (f64, f64) {
+    let velocity = speed * limits.velocity;
+    let room = 2.0 * limits.jerk * (limits.velocity - velocity.abs());
+    (velocity, bend * limits.acceleration.min(room.sqrt()))
+}
+
+/// Limits, states and targets in motion of `N` axes; some targets move with constant velocity, some
+/// rest.
+pub(super) fn many_moving<const N: usize>(
+    limits: impl Strategy<Value = AxisLimits>,
+) -> impl Strategy<Value = (Limits<N>, State<N>, State<N>)> {
+    let bend = || prop_oneof![2 => Just(0.0), 1 => -1.0..1.0];
+    let speed = prop_oneof![6 => -1.0..1.0, 1 => Just(0.0), 1 => -1e-9..1e-9, 1 => Just(1.0)];
+    let motion = (speed, bend());
+    (many::<N>(limits), proptest::collection::vec(motion, N)).prop_map(
+        |((limits, state, position), motions)| {
+            let mut target = State::at_rest(position);
+            for (i, (speed, bend)) in motions.into_iter().enumerate() {
+                let (velocity, acceleration) = target_motion(limits.axis(i), speed, bend);
+                target.velocity[i] = velocity;
+                target.acceleration[i] = acceleration;
+            }
+            (limits, state, target)
+        },
+    )
+}
+
+/// So many cases, without a file of seeds beside the source: a case that failed is printed, and
+/// becomes a test of its own.
+pub(crate) fn cases(count: u32) -> ProptestConfig {
+    ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(count)
+    }
+}

@@ -1,0 +1,142 @@
+//! What can be read of a motion, and what can be changed in the middle of one.
+
+use std::vec::Vec;
+
+use crate::{AxisLimits, CYCLE, Generator, Limits, PlanError, Quantity, State, Synchronisation};
+
+fn limits() -> Limits<3> {
+    Limits::from_arrays([1.0, 0.8, 0.5], [5.0, 4.0, 6.0], [900.0, 800.0, 700.0]).unwrap()
+}
+
+fn moving(limits: Limits<3>, synchronisation: Synchronisation) -> Generator<3> {
+    let mut generator = Generator::new(State::at_rest([0.0; 3]), limits)
+        .unwrap()
+        .with_synchronisation(synchronisation);
+    generator.set_target(&[0.3, -0.2, 0.1]).unwrap();
+    for _ in 0..150 {
+        generator.step();
+    }
+    generator
+}
+
+/// The segments of each axis give the state at every instant from now on.
+fn check_segments(generator: &Generator<3>) {
+    for axis in 0..3 {
+        let segments: Vec<_> = generator.segments(axis).collect();
+        for k in 0..200 {
+            let t = f64::from(k) / 200.0 * generator.remaining();
+            let sample = generator.sample(t).axis(axis);
+            let segment = segments
+                .iter()
+                .rfind(|s| s.start <= t && t <= s.start + s.duration);
+            let Some(segment) = segment else { continue };
+            let got = segment.state.after(segment.jerk, t - segment.start);
+            assert!(
+                (got.position - sample.position).abs() < 1e-12,
+                "{axis} at {t}"
+            );
+            assert!(
+                (got.velocity - sample.velocity).abs() < 1e-11,
+                "{axis} at {t}"
+            );
+        }
+        let end = segments.last().map(|s| s.start + s.duration).unwrap();
+        assert!(
+            end <= generator.remaining() + 1e-9,
+            "axis {axis} ends at {end}"
+        );
+    }
+}
+
+#[test]
+fn segments_are_the_motion_on_a_line_off_it_and_behind_a_moving_target() {
+    check_segments(&moving(limits(), Synchronisation::Straight));
+    let mut generator = moving(limits(), Synchronisation::Time);
+    check_segments(&generator);
+    let target = State {
+        position: [0.4, 0.4, 0.4],
+        velocity: [0.2, 0.0, -0.1],
+        acceleration: [0.0; 3],
+    };
+    generator.set_moving_target(&target).unwrap();
+    check_segments(&generator);
+    let budget = AxisLimits {
+        velocity: 0.6,
+        acceleration: 4.0,
+        jerk: 1000.0,
+    };
+    let norms = Limits::norms(&[(3, budget)]).unwrap();
+    let mut generator = moving(norms, Synchronisation::Straight);
+    generator.set_target(&[-0.3, 0.4, 0.1]).unwrap();
+    check_segments(&generator);
+}
+
+#[test]
+fn a_target_in_motion_is_met_when_it_was_said_to_be() {
+    let mut generator = moving(limits(), Synchronisation::Time);
+    let target = State {
+        position: [0.4, 0.4, 0.4],
+        velocity: [0.2, 0.0, -0.1],
+        acceleration: [0.0; 3],
+    };
+    generator.set_moving_target(&target).unwrap();
+    assert_eq!(generator.target(), &target.position);
+    let arrival = generator.time_to_target();
+    let met = generator.sample(arrival);
+    for i in 0..3 {
+        assert!((met.position[i] - target.position[i]).abs() < 1e-12);
+        assert!((met.velocity[i] - target.velocity[i]).abs() < 1e-11);
+    }
+    generator.step();
+    assert!((generator.time_to_target() - (arrival - CYCLE)).abs() < 1e-12);
+    while !generator.is_done() {
+        generator.step();
+    }
+    assert_eq!(generator.time_to_target(), 0.0);
+    assert_eq!(generator.state(), &State::at_rest(*generator.end()));
+    assert!(
+        generator.end()[0] > 0.4 && generator.end()[2] < 0.4,
+        "behind it"
+    );
+}
+
+#[test]
+fn a_new_position_keeps_the_motion() {
+    let mut generator = moving(limits(), Synchronisation::Time);
+    let before = *generator.state();
+    generator.set_position([0.1, -0.1, 0.05]).unwrap();
+    assert_eq!(generator.state().position, [0.1, -0.1, 0.05]);
+    assert_eq!(generator.state().velocity, before.velocity);
+    assert_eq!(generator.state().acceleration, before.acceleration);
+    while !generator.is_done() {
+        generator.step();
+    }
+    assert_eq!(generator.state(), &State::at_rest([0.3, -0.2, 0.1]));
+}
+
+#[test]
+fn targets_that_the_limits_do_not_allow_are_refused() {
+    let mut generator = moving(limits(), Synchronisation::Time);
+    let motion = |velocity, acceleration| State {
+        position: [0.4; 3],
+        velocity: [0.0, velocity, 0.0],
+        acceleration: [0.0, acceleration, 0.0],
+    };
+    let refused = Err(PlanError::TargetMotion { axis: 1 });
+    assert_eq!(generator.set_moving_target(&motion(0.81, 0.0)), refused);
+    assert_eq!(generator.set_moving_target(&motion(0.0, -4.1)), refused);
+    // At its limit the velocity cannot have an acceleration: it came from beyond, or goes there.
+    assert_eq!(generator.set_moving_target(&motion(0.8, 1.0)), refused);
+    assert_eq!(
+        generator.set_moving_target(&motion(f64::NAN, 0.0)),
+        Err(PlanError::NotFinite {
+            quantity: Quantity::TargetVelocity,
+            axis: 1
+        })
+    );
+    assert_eq!(generator.target(), &[0.3, -0.2, 0.1]);
+    generator.set_moving_target(&motion(0.8, 0.0)).unwrap();
+    let slow = Limits::from_arrays([0.5; 3], [5.0; 3], [900.0; 3]).unwrap();
+    assert_eq!(generator.set_limits(slow), refused);
+    assert_eq!(generator.limits(), &limits());
+}
