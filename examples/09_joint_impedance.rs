@@ -44,9 +44,9 @@ async fn main() -> anyhow::Result<()> {
         command.finish_if(time >= DURATION)
     });
 
-    let model = robot.model().clone();
+    let (model, version) = (robot.model().clone(), robot.version());
     let circle = circle.with_torques(move |state, _| {
-        let coriolis = dynamics(&model, state).coriolis;
+        let coriolis = dynamics(&model, version, state).coriolis;
         // Gravity and friction are the robot's business; what is commanded comes on top.
         let torques = JointVector::from_fn(|i, _| {
             STIFFNESS[i] * (state.q_d[i] - state.q[i]) + DAMPING[i] * (state.dq_d[i] - state.dq[i])

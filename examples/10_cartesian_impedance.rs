@@ -6,7 +6,9 @@
 //! likewise `active`
 
 use clap::{Parser, ValueEnum};
-use franka_async::{Finish, Model, MotionError, MotionReport, Pose, Robot, RobotState, Torques};
+use franka_async::{
+    Finish, Model, MotionError, MotionReport, Pose, Robot, RobotState, Torques, Version,
+};
 use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
 use franka_model::{JointVector, Twist, Wrench, rotation, transform};
 use franka_rt::sched::Scheduling;
@@ -40,6 +42,7 @@ async fn main() -> anyhow::Result<()> {
     let start = robot.pose();
     let springs = Springs {
         model: robot.model().clone(),
+        version: robot.version(),
         place: start,
     };
     if let Some(sim) = &sim {
@@ -64,6 +67,7 @@ async fn main() -> anyhow::Result<()> {
 /// Springs and dampers between the hand and a place in the room.
 struct Springs {
     model: Model,
+    version: Version,
     place: Pose,
 }
 
@@ -79,7 +83,7 @@ impl Springs {
     /// What the springs answer a state with: `J' (K e - D J dq)`, a damper at each joint, and the
     /// Coriolis torques.
     fn torques(&self, state: &RobotState) -> Torques {
-        let dynamics = dynamics(&self.model, state);
+        let dynamics = dynamics(&self.model, self.version, state);
         let pose = transform::isometry(&dynamics.pose).unwrap_or(self.place);
         let dq = JointVector::from(state.dq);
         let twist = dynamics.jacobian * dq;

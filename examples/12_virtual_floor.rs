@@ -5,7 +5,7 @@
 //! `cargo run --release --example virtual_floor -- [ADDRESS] [--below 0.05] [--seconds 20]`
 
 use clap::Parser;
-use franka_async::{Finish, Model, RobotState, Torques};
+use franka_async::{Finish, Model, RobotState, Torques, Version};
 use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
 use franka_model::{Dynamics, JointVector, READY, Twist, Wrench};
 
@@ -28,6 +28,7 @@ async fn main() -> anyhow::Result<()> {
     let (robot, sim) = arguments.connection.open_ready(what).await?;
     let law = Law {
         model: robot.model().clone(),
+        version: robot.version(),
         floor: robot.pose().translation.z - arguments.below,
     };
     println!("floor at {:.4} m", law.floor);
@@ -49,6 +50,7 @@ async fn main() -> anyhow::Result<()> {
 
 struct Law {
     model: Model,
+    version: Version,
     /// Height of the floor in the base frame, `[m]`.
     floor: f64,
 }
@@ -67,7 +69,7 @@ const POSTURE: (f64, f64) = (20.0, 4.0);
 
 impl Law {
     fn torques(&self, state: &RobotState) -> Torques {
-        let dynamics = dynamics(&self.model, state);
+        let dynamics = dynamics(&self.model, self.version, state);
         let dq = JointVector::from(state.dq);
         let twist = dynamics.jacobian * dq;
 

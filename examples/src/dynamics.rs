@@ -1,14 +1,14 @@
 //! What a torque law needs of the model.
 
-use franka_async::{Model, RobotState};
+use franka_async::{Model, RobotState, Version};
 use franka_model::{Dynamics, EndEffector, Load};
 
 /// The model at a state: pose, Jacobian, mass, Coriolis and gravity torques, with the end effector
 /// and the load that the robot has been told of.
 ///
 /// One pass over the arm, and no allocation: made to be called in a control function.
-pub fn dynamics(model: &Model, state: &RobotState) -> Dynamics {
-    let load = state.total_load();
+pub fn dynamics(model: &Model, version: Version, state: &RobotState) -> Dynamics {
+    let load = state.total_load(version);
     model.dynamics(
         &state.q.into(),
         &state.dq.into(),

@@ -196,7 +196,7 @@ proptest! {
         prop_assert_eq!(command.is_ok(), bytes.len() >= version.command_size());
         let _ = next_message(&bytes);
         if let Ok(state) = state {
-            let _ = state.total_load();
+            let _ = state.total_load(version);
         }
     }
 

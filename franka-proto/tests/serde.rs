@@ -46,7 +46,7 @@ fn a_state_has_the_vendors_names_and_its_errors_by_name() {
     assert_eq!(json["O_T_EE"][5], json!(1.0));
     let fields = json.as_object().unwrap();
     assert!(fields.contains_key("K_F_ext_hat_K") && fields.contains_key("ddelbow_c"));
-    round_trip(&state.total_load());
+    round_trip(&state.total_load(Version::V10));
 }
 
 #[test]

@@ -14,6 +14,8 @@ pub(crate) struct StateCodec {
     pub(crate) size: usize,
     pub(super) decode: fn(&[u8]) -> Result<RobotState, DecodeError>,
     pub(super) encode: fn(&RobotState, &mut [u8]) -> Result<usize, EncodeError>,
+    /// The sum of two numbers in the precision of the layout.
+    pub(super) add: fn(f64, f64) -> f64,
 }
 
 impl StateCodec {
@@ -24,6 +26,7 @@ impl StateCodec {
             size: size_of::<wire::RobotState<R, A>>(),
             decode: decode::<R, A, G>,
             encode: encode::<R, A, G>,
+            add: |a, b| R::narrow(a).add(R::narrow(b)).widen(),
         }
     }
 }

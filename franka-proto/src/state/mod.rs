@@ -175,10 +175,15 @@ impl RobotState {
         self.generator_running() || self.controller_running()
     }
 
-    /// End effector and load as one body.
+    /// End effector and load as one body, equal to the last bit to what libfranka computes from a
+    /// state of this version.
+    ///
+    /// The masses are added in the precision in which the version sends them, as libfranka does;
+    /// everything else is computed as `f64`.
     #[must_use]
-    pub fn total_load(&self) -> TotalLoad {
-        TotalLoad::of(self)
+    pub fn total_load(&self, version: Version) -> TotalLoad {
+        let m_total = (version.table().state_codec.add)(self.m_ee, self.m_load);
+        TotalLoad::of(self, m_total)
     }
 }
 

@@ -29,7 +29,7 @@ impl RobotState {
 
 impl fmt::Display for StateText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (state, total) = (self.state, self.state.total_load());
+        let (state, total) = (self.state, self.state.total_load(self.version));
         f.write_str("{")?;
         macro_rules! write_fields {
             ($($of:ident $field:ident),*) => {

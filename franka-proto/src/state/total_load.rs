@@ -17,38 +17,29 @@ pub struct TotalLoad {
 }
 
 impl TotalLoad {
-    /// libfranka 0.21, `robot_state.h`: masses add, the centre is their mean, and each inertia is
-    /// moved to it by the parallel axis theorem. A body without mass has no inertia.
-    ///
-    /// libfranka 0.21 adds the masses as `f32`, as they are on the wire; here they are added as
-    /// `f64`, which differs by half a step of an `f32` at most.
-    pub(super) fn of(state: &RobotState) -> Self {
-        let bodies = [
-            (state.m_ee, &state.F_x_Cee, &state.I_ee),
-            (state.m_load, &state.F_x_Cload, &state.I_load),
-        ];
-        let m_total = state.m_ee + state.m_load;
-        if m_total <= 0.0 {
-            return Self {
-                m_total,
-                F_x_Ctotal: [0.0; 3],
-                I_total: [0.0; 9],
-            };
-        }
+    /// The sums of libfranka 0.21, `load_calculations.cpp`, in its order of operations: the centre
+    /// of mass is the mean of both, each inertia is moved to it by the parallel axis theorem. A
+    /// body without mass has no inertia.
+    pub(super) fn of(state: &RobotState, m_total: f64) -> Self {
+        // As `f64`, which `m_total` is not in protocol 10.
+        let mass = state.m_ee + state.m_load;
         let F_x_Ctotal = core::array::from_fn(|axis| {
-            bodies
-                .map(|(mass, centre, _)| mass * centre[axis])
-                .iter()
-                .sum::<f64>()
-                / m_total
-        });
-        let mut I_total = steiner(-m_total, &F_x_Ctotal);
-        for (mass, centre, inertia) in bodies.into_iter().filter(|(mass, ..)| *mass != 0.0) {
-            let moved = steiner(mass, centre);
-            for (total, (own, moved)) in I_total.iter_mut().zip(inertia.iter().zip(moved)) {
-                *total += own + moved;
+            if mass > 0.0 {
+                (state.m_ee * state.F_x_Cee[axis] + state.m_load * state.F_x_Cload[axis]) / mass
+            } else {
+                0.0
             }
-        }
+        });
+        let ee = about_flange(state.m_ee, &state.F_x_Cee, &state.I_ee);
+        let load = about_flange(state.m_load, &state.F_x_Cload, &state.I_load);
+        let total = skew_squared(m_total, &F_x_Ctotal);
+        let I_total = core::array::from_fn(|i| {
+            if m_total == 0.0 {
+                0.0
+            } else {
+                ee[i] + load[i] + total[i]
+            }
+        });
         Self {
             m_total,
             F_x_Ctotal,
@@ -57,20 +48,36 @@ impl TotalLoad {
     }
 }
 
-/// Inertia of a point mass at `x` about the origin: `mass * (|x|^2 1 - x x')`, which is
-/// `-mass * S(x)^2` with the skew matrix `S`. Symmetric, so column-major is row-major.
-fn steiner(mass: f64, x: &[f64; 3]) -> [f64; 9] {
-    let square: f64 = x.iter().map(|x| x * x).sum();
-    core::array::from_fn(|index| {
-        let (row, column) = (index % 3, index / 3);
-        let diagonal = if row == column { square } else { 0.0 };
-        mass * (diagonal - x[row] * x[column])
+/// The inertia of a body about the origin of the flange: `inertia - mass * S(centre)^2`.
+fn about_flange(mass: f64, centre: &[f64; 3], inertia: &[f64; 9]) -> [f64; 9] {
+    let moved = skew_squared(mass, centre);
+    core::array::from_fn(|i| {
+        let own = if mass == 0.0 { 0.0 } else { inertia[i] };
+        own - moved[i]
     })
+}
+
+/// `mass * S(x)^2` with the skew matrix `S`: minus the inertia of a point mass at `x` about the
+/// origin. Column-major; Eigen multiplies the first factor by the mass, which decides the last bit.
+fn skew_squared(mass: f64, [x, y, z]: &[f64; 3]) -> [f64; 9] {
+    let (mx, my, mz) = (mass * x, mass * y, mass * z);
+    [
+        -(mz * z + my * y),
+        mx * y,
+        mx * z,
+        my * x,
+        -(mz * z + mx * x),
+        my * z,
+        mz * x,
+        mz * y,
+        -(my * y + mx * x),
+    ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::version::Version;
 
     /// From vectors of libfranka's own computation.
     #[test]
@@ -131,13 +138,8 @@ mod tests {
                 0.020814351226077794,
             ],
         };
-        let total = state.total_load();
-        assert_eq!(total.m_total, expected.m_total);
-        assert_eq!(total.F_x_Ctotal, expected.F_x_Ctotal);
-        // The sums are in another order.
-        for (got, expected) in total.I_total.iter().zip(expected.I_total) {
-            assert!((got - expected).abs() < 1e-16, "{got} {expected}");
-        }
+        // The numbers of the vectors are `f64`, as protocol 5 has them.
+        assert_eq!(state.total_load(Version::V5), expected);
     }
 
     #[test]
@@ -148,13 +150,75 @@ mod tests {
             m_load: 2.0,
             ..RobotState::default()
         };
-        assert_eq!(state.total_load().I_total, [1.0; 9]);
+        for version in Version::ALL {
+            assert_eq!(state.total_load(version).I_total, [1.0; 9]);
+        }
         state.m_load = 0.0;
         let nothing = TotalLoad {
             m_total: 0.0,
             F_x_Ctotal: [0.0; 3],
             I_total: [0.0; 9],
         };
-        assert_eq!(state.total_load(), nothing);
+        for version in Version::ALL {
+            assert_eq!(state.total_load(version), nothing);
+        }
+    }
+
+    /// Masses above 1 kg as a datagram carries them. Sums of two `f32` take more than its 24 bits,
+    /// so the two precisions differ; the expected values were computed elsewhere.
+    #[test]
+    fn the_masses_of_protocol_10_are_added_in_single_precision() {
+        for (m_ee, m_load, single, double) in [
+            // 1 + 2^-23 and 2 + 2^-22: the exact sum ends halfway between two values and is
+            // rounded to the even one, 3 + 2^-21.
+            (
+                0x3f80_0001,
+                0x4000_0001,
+                0x4040_0002,
+                3.0 + 3.0 / 8_388_608.0,
+            ),
+            // 1.1 and 2.3.
+            (0x3f8c_cccd, 0x4013_3333, 0x4059_999a, 3.399_999_976_158_142),
+            // 1.7 and 2.6.
+            (0x3fd9_999a, 0x4026_6666, 0x4089_999a, 4.299_999_952_316_284),
+        ] {
+            let [m_ee, m_load, single] = [m_ee, m_load, single].map(f32::from_bits);
+            let state = RobotState {
+                m_ee: m_ee.into(),
+                m_load: m_load.into(),
+                ..RobotState::default()
+            };
+            let mut bytes = [0; RobotState::MAX_SIZE];
+            for (version, expected) in [(Version::V10, single.into()), (Version::V5, double)] {
+                let size = state.encode(version, &mut bytes).unwrap();
+                let received = RobotState::decode(version, &bytes[..size]).unwrap();
+                assert_eq!(received, state);
+                assert_eq!(
+                    received.total_load(version).m_total,
+                    expected,
+                    "{version:?}"
+                );
+            }
+        }
+    }
+
+    /// The mean of the centres divides by the sum as `f64`, the inertia takes the rounded mass.
+    #[test]
+    fn only_the_mass_of_protocol_10_is_rounded() {
+        let state = RobotState {
+            m_ee: f64::from(1.1_f32),
+            m_load: f64::from(2.3_f32),
+            F_x_Cee: [0.25, 0.0, 0.0],
+            F_x_Cload: [0.0, 0.5, 0.0],
+            ..RobotState::default()
+        };
+        let [v5, v10] = Version::ALL.map(|version| state.total_load(version));
+        assert_ne!(v10.m_total, v5.m_total);
+        assert_eq!(v10.F_x_Ctotal, v5.F_x_Ctotal);
+        let [x, y, _] = v10.F_x_Ctotal;
+        let about_flange = state.m_load * 0.5 * 0.5;
+        assert_eq!(v10.I_total[0], about_flange - v10.m_total * y * y);
+        assert_ne!(v10.I_total[0], v5.I_total[0]);
+        assert_eq!(v10.I_total[1], v10.m_total * x * y);
     }
 }

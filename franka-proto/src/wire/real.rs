@@ -18,6 +18,9 @@ pub trait Real:
 
     /// The nearest value of the wire's width.
     fn narrow(value: f64) -> Self;
+
+    /// The sum, rounded to the wire's width.
+    fn add(self, other: Self) -> Self;
 }
 
 impl Real for F32 {
@@ -30,6 +33,11 @@ impl Real for F32 {
     fn narrow(value: f64) -> Self {
         Self::new(value as f32)
     }
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.get() + other.get())
+    }
 }
 
 impl Real for F64 {
@@ -41,6 +49,11 @@ impl Real for F64 {
     #[inline]
     fn narrow(value: f64) -> Self {
         Self::new(value)
+    }
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.get() + other.get())
     }
 }
 

@@ -54,7 +54,7 @@ pub fn robot_state(bytes: &[u8]) {
         let state = RobotState::decode(version, bytes);
         assert_eq!(state.is_ok(), bytes.len() >= version.state_size());
         let Ok(state) = state else { continue };
-        let _ = state.total_load();
+        let _ = state.total_load(version);
         // Bits may be lost on the way to meaning (a flag of 7 is true), and then no more.
         let write = |state: &RobotState| {
             let mut bytes = [0; RobotState::MAX_SIZE];

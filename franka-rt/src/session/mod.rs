@@ -383,10 +383,10 @@ fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
     })
 }
 
-/// The load of end effector and payload together that a state names. `None` if a number of it is
-/// not finite.
-fn load_of(state: &RobotState) -> Option<Load> {
-    let total = state.total_load();
+/// The load of end effector and payload together in a state of `version`. `None` if a number of it
+/// is not finite.
+fn load_of(state: &RobotState, version: Version) -> Option<Load> {
+    let total = state.total_load(version);
     let numbers = [&[total.m_total][..], &total.F_x_Ctotal, &total.I_total];
     let finite = numbers.into_iter().flatten().all(|x| x.is_finite());
     finite.then(|| Load {

@@ -106,7 +106,7 @@ impl Active {
         let q = JointVector::from(q);
         let reference = Reference::at_rest(q);
         let ee = end_effector_of(state)?;
-        let load = load_of(state)?;
+        let load = load_of(state, version)?;
         let mut this = Self {
             drive,
             aim: goal.target,
