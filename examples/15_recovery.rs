@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 use clap::Parser;
-use franka_async::{Finish, JointVelocities, MotionError, RobotMode};
+use franka_async::{Diagnose, Finish, JointVelocities, MotionError, RobotMode};
 use franka_examples::{Connection, Ease, Summary};
 
 #[derive(Parser)]
@@ -40,7 +40,7 @@ async fn main() -> anyhow::Result<()> {
         Ok(_) => bail!("the robot took a step in velocity"),
     };
     println!("{error}");
-    if let Some(diagnosis) = &error.diagnosis {
+    if let Some(diagnosis) = error.diagnose() {
         println!("{diagnosis}");
     }
     let newest = error.log.iter().next_back();

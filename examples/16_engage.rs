@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use clap::Parser;
 use franka_async::{
-    Chunk, Deadman, Engage, Free, Gains, MotionError, Pose, PoseError, Robot, RobotState, Stale,
-    Tuning,
+    Chunk, Deadman, Diagnose, Engage, Free, Gains, MotionError, Pose, PoseError, Robot, RobotState,
+    Stale, Tuning,
 };
 use franka_examples::Arguments;
 use tokio::sync::watch;
@@ -20,7 +20,7 @@ async fn main() -> anyhow::Result<()> {
     connection.ask("moves its hand by up to 10 cm from where it is")?;
     let outcome = run(&robot).await;
     if let Err(error) = &outcome
-        && let Some(diagnosis) = error.diagnosis()
+        && let Some(diagnosis) = error.diagnose()
     {
         eprintln!("{diagnosis}");
     }

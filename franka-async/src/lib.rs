@@ -99,6 +99,7 @@ pub use reading::{ReadError, Reading, StateStream};
 pub use robot::Robot;
 pub use vacuum::{VacuumGripper, VacuumGripperError};
 
+pub use franka_diagnosis::{self as diagnosis, Diagnose, Diagnosis};
 pub use franka_model::collision::Obstacle;
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 pub use franka_model::model_library::{LibraryError, ModelLibrary};
@@ -116,7 +117,6 @@ pub use franka_rt::control::{
     AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next,
     TargetStatus, Torques,
 };
-pub use franka_rt::diagnosis::{self, Diagnosis};
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::law::{GainError, Gains, Law};
 pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};

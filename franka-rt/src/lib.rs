@@ -15,7 +15,6 @@
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
 //!   Pure.
-//! * [`diagnosis`]: why the robot ended a motion, read off its last cycles. Pure.
 //! * [`together`]: motions of several robots that begin at the same time.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
 //! * [`slot`], [`wake`], [`audience`], [`exchange`], [`sched`], [`stats`]: what the loop is built
@@ -26,7 +25,6 @@
 
 pub mod audience;
 pub mod control;
-pub mod diagnosis;
 pub mod driver;
 pub mod exchange;
 pub mod law;

@@ -4,12 +4,10 @@ use std::fmt::Debug;
 use std::sync::Arc;
 use std::time::Duration;
 
-use franka_model::Model;
 use franka_proto::{
-    ControllerMode, MotionGeneratorMode, RobotCommand, RobotError, RobotMode, RobotState, Version,
+    ControllerMode, MotionGeneratorMode, RobotError, RobotMode, RobotState, Version,
 };
 use franka_rt::control::{Callback, Finish, TargetStatus, Torques};
-use franka_rt::diagnosis::{Case, Commander, Diagnosis};
 use franka_rt::driver::{Activity, ControlLog, Driver, Modes, MotionId, Order, Program, Record};
 use franka_rt::lifecycle::{MotionReport, Party};
 use franka_rt::session::{Bindings, PoseError};
@@ -147,34 +145,4 @@ fn a_log_is_its_cycles_oldest_first() {
         entries[2]["command"]["torque_command_finished"],
         json!(true)
     );
-}
-
-#[test]
-fn a_diagnosis_names_its_parts() {
-    let state = |message_id, dq: f64| RobotState {
-        message_id,
-        dq: [0.0, 0.0, 0.0, dq, 0.0, 0.0, 0.0],
-        controller_mode: ControllerMode::ExternalController,
-        ..RobotState::default()
-    };
-    let log: ControlLog = serde_json::from_value(json!([
-        { "state": state(7, 0.0), "command": RobotCommand::default() },
-        { "state": state(8, 3.0), "command": RobotCommand::default() },
-    ]))
-    .unwrap();
-    let diagnosis = Diagnosis::of(&Case {
-        commander: Commander::Function,
-        errors: RobotError::JointVelocityViolation.into(),
-        log: &log,
-        model: Model::fer(),
-        statistics: None,
-    });
-    let value = round_trip(&diagnosis);
-    assert_eq!(value["commander"], "Function");
-    assert_eq!(value["error"], "joint_velocity_violation");
-    assert_eq!(value["finding"]["subject"], json!({ "Joint": 4 }));
-    assert_eq!(value["finding"]["bound"], json!({ "AtMost": 2.175 }));
-    assert_eq!(value["finding"]["since"], 8);
-    // Joint 4 at zero is outside its range, too.
-    assert_eq!(value["advice"], json!(["SlowDown", "StayInRange"]));
 }

@@ -26,6 +26,7 @@
 //! that its memory is freed elsewhere.
 
 mod aftermath;
+mod commander;
 mod event;
 mod link_timeout;
 mod log;
@@ -45,6 +46,7 @@ use franka_proto::{RobotCommand, RobotState, Version};
 use crate::control::{Command, WriteError};
 use crate::together::Gate;
 
+pub use commander::Commander;
 pub use event::{Ended, Ending, Event};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
 pub use log::{ControlLog, LogEntry};

@@ -9,6 +9,7 @@ use crate::stats::{CycleTimes, Histogram, Slack};
 
 /// Counts over the running time of one motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionStatistics {
     /// States of the motion that were received and not skipped.
     pub cycles: u64,

@@ -9,7 +9,6 @@ use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
-use crate::diagnosis::{Case, Diagnosis};
 use crate::driver::{Ended, Ending, Failure, MotionId, MotionTimes, Order, Program};
 use crate::panic;
 use crate::session::{Backend, ChunkWriter, Goal, GoalError, GoalId, Settlement, Target, Then};
@@ -148,12 +147,12 @@ pub(super) enum ThreadSide {
 }
 
 impl Active {
-    /// How it turned out with a robot of this model, both sides having ended.
-    pub(super) fn verdict(
-        &self,
-        ended: &Ended,
-        model: &Model,
-    ) -> Result<MotionReport, MotionError> {
+    /// How the motion turned out with a robot of this model, once both sides have ended. The log
+    /// moves into the error, if that holds one.
+    pub(super) fn verdict(&mut self, model: &Arc<Model>) -> Result<MotionReport, MotionError> {
+        let ThreadSide::Ended(ended) = &mut self.thread else {
+            unreachable!("a motion concludes when its thread side has ended")
+        };
         // What came after a failure is its consequence.
         if let Some(failure) = self.work.failure() {
             return Err(failure.clone());
@@ -388,21 +387,14 @@ impl Programmed {
 }
 
 impl ControlError {
-    /// A robot of this model ended a motion with `refusal`.
-    fn new(refusal: Refusal, ended: &Ended, model: &Model) -> Box<Self> {
-        let case = Case {
-            commander: (&ended.program).into(),
-            errors: ended.reflex_reason,
-            log: &ended.log,
-            model,
-            statistics: Some(&ended.statistics),
-        };
-        let is_reflex = refusal.status() == Status::Move(MoveStatus::ReflexAborted);
+    /// A robot of this model ended a motion with `refusal`. Takes the log of the motion.
+    fn new(refusal: Refusal, ended: &mut Ended, model: &Arc<Model>) -> Box<Self> {
+        let log = core::mem::take(&mut ended.log);
         Box::new(Self {
             failure: ControlFailure {
                 refusal,
                 reflex_reason: ended.reflex_reason,
-                success_rate: ended.log.success_rate(),
+                success_rate: log.success_rate(),
             },
             errors: ended.errors,
             stage: match ended.ending {
@@ -410,8 +402,10 @@ impl ControlError {
                 Ending::Aborted => Stage::Running,
                 Ending::Disarmed | Ending::Refused | Ending::LinkLost { .. } => Stage::Starting,
             },
-            log: Arc::new(ended.log.clone()),
-            diagnosis: is_reflex.then(|| Diagnosis::of(&case)),
+            log: Arc::new(log),
+            commander: (&ended.program).into(),
+            statistics: ended.statistics,
+            model: model.clone(),
         })
     }
 }

@@ -459,7 +459,8 @@ impl Lifecycle {
                     }
                     return;
                 }
-                (active.verdict(ended, &self.model), Counted::of(ended))
+                let counted = Counted::of(ended);
+                (active.verdict(&self.model), counted)
             }
             (None, ThreadSide::Armed | ThreadSide::Running) => {
                 unreachable!("a motion concludes when its thread side has ended")

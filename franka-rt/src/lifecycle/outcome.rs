@@ -3,10 +3,10 @@
 use core::time::Duration;
 use std::sync::Arc;
 
+use franka_model::Model;
 use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
 
-use crate::diagnosis::Diagnosis;
-use crate::driver::{ControlLog, Ended, MotionStatistics, MotionTimes};
+use crate::driver::{Commander, ControlLog, Ended, MotionStatistics, MotionTimes};
 use crate::session::{GoalError, Lapse, PoseError};
 use crate::shaping::InvalidCommand;
 use crate::stats::{CycleTimes, Quantiles, Slack};
@@ -195,11 +195,6 @@ impl MotionError {
         }
     }
 
-    /// Why the robot stopped itself, if that is what happened.
-    pub fn diagnosis(&self) -> Option<&Diagnosis> {
-        self.control()?.diagnosis.as_ref()
-    }
-
     /// Who can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -268,8 +263,13 @@ pub struct ControlError {
     /// The last cycles of the motion, the newest of which shows its end. How many is an option of
     /// the connection.
     pub log: Arc<ControlLog>,
-    /// Why the robot stopped itself, as far as the log shows; `None` if it did not.
-    pub diagnosis: Option<Diagnosis>,
+    /// What commanded the motion.
+    pub commander: Commander,
+    /// Counts over the motion.
+    pub statistics: MotionStatistics,
+    /// The model that control computed with.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub model: Arc<Model>,
 }
 
 impl ControlError {

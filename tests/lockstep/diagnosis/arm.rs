@@ -1,10 +1,10 @@
 //! What the arm met: hands, limits, singular postures.
 
 use super::{begin, diagnosis, found, limit, velocities};
+use franka_diagnosis::{Advice, Axis, Bound, Cause, Diagnose, Origin, Quantity, Subject};
 use franka_model::RobotKind;
 use franka_proto::{CollisionBehavior, Request, RobotError};
 use franka_rt::control::{Callback, CartesianVelocities, JointVelocities, Torques};
-use franka_rt::diagnosis::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::Target;
 use franka_sim::Touch;
@@ -79,7 +79,7 @@ fn a_push_on_a_joint_names_it() {
         let Err(MotionError::Control(error)) = outcome else {
             panic!("{outcome:?}")
         };
-        let diagnosis = error.diagnosis.expect("a reflex");
+        let diagnosis = error.diagnose().expect("a reflex");
         println!("{diagnosis}\n");
         assert_eq!(found(&diagnosis).0, RobotError::JointReflex);
         assert_eq!(found(&diagnosis).1, Subject::Joint(2));

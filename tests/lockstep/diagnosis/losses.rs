@@ -1,9 +1,9 @@
 //! Packets that were lost, and cycles that were not noted.
 
 use super::{begin, diagnosis, found, stepping, velocities};
+use franka_diagnosis::{Advice, Bound, Cause, Diagnosis, Quantity, Subject};
 use franka_proto::RobotError;
 use franka_rt::control::{Callback, Torques};
-use franka_rt::diagnosis::{Advice, Bound, Cause, Diagnosis, Quantity, Subject};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 fn starving(lockstep: &mut Lockstep, lose: impl FnOnce(&mut Lockstep)) -> Diagnosis {

@@ -4,9 +4,9 @@ mod arm;
 mod losses;
 mod steps;
 
+use franka_diagnosis::{Diagnose, Diagnosis, Origin, Quantity, Subject};
 use franka_proto::{MoveControllerMode, RobotError};
 use franka_rt::control::{Callback, JointVelocities};
-use franka_rt::diagnosis::{Diagnosis, Origin, Quantity, Subject};
 use franka_rt::driver::Program;
 use franka_rt::session::GoalId;
 use franka_rt::shaping::Shaper;
@@ -42,7 +42,7 @@ fn velocities(
 /// Runs until a reflex ends the motion; prints what is said of it, and checks its shape.
 fn diagnosis(lockstep: &mut Lockstep, work: GoalId) -> Diagnosis {
     let error = lockstep.until_resolved(work, 8000).expect_err("a reflex");
-    let diagnosis = error.diagnosis().expect("the robot's doing").clone();
+    let diagnosis = error.diagnose().expect("the robot's doing");
     println!("{diagnosis}\n");
     let text = diagnosis.to_string();
     assert!(text.lines().count() <= 6, "{text}");

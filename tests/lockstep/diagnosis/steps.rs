@@ -1,11 +1,11 @@
 //! Commands that step.
 
 use super::{QUIET, begin, diagnosis, found, limit, stepping, velocities};
+use franka_diagnosis::{Advice, Axis, Cause, Origin, Quantity, Subject};
 use franka_proto::RobotError;
 use franka_rt::control::{
     Callback, CartesianPose, Finish, JointPositions, JointVelocities, Torques,
 };
-use franka_rt::diagnosis::{Advice, Axis, Cause, Origin, Quantity, Subject};
 use franka_tests::lockstep::for_each_robot;
 
 #[test]

@@ -12,7 +12,7 @@ use franka_proto::{
 
 use super::evidence::Evidence;
 use super::{Commander, Diagnosis, Finding};
-use crate::driver::{LogEntry, MotionStatistics};
+use franka_rt::driver::{LogEntry, MotionStatistics};
 
 /// A log in the making: a state, then pairs of a command and the state after it.
 struct Story {

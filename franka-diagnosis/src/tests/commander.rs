@@ -3,7 +3,7 @@ use franka_proto::MotionGeneratorMode as Generator;
 use franka_proto::RobotError as E;
 
 use super::*;
-use crate::diagnosis::{Advice, Bound, Cause, Origin, Quantity, Subject};
+use crate::{Advice, Bound, Cause, Origin, Quantity, Subject};
 
 const ALL: [Commander; 4] = [
     Commander::Goals,

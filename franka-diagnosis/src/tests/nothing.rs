@@ -3,7 +3,7 @@ use franka_proto::MotionGeneratorMode as Generator;
 use franka_proto::RobotError as E;
 
 use super::*;
-use crate::diagnosis::Advice;
+use crate::Advice;
 
 #[test]
 fn what_the_log_does_not_show_is_said_not_to_be_visible() {

@@ -19,7 +19,6 @@
 mod advice;
 mod cause;
 mod commanded;
-mod commander;
 mod evidence;
 mod finding;
 mod judge;
@@ -33,16 +32,44 @@ mod touch;
 
 use core::fmt;
 
+use evidence::Evidence;
 use franka_model::Model;
 use franka_proto::{Errors, RobotError};
-
-use crate::driver::{ControlLog, MotionStatistics};
-use evidence::Evidence;
+use franka_rt::driver::{ControlLog, MotionStatistics};
+use franka_rt::lifecycle::{ControlError, MotionError};
 
 pub use advice::Advice;
 pub use cause::Cause;
-pub use commander::Commander;
 pub use finding::{Axis, Bound, Finding, Origin, Quantity, Subject};
+pub use franka_rt::driver::Commander;
+
+/// Errors that carry the log of the motion that they ended.
+pub trait Diagnose {
+    /// Why the robot stopped itself, as far as the log shows; `None` for any other end of a motion.
+    ///
+    /// Computed at each call, which allocates and takes up to a few milliseconds.
+    fn diagnose(&self) -> Option<Diagnosis>;
+}
+
+impl Diagnose for ControlError {
+    fn diagnose(&self) -> Option<Diagnosis> {
+        self.is_reflex().then(|| {
+            Diagnosis::of(&Case {
+                commander: self.commander,
+                errors: self.failure.reflex_reason,
+                log: &self.log,
+                model: &self.model,
+                statistics: Some(&self.statistics),
+            })
+        })
+    }
+}
+
+impl Diagnose for MotionError {
+    fn diagnose(&self) -> Option<Diagnosis> {
+        self.control()?.diagnose()
+    }
+}
 
 /// Why the robot ended a motion, as far as its last cycles show.
 ///

@@ -1,12 +1,11 @@
-//! Who commanded a motion.
+//! What commanded a motion.
 
-use crate::driver::Program;
+use super::Program;
 
-/// Who commanded a motion, which decides what its commands mean and which settings there are to
+/// What commanded a motion, which decides what its commands mean and which settings there are to
 /// change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
 pub enum Commander {
     /// Target control: this driver, on the way to goals.
     Goals,
@@ -22,7 +21,7 @@ impl Commander {
     /// Whether a command says where to be a cycle later, so that differences of commands are what
     /// the joints are to do. A target that the robot plans to is not that, and only new targets are
     /// sent.
-    pub(super) fn commands_every_cycle(self) -> bool {
+    pub fn commands_every_cycle(self) -> bool {
         self != Self::Asynchronous
     }
 }

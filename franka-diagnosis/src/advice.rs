@@ -1,6 +1,6 @@
 //! Which setting to change.
 
-use super::commander::Commander;
+use franka_rt::driver::Commander;
 
 /// What to change, so that the next motion does not end likewise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

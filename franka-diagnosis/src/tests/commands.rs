@@ -5,7 +5,7 @@ use franka_proto::MotionGeneratorMode as Generator;
 use franka_proto::RobotError as E;
 
 use super::*;
-use crate::diagnosis::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
+use crate::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
 
 #[test]
 fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {

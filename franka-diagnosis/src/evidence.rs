@@ -3,9 +3,9 @@
 use franka_model::{JointVector, Model};
 use franka_proto::{MotionGeneratorMode, RobotCommand, RobotError, RobotState};
 
-use super::commander::Commander;
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
-use crate::driver::{LogEntry, MotionStatistics};
+use franka_rt::driver::Commander;
+use franka_rt::driver::{LogEntry, MotionStatistics};
 
 /// Duration of a control cycle, `[s]`.
 pub(super) const CYCLE: f64 = 1e-3;

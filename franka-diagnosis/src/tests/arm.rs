@@ -3,7 +3,7 @@ use franka_proto::MotionGeneratorMode as Generator;
 use franka_proto::RobotError as E;
 
 use super::*;
-use crate::diagnosis::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
+use crate::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
 
 fn torques() -> Story {
     Story::of(Model::fr3(), Generator::None)
