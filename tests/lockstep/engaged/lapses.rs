@@ -157,6 +157,17 @@ fn who_tunes_does_not_send_the_arm_on_to_what_was_given_up() {
     });
 }
 
+/// Holds the end effector firmly against a push of 8 N, which the light damping of a guided arm
+/// does not.
+fn assert_firm(lockstep: &mut Lockstep) {
+    let before = lockstep.true_pose();
+    let push = Wrench::new(0.0, 8.0, 0.0, 0.0, 0.0, 0.0);
+    lockstep.robot.push_end_effector(push, 1500);
+    lockstep.run(1500);
+    let moved = lockstep.true_pose().translation.y - before.translation.y;
+    assert!(moved < 0.012, "{moved} m");
+}
+
 #[test]
 fn an_arm_that_was_guided_is_held_firmly_once_its_deadman_is_dropped() {
     for_each_robot(|ready| {
@@ -168,11 +179,47 @@ fn an_arm_that_was_guided_is_held_firmly_once_its_deadman_is_dropped() {
         let held = Err(MotionError::Held(Lapse::Deadman));
         assert_eq!(lockstep.until_resolved(goal, 1000), held);
         lockstep.run(500);
-        let before = lockstep.true_pose();
-        let push = Wrench::new(0.0, 8.0, 0.0, 0.0, 0.0, 0.0);
-        lockstep.robot.push_end_effector(push, 1500);
-        lockstep.run(1500);
-        let moved = lockstep.true_pose().translation.y - before.translation.y;
-        assert!(moved < 0.012, "{moved} m");
+        assert_firm(&mut lockstep);
+    });
+}
+
+#[test]
+fn a_stream_that_guides_does_not_soften_the_hold_of_its_silent_deadman() {
+    for_each_robot(|ready| {
+        let (mut lockstep, engaged, token) = guarded(ready, 50);
+        let guided = Target::Guide(Free::ALL);
+        let goal = lockstep.within(engaged, guided, Then::Hold).unwrap();
+        for _ in 0..20 {
+            token.keep_alive();
+            lockstep.run(40);
+        }
+        while lockstep.client.outcome(goal).is_none() {
+            lockstep.run(10);
+            lockstep
+                .update(goal, guided)
+                .expect("any arm can be guided");
+        }
+        let outcome = lockstep.until_resolved(goal, 1);
+        assert_eq!(outcome, Err(MotionError::Held(Lapse::Deadman)));
+        lockstep.run(500);
+        assert_firm(&mut lockstep);
+    });
+}
+
+#[test]
+fn tuning_does_not_soften_the_hold_of_a_silent_guide() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let goal = watched(&mut lockstep, Target::Guide(Free::ALL), 100, Stale::Brake);
+        let goal = lockstep.submit_within(engaged, goal).unwrap();
+        let silence = Duration::from_millis(100);
+        let braked = Err(MotionError::Braked(Lapse::Silent { silence }));
+        lockstep.run(150);
+        assert_eq!(lockstep.client.outcome(goal), None, "it brakes");
+        same_again(&mut lockstep, engaged, 0.9);
+        assert_eq!(lockstep.until_resolved(goal, 1000), braked);
+        lockstep.run(500);
+        assert_firm(&mut lockstep);
     });
 }

@@ -141,16 +141,13 @@ impl Active {
         if matches!(self.stage, Stage::Finished) {
             return;
         }
-        if let Drive::Torques(effort) = &mut self.drive {
-            effort.take_up(&goal);
-        }
         let named = goal.id == self.goal.id;
-        if named && goal.revision == self.goal.revision {
-            return self.tune(model, goal);
-        }
         let taken_back = goal.target == Target::Rest && goal.then != Then::Hold;
-        if named && !taken_back && self.is_given_up_for_good() {
-            return; // Whoever asks for more has not heard yet that it was given up.
+        let tuned = goal.revision == self.goal.revision;
+        // The caller has not yet seen the abort: ignore where the update leads.
+        let aborted = !taken_back && self.is_given_up_for_good();
+        if named && (tuned || aborted) {
+            return self.tune(model, goal);
         }
         self.heard = now;
         let same = named
@@ -164,28 +161,43 @@ impl Active {
             self.since = now;
         }
         self.goal = goal;
+        self.fade_gains();
         self.lapse = None;
         self.taken_back = named && taken_back;
         self.set_out(model);
     }
 
-    /// Goes on as before, but as fast, and as it lands, as `goal` says.
+    /// Goes on as before, but as fast, as stiff, and as it lands, as `goal` says. The gains of a
+    /// guiding hand would let go of an arm that is held since.
     fn tune(&mut self, model: &Model, goal: Goal) {
         let Goal { target, then, .. } = self.goal;
+        let gains = match target {
+            Target::Guide(_) => goal.gains,
+            Target::Rest | Target::Joints(_) | Target::Pose(_) => goal.at_rest(then).gains,
+        };
         let before = core::mem::replace(
             &mut self.goal,
             Goal {
                 target,
                 then,
+                gains,
                 ..goal
             },
         );
+        self.fade_gains();
         if goal.budget != before.budget && !matches!(self.stage, Stage::Releasing(_)) {
             let aim = Goal {
                 target: self.aim,
                 ..self.goal
             };
             self.route.tune(model, &self.ee, &self.reference, &aim);
+        }
+    }
+
+    /// Has gains and force cap fade to those of the goal.
+    fn fade_gains(&mut self) {
+        if let Drive::Torques(effort) = &mut self.drive {
+            effort.take_up(&self.goal);
         }
     }
 

@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use franka_model::Model;
 
-use super::{Active, Drive, Measured, Stage};
+use super::{Active, Measured, Stage};
 use crate::session::course::Course;
 use crate::session::guard::lead::LEAD_FRESH_MS;
 use crate::session::{Lapse, Stale, Target, Then};
@@ -33,9 +33,7 @@ impl Active {
     /// Gives the goal up, and brakes.
     pub(super) fn give_up(&mut self, model: &Model, lapse: Lapse) {
         self.goal = self.goal.at_rest(self.goal.then);
-        if let Drive::Torques(effort) = &mut self.drive {
-            effort.take_up(&self.goal);
-        }
+        self.fade_gains();
         self.set_out(model);
         self.lapse(Stale::Brake, lapse);
     }
