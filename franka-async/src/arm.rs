@@ -9,7 +9,9 @@ use franka_proto::RobotState;
 use franka_rt::driver::{Observer, Record};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, Tuning};
-use franka_rt::session::{Backend, Budget, Chunk, Free, Goal, GoalId, Grip, Target, Then};
+use franka_rt::session::{
+    Backend, Budget, Chunk, ForceCap, Free, Goal, GoalId, Grip, Target, Then,
+};
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
@@ -48,13 +50,13 @@ impl Engage {
 
     /// Force cap of every goal, `[N]`; see [`Motion::force_cap`].
     pub fn force_cap(mut self, newtons: f64) -> Self {
-        self.tuning.force_cap = Some(Some(newtons));
+        self.tuning.force_cap = Some(ForceCap::Newtons(newtons));
         self
     }
 
     /// Takes the force cap away from every goal; see [`Motion::without_force_cap`].
     pub fn without_force_cap(mut self) -> Self {
-        self.tuning.force_cap = Some(None);
+        self.tuning.force_cap = Some(ForceCap::Off);
         self
     }
 
@@ -78,7 +80,8 @@ impl Engage {
         self
     }
 
-    /// Has somebody else turn setpoints into torques; by default the session's own law does.
+    /// What turns setpoints into torques; by default the session's own law. [`Backend`] says which
+    /// guards each has.
     pub fn backend(mut self, backend: Backend) -> Self {
         self.engagement.backend = backend;
         self

@@ -9,7 +9,7 @@ use std::time::Duration;
 use franka_model::limits::JointLimits;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport, Tuning};
-use franka_rt::session::{Budget, Goal, Lead, Stale, Target, Then, Tolerance, Watchdog};
+use franka_rt::session::{Budget, ForceCap, Goal, Lead, Stale, Target, Then, Tolerance, Watchdog};
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::wrappers::WatchStream;
@@ -88,13 +88,13 @@ impl Follow {
 
     /// See [`Motion::force_cap`](crate::Motion::force_cap).
     pub fn force_cap(mut self, newtons: f64) -> Self {
-        self.tuning.force_cap = Some(Some(newtons));
+        self.tuning.force_cap = Some(ForceCap::Newtons(newtons));
         self
     }
 
     /// See [`Motion::without_force_cap`](crate::Motion::without_force_cap).
     pub fn without_force_cap(mut self) -> Self {
-        self.tuning.force_cap = Some(None);
+        self.tuning.force_cap = Some(ForceCap::Off);
         self
     }
 
@@ -271,12 +271,12 @@ mod tests {
         assert_eq!(plain, Goal::new(common.id, joints, Then::Hold, limits));
         let tuning = Tuning {
             gains: Some(Gains::droid()),
-            force_cap: Some(Some(0.5 * DEFAULT_FORCE_CAP)),
+            force_cap: Some(ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP)),
             ..Tuning::default()
         };
         let tuned = goal(tuning, None);
         assert_eq!(tuned.gains, Gains::droid());
-        assert_eq!(tuned.force_cap, Some(0.5 * DEFAULT_FORCE_CAP));
+        assert_eq!(tuned.force_cap, ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP));
         let stiffness = [200.0, 200.0, 200.0, 10.0, 10.0, 10.0];
         let soft = goal(tuning, Some(stiffness)).gains;
         assert_eq!(soft, Gains::droid().with_cartesian_stiffness(stiffness));

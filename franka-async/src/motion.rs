@@ -9,7 +9,7 @@ use franka_rt::control::Callback;
 use franka_rt::driver::Program;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport};
-use franka_rt::session::{Budget, Goal, GoalId, Tolerance};
+use franka_rt::session::{Budget, ForceCap, Goal, GoalId, Tolerance};
 use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
@@ -141,16 +141,17 @@ impl Motion {
     /// Bounds the force with which springs and dampers press at the end effector, `[N]`, between 5
     /// and 200; by default [`DEFAULT_FORCE_CAP`](crate::DEFAULT_FORCE_CAP). What the arm carries
     /// without having been told counts: it sinks under more weight than the cap, and the motion
-    /// does not arrive.
+    /// does not arrive. Refused under
+    /// [`Backend::RobotController`](crate::Backend::RobotController), which cannot keep it.
     pub fn force_cap(mut self, newtons: f64) -> Self {
-        self.goal.force_cap = Some(newtons);
+        self.goal.force_cap = ForceCap::Newtons(newtons);
         self
     }
 
     /// Lets springs and dampers press with as much force as they come to. The reach of the springs
     /// still bounds theirs.
     pub fn without_force_cap(mut self) -> Self {
-        self.goal.force_cap = None;
+        self.goal.force_cap = ForceCap::Off;
         self
     }
 

@@ -16,7 +16,9 @@ use franka_model::{EndEffector, JointVector, Load, Model, transform};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{DEFAULT_FORCE_CAP, Goal, GoalId, Guard, Lapse, Target, Then, Tolerance};
+use franka_rt::session::{
+    DEFAULT_FORCE_CAP, ForceCap, Goal, GoalId, Guard, Lapse, Target, Then, Tolerance,
+};
 use franka_sim::plant::ArmParameters;
 use franka_sim::{Touch, TouchId};
 use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
@@ -65,7 +67,7 @@ fn head_for(
     engaged: GoalId,
     target: Target,
     gains: Gains,
-    force_cap: Option<f64>,
+    force_cap: ForceCap,
 ) {
     let goal = Goal {
         gains,
@@ -84,7 +86,7 @@ fn on_a_wall(
     ready: &dyn Fn() -> Lockstep,
     way: Vector3<f64>,
     gains: Gains,
-    force_cap: Option<f64>,
+    force_cap: ForceCap,
 ) -> (f64, f64) {
     let mut lockstep = tolerant(ready);
     let start = lockstep.true_pose();
@@ -113,9 +115,9 @@ fn an_arm_held_at_its_leash_pulls_with_no_more_than_the_cap() {
     for_each_robot(|ready| {
         for way in directions() {
             for (name, gains) in each_gains() {
-                let (free, _) = on_a_wall(ready, way, gains, None);
+                let (free, _) = on_a_wall(ready, way, gains, ForceCap::Off);
                 for cap in [15.0, 25.0, 30.0] {
-                    let (mean, most) = on_a_wall(ready, way, gains, Some(cap));
+                    let (mean, most) = on_a_wall(ready, way, gains, ForceCap::Newtons(cap));
                     println!("{name}: {free:.1} N, {mean:.2} N ({most:.2} N) under {cap} N");
                     // Friction holds a little against the spring.
                     assert!(most <= 1.05 * cap, "{way}, {name}: {most} N under {cap} N");
@@ -179,7 +181,7 @@ fn pushed(
     ready: &dyn Fn() -> Lockstep,
     way: Vector3<f64>,
     gains: Gains,
-    force_cap: Option<f64>,
+    force_cap: ForceCap,
 ) -> Felt {
     let mut lockstep = tolerant(ready);
     let body = Body::of(&lockstep);
@@ -214,7 +216,7 @@ fn a_hand_that_pushes_meets_no_more_than_the_cap_and_without_one_it_does() {
     for_each_robot(|ready| {
         for way in directions() {
             for (name, gains) in each_gains() {
-                let free = pushed(ready, way, gains, None);
+                let free = pushed(ready, way, gains, ForceCap::Off);
                 println!("{name}: {free:.1?}");
                 assert_eq!(free.capped, 0);
                 assert!(
@@ -222,7 +224,7 @@ fn a_hand_that_pushes_meets_no_more_than_the_cap_and_without_one_it_does() {
                     "{way}, {name}: {free:?}"
                 );
                 for cap in [15.0, 25.0, DEFAULT_FORCE_CAP] {
-                    let felt = pushed(ready, way, gains, Some(cap));
+                    let felt = pushed(ready, way, gains, ForceCap::Newtons(cap));
                     println!("  {cap} N: {felt:.1?}");
                     assert!(felt.capped > 20, "{way}, {name}: {felt:?}");
                     assert!(
@@ -268,7 +270,7 @@ fn capped_until_it_arrives(lockstep: &mut Lockstep, engaged: GoalId, target: Tar
         ..lockstep.goal(target, Then::Stay)
     };
     let goal = Goal {
-        force_cap: Some(DEFAULT_FORCE_CAP),
+        force_cap: ForceCap::Default,
         ..goal
     };
     let goal = lockstep.submit_within(engaged, goal).expect("within reach");
@@ -324,10 +326,10 @@ fn motions_that_nothing_holds_back_do_not_meet_the_default_cap() {
 fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
     for_each_robot(|ready| {
         for (mass, force_cap) in [
-            (2.0, None),
-            (2.0, Some(DEFAULT_FORCE_CAP)),
-            (4.0, None),
-            (4.0, Some(DEFAULT_FORCE_CAP)),
+            (2.0, ForceCap::Off),
+            (2.0, ForceCap::Default),
+            (4.0, ForceCap::Off),
+            (4.0, ForceCap::Default),
         ] {
             let mut lockstep = tolerant(ready);
             let engaged = lockstep.engage();
@@ -342,7 +344,7 @@ fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
             let outcome = lockstep.until_resolved(id, 30_000);
             println!("{mass} kg, {force_cap:?}: {}", told(&outcome));
             let error = outcome.expect_err("it is not within a millimetre");
-            let borne = force_cap.is_none_or(|cap| mass * 9.81 < cap);
+            let borne = force_cap.newtons().is_none_or(|cap| mass * 9.81 < cap);
             let short = matches!(error, MotionError::Short(_));
             assert_eq!(short, borne, "{mass} kg: {error}");
         }

@@ -3,7 +3,7 @@
 use franka_model::Wrench;
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
-use franka_rt::session::{Goal, Guard, PoseError, Target, Then};
+use franka_rt::session::{ForceCap, Goal, Guard, PoseError, Target, Then};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
@@ -58,7 +58,7 @@ fn poses_are_reached_under_every_law() {
 
 /// Mean force on a soft floor that the arm runs onto, over the last of three seconds, and whether
 /// the cap bound. The floor takes no energy, so a light arm bounces on it for a while.
-fn force_on_floor(gains: Gains, force_cap: Option<f64>) -> (f64, bool) {
+fn force_on_floor(gains: Gains, force_cap: ForceCap) -> (f64, bool) {
     let mut lockstep = tolerant(Lockstep::ready());
     let start = lockstep.true_pose();
     let floor = start.translation.z - 0.04;
@@ -92,10 +92,10 @@ fn force_on_floor(gains: Gains, force_cap: Option<f64>) -> (f64, bool) {
 #[test]
 fn an_arm_presses_on_an_obstacle_with_the_capped_force() {
     for gains in laws() {
-        let (free, bound) = force_on_floor(gains, None);
+        let (free, bound) = force_on_floor(gains, ForceCap::Off);
         assert!(free > 16.0 && !bound, "{gains:?}: {free} N without a cap");
         for cap in [6.0, 12.0] {
-            let (force, bound) = force_on_floor(gains, Some(cap));
+            let (force, bound) = force_on_floor(gains, ForceCap::Newtons(cap));
             println!("{free} N free, {force} N under {cap} N");
             assert!(bound, "{gains:?}");
             assert!(
@@ -125,7 +125,7 @@ fn a_change_of_law_or_cap_under_load_does_not_step_the_torque() {
         for gains in laws().into_iter().chain([Gains::cartesian()]) {
             let goal = Goal {
                 gains,
-                force_cap: (round == 1).then_some(10.5),
+                force_cap: [ForceCap::Off, ForceCap::Newtons(10.5)][round],
                 ..lockstep.goal(Target::Pose(home), Then::Hold)
             };
             lockstep.submit(goal).expect("the arm is near");

@@ -11,7 +11,7 @@ use crate::driver::Observer;
 use crate::law::Gains;
 use crate::session::check::{check_keep_out, check_silence};
 use crate::session::{
-    Backend, Budget, Chunk, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks,
+    Backend, Budget, Chunk, ForceCap, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks,
 };
 
 /// What a session that goes from goal to goal has beside its goals.
@@ -22,7 +22,7 @@ pub struct Engagement {
     /// What the arm keeps out of, in the place of the regions of [`Lifecycle::keep_out_of`]; up to
     /// [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX), base frame.
     pub keep_out: Option<Vec<Obstacle>>,
-    /// Who turns setpoints into torques.
+    /// What turns setpoints into torques.
     pub backend: Backend,
     /// Who sees its cycles.
     pub observer: Option<Observer>,
@@ -35,9 +35,8 @@ pub struct Tuning {
     pub gains: Option<Gains>,
     /// How fast.
     pub budget: Option<Budget>,
-    /// With how much force springs and dampers may press, `[N]`: see [`Goal::force_cap`].
-    /// `Some(None)` takes the cap away. It fades as the gains do.
-    pub force_cap: Option<Option<f64>>,
+    /// With how much force springs and dampers may press. It fades as the gains do.
+    pub force_cap: Option<ForceCap>,
 }
 
 impl Tuning {
@@ -89,6 +88,7 @@ impl Lifecycle {
             ..goal
         };
         goal.check(&self.model, state)?;
+        engagement.backend.check(&goal)?;
         engagement.backend.check_start(&state.q_d.into())?;
         if let Some(deadman) = &engagement.deadman {
             check_silence(deadman.silence())?;
@@ -121,7 +121,7 @@ impl Lifecycle {
         self.check_engaged(engaged)?;
         goal.check(&self.model, state)?;
         if let Some(goals) = self.goals() {
-            goals.backend.check(&goal.target)?;
+            goals.backend.check(&goal)?;
         }
         if self.is_ending() {
             if let Some(goals) = self.goals() {
@@ -165,7 +165,10 @@ impl Lifecycle {
         let Some(goals) = self.goals() else {
             return Err(MotionError::Disengaged);
         };
-        goals.backend.check(&chunk.target())?;
+        goals.backend.check(&Goal {
+            target: chunk.target(),
+            ..goal
+        })?;
         let Some(chunks) = goals.chunks.as_mut().filter(|_| !ending) else {
             // The session has ended, and says so when it is known how.
             goals.late.push(goal.id);
@@ -203,6 +206,7 @@ impl Lifecycle {
             return Err(MotionError::Disengaged);
         };
         let tuned = tuning.apply(goals.current.goal);
+        goals.backend.check(&tuned)?;
         tuned.check(&self.model, state)?;
         // Gains that a guiding hand has no use for have to be fit for the goals after it.
         if let Some(gains) = tuning.gains {

@@ -303,7 +303,7 @@ impl Lifecycle {
         };
         if let Some(state) = state {
             goal.check(&model, state)?;
-            backend.check(&goal.target)?;
+            backend.check(&goal)?;
         }
         waiting.goal = goal;
         if let Some(slot) = slot {

@@ -1,4 +1,4 @@
-//! Who turns the setpoints of a session into torques: its own law, or the robot's controller.
+//! What turns the setpoints of a session into torques: its own law, or the robot's controller.
 
 use franka_model::elbow::FLIP_ANGLE;
 use franka_model::limits::JointLimits;
@@ -8,17 +8,30 @@ use nalgebra::Vector3;
 
 use crate::control::{CartesianPose, JointPositions, MotionCommand, Torques};
 use crate::law::hybrid::Reference;
-use crate::session::{Answer, GoalError, Target, rigid};
+use crate::session::{Answer, ForceCap, Goal, GoalError, Guard, Target, rigid};
 use crate::shaping::{Bounds, MAX_CUTOFF_FREQUENCY, Shaper};
 
-/// Who turns setpoints into torques.
+/// What turns setpoints into torques.
+///
+/// | guard | [`Torques`](Self::Torques) | [`RobotController`](Self::RobotController) |
+/// |---|---|---|
+/// | clearance, lead, watchdog, deadman | yes | yes |
+/// | joints' bounds on the way to a pose | yes | yes |
+/// | leash, deviation, velocity barrier | yes | no: an arm that is held back or pushed away springs back to its setpoint |
+/// | force cap | yes | no: a goal that asks for one is refused |
+/// | torque clamp and rate | yes | no: the torques are the robot's |
+/// | limiter of setpoints (backstop) | no | yes |
+///
+/// [`Self::has`] tells the same of each [`Guard`]. Beside them the robot has its own limits,
+/// reflexes and collision thresholds, whatever the backend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// The law of the session, on this host.
     #[default]
     Torques,
     /// The robot's own controller, which gets the setpoints. Its stiffness is the robot's: see
-    /// `set_joint_impedance` and `set_cartesian_impedance`; the gains of goals are without effect.
+    /// `set_joint_impedance` and `set_cartesian_impedance`; the gains of goals are without effect,
+    /// and a goal with a force cap is refused.
     ///
     /// Setpoints go on from where the robot itself takes them to be: when commands were lost, and
     /// the robot went on by itself, the reference is put where it went. Its limiter is the
@@ -62,14 +75,43 @@ impl Backend {
         MoveRequest::new(controller, generator)
     }
 
-    /// Whether it can take the arm there.
+    /// Whether commands of a session with this backend pass through `guard`.
+    ///
+    /// The guards of the reference hold under every backend. Those of the torques, and the two that
+    /// move the reference with an arm that is pushed away, are the session's own law's: the robot's
+    /// controller has springs, bounds and reflexes of its own.
+    pub fn has(self, guard: Guard) -> bool {
+        let own_law = self == Self::Torques;
+        match guard {
+            Guard::InverseKinematics
+            | Guard::JointVelocity
+            | Guard::PositionEnvelope
+            | Guard::Clearance
+            | Guard::Lead
+            | Guard::Watchdog
+            | Guard::Deadman => true,
+            Guard::Leash
+            | Guard::Deviation
+            | Guard::TorqueClamp
+            | Guard::ForceCap
+            | Guard::VelocityBarrier
+            | Guard::TorqueRate => own_law,
+            Guard::Backstop => !own_law,
+        }
+    }
+
+    /// Whether it can do what `goal` asks for.
     ///
     /// # Errors
     /// [`GoalError::Backend`].
-    pub(crate) fn check(self, target: &Target) -> Result<(), GoalError> {
-        let why = match (self, target) {
-            (Self::RobotController(_), Target::Guide(_)) => "takes no guiding hand",
+    pub(crate) fn check(self, goal: &Goal) -> Result<(), GoalError> {
+        let why = match (self, goal.target) {
+            (Self::Torques, _) => return Ok(()),
+            (_, Target::Guide(_)) => "takes no guiding hand",
             (Self::RobotController(Setpoints::Poses), Target::Joints(_)) => "takes poses only",
+            _ if matches!(goal.force_cap, ForceCap::Newtons(_)) => {
+                "keeps no force cap: its stiffness is set on the robot"
+            }
             _ => return Ok(()),
         };
         Err(GoalError::Backend { why })

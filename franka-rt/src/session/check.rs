@@ -9,7 +9,9 @@ use franka_otg::AxisLimits;
 use franka_proto::{RobotState, Version};
 
 use crate::law::{GainError, Law};
-use crate::session::{Budget, CHUNKS_MAX, FORCE_CAP, Goal, KeepOut, Target, Watchdog, approach};
+use crate::session::{
+    Budget, CHUNKS_MAX, FORCE_CAP, ForceCap, Goal, KeepOut, Target, Watchdog, approach,
+};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -74,7 +76,7 @@ pub enum GoalError {
     /// Too many chunks came within a few cycles of the control thread.
     #[error(transparent)]
     Chunks(#[from] TooManyChunks),
-    /// The robot's own controller cannot take the arm there.
+    /// The robot's own controller cannot do what the goal asks for.
     #[error("the robot's controller, which this session commands, {why}")]
     Backend {
         /// Why not.
@@ -140,7 +142,7 @@ impl Goal {
         if let Some(Watchdog { silence, .. }) = self.watchdog {
             check_silence(silence)?;
         }
-        if let Some(got) = self.force_cap
+        if let ForceCap::Newtons(got) = self.force_cap
             && !FORCE_CAP.contains(&got)
         {
             return Err(GoalError::ForceCap { got });

@@ -66,7 +66,7 @@ impl Effort {
     /// With the gains of the first goal, for a reference at rest.
     pub(super) fn new(goal: &Goal) -> Self {
         Self {
-            fade: Fade::at(Tuning::new(&goal.gains, goal.force_cap)),
+            fade: Fade::at(Tuning::new(&goal.gains, goal.force_cap.newtons())),
             feedforward: JointVector::zeros(),
             inertia: Inertia {
                 acceleration: JointVector::zeros(),
@@ -77,7 +77,8 @@ impl Effort {
 
     /// Goes over to the gains and the force cap of another goal.
     pub(super) fn take_up(&mut self, goal: &Goal) {
-        self.fade.towards(Tuning::new(&goal.gains, goal.force_cap));
+        self.fade
+            .towards(Tuning::new(&goal.gains, goal.force_cap.newtons()));
     }
 
     /// The torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and

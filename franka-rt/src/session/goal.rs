@@ -7,7 +7,7 @@ use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use crate::law::Gains;
-use crate::session::{Budget, DEFAULT_FORCE_CAP, Lead};
+use crate::session::{Budget, ForceCap, Lead};
 use crate::slot::Words;
 
 /// Names one goal for the life of a connection. Updates of a followed target keep the name of the
@@ -138,9 +138,8 @@ pub struct Goal {
     pub tolerance: Tolerance,
     /// What happens if its updates stay away; of goals that are held.
     pub watchdog: Option<Watchdog>,
-    /// With how much force springs and dampers may press at the end effector, `[N]`, in
-    /// [`FORCE_CAP`](crate::session::FORCE_CAP); `None` for as much as they come to.
-    pub force_cap: Option<f64>,
+    /// With how much force springs and dampers may press at the end effector.
+    pub force_cap: ForceCap,
     /// How far ahead of the arm its target may be.
     pub lead: Option<Lead>,
     /// How often it was asked for something else, or for the same again: a target, an end. One that
@@ -153,8 +152,8 @@ impl Goal {
     pub const SILENCE_MIN: Duration = Duration::from_millis(10);
 
     /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on
-    /// the way to joint positions and the end effector compliant otherwise, the default tolerance,
-    /// and [`DEFAULT_FORCE_CAP`].
+    /// the way to joint positions and the end effector compliant otherwise, the default tolerance
+    /// and force cap.
     pub fn new(id: GoalId, target: Target, then: Then, limits: &JointLimits) -> Self {
         Self {
             id,
@@ -168,7 +167,7 @@ impl Goal {
             },
             tolerance: Tolerance::default(),
             watchdog: None,
-            force_cap: Some(DEFAULT_FORCE_CAP),
+            force_cap: ForceCap::Default,
             lead: None,
             revision: 0,
         }
@@ -191,8 +190,7 @@ impl Goal {
 }
 
 /// Name, revision, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of
-/// budget, the gains, 2 of tolerance, the force cap (none is no number), 3 of the lead, which are
-/// zero where there is none.
+/// budget, the gains, 2 of tolerance, the force cap, 3 of the lead, which are zero without one.
 impl Words for Goal {
     const WORDS: usize = 6 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
 
@@ -225,7 +223,7 @@ impl Words for Goal {
             .chain(axes.flat_map(|l| [l.velocity, l.acceleration, l.jerk]))
             .chain(self.gains.to_array())
             .chain([self.tolerance.translation, self.tolerance.rotation])
-            .chain([self.force_cap.unwrap_or(f64::NAN)])
+            .chain([self.force_cap.to_number()])
             .chain(self.lead.map_or([0.0; 3], |lead| {
                 [lead.translation, lead.rotation, lead.joints]
             }));
@@ -283,7 +281,7 @@ impl Words for Goal {
                 translation: number(),
                 rotation: number(),
             },
-            force_cap: Some(number()).filter(|cap| !cap.is_nan()),
+            force_cap: ForceCap::from_number(number()),
             lead: Some(Lead {
                 translation: number(),
                 rotation: number(),
@@ -338,16 +336,28 @@ mod tests {
             joints: 0.1,
         };
         for (target, then, watchdog, force_cap, lead) in [
-            (Target::Rest, Then::Finish, None, None, None),
+            (Target::Rest, Then::Finish, None, ForceCap::Off, None),
             (
                 Target::Joints([0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7]),
                 Then::Hold,
                 Some(watchdog),
-                Some(25.0),
+                ForceCap::Newtons(25.0),
                 None,
             ),
-            (Target::Pose(pose), Then::Stay, None, Some(5.0), Some(lead)),
-            (Target::Guide(free), Then::Hold, Some(watchdog), None, None),
+            (
+                Target::Pose(pose),
+                Then::Stay,
+                None,
+                ForceCap::Newtons(5.0),
+                Some(lead),
+            ),
+            (
+                Target::Guide(free),
+                Then::Hold,
+                Some(watchdog),
+                ForceCap::Default,
+                None,
+            ),
         ] {
             let goal = Goal {
                 id: GoalId(77),

@@ -54,7 +54,7 @@ pub use deadman::{Deadman, Grip};
 pub use goal::{Free, Goal, GoalId, Stale, Target, Then, Tolerance, Watchdog};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub use guard::deviation::{JOINT_DEVIATION, ROTATION_DEVIATION, TRANSLATION_DEVIATION};
-pub use guard::force_cap::{DEFAULT_FORCE_CAP, FORCE_CAP};
+pub use guard::force_cap::{DEFAULT_FORCE_CAP, FORCE_CAP, ForceCap};
 pub use guard::lead::{LEAD_FRESH_MS, Lead};
 pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;

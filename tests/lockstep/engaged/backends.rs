@@ -1,13 +1,17 @@
 //! Sessions whose setpoints the robot's own controller takes, and observers.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::{turned, up};
-use franka_model::{READY, RobotKind};
+use franka_model::{READY, RobotKind, Wrench};
+use franka_proto::{CollisionBehavior, Request};
 use franka_rt::driver::Observer;
-use franka_rt::lifecycle::{Engagement, MotionError};
-use franka_rt::session::{Backend, Free, GoalError, Setpoints, Target, Then};
+use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
+use franka_rt::session::{
+    Backend, ForceCap, Free, Goal, GoalError, Guard, Lead, Setpoints, Target, Then,
+};
 use franka_sim::Config;
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
@@ -102,6 +106,100 @@ fn poses_with_their_elbow_move_the_joints_of_the_robot_as_the_reference() {
             // What a robot's state is rounded by.
             assert!(off < 3e-7, "{off} rad");
             lockstep.until_resolved(goal, 6000).unwrap();
+        }
+    });
+}
+
+/// The robot's controller, once for each kind of setpoint.
+const CONTROLLERS: [Backend; 2] = [
+    Backend::RobotController(Setpoints::Joints),
+    Backend::RobotController(Setpoints::Poses),
+];
+
+#[test]
+fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
+    for_each_robot(|ready| {
+        for backend in CONTROLLERS {
+            let mut lockstep = ready();
+            let refused = MotionError::Goal(GoalError::Backend {
+                why: "keeps no force cap: its stiffness is set on the robot",
+            });
+            let capped = Goal {
+                force_cap: ForceCap::Newtons(20.0),
+                ..lockstep.goal(Target::Rest, Then::Hold)
+            };
+            let engagement = Engagement {
+                backend,
+                ..Engagement::default()
+            };
+            let client = &mut lockstep.client;
+            let begun = client
+                .lifecycle
+                .engage(capped, engagement, &client.state, client.now);
+            assert_eq!(begun, Err(refused.clone()));
+
+            let engaged = lockstep.engage_with(Engagement {
+                backend,
+                ..Engagement::default()
+            });
+            let up = up(&lockstep, 0.05).into();
+            let capped = Goal {
+                force_cap: ForceCap::Newtons(20.0),
+                ..lockstep.goal(up, Then::Stay)
+            };
+            let submitted = lockstep.submit_within(engaged, capped);
+            assert_eq!(submitted, Err(refused.clone()));
+            let tuning = Tuning {
+                force_cap: Some(ForceCap::Newtons(20.0)),
+                ..Tuning::default()
+            };
+            assert_eq!(lockstep.tune(engaged, tuning), Err(refused));
+            let goal = lockstep.within(engaged, up, Then::Stay).unwrap();
+            lockstep
+                .until_resolved(goal, 6000)
+                .expect("nothing of it was taken");
+        }
+    });
+}
+
+/// On the way, an arm is pushed hard enough to meet the force cap, the leash and the deviation of
+/// the session's own law.
+#[test]
+fn only_the_guards_that_a_backend_has_bind_when_the_arm_is_pushed() {
+    for_each_robot(|ready| {
+        for backend in [Backend::Torques].into_iter().chain(CONTROLLERS) {
+            let mut lockstep = ready();
+            let most =
+                CollisionBehavior::uniform([1000.0; 7], [1000.0; 7], [1000.0; 6], [1000.0; 6]);
+            lockstep.request(&Request::SetCollisionBehavior(most));
+            lockstep.run(5);
+            let engaged = lockstep.engage_with(Engagement {
+                backend,
+                ..Engagement::default()
+            });
+            let aside = Translation3::new(0.0, 0.1, 0.0) * up(&lockstep, 0.0);
+            let goal = Goal {
+                lead: Some(Lead {
+                    translation: 0.05,
+                    rotation: 0.2,
+                    joints: 0.1,
+                }),
+                ..lockstep.goal(aside.into(), Then::Hold)
+            };
+            lockstep.submit_within(engaged, goal).unwrap();
+            let push = Wrench::new(0.0, -60.0, 0.0, 0.0, 0.0, 0.0);
+            lockstep.robot.push_end_effector(push, 800);
+            let mut bound = HashSet::new();
+            for _ in 0..1000 {
+                lockstep.tick();
+                bound.extend(lockstep.client.record.bindings.iter());
+            }
+            let foreign = bound.iter().find(|guard| !backend.has(**guard));
+            assert_eq!(foreign, None, "{backend:?}");
+            assert!(bound.contains(&Guard::Lead), "{backend:?}: {bound:?}");
+            let own = [Guard::ForceCap, Guard::Leash];
+            let binds = own.map(|guard| bound.contains(&guard));
+            assert_eq!(binds, own.map(|guard| backend.has(guard)), "{backend:?}");
         }
     });
 }

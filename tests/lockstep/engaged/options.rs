@@ -5,7 +5,7 @@ use franka_model::Wrench;
 use franka_model::collision::Obstacle;
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{Free, Goal, GoalError, Guard, Lapse, Target, Then};
+use franka_rt::session::{ForceCap, Free, Goal, GoalError, Guard, Lapse, Target, Then};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 #[test]
@@ -81,7 +81,7 @@ fn gains_that_do_not_hold_for_a_guiding_hand_are_checked_for_what_comes_after() 
             assert!(matches!(outcome, Err(MotionError::Goal(_))), "{outcome:?}");
         }
         let cap = Tuning {
-            force_cap: Some(Some(8.0)),
+            force_cap: Some(ForceCap::Newtons(8.0)),
             ..Tuning::default()
         };
         assert_eq!(lockstep.tune(engaged, cap), Ok(()));
@@ -93,12 +93,12 @@ fn a_force_cap_is_tuned_within_its_bounds() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let cap = |newtons| Tuning {
-            force_cap: Some(newtons),
+        let cap = |cap| Tuning {
+            force_cap: Some(cap),
             ..Tuning::default()
         };
         for refused in [4.9, 201.0, f64::NAN] {
-            let outcome = lockstep.tune(engaged, cap(Some(refused)));
+            let outcome = lockstep.tune(engaged, cap(ForceCap::Newtons(refused)));
             assert!(
                 matches!(outcome, Err(MotionError::Goal(GoalError::ForceCap { .. }))),
                 "{outcome:?}"
@@ -114,9 +114,9 @@ fn a_force_cap_is_tuned_within_its_bounds() {
             lockstep.client.record.bindings.contains(Guard::ForceCap)
         };
         assert!(!bound(&mut lockstep));
-        lockstep.tune(engaged, cap(Some(8.0))).unwrap();
+        lockstep.tune(engaged, cap(ForceCap::Newtons(8.0))).unwrap();
         assert!(bound(&mut lockstep));
-        lockstep.tune(engaged, cap(None)).unwrap();
+        lockstep.tune(engaged, cap(ForceCap::Off)).unwrap();
         assert!(!bound(&mut lockstep));
     });
 }

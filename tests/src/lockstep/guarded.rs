@@ -15,7 +15,7 @@ use franka_proto::{
 use franka_rt::driver::{Activity, Program};
 use franka_rt::law::{Gains, Law};
 use franka_rt::session::{
-    Backend, Chunk, ChunkWriter, Deadman, Fate, Free, Goal, GoalId, Guard, KeepOut, Lead,
+    Backend, Chunk, ChunkWriter, Deadman, Fate, ForceCap, Free, Goal, GoalId, Guard, KeepOut, Lead,
     Setpoints, Stale, Target, TargetSession, Then, Watchdog, chunk_ring,
 };
 use franka_rt::slot::{SlotWriter, slot};
@@ -176,8 +176,14 @@ impl Guarded {
         while let Some(returned) = self.chunks.collect() {
             self.fates.push(returned.fate);
         }
-        self.bound
-            .extend(self.lockstep.client.record.bindings.iter());
+        for guard in self.lockstep.client.record.bindings.iter() {
+            assert!(
+                self.backend.has(guard),
+                "{:?} has no {guard:?}",
+                self.backend
+            );
+            self.bound.insert(guard);
+        }
         if !self.is_running() {
             let again = Self::begin(self.errand, self.backend, self.random.clone());
             let before = std::mem::replace(self, again);
@@ -257,7 +263,10 @@ impl Guarded {
             Stale::Brake
         };
         let goal = Goal {
-            force_cap: Some(FORCE_CAP),
+            force_cap: match self.backend {
+                Backend::Torques => ForceCap::Newtons(FORCE_CAP),
+                Backend::RobotController(_) => ForceCap::Default,
+            },
             lead: Some(LEAD),
             watchdog: Some(Watchdog {
                 silence: SILENT_STREAM,

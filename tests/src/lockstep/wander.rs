@@ -3,7 +3,7 @@
 
 use franka_model::READY;
 use franka_rt::law::{Gains, Law};
-use franka_rt::session::{Goal, GoalId, Target, Then};
+use franka_rt::session::{ForceCap, Goal, GoalId, Target, Then};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -101,7 +101,7 @@ fn in_turn(turn: usize, goal: Goal) -> Goal {
     };
     Goal {
         gains,
-        force_cap: Some(30.0),
+        force_cap: ForceCap::Newtons(30.0),
         ..goal
     }
 }

@@ -42,6 +42,50 @@ pub const FORCE_CAP: RangeInclusive<f64> = 5.0..=200.0;
 /// 115 N if the joints are stiff.
 pub const DEFAULT_FORCE_CAP: f64 = 30.0;
 
+/// How much force springs and dampers may press with at the end effector.
+///
+/// Only the session's own law keeps it: a goal with [`Self::Newtons`] is refused where the robot's
+/// controller turns setpoints into torques
+/// ([`Backend::RobotController`](crate::session::Backend::RobotController)).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ForceCap {
+    /// [`DEFAULT_FORCE_CAP`].
+    #[default]
+    Default,
+    /// This much, `[N]`, in [`FORCE_CAP`].
+    Newtons(f64),
+    /// As much as the springs and dampers come to.
+    Off,
+}
+
+impl ForceCap {
+    /// The cap, `[N]`, if there is one.
+    pub fn newtons(self) -> Option<f64> {
+        match self {
+            Self::Default => Some(DEFAULT_FORCE_CAP),
+            Self::Newtons(newtons) => Some(newtons),
+            Self::Off => None,
+        }
+    }
+
+    /// As a number: NaN for the default, infinity for none.
+    pub(crate) fn to_number(self) -> f64 {
+        match self {
+            Self::Default => f64::NAN,
+            Self::Newtons(newtons) => newtons,
+            Self::Off => f64::INFINITY,
+        }
+    }
+
+    pub(crate) fn from_number(number: f64) -> Self {
+        match number {
+            f64::INFINITY => Self::Off,
+            number if number.is_nan() => Self::Default,
+            newtons => Self::Newtons(newtons),
+        }
+    }
+}
+
 /// Holds the force of the torques of `springs` and of `dampers`, `[N m]`, under `cap`, `[N]`; gives
 /// their sum, and tells whether it bound.
 pub(crate) fn hold(

@@ -1,7 +1,7 @@
 //! Goals that are given, changed and taken back.
 
 use franka_rt::lifecycle::{MotionError, Tuning};
-use franka_rt::session::{Backend, Budget, Free, Goal, GoalId, Target, Then};
+use franka_rt::session::{Backend, Budget, ForceCap, Free, Goal, GoalId, Target, Then};
 use rand::Rng;
 
 use super::super::draw;
@@ -43,7 +43,7 @@ impl Sessions<'_> {
             soft = true;
         }
         if self.random.random_bool(0.2) {
-            goal.force_cap = Some(self.random.random_range(10.0..100.0));
+            goal.force_cap = ForceCap::Newtons(self.random.random_range(10.0..100.0));
             soft = true;
         }
         // Nothing streams to a hand.
