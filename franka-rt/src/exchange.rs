@@ -3,8 +3,8 @@
 //!
 //! The robot sends one state per millisecond, and a host that was held up finds several of them
 //! waiting. The newest one wins: [`Exchange::receive`] waits for a datagram, then takes all that
-//! are there and keeps the one with the highest `message_id`, if that is above the last one kept.
-//! What did not come from the robot's address is dropped and counted. Nothing here allocates after
+//! are there and keeps the one with the highest `message_id`, if that is above the last one kept and
+//! not impossibly far ahead of it. What did not come from the robot's address is dropped and counted. Nothing here allocates after
 //! [`Exchange::new`].
 
 use std::io;
@@ -75,6 +75,9 @@ pub struct Reception {
     pub short: u64,
     /// Length in bytes of the last of these; 0 without one.
     pub short_length: usize,
+    /// `message_id` of the last state that was dropped for being more than [`LEAP_MAX`] above the
+    /// newest; `None` without one.
+    pub leap: Option<u64>,
     /// errno value of a receive that failed otherwise than by finding nothing.
     pub error: Option<i32>,
 }
@@ -168,9 +171,17 @@ impl Exchange {
             return;
         }
         let message_id = message_id(&self.incoming);
-        if self.message_id.is_some_and(|newest| message_id <= newest) {
-            reception.stale += 1;
-            return;
+        match self.message_id {
+            Some(newest) if message_id <= newest => {
+                reception.stale += 1;
+                return;
+            }
+            // Accepting it would make every state after it a stale one, for good.
+            Some(newest) if message_id - newest > LEAP_MAX => {
+                reception.leap = Some(message_id);
+                return;
+            }
+            _ => {}
         }
         reception.skipped += u64::from(reception.fresh);
         reception.fresh = true;
@@ -223,6 +234,10 @@ pub enum SendError {
 /// Datagrams taken in one call at most, so that a flood cannot hold the cycle up. The default
 /// receive buffer of Linux (212992 bytes) holds fewer states than that.
 pub const DRAIN_MAX: usize = 256;
+
+/// The most that a state's `message_id` may be above the newest one, `[ms]` of the robot's clock: 49
+/// days. No connection outlives such a silence, so what is further ahead is not a state's number.
+pub const LEAP_MAX: u64 = u32::MAX as u64;
 
 /// Size of the `message_id`, in bytes.
 const MESSAGE_ID: usize = size_of::<u64>();

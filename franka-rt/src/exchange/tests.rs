@@ -95,6 +95,27 @@ fn old_states_alone_are_nothing_new() {
 }
 
 #[test]
+fn a_number_impossibly_far_ahead_does_not_make_the_link_deaf() {
+    let mut bench = Bench::new();
+    bench.states(&[9, u64::MAX]);
+    let reception = bench.exchange.receive();
+    let expected = Reception {
+        fresh: true,
+        leap: Some(u64::MAX),
+        ..Reception::default()
+    };
+    assert_eq!(reception, expected);
+    assert_eq!(bench.exchange.message_id(), Some(9));
+    bench.states(&[10, 10 + LEAP_MAX + 1, 10 + LEAP_MAX]);
+    let reception = bench.exchange.receive();
+    assert_eq!(
+        (reception.fresh, reception.skipped, reception.leap),
+        (true, 1, Some(11 + LEAP_MAX))
+    );
+    assert_eq!(bench.exchange.message_id(), Some(10 + LEAP_MAX));
+}
+
+#[test]
 fn another_address_is_not_the_robot() {
     let mut bench = Bench::new();
     bench.stranger.send(&state(1_000)).expect("loopback");

@@ -176,7 +176,8 @@ impl<C: Core> Cycle<C> {
         stats.skipped.add(reception.skipped);
         stats.stale.add(reception.stale);
         stats.foreign.add(reception.foreign);
-        stats.malformed.add(reception.short);
+        let leaps = u64::from(reception.leap.is_some());
+        stats.malformed.add(reception.short + leaps);
         stats
             .receive_errors
             .add(u64::from(reception.error.is_some()));
@@ -193,8 +194,13 @@ impl<C: Core> Cycle<C> {
             expected: self.size,
         };
         let datagram = undecodable.or((reception.short > 0).then_some(short));
+        let leap = reception.leap.map(|got| LinkFault::Leap {
+            got,
+            newest: self.exchange.message_id().unwrap_or_default(),
+        });
         datagram
             .map(LinkFault::Datagram)
+            .or(leap)
             .or(reception.error.map(LinkFault::Receive))
     }
 

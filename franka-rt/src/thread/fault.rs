@@ -13,6 +13,15 @@ pub enum LinkFault {
     /// version.
     #[error(transparent)]
     Datagram(#[from] DecodeError),
+    /// A state was dropped: its number is further above the newest one's than any robot's could be
+    /// (see [`LEAP_MAX`](crate::exchange::LEAP_MAX)).
+    #[error("a robot state numbered {got} after one numbered {newest} was dropped")]
+    Leap {
+        /// `message_id` of the state, `[ms]`.
+        got: u64,
+        /// `message_id` of the newest state, `[ms]`.
+        newest: u64,
+    },
     /// A receive failed otherwise than by finding nothing; an errno value.
     #[error("libfranka: UDP receive: {}", sys::error_text(*.0))]
     Receive(i32),
