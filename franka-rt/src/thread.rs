@@ -51,7 +51,7 @@ pub use self::handle::{Handle, Lost, Notice, StateReader, StateSequence, Thread}
 pub use self::lease::{Lease, Lender, WriteFault};
 
 use self::cycle::Cycle;
-use self::desk::Desk;
+use self::desk::{Desk, NotReturned};
 use self::fault::Latch;
 use self::handle::Datagram;
 use self::lifetime::Lifetime;
@@ -188,13 +188,13 @@ pub fn spawn<C: Core>(
                 }
                 cycle.turn();
             }
-            Some(cycle.core)
+            Ok::<C, NotReturned>(cycle.core)
         }));
         desk.close();
         lifetime.note_end();
         wake.ring();
         match ended {
-            Ok(core) => core.ok_or(Lost::Lent),
+            Ok(core) => core.map_err(Lost::from),
             Err(payload) => Err(Lost::panicked(&*payload)),
         }
     };

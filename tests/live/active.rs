@@ -173,3 +173,27 @@ async fn a_stop_a_reflex_and_a_shutdown_reach_the_thread() {
         assert!(matches!(thread.await.unwrap(), ActiveError::Motion(_)));
     }
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_panic_of_the_thread_has_the_robot_stop_and_the_connection_goes_on() {
+    let _alone = alone();
+    for (robot, _sim) in each(false).await {
+        let control = robot.active_torques().await.unwrap();
+        let work = tokio::task::spawn_blocking(move || {
+            let mut control = control;
+            control.read_once().unwrap();
+            panic!("the caller's own code fails");
+        });
+        assert!(work.await.unwrap_err().is_panic());
+        let mut states = robot.states();
+        let rests = states.wait_for(|state| state.robot_mode != RobotMode::Move);
+        tokio::time::timeout(Duration::from_secs(5), rests)
+            .await
+            .expect("the robot was told to stop")
+            .expect("the connection lives");
+        robot.recover().await.unwrap();
+        let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();
+        robot.move_to(up).await.expect("the cycle is back");
+        robot.shutdown().await;
+    }
+}

@@ -44,6 +44,15 @@ enum Place<T> {
     Ended,
 }
 
+/// Why a value that was lent does not come back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NotReturned {
+    /// The owner stopped waiting: the borrower still has it.
+    Lent,
+    /// The borrower has spoilt it.
+    Spoilt,
+}
+
 /// Why the cycle cannot be had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -72,10 +81,13 @@ impl<T> Desk<T> {
         self.wanted.load(Ordering::Relaxed)
     }
 
-    /// The owner gives the value to whoever wants it and waits until it is back. `None` if
-    /// `stop_wanted` says meanwhile that it should not wait any more, or if the value does not come
-    /// back.
-    pub(super) fn lend(&self, value: T, stop_wanted: impl Fn() -> bool) -> Option<T> {
+    /// Offers the owner's value to a borrower and returns it when it is back. Asks `stop_wanted`
+    /// every tick whether to go on waiting.
+    pub(super) fn lend(
+        &self,
+        value: T,
+        mut stop_wanted: impl FnMut() -> bool,
+    ) -> Result<T, NotReturned> {
         let mut place = self.lock();
         // Under the lock: whoever wants it later finds it on offer, or lent.
         self.wanted.store(false, Ordering::Relaxed);
@@ -84,13 +96,13 @@ impl<T> Desk<T> {
         loop {
             let stop = stop_wanted();
             match core::mem::replace(&mut *place, Place::Running) {
-                Place::Returned(value) => return Some(value),
-                Place::Offered(value) if stop => return Some(value),
-                Place::Ended => return None,
+                Place::Returned(value) => return Ok(value),
+                Place::Offered(value) if stop => return Ok(value),
+                Place::Ended => return Err(NotReturned::Spoilt),
                 other => *place = other,
             }
             if stop {
-                return None;
+                return Err(NotReturned::Lent);
             }
             place = self.wait_a_tick(place);
         }

@@ -6,6 +6,7 @@ use std::thread::JoinHandle;
 
 use franka_proto::{RobotState, Version};
 
+use super::desk::NotReturned;
 use super::lifetime::Lifetime;
 use crate::audience::Audience;
 use crate::driver::Driver;
@@ -82,7 +83,7 @@ impl<C> Thread<C> {
     /// async code, call it where blocking is allowed.
     ///
     /// # Errors
-    /// [`Lost`] if the core has panicked or is lent out.
+    /// [`Lost`] if the core has panicked or is lent.
     pub fn join(mut self) -> Result<C, Lost> {
         self.stop();
         let joiner = self
@@ -113,10 +114,22 @@ pub enum Lost {
         /// What the panic said.
         message: String,
     },
-    /// The cycle was lent out when the thread was stopped, and ends with its
-    /// [`Lease`](super::Lease).
-    #[error("the control cycle is lent out")]
+    /// The cycle was lent when the thread was stopped, and ends with its [`Lease`](super::Lease).
+    #[error("another thread had borrowed the control cycle and did not return it")]
     Lent,
+    /// The core panicked in a thread that had borrowed the cycle, which ended the control thread.
+    /// A defect; the process goes on.
+    #[error("the control cycle panicked in a thread that had borrowed it")]
+    Spoilt,
+}
+
+impl From<NotReturned> for Lost {
+    fn from(reason: NotReturned) -> Self {
+        match reason {
+            NotReturned::Lent => Self::Lent,
+            NotReturned::Spoilt => Self::Spoilt,
+        }
+    }
 }
 
 impl Lost {

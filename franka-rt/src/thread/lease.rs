@@ -39,6 +39,7 @@ impl<C: Core> Lender<C> {
         Ok(Lease {
             cycle: Some(self.desk.borrow()?),
             desk: self.desk.clone(),
+            is_unsound: false,
         })
     }
 }
@@ -59,10 +60,15 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
 ///
 /// Whoever holds it *is* the cycle: states are read, published and counted in its turns and nowhere
 /// else.
+///
+/// A panic of the holder's gives it back as well. Only if the core itself panics, in a
+/// [`turn`](Self::turn) or a [`write`](Lease::write), is the cycle destroyed and the thread ended.
 pub struct Lease<C: Core = Driver> {
     desk: Arc<Desk<Box<Cycle<C>>>>,
     /// `None` only while it is dropped.
     cycle: Option<Box<Cycle<C>>>,
+    /// Whether a method of the core is being called, or has panicked.
+    is_unsound: bool,
 }
 
 impl<C: Core> Lease<C> {
@@ -71,14 +77,21 @@ impl<C: Core> Lease<C> {
     /// if there is one, publishing. `None` if none came.
     ///
     /// # Errors
-    /// [`BorrowError::Ended`] if the thread was told to stop: give the cycle back.
+    /// [`BorrowError::Ended`] if the thread was told to stop, or the core has panicked: give the
+    /// cycle back.
     pub fn turn(&mut self) -> Result<Option<RobotState>, BorrowError> {
-        let cycle = self.cycle();
-        if cycle.lifetime.stop_wanted() {
+        if self.cycle().lifetime.stop_wanted() || self.is_unsound {
             return Err(BorrowError::Ended);
         }
-        let fresh = cycle.turn();
-        Ok(fresh.then(|| cycle.state()).flatten())
+        Ok(self.guarded(|cycle| cycle.turn().then(|| cycle.state()).flatten()))
+    }
+
+    /// Calls methods of the core. If one panics, the cycle counts as unsound from then on.
+    fn guarded<T>(&mut self, call: impl FnOnce(&mut Cycle<C>) -> T) -> T {
+        self.is_unsound = true;
+        let returned = call(self.cycle());
+        self.is_unsound = false;
+        returned
     }
 
     /// The core, to look at.
@@ -110,18 +123,20 @@ impl Lease<Driver> {
     /// # Errors
     /// [`WriteFault`]; the motion goes on.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<(), WriteFault> {
-        let cycle = self.cycle();
-        let command = cycle.core.write(command, finished)?;
-        Ok(cycle.send(&command)?)
+        if self.is_unsound {
+            return Err(WriteError::NotRunning.into());
+        }
+        self.guarded(|cycle| {
+            let command = cycle.core.write(command, finished)?;
+            Ok(cycle.send(&command)?)
+        })
     }
 }
 
 impl<C: Core> Drop for Lease<C> {
     fn drop(&mut self) {
         let cycle = self.cycle.take();
-        // A core that has panicked is not used after that.
-        let sound = cycle.filter(|_| !std::thread::panicking());
-        self.desk.give_back(sound);
+        self.desk.give_back(cycle.filter(|_| !self.is_unsound));
     }
 }
 

@@ -26,7 +26,7 @@ fn own(desk: &Desk<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
     let mut turns = Some(0);
     while let Some(value) = turns.filter(|_| goes_on()) {
         if desk.is_wanted() {
-            turns = desk.lend(value, || !goes_on());
+            turns = desk.lend(value, || !goes_on()).ok();
         } else {
             thread::yield_now();
         }

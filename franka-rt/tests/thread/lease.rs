@@ -1,5 +1,7 @@
 //! The cycle in the hands of another thread.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use franka_rt::control::{Command, WriteError};
 use franka_rt::thread::{BorrowError, WriteFault};
 
@@ -68,6 +70,24 @@ fn a_thread_that_is_stopped_does_not_wait_for_its_borrower() {
 }
 
 #[test]
+fn a_borrower_that_panics_gives_the_cycle_back() {
+    let (handle, robot) = start(config(), Probe::default());
+    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    robot.send(1);
+    let borrower = std::thread::spawn(move || {
+        let state = lease.turn().expect("the thread lives").expect("a state");
+        assert_eq!(state.message_id, 2, "the borrower fails");
+    });
+    assert!(borrower.join().is_err(), "the panic is the borrower's");
+    assert_eq!(robot.command().message_id, 1);
+    robot.send(2);
+    assert_eq!(robot.command().message_id, 2, "the thread answers again");
+    drop(handle.lender.borrow().expect("it is back"));
+    let core = handle.thread.join().expect("the core is whole");
+    assert_eq!(core.turnarounds, 2);
+}
+
+#[test]
 fn a_core_that_panics_with_its_borrower_ends_the_thread() {
     let core = Probe {
         panics_at: Some(3),
@@ -76,9 +96,12 @@ fn a_core_that_panics_with_its_borrower_ends_the_thread() {
     let (handle, robot) = start(config(), core);
     let mut lease = handle.lender.borrow().expect("nobody else has it");
     robot.send(3);
-    let borrower = std::thread::spawn(move || lease.turn());
-    assert!(borrower.join().is_err(), "the panic is the borrower's");
+    let turned = catch_unwind(AssertUnwindSafe(|| lease.turn()));
+    assert!(turned.is_err(), "the panic is the borrower's");
+    assert_eq!(lease.turn(), Err(BorrowError::Ended));
+    drop(lease);
     wait_for("end", || handle.thread.has_ended().then_some(()));
+    assert_eq!(handle.thread.join().expect_err("no core"), Lost::Spoilt);
     assert_eq!(handle.lender.borrow().unwrap_err(), BorrowError::Ended);
 }
 
