@@ -2,7 +2,10 @@
 //! holds the arm where it is since the robot makes up for gravity, and counts of what got lost and
 //! of how long everything took.
 //!
-//! `cargo run --release --example communication_test -- [ADDRESS] [--seconds 10] [--good 0.95] [--usable 0.9]`
+//! ```text
+//! cargo run --release --example communication_test -- \
+//!     [ADDRESS] [--seconds 10] [--good 0.95] [--usable 0.9]
+//! ```
 //!
 //! Exit code 0: the average success rate is at least `--good`; 3: it is below, and at least
 //! `--usable`; 4: it is below that too; 1: the test did not run to its end. 2 is a mistake on the

@@ -7,13 +7,15 @@ use clap::ValueEnum;
 
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
-use crate::{fuzz, mujoco, peers};
+use crate::{circles, fuzz, mujoco, peers, tidy};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Check {
-    /// Formatting.
+    /// Formatting, and comments as wide as code.
     Fmt,
+    /// No imports in a circle between the modules of a crate.
+    Circles,
     /// Lints, warnings denied.
     Clippy,
     /// Documentation, warnings denied.
@@ -48,7 +50,8 @@ pub(crate) fn run(workspace: &Workspace, only: &[Check]) -> anyhow::Result<()> {
 impl Check {
     fn describe(self) -> (&'static str, &'static str) {
         match self {
-            Self::Fmt => ("fmt", "formatting"),
+            Self::Fmt => ("fmt", "formatting, and comments as wide as code"),
+            Self::Circles => ("circles", "imports between the modules of a crate"),
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
             Self::Test => ("test", "all tests and documentation examples"),
@@ -74,7 +77,9 @@ impl Check {
                     command.args(["fmt", "--all", "--check", "--manifest-path", manifest]);
                     workspace.run(&mut command)?;
                 }
+                tidy::check(workspace)?;
             }
+            Self::Circles => circles::check(workspace)?,
             Self::Clippy => {
                 let mut command = workspace.cargo();
                 command.args(["clippy", "--workspace", "--all-targets", "--", "-Dwarnings"]);

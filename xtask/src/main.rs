@@ -4,21 +4,25 @@
 //! | module | task |
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
+//! | [`circles`] | the step that finds imports in a circle between modules |
 //! | [`fuzz`] | the fuzz targets, for a moment as a step or for as long as one likes |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant, and the step that tests that plant |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | virtual environments, for these two |
 //! | [`step`] | steps with headers, times and a summary |
+//! | [`tidy`] | the width of comments |
 //! | [`workspace`] | where things are, and running a program |
 
 mod checks;
+mod circles;
 mod fuzz;
 mod live;
 mod mujoco;
 mod peers;
 mod python;
 mod step;
+mod tidy;
 mod workspace;
 
 use std::path::PathBuf;

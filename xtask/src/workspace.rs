@@ -12,6 +12,8 @@ use anyhow::{Context as _, bail, ensure};
 pub(crate) struct Workspace {
     root: PathBuf,
     target: PathBuf,
+    /// Name of each library and program, and the file of its root.
+    crates: Vec<(String, PathBuf)>,
 }
 
 impl Workspace {
@@ -32,7 +34,13 @@ impl Workspace {
         Ok(Self {
             root: root.to_owned(),
             target: target.into(),
+            crates: libraries_and_programs(&metadata),
         })
+    }
+
+    /// Name of each library and program of the workspace, and the file of its root.
+    pub(crate) fn crates(&self) -> &[(String, PathBuf)] {
+        &self.crates
     }
 
     /// The directory of the root manifest.
@@ -83,6 +91,23 @@ impl Workspace {
         }
         Ok(())
     }
+}
+
+/// The targets of all packages that are libraries or programs, from Cargo's description.
+fn libraries_and_programs(metadata: &serde_json::Value) -> Vec<(String, PathBuf)> {
+    let list = |value: &serde_json::Value| value.as_array().cloned().unwrap_or_default();
+    let text = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
+    let mut crates = Vec::new();
+    for target in list(&metadata["packages"])
+        .iter()
+        .flat_map(|package| list(&package["targets"]))
+    {
+        let kinds = list(&target["kind"]);
+        if kinds.iter().any(|kind| kind == "lib" || kind == "bin") {
+            crates.push((text(&target["name"]), text(&target["src_path"]).into()));
+        }
+    }
+    crates
 }
 
 /// The command as one would type it: variables that differ from this program's, program, arguments.
