@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use clap::Parser;
 use franka_async::{
-    Chunk, Deadman, Diagnose, Engage, Free, Gains, MotionError, Pose, PoseError, Robot, RobotState,
-    Stale, Tuning,
+    Chunk, Deadman, Diagnose, Engage, Free, Gains, MotionError, OnTimeout, Pose, PoseError, Robot,
+    RobotState, Tuning,
 };
 use franka_examples::Arguments;
 use tokio::sync::watch;
@@ -31,7 +31,7 @@ async fn main() -> anyhow::Result<()> {
 async fn run(robot: &Robot) -> Result<(), MotionError> {
     // Whoever holds the token has to show life; here a task does, as a remote front end would with
     // every message.
-    let (token, grip) = Deadman::new(Duration::from_millis(500));
+    let (token, monitor) = Deadman::new(Duration::from_millis(500));
     let alive = tokio::spawn(async move {
         let mut clock = tokio::time::interval(Duration::from_millis(50));
         loop {
@@ -39,7 +39,7 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
             token.keep_alive();
         }
     });
-    let arm = robot.engage(Engage::default().deadman(grip)).await?;
+    let arm = robot.engage(Engage::default().deadman(monitor)).await?;
     let start = robot.pose();
     let ready = robot.state().q;
 
@@ -61,7 +61,7 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
     // A stream that falls silent is named, and the arm holds.
     let (sender, targets) = watch::channel(start);
     let silence = Duration::from_millis(200);
-    let follow = arm.follow(targets).watchdog(silence, Stale::Hold);
+    let follow = arm.follow(targets).watchdog(silence, OnTimeout::Hold);
     sender.send_replace(Pose::translation(0.0, -0.05, 0.0) * start);
     match follow.await {
         Err(MotionError::Held(why)) => println!("held: {why}"),

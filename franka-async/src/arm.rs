@@ -10,7 +10,7 @@ use franka_rt::driver::{Observer, Record};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, Tuning};
 use franka_rt::session::{
-    Backend, Budget, Chunk, ForceCap, Free, Goal, GoalId, Grip, Target, Then,
+    Backend, Budget, Chunk, DeadmanMonitor, ForceCap, Free, Goal, GoalId, OnArrival, Target,
 };
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
@@ -75,8 +75,8 @@ impl Engage {
     /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes
     /// and holds, and every goal resolves as [`MotionError::Held`]. Its silence has to be 10 ms or
     /// more. See [`Deadman::new`](crate::Deadman::new).
-    pub fn deadman(mut self, grip: Grip) -> Self {
-        self.engagement.deadman = Some(grip);
+    pub fn deadman(mut self, monitor: DeadmanMonitor) -> Self {
+        self.engagement.deadman = Some(monitor);
         self
     }
 
@@ -147,7 +147,7 @@ impl Robot {
             let budget = tuning.budget.unwrap_or_else(|| Budget::of(limits));
             tuning.budget = Some(budget.scaled(factor));
         }
-        let goal = Goal::new(self.next_goal(), Target::Rest, Then::Hold, limits);
+        let goal = Goal::new(self.next_goal(), Target::Rest, OnArrival::Hold, limits);
         let goal = tuning.apply(goal);
         let (begin, began) = oneshot::channel();
         let (done, ended) = watch::channel(None);
@@ -185,17 +185,17 @@ impl Arm {
     /// A motion of the end effector to `pose`; see [`Robot::move_to`]. It resolves when the arm has
     /// arrived and rests, which is then held. Dropping it brakes the arm and holds it.
     pub fn move_to(&self, pose: Pose) -> Motion {
-        self.motion(Target::Pose(pose), Then::Stay)
+        self.motion(Target::Pose(pose), OnArrival::ReportAndHold)
     }
 
     /// A motion of the joints to `q`, `[rad]`; otherwise like [`Self::move_to`].
     pub fn move_joints(&self, q: [f64; 7]) -> Motion {
-        self.motion(Target::Joints(q), Then::Stay)
+        self.motion(Target::Joints(q), OnArrival::ReportAndHold)
     }
 
     /// Brakes, whatever the arm is doing, and resolves when it rests; it is then held there.
     pub fn hold(&self) -> Motion {
-        self.motion(Target::Rest, Then::Stay)
+        self.motion(Target::Rest, OnArrival::ReportAndHold)
     }
 
     /// Heads for `pose` from now on, in the place of whatever came before, and holds it. Returns as
@@ -237,7 +237,7 @@ impl Arm {
     /// As [`Self::set`].
     pub async fn chunk(&self, chunk: Chunk) -> Result<(), MotionError> {
         let id = self.session.id;
-        let goal = Box::new(self.goal(chunk.target(), Then::Hold));
+        let goal = Box::new(self.goal(chunk.target(), OnArrival::Hold));
         let chunk = Box::new(chunk);
         self.ask(|taken| Input::Chunk {
             id,
@@ -351,21 +351,21 @@ impl Arm {
         tuning.unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn goal(&self, target: Target, then: Then) -> Goal {
+    fn goal(&self, target: Target, on_arrival: OnArrival) -> Goal {
         let robot = self.robot();
         let limits = robot.model().joint_limits();
-        let goal = Goal::new(robot.next_goal(), target, then, limits);
+        let goal = Goal::new(robot.next_goal(), target, on_arrival, limits);
         self.tuning().apply(goal)
     }
 
-    fn motion(&self, target: Target, then: Then) -> Motion {
-        let goal = self.goal(target, then);
+    fn motion(&self, target: Target, on_arrival: OnArrival) -> Motion {
+        let goal = self.goal(target, on_arrival);
         Motion::new(self.robot().clone(), Some(self.clone()), goal)
     }
 
     async fn take(&self, target: Target) -> Result<(), MotionError> {
         let id = self.session.id;
-        let goal = Box::new(self.goal(target, Then::Hold));
+        let goal = Box::new(self.goal(target, OnArrival::Hold));
         self.ask(|taken| Input::Set { id, goal, taken }).await
     }
 

@@ -9,7 +9,9 @@ use std::time::Duration;
 use franka_model::limits::JointLimits;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport, Tuning};
-use franka_rt::session::{Budget, ForceCap, Goal, Lead, Stale, Target, Then, Tolerance, Watchdog};
+use franka_rt::session::{
+    Budget, ForceCap, Goal, Lead, OnArrival, OnTimeout, Target, Tolerance, Watchdog,
+};
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::wrappers::WatchStream;
@@ -39,7 +41,7 @@ impl Follow {
     pub(crate) fn new(robot: Robot, arm: Option<Arm>, targets: Targets) -> Self {
         let tuning = arm.as_ref().map(|arm| *arm.tuning()).unwrap_or_default();
         let limits = robot.model().joint_limits();
-        let goal = Goal::new(robot.next_goal(), Target::Rest, Then::Hold, limits);
+        let goal = Goal::new(robot.next_goal(), Target::Rest, OnArrival::Hold, limits);
         Self {
             goal: tuning.apply(goal),
             tuning,
@@ -113,12 +115,15 @@ impl Follow {
     }
 
     /// Gives up when no target has come for `silence`, whole milliseconds from 10 on: the arm goes
-    /// on to the last one ([`Stale::Hold`]) or brakes at once ([`Stale::Brake`]), and the future
+    /// on to the last one ([`OnTimeout::Hold`]) or brakes at once ([`OnTimeout::Brake`]), and the future
     /// resolves as [`MotionError::Held`] or [`MotionError::Braked`] when it rests, unless targets
     /// come again before that. A target counts even if it equals the one before. The control thread
     /// watches this by itself. Without it, the last target is held for ever.
-    pub fn watchdog(mut self, silence: Duration, stale: Stale) -> Self {
-        self.goal.watchdog = Some(Watchdog { silence, stale });
+    pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
+        self.goal.watchdog = Some(Watchdog {
+            silence,
+            on_timeout,
+        });
         self
     }
 
@@ -203,7 +208,7 @@ fn towards(
     stiffness: Option<[f64; 6]>,
     limits: &JointLimits,
 ) -> Goal {
-    let of_kind = Goal::new(common.id, first, common.then, limits);
+    let of_kind = Goal::new(common.id, first, common.on_arrival, limits);
     let Goal {
         gains, force_cap, ..
     } = tuning.apply(of_kind);
@@ -264,11 +269,11 @@ mod tests {
     #[test]
     fn what_is_tuned_holds_for_a_stream_and_its_kind_decides_the_rest() {
         let limits = franka_model::Model::fr3().joint_limits();
-        let common = Goal::new(GoalId(7), Target::Rest, Then::Hold, limits);
+        let common = Goal::new(GoalId(7), Target::Rest, OnArrival::Hold, limits);
         let joints = Target::Joints(franka_model::READY.into());
         let goal = |tuning, stiffness| towards(joints, &common, &tuning, stiffness, limits);
         let plain = goal(Tuning::default(), None);
-        assert_eq!(plain, Goal::new(common.id, joints, Then::Hold, limits));
+        assert_eq!(plain, Goal::new(common.id, joints, OnArrival::Hold, limits));
         let tuning = Tuning {
             gains: Some(Gains::droid()),
             force_cap: Some(ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP)),

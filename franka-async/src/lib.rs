@@ -123,9 +123,9 @@ pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
 pub use franka_rt::sched::{Granted, Realtime, SchedError};
 pub use franka_rt::session::{
     BLEND, Backend, Bindings, Budget, CHUNKS_MAX, Chunk, ChunkError, DEFAULT_FORCE_CAP, Deadman,
-    FORCE_CAP, ForceCap, Free, GoalError, Grip, Guard, JOINT_DEVIATION, JOINT_LEASH, KEEP_OUT_MAX,
-    KEEP_OUT_STOP, LEAD_FRESH_MS, Lapse, Lead, OFFSET_MAX, POINTS_MAX, PoseError,
-    ROTATION_DEVIATION, ROTATION_LEASH, SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints, Stale,
+    DeadmanMonitor, FORCE_CAP, ForceCap, Free, GoalError, Guard, JOINT_DEVIATION, JOINT_LEASH,
+    KEEP_OUT_MAX, KEEP_OUT_STOP, LEAD_FRESH_MS, Lapse, Lead, OFFSET_MAX, OnTimeout, POINTS_MAX,
+    PoseError, ROTATION_DEVIATION, ROTATION_LEASH, SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints,
     TRANSLATION_DEVIATION, TRANSLATION_LEASH, Target, Tolerance, TooManyChunks,
     VELOCITY_BARRIER_ONSET,
 };

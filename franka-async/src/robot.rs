@@ -9,7 +9,7 @@ use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{MoveRequest, RobotState, Version};
 use franka_rt::driver::{Program, Record};
 use franka_rt::sched::Granted;
-use franka_rt::session::{Goal, GoalId, Target, Then};
+use franka_rt::session::{Goal, GoalId, OnArrival, Target};
 use franka_rt::stats::Stats;
 use franka_rt::thread::Lender;
 use tokio::sync::{broadcast, oneshot, watch};
@@ -167,7 +167,7 @@ impl Robot {
 
     fn motion(&self, target: Target) -> Motion {
         let limits = self.model().joint_limits();
-        let goal = Goal::new(self.next_goal(), target, Then::Finish, limits);
+        let goal = Goal::new(self.next_goal(), target, OnArrival::ReportAndFinish, limits);
         Motion::new(self.clone(), None, goal)
     }
 

@@ -5,7 +5,7 @@ use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatu
 use franka_rt::control::{ActiveControl, Callback, Finish, JointVelocities};
 use franka_rt::driver::{Activity, Program};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Goal, Target, Then};
+use franka_rt::session::{Goal, OnArrival, Target};
 
 use crate::for_each_version;
 use crate::pair::{self, Pair};
@@ -60,7 +60,12 @@ fn standing(version: Version, cycles: u32) -> (Program, MoveRequest) {
 fn to_ready(pair: &mut Pair) -> Goal {
     let limits = pair::model(pair.client.version()).joint_limits();
     let target = Target::Joints(READY.into());
-    Goal::new(pair.client.next_goal(), target, Then::Finish, limits)
+    Goal::new(
+        pair.client.next_goal(),
+        target,
+        OnArrival::ReportAndFinish,
+        limits,
+    )
 }
 
 /// A second start is refused before anything is sent, as of a motion that another caller runs.

@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use franka_async::{
-    Activity, Chunk, Deadman, Engage, Free, GoalError, Lapse, MotionError, Pose, PoseError, Record,
-    Stale, Tuning,
+    Activity, Chunk, Deadman, Engage, Free, GoalError, Lapse, MotionError, OnTimeout, Pose,
+    PoseError, Record, Tuning,
 };
 use tokio::sync::watch;
 
@@ -93,12 +93,15 @@ async fn silence_of_a_stream_and_of_a_deadman_hold_the_arm_under_their_names() {
     let (robot, _sim) = simulated().await;
     let start = robot.pose();
     let far = Pose::translation(0.0, 0.1, 0.1) * start;
-    let (token, grip) = Deadman::new(Duration::from_millis(1500));
-    let arm = robot.engage(Engage::default().deadman(grip)).await.unwrap();
+    let (token, monitor) = Deadman::new(Duration::from_millis(1500));
+    let arm = robot
+        .engage(Engage::default().deadman(monitor))
+        .await
+        .unwrap();
     let (_sender, targets) = watch::channel(far);
     let silent = arm
         .follow(targets)
-        .watchdog(Duration::from_millis(100), Stale::Brake);
+        .watchdog(Duration::from_millis(100), OnTimeout::Brake);
     let outcome = silent.await;
     let braked = matches!(outcome, Err(MotionError::Braked(Lapse::Silent { .. })));
     assert!(braked, "{outcome:?}");

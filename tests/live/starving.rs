@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
-use franka_async::{Engage, Guard, Lapse, MotionError, MotionReport, Pose, Realtime, Stale};
+use franka_async::{Engage, Guard, Lapse, MotionError, MotionReport, OnTimeout, Pose, Realtime};
 use franka_rt::sched::Scheduling;
 use franka_sim::{Sim, Tool};
 use tokio::runtime::{Builder, Runtime};
@@ -205,7 +205,7 @@ fn a_session_whose_stream_blocked_workers_hold_up_is_braked_in_time() {
     let arm = runtime.block_on(robot.engage(engage)).unwrap();
     let start = robot.pose();
     let (sender, targets) = watch::channel(start);
-    let following = arm.follow(targets).watchdog(SILENCE, Stale::Brake);
+    let following = arm.follow(targets).watchdog(SILENCE, OnTimeout::Brake);
     let following = runtime.spawn(following.into_future());
     let stream = |steps: std::ops::Range<u32>| {
         for step in steps {

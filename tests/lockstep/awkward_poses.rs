@@ -6,7 +6,7 @@ use franka_model::{EndEffector, JointVector, Model, READY, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{
-    GoalError, Guard, Lapse, SELF_STOP, SETTLE_TIMEOUT, STALL_TIMEOUT, Target, Then,
+    GoalError, Guard, Lapse, OnArrival, SELF_STOP, SETTLE_TIMEOUT, STALL_TIMEOUT, Target,
 };
 use franka_tests::lockstep::{Lockstep, pose_of, self_distance};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -89,13 +89,16 @@ fn a_pose_far_away_is_reached_or_reported_short() {
             random.random_range(limits.lower[i] + 0.2..limits.upper[i] - 0.2)
         });
         let mut lockstep = Lockstep::ready();
-        let goal = lockstep.goal(Target::Pose(pose_of(&posture, &hand)), Then::Finish);
+        let goal = lockstep.goal(
+            Target::Pose(pose_of(&posture, &hand)),
+            OnArrival::ReportAndFinish,
+        );
         let Ok(id) = lockstep.submit(goal) else {
             continue;
         };
         match lockstep.until_resolved(id, 40_000) {
             Ok(_) => reached += 1,
-            Err(MotionError::Short(_)) => short += 1,
+            Err(MotionError::TargetNotReached(_)) => short += 1,
             Err(MotionError::Braked(Lapse::Blocked)) => blocked += 1,
             other => panic!("seed {seed}, case {case}: {other:?}"),
         }
@@ -128,7 +131,10 @@ fn an_arm_held_at_the_length_of_its_leash_is_given_up_in_time() {
     }
     assert!(leashed > 3000, "{leashed}");
     let error = lockstep.client.outcome(goal).unwrap().clone().unwrap_err();
-    assert!(matches!(error, MotionError::Short(_)), "{error:?}");
+    assert!(
+        matches!(error, MotionError::TargetNotReached(_)),
+        "{error:?}"
+    );
     assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
 }
 
@@ -153,7 +159,7 @@ fn joints_arrive_at_the_ends_of_their_ranges_at_any_pace() {
                 if self_distance(&q.into()) < SELF_STOP {
                     q[3] = -0.5; // With the elbow bent the hand would be in the base.
                 }
-                let mut goal = lockstep.goal(Target::Joints(q), Then::Finish);
+                let mut goal = lockstep.goal(Target::Joints(q), OnArrival::ReportAndFinish);
                 goal.budget = goal.budget.scaled(speed);
                 // The very end is refused, and the refusal says how far the joint may go.
                 let error = lockstep.submit(goal).unwrap_err();

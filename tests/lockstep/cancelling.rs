@@ -3,7 +3,7 @@
 
 use franka_proto::RobotMode;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Goal, GoalId, Target, Then};
+use franka_rt::session::{Goal, GoalId, OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
@@ -14,7 +14,7 @@ const STOP: u64 = 600;
 const REST: f64 = 0.01;
 
 /// A brisk goal half a centimetre away, up and down in turn.
-fn goal(lockstep: &mut Lockstep, turn: u64, then: Then, joints: bool) -> Goal {
+fn goal(lockstep: &mut Lockstep, turn: u64, on_arrival: OnArrival, joints: bool) -> Goal {
     let way = if turn.is_multiple_of(2) { 1.0 } else { -1.0 };
     let target = if joints {
         let mut q: [f64; 7] = (*lockstep.robot.q()).into();
@@ -23,7 +23,7 @@ fn goal(lockstep: &mut Lockstep, turn: u64, then: Then, joints: bool) -> Goal {
     } else {
         (Translation3::new(0.0, 0.0, way * 0.005) * lockstep.true_pose()).into()
     };
-    let goal = lockstep.goal(target, then);
+    let goal = lockstep.goal(target, on_arrival);
     Goal {
         budget: goal.budget.scaled(1.7),
         ..goal
@@ -65,7 +65,7 @@ fn a_motion_taken_back_in_any_millisecond_ends_at_rest() {
             in_every_millisecond(
                 &mut lockstep,
                 |lockstep, turn| {
-                    let goal = goal(lockstep, turn, Then::Finish, joints);
+                    let goal = goal(lockstep, turn, OnArrival::ReportAndFinish, joints);
                     lockstep.submit(goal).expect("within reach")
                 },
                 |lockstep| {
@@ -87,7 +87,7 @@ fn a_goal_of_a_session_taken_back_in_any_millisecond_leaves_the_arm_held() {
             in_every_millisecond(
                 &mut lockstep,
                 |lockstep, turn| {
-                    let goal = goal(lockstep, turn, Then::Stay, joints);
+                    let goal = goal(lockstep, turn, OnArrival::ReportAndHold, joints);
                     lockstep.submit_within(engaged, goal).expect("within reach")
                 },
                 |lockstep| {

@@ -9,7 +9,7 @@ use franka_proto::RobotMode;
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{
-    Chunk, GoalId, Guard, KEEP_OUT_STOP, KeepOut, Lapse, SELF_STOP, Target, Then,
+    Chunk, GoalId, Guard, KEEP_OUT_STOP, KeepOut, Lapse, OnArrival, SELF_STOP, Target,
 };
 use franka_tests::lockstep::{Lockstep, for_each_robot, self_distance};
 use nalgebra::{Isometry3, Translation3, Vector3};
@@ -53,7 +53,7 @@ fn an_arm_on_its_way_into_itself_slows_down_and_stops_before_it() {
     for_each_robot(|ready| {
         for speed in [0.5, 1.0, 1.5] {
             let mut lockstep = ready();
-            let mut goal = lockstep.goal(into_itself(), Then::Finish);
+            let mut goal = lockstep.goal(into_itself(), OnArrival::ReportAndFinish);
             goal.budget = goal.budget.scaled(speed);
             let id = lockstep.submit(goal).expect("within the joints' ranges");
             let (least, bound) = least_room(&mut lockstep, id, self_distance);
@@ -178,7 +178,7 @@ fn chunks_that_follow_each_other_lead_no_nearer_than_one_does() {
             assert!((-CURVE..0.02).contains(&least), "{least} m left");
             assert!(bound > 500, "{bound}");
             // Out again.
-            let up = lockstep.within(engaged, Target::Pose(start), Then::Stay);
+            let up = lockstep.within(engaged, Target::Pose(start), OnArrival::ReportAndHold);
             lockstep
                 .until_resolved(up.expect("a way out"), 10_000)
                 .expect("it leaves");
@@ -197,7 +197,7 @@ fn a_gentler_goal_that_takes_over_comes_no_nearer() {
                 let (mut lockstep, engaged, room) = above_a_table(ready);
                 let start = lockstep.true_pose();
                 let below = |z: f64| Target::Pose(Translation3::new(0.0, 0.0, z) * start);
-                let mut quick = lockstep.goal(below(-0.3), Then::Stay);
+                let mut quick = lockstep.goal(below(-0.3), OnArrival::ReportAndHold);
                 quick.budget = quick.budget.scaled(1.5);
                 for joint in &mut quick.budget.joints {
                     *joint = AxisLimits {
@@ -208,7 +208,8 @@ fn a_gentler_goal_that_takes_over_comes_no_nearer() {
                 }
                 lockstep.submit_within(engaged, quick).expect("a quick one");
                 lockstep.run(after);
-                let mut gentle = lockstep.goal(target.map_or(Target::Rest, below), Then::Stay);
+                let mut gentle =
+                    lockstep.goal(target.map_or(Target::Rest, below), OnArrival::ReportAndHold);
                 gentle.budget = gentle.budget.scaled(0.2);
                 lockstep
                     .submit_within(engaged, gentle)

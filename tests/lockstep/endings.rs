@@ -9,7 +9,7 @@ use franka_proto::{
 use franka_rt::control::{Callback, Torques};
 use franka_rt::driver::{LINK_TIMEOUT, Program};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalError, Guard, Target, Then};
+use franka_rt::session::{GoalError, Guard, OnArrival, Target};
 use franka_tests::lockstep::{Link, Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
@@ -179,7 +179,7 @@ fn a_lost_connection_resolves_everything_and_takes_nothing_more() {
         .clone()
         .unwrap_err();
     assert_eq!(error.to_string(), "libfranka: server closed connection");
-    let goal = lockstep.goal(Target::Joints(READY.into()), Then::Finish);
+    let goal = lockstep.goal(Target::Joints(READY.into()), OnArrival::ReportAndFinish);
     let error = lockstep.submit(goal).unwrap_err();
     assert!(
         matches!(error, MotionError::ConnectionClosed { .. }),
@@ -228,7 +228,7 @@ fn an_arm_that_is_held_short_is_reported_and_let_go_without_a_step() {
         let goal = lockstep.begin(Target::Pose(target));
         lockstep.robot.push_end_effector(downward(12.0), 1_000_000);
         let error = lockstep.until_resolved(goal, 20_000).unwrap_err();
-        let MotionError::Short(error) = error else {
+        let MotionError::TargetNotReached(error) = error else {
             panic!("{error:?}")
         };
         // 12 N against 750 N/m and what the joint springs add to it.
@@ -281,11 +281,11 @@ fn bad_goals_are_named_and_change_nothing() {
             "no joint positions inside their ranges reach",
         ),
     ] {
-        let bad = lockstep.goal(target, Then::Finish);
+        let bad = lockstep.goal(target, OnArrival::ReportAndFinish);
         let error = lockstep.submit(bad).unwrap_err();
         assert!(error.to_string().starts_with(expected), "{error}");
     }
-    let mut fast = lockstep.goal(Target::Joints(READY.into()), Then::Finish);
+    let mut fast = lockstep.goal(Target::Joints(READY.into()), OnArrival::ReportAndFinish);
     fast.budget.joints[1].velocity = 3.0;
     let error = lockstep.submit(fast).unwrap_err();
     assert_eq!(

@@ -17,7 +17,7 @@ use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{
-    DEFAULT_FORCE_CAP, ForceCap, Goal, GoalId, Guard, Lapse, Target, Then, Tolerance,
+    DEFAULT_FORCE_CAP, ForceCap, Goal, GoalId, Guard, Lapse, OnArrival, Target, Tolerance,
 };
 use franka_sim::plant::ArmParameters;
 use franka_sim::{Touch, TouchId};
@@ -72,7 +72,7 @@ fn head_for(
     let goal = Goal {
         gains,
         force_cap,
-        ..lockstep.goal(target, Then::Hold)
+        ..lockstep.goal(target, OnArrival::Hold)
     };
     lockstep.submit_within(engaged, goal).expect("within reach");
 }
@@ -267,7 +267,7 @@ const SAG: Tolerance = Tolerance {
 fn capped_until_it_arrives(lockstep: &mut Lockstep, engaged: GoalId, target: Target) -> u32 {
     let goal = Goal {
         tolerance: SAG,
-        ..lockstep.goal(target, Then::Stay)
+        ..lockstep.goal(target, OnArrival::ReportAndHold)
     };
     let goal = Goal {
         force_cap: ForceCap::Default,
@@ -313,7 +313,7 @@ fn motions_that_nothing_holds_back_do_not_meet_the_default_cap() {
             // A stop out of full pace.
             let far = Translation3::new(0.0, 0.2, 0.0) * lockstep.reference_pose();
             lockstep
-                .within(engaged, far.into(), Then::Hold)
+                .within(engaged, far.into(), OnArrival::Hold)
                 .expect("within reach");
             lockstep.run(700);
             capped += capped_until_it_arrives(&mut lockstep, engaged, Target::Rest);
@@ -337,7 +337,7 @@ fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
             q[0] += 0.2;
             let goal = Goal {
                 force_cap,
-                ..lockstep.goal(Target::Joints(q), Then::Stay)
+                ..lockstep.goal(Target::Joints(q), OnArrival::ReportAndHold)
             };
             lockstep.robot.attach(load(mass));
             let id = lockstep.submit_within(engaged, goal).expect("in range");
@@ -345,7 +345,7 @@ fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
             println!("{mass} kg, {force_cap:?}: {}", told(&outcome));
             let error = outcome.expect_err("it is not within a millimetre");
             let borne = force_cap.newtons().is_none_or(|cap| mass * 9.81 < cap);
-            let short = matches!(error, MotionError::Short(_));
+            let short = matches!(error, MotionError::TargetNotReached(_));
             assert_eq!(short, borne, "{mass} kg: {error}");
         }
     });
@@ -367,7 +367,7 @@ fn a_held_arm_does_not_sink_in_silence() {
                 } else {
                     start.into()
                 };
-                let goal = lockstep.goal(target, Then::Hold);
+                let goal = lockstep.goal(target, OnArrival::Hold);
                 let id = lockstep
                     .submit_within(engaged, goal)
                     .expect("it is there already");
@@ -376,7 +376,7 @@ fn a_held_arm_does_not_sink_in_silence() {
                 lockstep.robot.attach(load(mass));
                 let outcome = lockstep.until_resolved(id, 10_000);
                 println!("{mass} kg, stiff joints: {stiff}: {}", told(&outcome));
-                let given_up = Err(MotionError::Braked(Lapse::CarriedOff));
+                let given_up = Err(MotionError::Braked(Lapse::Displaced));
                 let fell = matches!(outcome, Err(MotionError::Control(_)));
                 assert!(outcome == given_up || fell, "{outcome:?}");
             }

@@ -6,7 +6,7 @@ use franka_model::{EndEffector, Model, READY, RobotKind};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{
-    Free, Goal, GoalError, PoseError, SELF_STOP, Stale, Target, Then, Watchdog,
+    Free, Goal, GoalError, OnArrival, OnTimeout, PoseError, SELF_STOP, Target, Watchdog,
 };
 use franka_tests::lockstep::{Lockstep, for_each_robot, pose_of, self_distance};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -169,7 +169,7 @@ fn a_followed_target_may_step_as_it_likes() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let start = lockstep.true_pose();
-        let goal = lockstep.goal(Target::Pose(start), Then::Hold);
+        let goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
         let id = lockstep.submit(goal).unwrap();
         let mut last = start;
         for step in 0..40_u32 {
@@ -229,7 +229,7 @@ fn goals_are_held_against_the_ranges_of_the_connected_robot() {
     assert_near(&fer, &pose_of(&q.into(), &hand()));
 
     let mut fr3 = Lockstep::ready_of(RobotKind::Fr3);
-    let goal = fr3.goal(Target::Joints(q), Then::Finish);
+    let goal = fr3.goal(Target::Joints(q), OnArrival::ReportAndFinish);
     let error = fr3.submit(goal).unwrap_err();
     assert!(
         matches!(
@@ -249,7 +249,7 @@ fn a_goal_is_planned_however_slow_it_is_or_refused() {
             let mut q: [f64; 7] = READY.into();
             q[0] += 0.1;
             for target in [Target::Pose(up), Target::Joints(q)] {
-                let mut goal = lockstep.goal(target, Then::Hold);
+                let mut goal = lockstep.goal(target, OnArrival::Hold);
                 goal.budget = goal.budget.scaled(pace);
                 match lockstep.submit(goal) {
                     Ok(_) => lockstep.run(300),
@@ -267,7 +267,7 @@ fn a_goal_is_planned_however_slow_it_is_or_refused() {
 fn a_stream_that_ends_with_a_guiding_hand_comes_to_rest() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let goal = lockstep.goal(Target::Guide(Free::ALL), Then::Hold);
+        let goal = lockstep.goal(Target::Guide(Free::ALL), OnArrival::Hold);
         let goal = lockstep.submit(goal).expect("nothing moves");
         lockstep.run(500);
         lockstep.client.lifecycle.close(goal);
@@ -285,9 +285,9 @@ fn a_goal_that_goes_on_is_not_said_to_have_been_held() {
             let goal = Goal {
                 watchdog: Some(Watchdog {
                     silence: Duration::from_millis(50),
-                    stale: Stale::Hold,
+                    on_timeout: OnTimeout::Hold,
                 }),
-                ..lockstep.goal(Target::Joints(q), Then::Hold)
+                ..lockstep.goal(Target::Joints(q), OnArrival::Hold)
             };
             let goal = lockstep.submit(goal).expect("it is there already");
             lockstep.run(50 + wait);

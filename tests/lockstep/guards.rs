@@ -3,7 +3,7 @@
 use franka_model::Wrench;
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{MotionError, Tuning};
-use franka_rt::session::{Guard, LEAD_FRESH_MS, Lapse, Lead, PoseError, Target, Then};
+use franka_rt::session::{Guard, LEAD_FRESH_MS, Lapse, Lead, OnArrival, PoseError, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -38,12 +38,12 @@ fn pull_aside(lockstep: &mut Lockstep) -> f64 {
 #[test]
 fn an_arm_that_is_carried_off_stays_where_it_is_let_go() {
     for_each_robot(|ready| {
-        for then in [Then::Finish, Then::Hold] {
+        for then in [OnArrival::ReportAndFinish, OnArrival::Hold] {
             let mut lockstep = tolerant(ready);
             let start = lockstep.true_pose();
-            let goal = lockstep.goal(Target::Pose(start), Then::Hold);
+            let goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
             let id = lockstep.submit(goal).expect("it is there already");
-            if then == Then::Finish {
+            if then == OnArrival::ReportAndFinish {
                 let up = Translation3::new(0.0, 0.0, 0.05) * start;
                 assert_eq!(lockstep.update(id, Target::Pose(up)), Ok(true));
             }
@@ -51,7 +51,7 @@ fn an_arm_that_is_carried_off_stays_where_it_is_let_go() {
             let off = pull_aside(&mut lockstep);
             assert!(off > 0.2, "{off} m aside");
             let outcome = lockstep.until_resolved(id, 20_000);
-            assert_eq!(outcome, Err(MotionError::Braked(Lapse::CarriedOff)));
+            assert_eq!(outcome, Err(MotionError::Braked(Lapse::Displaced)));
             lockstep.run(500);
             let at = lockstep.true_pose().translation.vector - start.translation.vector;
             assert!(at.y > off - 0.06, "from {off} m to {} m aside", at.y);
@@ -72,7 +72,7 @@ fn a_wild_target_sends_the_arm_no_further_than_the_lead_once_the_stream_stops() 
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let start = lockstep.true_pose();
-        let mut goal = lockstep.goal(Target::Pose(start), Then::Hold);
+        let mut goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
         goal.lead = Some(LEAD);
         let id = lockstep.submit(goal).expect("it is there already");
         lockstep.run(100);
@@ -112,7 +112,7 @@ fn a_lead_that_leaves_some_of_the_ways_free_binds_the_others() {
         for (translation, rotation) in [(0.05, free), (free, 0.2)] {
             let mut lockstep = ready();
             let start = lockstep.true_pose();
-            let mut goal = lockstep.goal(Target::Pose(start), Then::Hold);
+            let mut goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
             goal.lead = Some(Lead {
                 translation,
                 rotation,
@@ -148,7 +148,7 @@ fn who_tunes_does_not_send_an_arm_back_that_was_carried_off_where_it_had_arrived
         let engaged = lockstep.engage();
         let start = lockstep.true_pose();
         let goal = lockstep
-            .within(engaged, Target::Pose(start), Then::Stay)
+            .within(engaged, Target::Pose(start), OnArrival::ReportAndHold)
             .expect("it is there already");
         lockstep.until_resolved(goal, 3000).expect("it is there");
         let off = pull_aside(&mut lockstep);

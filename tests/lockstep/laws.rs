@@ -3,7 +3,7 @@
 use franka_model::Wrench;
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
-use franka_rt::session::{ForceCap, Goal, Guard, PoseError, Target, Then};
+use franka_rt::session::{ForceCap, Goal, Guard, OnArrival, PoseError, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
@@ -39,7 +39,7 @@ fn poses_are_reached_under_every_law() {
                     Translation3::from(home.translation.vector + nalgebra::Vector3::new(x, y, z)),
                     UnitQuaternion::from_euler_angles(turn, turn / 2.0, -turn) * home.rotation,
                 );
-                let goal = lockstep.goal(Target::Pose(target), Then::Finish);
+                let goal = lockstep.goal(Target::Pose(target), OnArrival::ReportAndFinish);
                 let id = lockstep
                     .submit(Goal { gains, ..goal })
                     .expect("within reach");
@@ -64,7 +64,7 @@ fn force_on_floor(gains: Gains, force_cap: ForceCap) -> (f64, bool) {
     let floor = start.translation.z - 0.04;
     let goal = lockstep.goal(
         Target::Pose(Translation3::new(0.0, 0.0, -0.1) * start),
-        Then::Hold,
+        OnArrival::Hold,
     );
     let goal = Goal {
         gains,
@@ -112,7 +112,7 @@ fn an_arm_presses_on_an_obstacle_with_the_capped_force() {
 fn a_change_of_law_or_cap_under_load_does_not_step_the_torque() {
     let mut lockstep = tolerant(Lockstep::ready());
     let home = lockstep.true_pose();
-    let goal = lockstep.goal(Target::Pose(home), Then::Hold);
+    let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
     lockstep.submit(goal).expect("the arm is there");
     lockstep.run(50);
     lockstep
@@ -126,7 +126,7 @@ fn a_change_of_law_or_cap_under_load_does_not_step_the_torque() {
             let goal = Goal {
                 gains,
                 force_cap: [ForceCap::Off, ForceCap::Newtons(10.5)][round],
-                ..lockstep.goal(Target::Pose(home), Then::Hold)
+                ..lockstep.goal(Target::Pose(home), OnArrival::Hold)
             };
             lockstep.submit(goal).expect("the arm is near");
             for _ in 0..700 {

@@ -1,7 +1,7 @@
 //! Steps of 5 cm, the common measure of impedance controllers: how far they end off, how long they
 //! take, how far the arm lags behind meanwhile.
 
-use franka_rt::session::{Target, Then};
+use franka_rt::session::{OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Translation3, Vector3};
 
@@ -69,7 +69,7 @@ fn a_step_of_five_centimetres_is_quick_close_and_without_lag() {
                 let mut way = Vector3::zeros();
                 way[axis] = sign * 0.05;
                 let figures = step(&mut lockstep, way, |lockstep, target| {
-                    lockstep.within(engaged, target, Then::Hold).unwrap();
+                    lockstep.within(engaged, target, OnArrival::Hold).unwrap();
                 });
                 println!("{way:?} {figures:?}");
                 assert!(figures.off <= 0.3e-3, "{figures:?}");

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use franka_model::{Model, READY, RobotKind, Wrench};
-use franka_rt::session::{Chunk, Free, GoalId, Target, Then};
+use franka_rt::session::{Chunk, Free, GoalId, OnArrival, Target};
 use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
@@ -68,22 +68,22 @@ impl Switching {
 
     fn switch_to(&mut self, kind: Kind) {
         self.lockstep.robot.let_go();
-        let (target, then) = match kind {
-            Kind::Pose | Kind::Stream => (Target::Pose(self.pose(0.1)), Then::Hold),
+        let (target, on_arrival) = match kind {
+            Kind::Pose | Kind::Stream => (Target::Pose(self.pose(0.1)), OnArrival::Hold),
             Kind::Joints => {
                 let q = READY.map(|q| q + self.random.random_range(-0.3..0.3));
-                (Target::Joints(q.into()), Then::Stay)
+                (Target::Joints(q.into()), OnArrival::ReportAndHold)
             }
             Kind::Guide => {
                 let axes = core::array::from_fn(|_| self.random.random_bool(0.7));
                 let force = Vector3::from_fn(|_, _| self.random.random_range(-4.0..4.0));
                 let push = Wrench::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
                 self.lockstep.robot.push_end_effector(push, 500);
-                (Target::Guide(Free { axes, elbow: true }), Then::Hold)
+                (Target::Guide(Free { axes, elbow: true }), OnArrival::Hold)
             }
-            Kind::Rest => (Target::Rest, Then::Stay),
+            Kind::Rest => (Target::Rest, OnArrival::ReportAndHold),
             Kind::Chunk => {
-                let goal = self.lockstep.goal(Target::Rest, Then::Hold);
+                let goal = self.lockstep.goal(Target::Rest, OnArrival::Hold);
                 let chunk = self.chunk();
                 self.lockstep
                     .submit_chunk(self.engaged, goal, chunk)
@@ -91,7 +91,7 @@ impl Switching {
                 return self.run(kind, None);
             }
         };
-        let mut goal = self.lockstep.goal(target, then);
+        let mut goal = self.lockstep.goal(target, on_arrival);
         goal.budget = goal.budget.scaled(self.random.random_range(0.4..1.6));
         match self.lockstep.submit_within(self.engaged, goal) {
             Ok(id) => self.run(kind, Some(id)),

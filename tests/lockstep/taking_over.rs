@@ -4,7 +4,7 @@ use franka_model::READY;
 use franka_proto::{RobotError, RobotMode};
 use franka_rt::driver::{Activity, LINK_TIMEOUT};
 use franka_rt::lifecycle::{MotionError, START_TIMEOUT};
-use franka_rt::session::{GoalId, PoseError, Target, Then};
+use franka_rt::session::{GoalId, OnArrival, PoseError, Target};
 use franka_tests::lockstep::Lockstep;
 use nalgebra::Translation3;
 
@@ -16,7 +16,7 @@ fn ready_turned(joint: usize, by: f64) -> [f64; 7] {
 
 /// Submits a goal of this target at `speed` times the default budget.
 fn submit_at(lockstep: &mut Lockstep, target: Target, speed: f64) -> GoalId {
-    let mut goal = lockstep.goal(target, Then::Finish);
+    let mut goal = lockstep.goal(target, OnArrival::ReportAndFinish);
     goal.budget = goal.budget.scaled(speed);
     lockstep.submit(goal).expect("the goal is accepted")
 }
@@ -144,7 +144,7 @@ fn a_stop_is_quick_however_slow_the_goal_is() {
 fn what_was_on_its_way_for_a_goal_that_was_taken_back_moves_nothing() {
     let mut lockstep = Lockstep::ready();
     let start = lockstep.true_pose();
-    let goal = lockstep.goal(Target::Pose(start), Then::Hold);
+    let goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
     let id = lockstep.submit(goal).unwrap();
     lockstep.run(100);
     lockstep.cancel(id);

@@ -12,7 +12,7 @@ use franka_rt::control::{
 };
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Goal, GoalId, Stale, Target, Then, Watchdog};
+use franka_rt::session::{Goal, GoalId, OnArrival, OnTimeout, Target, Watchdog};
 use franka_rt::together::{StartBarrier, StartFault, StartTicket};
 use franka_tests::lockstep::Lockstep;
 use nalgebra::Translation3;
@@ -65,7 +65,7 @@ fn turned(by: f64) -> Target {
 }
 
 fn submit(robot: &mut Lockstep, target: Target, ticket: StartTicket) -> GoalId {
-    let goal = robot.goal(target, Then::Finish);
+    let goal = robot.goal(target, OnArrival::ReportAndFinish);
     robot.submit_together(goal, ticket).expect("it is free")
 }
 
@@ -129,7 +129,7 @@ fn one_that_never_begins_lets_the_other_go_at_rest_with_its_number() {
         (
             "refused",
             |two, right| {
-                let goal = two.right.goal(turned(9.0), Then::Finish);
+                let goal = two.right.goal(turned(9.0), OnArrival::ReportAndFinish);
                 let refused = two.right.submit_together(goal, right);
                 assert!(matches!(refused, Err(MotionError::Goal(_))), "{refused:?}");
             },
@@ -220,7 +220,7 @@ fn one_that_leaves_while_it_waits_lets_the_other_go() {
         assert!(moved(&two.right) < 1e-6, "{way}: {}", moved(&two.right));
         // Whoever comes after that is refused at once.
         two.right.until_idle(2000);
-        let goal = two.right.goal(turned(0.1), Then::Finish);
+        let goal = two.right.goal(turned(0.1), OnArrival::ReportAndFinish);
         let refused = two.right.submit_together(goal, third);
         assert_eq!(refused, Err(MotionError::Start(fault)), "{way}");
         if way == "superseded" {
@@ -253,7 +253,7 @@ fn a_motion_with_a_ticket_supersedes_nothing() {
     let [left, right] = StartBarrier::new().tickets();
     let running = two.left.begin(turned(0.2));
     two.run(100);
-    let goal = two.left.goal(turned(0.1), Then::Finish);
+    let goal = two.left.goal(turned(0.1), OnArrival::ReportAndFinish);
     let refused = two.left.submit_together(goal, left);
     assert_eq!(refused, Err(MotionError::Busy));
     assert_eq!(right.fault(), Some(StartFault::Dropped { member: 0 }));
@@ -266,7 +266,7 @@ fn a_motion_with_a_ticket_supersedes_nothing() {
 fn a_target_that_moves_while_it_waits_is_followed_from_the_start() {
     let mut two = Two::new();
     let [left, mut right] = StartBarrier::new().tickets();
-    let goal = two.left.goal(turned(0.1), Then::Hold);
+    let goal = two.left.goal(turned(0.1), OnArrival::Hold);
     let goal = two.left.submit_together(goal, left).expect("it is free");
     two.run(100);
     assert_eq!(two.left.update(goal, turned(-0.1)), Ok(true));
@@ -287,9 +287,9 @@ fn a_wait_for_the_others_is_no_silence_of_a_stream() {
     let goal = Goal {
         watchdog: Some(Watchdog {
             silence: Duration::from_millis(100),
-            stale: Stale::Brake,
+            on_timeout: OnTimeout::Brake,
         }),
-        ..two.left.goal(turned(0.1), Then::Hold)
+        ..two.left.goal(turned(0.1), OnArrival::Hold)
     };
     let goal = two.left.submit_together(goal, left).expect("it is free");
     two.run(2000);

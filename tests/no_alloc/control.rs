@@ -9,7 +9,7 @@ use franka_rt::control::{
     JointPositions, JointVelocities, Torques,
 };
 use franka_rt::driver::{ControlLog, Driver, Modes, MotionId, Order, Program};
-use franka_rt::session::{Target, Then};
+use franka_rt::session::{OnArrival, Target};
 use franka_rt::shaping::Shaper;
 use franka_rt::stats::{Arrival, CycleTimes};
 use franka_tests::lockstep::{Lockstep, Part, Wander};
@@ -56,7 +56,7 @@ fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothi
             [None, Some(pose)]
         };
         for target in targets.into_iter().flatten() {
-            let goal = lockstep.goal(target, Then::Finish);
+            let goal = lockstep.goal(target, OnArrival::ReportAndFinish);
             let id = lockstep.submit(goal).expect("it is near the ready pose");
             let superseded = targets[0] == Some(target);
             for _ in 0..if superseded { 100 } else { u32::MAX } {

@@ -12,7 +12,7 @@ use franka_rt::control::{ActiveControl, Callback, Command, Finish, Next, Torques
 use franka_rt::driver::{
     Activity, ControlLog, Driver, Event, LINK_TIMEOUT, Modes, MotionId, Order, Program,
 };
-use franka_rt::session::{Goal, GoalId, Target, TargetSession, Then};
+use franka_rt::session::{Goal, GoalId, OnArrival, Target, TargetSession};
 use franka_rt::slot;
 use franka_rt::stats::{Arrival, CycleTimes};
 use franka_rt::together::{StartBarrier, StartTicket};
@@ -79,7 +79,12 @@ fn programs(end: End) -> [Program; 3] {
     let (mut goals, reader) = slot::slot();
     let target = Target::Joints(READY.into());
     let limits = Model::fr3().joint_limits();
-    goals.write(&Goal::new(GoalId(1), target, Then::Finish, limits));
+    goals.write(&Goal::new(
+        GoalId(1),
+        target,
+        OnArrival::ReportAndFinish,
+        limits,
+    ));
     [
         Program::Callback(Box::new(callback)),
         Program::Target(Box::new(TargetSession::new(

@@ -14,8 +14,8 @@ use franka_rt::driver::Observer;
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, Tuning};
 use franka_rt::session::{
-    Backend, Chunk, Deadman, Fate, Free, Goal, GoalId, Guard, Setpoints, Stale, Target, Then,
-    Watchdog,
+    Backend, Chunk, Deadman, Fate, Free, Goal, GoalId, Guard, OnArrival, OnTimeout, Setpoints,
+    Target, Watchdog,
 };
 use franka_tests::lockstep::{Errand, Guarded, Lockstep, Part};
 use nalgebra::Translation3;
@@ -52,7 +52,12 @@ fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
             }
         }
         if errand == Errand::Chunks {
-            for fate in [Fate::Replaced, Fate::Ended, Fate::Stale, Fate::Superseded] {
+            for fate in [
+                Fate::Replaced,
+                Fate::Ended,
+                Fate::Obsolete,
+                Fate::Superseded,
+            ] {
                 assert!(arm.fates.contains(&fate), "no chunk is {fate:?}");
             }
         }
@@ -78,10 +83,10 @@ impl Engaged {
         let observer = move |_: &_, _: &_| {
             count.fetch_add(1, Ordering::Relaxed);
         };
-        let (token, grip) = Deadman::new(Duration::from_millis(100));
+        let (token, monitor) = Deadman::new(Duration::from_millis(100));
         let mut lockstep = Lockstep::ready();
         let id = lockstep.engage_with(Engagement {
-            deadman: Some(grip),
+            deadman: Some(monitor),
             backend,
             observer: Some(Observer::new(observer)),
             ..Engagement::default()
@@ -112,8 +117,8 @@ impl Engaged {
         lockstep.tick_around(|_, work| *calls += calls_during(work));
     }
 
-    fn go(&mut self, target: Target, then: Then) -> GoalId {
-        let goal = self.lockstep.within(self.id, target, then);
+    fn go(&mut self, target: Target, on_arrival: OnArrival) -> GoalId {
+        let goal = self.lockstep.within(self.id, target, on_arrival);
         goal.expect("the session takes it")
     }
 
@@ -143,15 +148,15 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
 
         // Superseded in mid-motion, then reached.
         for target in [up, there, Target::Pose(home)] {
-            engaged.go(target, Then::Hold);
+            engaged.go(target, OnArrival::Hold);
             engaged.run(300);
         }
-        let goal = engaged.go(there, Then::Stay);
+        let goal = engaged.go(there, OnArrival::ReportAndHold);
         engaged.run(4000);
         assert!(matches!(engaged.lockstep.client.outcome(goal), Some(Ok(_))));
 
         if backend == Backend::Torques {
-            engaged.go(Target::Guide(Free::ALL), Then::Hold);
+            engaged.go(Target::Guide(Free::ALL), OnArrival::Hold);
             engaged.run(400);
             let push = Wrench::new(4.0, 4.0, 0.0, 0.0, 0.0, 0.0);
             engaged.lockstep.robot.push_end_effector(push, 300);
@@ -174,7 +179,7 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
             engaged.run(1500);
         }
         // Tuned on its way.
-        engaged.go(up, Then::Hold);
+        engaged.go(up, OnArrival::Hold);
         engaged.run(100);
         let tuning = Tuning {
             gains: Some(Gains {
@@ -189,13 +194,13 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
         engaged.run(500);
 
         // A stream that falls silent, both ways.
-        for stale in [Stale::Hold, Stale::Brake] {
+        for on_timeout in [OnTimeout::Hold, OnTimeout::Brake] {
             let goal = Goal {
                 watchdog: Some(Watchdog {
                     silence: Duration::from_millis(100),
-                    stale,
+                    on_timeout,
                 }),
-                ..engaged.lockstep.goal(Target::Pose(home), Then::Hold)
+                ..engaged.lockstep.goal(Target::Pose(home), OnArrival::Hold)
             };
             let id = engaged.id;
             let goal = engaged.lockstep.submit_within(id, goal);
@@ -205,12 +210,12 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
         }
 
         // A deadman that falls silent, lives again, and is gone.
-        engaged.go(up, Then::Hold);
+        engaged.go(up, OnArrival::Hold);
         for _ in 0..300 {
             engaged.tick();
         }
         assert!(engaged.binds(Guard::Deadman));
-        engaged.go(up, Then::Hold);
+        engaged.go(up, OnArrival::Hold);
         engaged.run(200);
         assert!(!engaged.binds(Guard::Deadman));
         engaged.token = None;

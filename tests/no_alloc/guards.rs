@@ -3,7 +3,7 @@
 use franka_model::collision::Obstacle;
 use franka_model::{READY, Wrench};
 use franka_proto::{CollisionBehavior, Request};
-use franka_rt::session::{Bindings, Guard, KeepOut, Lead, Target, Then};
+use franka_rt::session::{Bindings, Guard, KeepOut, Lead, OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, Part};
 
 use super::calls_during;
@@ -48,7 +48,7 @@ fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
     // Into itself, with the target drawn nearer as long as it is fresh.
     let mut q: [f64; 7] = READY.into();
     q[1] += 1.9;
-    let mut goal = lockstep.goal(Target::Joints(q), Then::Hold);
+    let mut goal = lockstep.goal(Target::Joints(q), OnArrival::Hold);
     goal.lead = Some(Lead {
         translation: 0.05,
         rotation: 0.2,
@@ -70,7 +70,7 @@ fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
     let back = lockstep.begin(Target::Joints(READY.into()));
     lockstep.until_resolved(back, 20_000).expect("a way out");
     let home = lockstep.true_pose();
-    let goal = lockstep.goal(Target::Pose(home), Then::Hold);
+    let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
     lockstep.submit(goal).expect("it is there already");
     lockstep.run(20);
     let calls = count(&mut lockstep, 4000, &guards, &mut bound, |lockstep| {

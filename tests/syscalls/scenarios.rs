@@ -10,7 +10,7 @@ use std::time::Duration;
 use franka_async::{
     Active, Arm, AsynchronousOptions, Backend, CartesianPose, CartesianVelocities, Chunk, Control,
     Deadman, Engage, Finish, Free, Gains, JointPositions, JointVelocities, Lapse, MotionError,
-    Next, Pose, Realtime, Robot, RobotState, Setpoints, Stale, Torques, Tuning,
+    Next, OnTimeout, Pose, Realtime, Robot, RobotState, Setpoints, Torques, Tuning,
 };
 use franka_proto::{MoveControllerMode, RobotError};
 use franka_sim::{Running, Sim, Tool};
@@ -84,10 +84,10 @@ pub(crate) async fn targets() {
 /// that falls silent.
 pub(crate) async fn engaged() {
     let (robot, _sim) = simulated().await;
-    let (deadman, grip) = Deadman::new(Duration::from_millis(500));
+    let (deadman, monitor) = Deadman::new(Duration::from_millis(500));
     let seen = Arc::new(AtomicU64::new(0));
     let count = seen.clone();
-    let engage = Engage::default().deadman(grip).observer(move |_, _| {
+    let engage = Engage::default().deadman(monitor).observer(move |_, _| {
         count.fetch_add(1, Ordering::Relaxed);
     });
     let arm = robot.engage(engage).await.expect("it begins");
@@ -109,9 +109,9 @@ pub(crate) async fn engaged() {
     deadman.keep_alive();
     arm.disengage().await.expect("it ends");
 
-    let (deadman, grip) = Deadman::new(Duration::from_millis(500));
+    let (deadman, monitor) = Deadman::new(Duration::from_millis(500));
     let backend = Backend::RobotController(Setpoints::Joints);
-    let engage = Engage::default().deadman(grip).backend(backend);
+    let engage = Engage::default().deadman(monitor).backend(backend);
     let arm = robot.engage(engage).await.expect("it begins");
     every_kind_of_goal(&robot, &arm, &deadman).await;
     arm.disengage().await.expect("it ends");
@@ -135,7 +135,7 @@ async fn every_kind_of_goal(robot: &Robot, arm: &Arm, deadman: &Deadman) {
     still(deadman).await;
     let (sender, targets) = watch::channel(robot.pose());
     let silence = Duration::from_millis(200);
-    let following = arm.follow(targets).watchdog(silence, Stale::Brake);
+    let following = arm.follow(targets).watchdog(silence, OnTimeout::Brake);
     let following = tokio::spawn(following.into_future());
     for step in 1..=3 {
         sender

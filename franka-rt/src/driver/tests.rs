@@ -8,7 +8,7 @@ use franka_proto::{ControllerMode, MotionGeneratorMode, RobotMode, RobotState, V
 use super::*;
 use crate::control::{ActiveControl, Callback, Torques};
 use crate::law::Gains;
-use crate::session::{Goal, GoalId, Target, TargetSession, Then};
+use crate::session::{Goal, GoalId, OnArrival, Target, TargetSession};
 use crate::shaping::{InvalidCommand, Shaper};
 use crate::slot;
 use crate::stats::{Arrival, CycleTimes};
@@ -34,7 +34,7 @@ fn armed(target: Target) -> Driver {
     let limits = Model::fr3().joint_limits();
     goals.write(&Goal {
         gains: Gains::joint(),
-        ..Goal::new(GoalId(1), target, Then::Finish, limits)
+        ..Goal::new(GoalId(1), target, OnArrival::ReportAndFinish, limits)
     });
     let mut driver = Driver::new(Version::V10);
     driver.on_order(Order::Arm {

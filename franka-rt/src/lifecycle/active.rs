@@ -11,7 +11,9 @@ use super::outcome::Counted;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
 use crate::driver::{Ended, Ending, Failure, MotionId, MotionTimes, Order, Program};
 use crate::panic;
-use crate::session::{Backend, ChunkWriter, Goal, GoalError, GoalId, Settlement, Target, Then};
+use crate::session::{
+    Backend, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Settlement, Target,
+};
 use crate::slot::SlotWriter;
 
 /// A goal, and whether its owner has taken it back.
@@ -267,13 +269,13 @@ impl Goals {
     fn brake(&mut self) {
         self.slot.write(&Goal {
             revision: self.current.goal.revision + 1,
-            ..self.current.goal.at_rest(Then::Finish)
+            ..self.current.goal.at_rest(OnArrival::ReportAndFinish)
         });
     }
 
     /// Whether goals are still taken.
     pub(super) fn goes_on(&self) -> bool {
-        self.current.goal.then != Then::Finish
+        self.current.goal.on_arrival != OnArrival::ReportAndFinish
     }
 
     /// Takes note that a goal of the session `engaged` has come to its end, and is held from now
@@ -296,11 +298,11 @@ impl Goals {
         }
         let held = match settled.settlement {
             Settlement::Arrived(_) => Goal {
-                then: Then::Hold,
+                on_arrival: OnArrival::Hold,
                 ..goal
             },
             // One that did not arrive is not what the arm is held at.
-            _ => goal.at_rest(Then::Hold),
+            _ => goal.at_rest(OnArrival::Hold),
         };
         self.current = Waiting::new(Goal {
             id: engaged,
@@ -421,7 +423,9 @@ impl Settled {
             Settlement::Arrived(error) => Some(error),
             Settlement::AtRest if cancelled => return Err(MotionError::Stopped),
             Settlement::AtRest => None,
-            Settlement::Short(error) => return Err(MotionError::Short(error)),
+            Settlement::TargetNotReached(error) => {
+                return Err(MotionError::TargetNotReached(error));
+            }
             Settlement::Held(lapse) => return Err(MotionError::Held(lapse)),
             Settlement::Braked(lapse) => return Err(MotionError::Braked(lapse)),
             Settlement::Unstarted(fault) => return Err(fault.into()),

@@ -11,14 +11,15 @@ use crate::driver::Observer;
 use crate::law::Gains;
 use crate::session::check::{check_keep_out, check_silence};
 use crate::session::{
-    Backend, Budget, Chunk, ForceCap, Goal, GoalError, GoalId, Grip, Target, Then, TooManyChunks,
+    Backend, Budget, Chunk, DeadmanMonitor, ForceCap, Goal, GoalError, GoalId, OnArrival, Target,
+    TooManyChunks,
 };
 
 /// What a session that goes from goal to goal has beside its goals.
 #[derive(Debug, Default)]
 pub struct Engagement {
     /// The deadman that it is bound to.
-    pub deadman: Option<Grip>,
+    pub deadman: Option<DeadmanMonitor>,
     /// What the arm keeps out of, in the place of the regions of [`Lifecycle::keep_out_of`]; up to
     /// [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX), base frame.
     pub keep_out: Option<Vec<Obstacle>>,
@@ -83,7 +84,7 @@ impl Lifecycle {
         }
         let goal = Goal {
             target: Target::Rest,
-            then: Then::Hold,
+            on_arrival: OnArrival::Hold,
             watchdog: None,
             ..goal
         };
@@ -157,7 +158,7 @@ impl Lifecycle {
         }
         let goal = Goal {
             target: Target::Rest,
-            then: Then::Hold,
+            on_arrival: OnArrival::Hold,
             ..goal
         };
         goal.check(&self.model, state)?;
@@ -238,12 +239,16 @@ impl Lifecycle {
     /// What follows the end of a goal: more goals, if it is one of a session that goes from goal to
     /// goal. A session that is to end ends, also if the goal that ends it is taken back: its owner
     /// may have been told that it takes no more goals.
-    pub(super) fn end_of(&mut self, id: GoalId) -> Then {
+    pub(super) fn end_of(&mut self, id: GoalId) -> OnArrival {
         let goes_on = match &self.next {
             Some(next) if next.waiting.goal.id == id => next.engagement.is_some(),
             _ => self.is_engaged_for_more(),
         };
-        if goes_on { Then::Stay } else { Then::Finish }
+        if goes_on {
+            OnArrival::ReportAndHold
+        } else {
+            OnArrival::ReportAndFinish
+        }
     }
 
     /// Whether the motion under way has ended on one side.
@@ -282,7 +287,7 @@ impl Lifecycle {
                 id: engaged,
                 watchdog: None,
                 revision: goals.current.goal.revision + 1,
-                ..goals.current.goal.at_rest(Then::Finish)
+                ..goals.current.goal.at_rest(OnArrival::ReportAndFinish)
             };
             let waiting = Waiting::new(goal);
             self.replace(waiting, MotionError::Stopped, now);

@@ -11,7 +11,7 @@ use super::{Lifecycle, MotionError, MotionReport, Phase};
 use crate::driver::{MotionId, MotionStatistics, Program};
 use crate::session::check::check_keep_out;
 use crate::session::{
-    self, Backend, Goal, GoalError, GoalId, SessionEvent, Target, TargetSession, Then,
+    self, Backend, Goal, GoalError, GoalId, OnArrival, SessionEvent, Target, TargetSession,
 };
 use crate::slot;
 use crate::together::StartTicket;
@@ -91,13 +91,13 @@ impl Lifecycle {
     /// Lets a goal that is held come to its end: the motion settles at the newest target and
     /// finishes, unless its session goes on from goal to goal.
     pub fn close(&mut self, id: GoalId) {
-        let then = self.end_of(id);
+        let on_arrival = self.end_of(id);
         let end = |goal: &Goal| Goal {
             target: match goal.target {
                 Target::Guide(_) => Target::Rest, // A hand leads to no last target.
                 target => target,
             },
-            then,
+            on_arrival,
             ..*goal
         };
         let amended = self.amend(id, end, None);
@@ -114,8 +114,8 @@ impl Lifecycle {
         if self.cancel_program(id, now) || self.release(id, now) {
             return;
         }
-        let then = self.end_of(id);
-        let amended = self.amend(id, |goal| goal.at_rest(then), None);
+        let on_arrival = self.end_of(id);
+        let amended = self.amend(id, |goal| goal.at_rest(on_arrival), None);
         debug_assert!(amended.is_ok(), "only targets are checked");
         if let Some(goals) = self.goals()
             && goals.current.goal.id == id
@@ -140,7 +140,7 @@ impl Lifecycle {
         };
         let goal = Goal {
             id,
-            ..goals.current.goal.at_rest(Then::Finish)
+            ..goals.current.goal.at_rest(OnArrival::ReportAndFinish)
         };
         self.replace(Waiting::new(goal), MotionError::Stopped, now);
         true
@@ -200,7 +200,9 @@ impl Lifecycle {
         counted: &Counted,
         now: Duration,
     ) {
-        if waiting.goal.target != Target::Rest || waiting.goal.then != Then::Finish {
+        if waiting.goal.target != Target::Rest
+            || waiting.goal.on_arrival != OnArrival::ReportAndFinish
+        {
             return self.start_goal(waiting, None, engagement, now);
         }
         let result = match before {

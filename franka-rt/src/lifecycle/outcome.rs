@@ -141,7 +141,7 @@ pub enum MotionError {
          the one declared",
         .0.translation * 1e3, .0.rotation * 1e3
     )]
-    Short(PoseError),
+    TargetNotReached(PoseError),
     /// Link: the robot fell silent.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {
@@ -183,7 +183,7 @@ impl MotionError {
                 | Self::Busy
                 | Self::Start(_)
                 | Self::Unsupported(_)
-                | Self::Short(_)
+                | Self::TargetNotReached(_)
         )
     }
 
@@ -209,7 +209,7 @@ impl MotionError {
             | Self::Unsupported(_)
             | Self::Invalid(_)
             | Self::Panicked { .. } => Party::Caller,
-            Self::Rejected(_) | Self::Control(_) | Self::Short(_) => Party::Robot,
+            Self::Rejected(_) | Self::Control(_) | Self::TargetNotReached(_) => Party::Robot,
             Self::LinkLost { .. } | Self::ConnectionClosed { .. } => Party::Link,
             Self::Violation(_) | Self::Protocol { .. } => Party::Peer,
         }

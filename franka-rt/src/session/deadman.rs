@@ -22,7 +22,7 @@ pub struct Deadman {
 
 /// The other end of a [`Deadman`], for the session that is bound to it.
 #[derive(Debug)]
-pub struct Grip {
+pub struct DeadmanMonitor {
     beats: Arc<AtomicU64>,
     silence: Duration,
     /// The newest count, and the robot's time when it was first seen, `[ms]`.
@@ -32,18 +32,18 @@ pub struct Grip {
 impl Deadman {
     /// A token that may be silent for so long, in whole milliseconds, and what a session is bound
     /// to it by.
-    pub fn new(silence: Duration) -> (Self, Grip) {
+    pub fn new(silence: Duration) -> (Self, DeadmanMonitor) {
         let beats = Arc::new(AtomicU64::new(0));
         let token = Self {
             beats: beats.clone(),
             silence,
         };
-        let grip = Grip {
+        let monitor = DeadmanMonitor {
             beats,
             silence,
             seen: None,
         };
-        (token, grip)
+        (token, monitor)
     }
 
     /// Shows life. Wait-free.
@@ -65,7 +65,7 @@ impl Drop for Deadman {
     }
 }
 
-impl Grip {
+impl DeadmanMonitor {
     /// How long the token may be silent.
     pub fn silence(&self) -> Duration {
         self.silence
@@ -92,16 +92,16 @@ mod tests {
 
     #[test]
     fn silence_and_drop_are_both_the_end_and_only_silence_is_mended() {
-        let (token, mut grip) = Deadman::new(Duration::from_millis(100));
-        assert!(grip.is_alive(7));
-        assert!(grip.is_alive(106));
-        assert!(!grip.is_alive(107));
+        let (token, mut monitor) = Deadman::new(Duration::from_millis(100));
+        assert!(monitor.is_alive(7));
+        assert!(monitor.is_alive(106));
+        assert!(!monitor.is_alive(107));
         token.keep_alive();
-        assert!(grip.is_alive(500));
-        assert!(!grip.is_alive(600));
+        assert!(monitor.is_alive(500));
+        assert!(!monitor.is_alive(600));
         token.keep_alive();
-        assert!(grip.is_alive(601));
+        assert!(monitor.is_alive(601));
         drop(token);
-        assert!(!grip.is_alive(602));
+        assert!(!monitor.is_alive(602));
     }
 }

@@ -72,15 +72,15 @@ impl Free {
     }
 }
 
-/// What follows the arrival.
+/// What the session does once the reference has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Then {
-    /// Hold the target until a newer goal comes, and report nothing.
+pub enum OnArrival {
+    /// Holds the target until a newer goal comes, and reports nothing.
     Hold,
-    /// Settle, report, and hold the target until a newer goal comes.
-    Stay,
-    /// Settle, report and end the motion.
-    Finish,
+    /// Reports when the arm has settled, and holds the target until a newer goal comes.
+    ReportAndHold,
+    /// Reports when the arm has settled, and ends the motion.
+    ReportAndFinish,
 }
 
 /// How near counts as arrived, measured at the end effector.
@@ -102,19 +102,19 @@ impl Default for Tolerance {
     }
 }
 
-/// What becomes of a goal whose targets stop coming.
+/// Gives up a goal whose targets stop coming.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Watchdog {
-    /// How long nothing may come, by the robot's clock in whole milliseconds.
+    /// The longest time without a target, by the robot's clock in whole milliseconds.
     pub silence: Duration,
-    /// What the arm does then. The motion ends once it rests, unless its session goes from goal to
+    /// What the arm does after that. The motion ends once it rests, unless its session goes from goal to
     /// goal.
-    pub stale: Stale,
+    pub on_timeout: OnTimeout,
 }
 
-/// What an arm does whose targets have stopped coming.
+/// What the arm does when its targets have stopped coming.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stale {
+pub enum OnTimeout {
     /// Goes on to the last target and holds it.
     Hold,
     /// Brakes at once, and holds where it comes to rest.
@@ -128,8 +128,8 @@ pub struct Goal {
     pub id: GoalId,
     /// Where to go.
     pub target: Target,
-    /// What follows the arrival.
-    pub then: Then,
+    /// What the session does once the reference has arrived.
+    pub on_arrival: OnArrival,
     /// How fast.
     pub budget: Budget,
     /// How stiff.
@@ -142,8 +142,8 @@ pub struct Goal {
     pub force_cap: ForceCap,
     /// How far ahead of the arm its target may be.
     pub lead: Option<Lead>,
-    /// How often it was asked for something else, or for the same again: a target, an end. One that
-    /// comes with the same number was only tuned, which is no sign of life of a stream.
+    /// Incremented by each new target and each new end, not by tuning. Only a new revision feeds
+    /// the watchdog.
     pub revision: u64,
 }
 
@@ -154,11 +154,11 @@ impl Goal {
     /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on
     /// the way to joint positions and the end effector compliant otherwise, the default tolerance
     /// and force cap.
-    pub fn new(id: GoalId, target: Target, then: Then, limits: &JointLimits) -> Self {
+    pub fn new(id: GoalId, target: Target, on_arrival: OnArrival, limits: &JointLimits) -> Self {
         Self {
             id,
             target,
-            then,
+            on_arrival,
             budget: Budget::of(limits),
             gains: match target {
                 Target::Joints(_) => Gains::joint(),
@@ -175,14 +175,14 @@ impl Goal {
 
     /// The goal, taken back: the arm comes to rest. One that a hand has guided is held as others
     /// are.
-    pub(crate) fn at_rest(&self, then: Then) -> Self {
+    pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),
             Target::Rest | Target::Joints(_) | Target::Pose(_) => self.gains,
         };
         Self {
             target: Target::Rest,
-            then,
+            on_arrival,
             gains,
             ..*self
         }
@@ -206,10 +206,13 @@ impl Words for Goal {
         };
         let (watched, silence) = match self.watchdog {
             None => (0, 0),
-            Some(Watchdog { silence, stale }) => {
-                let stale = u64::from(stale == Stale::Brake);
+            Some(Watchdog {
+                silence,
+                on_timeout,
+            }) => {
+                let on_timeout = u64::from(on_timeout == OnTimeout::Brake);
                 let silence = u64::try_from(silence.as_millis()).unwrap_or(u64::MAX);
-                (1 | stale << 1, silence)
+                (1 | on_timeout << 1, silence)
             }
         };
         let Budget {
@@ -227,8 +230,8 @@ impl Words for Goal {
             .chain(self.lead.map_or([0.0; 3], |lead| {
                 [lead.translation, lead.rotation, lead.joints]
             }));
-        let then = self.then.to_word();
-        let all = [self.id.0, self.revision, kind, then, watched, silence]
+        let on_arrival = self.on_arrival.to_word();
+        let all = [self.id.0, self.revision, kind, on_arrival, watched, silence]
             .into_iter()
             .chain(numbers.map(f64::to_bits));
         for (word, value) in words.iter_mut().zip(all) {
@@ -239,7 +242,7 @@ impl Words for Goal {
     fn load(words: &[u64]) -> Self {
         let mut words = words.iter().copied();
         let mut next = || words.next().unwrap_or_default();
-        let [id, revision, kind, then, watched, silence] = core::array::from_fn(|_| next());
+        let [id, revision, kind, on_arrival, watched, silence] = core::array::from_fn(|_| next());
         let mut number = || f64::from_bits(next());
         let target = core::array::from_fn(|_| number());
         let mut axis = || AxisLimits {
@@ -266,13 +269,13 @@ impl Words for Goal {
                 3 => Target::Guide(Free::from_word(kind >> 2)),
                 _ => Target::Rest,
             },
-            then: Then::from_word(then),
+            on_arrival: OnArrival::from_word(on_arrival),
             watchdog: (watched & 1 == 1).then(|| Watchdog {
                 silence: Duration::from_millis(silence),
-                stale: if watched >> 1 & 1 == 1 {
-                    Stale::Brake
+                on_timeout: if watched >> 1 & 1 == 1 {
+                    OnTimeout::Brake
                 } else {
-                    Stale::Hold
+                    OnTimeout::Hold
                 },
             }),
             budget,
@@ -293,20 +296,20 @@ impl Words for Goal {
     }
 }
 
-impl Then {
+impl OnArrival {
     fn to_word(self) -> u64 {
         match self {
             Self::Hold => 0,
-            Self::Stay => 1,
-            Self::Finish => 2,
+            Self::ReportAndHold => 1,
+            Self::ReportAndFinish => 2,
         }
     }
 
     fn from_word(word: u64) -> Self {
         match word {
             0 => Self::Hold,
-            1 => Self::Stay,
-            _ => Self::Finish,
+            1 => Self::ReportAndHold,
+            _ => Self::ReportAndFinish,
         }
     }
 }
@@ -328,32 +331,38 @@ mod tests {
         };
         let watchdog = Watchdog {
             silence: Duration::from_millis(250),
-            stale: Stale::Brake,
+            on_timeout: OnTimeout::Brake,
         };
         let lead = Lead {
             translation: 0.05,
             rotation: 0.2,
             joints: 0.1,
         };
-        for (target, then, watchdog, force_cap, lead) in [
-            (Target::Rest, Then::Finish, None, ForceCap::Off, None),
+        for (target, on_arrival, watchdog, force_cap, lead) in [
+            (
+                Target::Rest,
+                OnArrival::ReportAndFinish,
+                None,
+                ForceCap::Off,
+                None,
+            ),
             (
                 Target::Joints([0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7]),
-                Then::Hold,
+                OnArrival::Hold,
                 Some(watchdog),
                 ForceCap::Newtons(25.0),
                 None,
             ),
             (
                 Target::Pose(pose),
-                Then::Stay,
+                OnArrival::ReportAndHold,
                 None,
                 ForceCap::Newtons(5.0),
                 Some(lead),
             ),
             (
                 Target::Guide(free),
-                Then::Hold,
+                OnArrival::Hold,
                 Some(watchdog),
                 ForceCap::Default,
                 None,
@@ -362,7 +371,7 @@ mod tests {
             let goal = Goal {
                 id: GoalId(77),
                 target,
-                then,
+                on_arrival,
                 budget: Budget::of(Model::fr3().joint_limits()).scaled(0.37),
                 gains: Gains::MOST,
                 tolerance: Tolerance {

@@ -90,7 +90,7 @@ impl Landing {
             // An arm that does not rest after all this time is being moved by somebody: the
             // reference rests.
             None => Settlement::AtRest,
-            Some(error) => Settlement::Short(error),
+            Some(error) => Settlement::TargetNotReached(error),
         };
         Verdict::Settled(settlement, self.held)
     }
@@ -168,7 +168,9 @@ mod tests {
         let cycles = SETTLE_TIMEOUT.as_millis() as u64;
         assert_eq!(judge_for(&mut landing, cycles - 1, &away, true), None);
         let short = judge_for(&mut landing, 1, &away, true);
-        assert!(matches!(short, Some(Settlement::Short(error)) if error.translation == 0.02));
+        assert!(
+            matches!(short, Some(Settlement::TargetNotReached(error)) if error.translation == 0.02)
+        );
     }
 
     #[test]

@@ -50,8 +50,8 @@ pub use chunk::{
     BLEND, CHUNKS_MAX, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, OFFSET_MAX,
     POINTS_MAX, Returned, chunk_ring,
 };
-pub use deadman::{Deadman, Grip};
-pub use goal::{Free, Goal, GoalId, Stale, Target, Then, Tolerance, Watchdog};
+pub use deadman::{Deadman, DeadmanMonitor};
+pub use goal::{Free, Goal, GoalId, OnArrival, OnTimeout, Target, Tolerance, Watchdog};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub use guard::deviation::{JOINT_DEVIATION, ROTATION_DEVIATION, TRANSLATION_DEVIATION};
 pub use guard::force_cap::{DEFAULT_FORCE_CAP, FORCE_CAP, ForceCap};
@@ -94,7 +94,7 @@ pub enum Settlement {
     AtRest,
     /// The reference reached the target, the arm did not: something holds it, or its load is not
     /// what was declared.
-    Short(PoseError),
+    TargetNotReached(PoseError),
     /// Given up, and held: at the last target, or where it came to rest without its deadman.
     Held(Lapse),
     /// Given up, and braked: it is held where it came to rest.
@@ -115,9 +115,9 @@ pub enum Lapse {
     },
     /// The [`Deadman`] that the session is bound to fell silent, or was dropped.
     Deadman,
-    /// Something pushed the arm off its way by more than it is to swing back by itself:
+    /// Something pushed the arm further from its path than it may swing back by itself:
     /// [`TRANSLATION_DEVIATION`], [`ROTATION_DEVIATION`], [`JOINT_DEVIATION`].
-    CarriedOff,
+    Displaced,
     /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`]
     /// and [`KEEP_OUT_STOP`].
     Blocked,
@@ -126,7 +126,7 @@ pub enum Lapse {
 impl Lapse {
     /// Whether no update brings the goal back.
     fn is_final(self) -> bool {
-        matches!(self, Self::Deadman | Self::CarriedOff | Self::Blocked)
+        matches!(self, Self::Deadman | Self::Displaced | Self::Blocked)
     }
 }
 
@@ -135,7 +135,7 @@ impl core::fmt::Display for Lapse {
         match self {
             Self::Silent { silence } => write!(f, "no target came for {} ms", silence.as_millis()),
             Self::Deadman => write!(f, "its deadman is silent"),
-            Self::CarriedOff => write!(f, "the arm was carried off from its way"),
+            Self::Displaced => write!(f, "the arm was pushed too far from its path"),
             Self::Blocked => write!(
                 f,
                 "the way leads too near to the arm itself or to a region to keep out of"
@@ -171,14 +171,14 @@ pub struct TargetSession {
     /// A goal whose common start has failed, and why.
     unstarted: Option<(GoalId, StartFault)>,
     /// The deadman that it is bound to.
-    deadman: Option<Grip>,
+    deadman: Option<DeadmanMonitor>,
     backend: Backend,
     version: Version,
     /// Where chunks come from.
     chunks: Option<ChunkReader>,
     keep_out: KeepOut,
     /// What follows a goal that is held and has to be given up.
-    afterwards: Then,
+    afterwards: OnArrival,
 }
 
 impl TargetSession {
@@ -196,7 +196,7 @@ impl TargetSession {
             version,
             chunks: None,
             keep_out: KeepOut::default(),
-            afterwards: Then::Finish,
+            afterwards: OnArrival::ReportAndFinish,
         }
     }
 
@@ -204,7 +204,7 @@ impl TargetSession {
     /// default the session ends then.
     #[must_use]
     pub fn going_on(mut self) -> Self {
-        self.afterwards = Then::Stay;
+        self.afterwards = OnArrival::ReportAndHold;
         self
     }
 
@@ -231,7 +231,7 @@ impl TargetSession {
 
     /// Binds the session to a deadman.
     #[must_use]
-    pub fn bound_to(mut self, deadman: Grip) -> Self {
+    pub fn bound_to(mut self, deadman: DeadmanMonitor) -> Self {
         self.deadman = Some(deadman);
         self
     }
@@ -277,7 +277,7 @@ impl TargetSession {
         let rest = self.held.filter(|_| nothing).map(|held| Goal {
             id: GoalId::default(), // no goal's
             watchdog: None,        // Who waits for others may be silent.
-            ..held.at_rest(Then::Hold)
+            ..held.at_rest(OnArrival::Hold)
         });
         self.follow(rest, state, record)
     }
@@ -296,7 +296,7 @@ impl TargetSession {
             if goal.id != unstarted {
                 return goal;
             }
-            goal.at_rest(Then::Finish)
+            goal.at_rest(OnArrival::ReportAndFinish)
         });
         self.follow(newer, state, record)
     }
@@ -356,7 +356,7 @@ impl TargetSession {
                 };
             }
         };
-        let alive = |grip: &mut Grip| grip.is_alive(state.message_id);
+        let alive = |monitor: &mut DeadmanMonitor| monitor.is_alive(state.message_id);
         let alive = self.deadman.as_mut().is_none_or(alive);
         let mut step = active.step(&self.model, alive, self.chunks.as_mut(), state, record);
         if let Some(SessionEvent::Settled {

@@ -10,7 +10,7 @@ use franka_proto::{CollisionBehavior, Request};
 use franka_rt::driver::Observer;
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
 use franka_rt::session::{
-    Backend, ForceCap, Free, Goal, GoalError, Guard, Lead, Setpoints, Target, Then,
+    Backend, ForceCap, Free, Goal, GoalError, Guard, Lead, OnArrival, Setpoints, Target,
 };
 use franka_sim::Config;
 use franka_tests::lockstep::{Lockstep, for_each_robot};
@@ -31,14 +31,16 @@ fn the_robot_controller_takes_joints_through_every_kind_of_goal() {
             turned(-0.1),
             Target::Pose(pose),
         ] {
-            lockstep.within(engaged, target, Then::Hold).unwrap();
+            lockstep.within(engaged, target, OnArrival::Hold).unwrap();
             lockstep.run(350);
         }
         for target in [Target::Pose(pose), turned(0.0), Target::Rest] {
-            let goal = lockstep.within(engaged, target, Then::Stay).unwrap();
+            let goal = lockstep
+                .within(engaged, target, OnArrival::ReportAndHold)
+                .unwrap();
             lockstep.until_resolved(goal, 6000).unwrap();
         }
-        let guide = lockstep.within(engaged, Target::Guide(Free::ALL), Then::Hold);
+        let guide = lockstep.within(engaged, Target::Guide(Free::ALL), OnArrival::Hold);
         let refused = MotionError::Goal(GoalError::Backend {
             why: "takes no guiding hand",
         });
@@ -58,16 +60,16 @@ fn the_robot_controller_takes_poses() {
         });
         let pose = up(&lockstep, 0.05);
         let goal = lockstep
-            .within(engaged, Target::Pose(pose), Then::Stay)
+            .within(engaged, Target::Pose(pose), OnArrival::ReportAndHold)
             .unwrap();
         lockstep.run(500);
         assert_eq!(lockstep.client.outcome(goal), None);
         let back = Translation3::new(0.0, 0.05, -0.05) * pose;
         let goal = lockstep
-            .within(engaged, Target::Pose(back), Then::Stay)
+            .within(engaged, Target::Pose(back), OnArrival::ReportAndHold)
             .unwrap();
         lockstep.until_resolved(goal, 6000).unwrap();
-        let joints = lockstep.within(engaged, turned(0.0), Then::Stay);
+        let joints = lockstep.within(engaged, turned(0.0), OnArrival::ReportAndHold);
         assert!(matches!(
             joints,
             Err(MotionError::Goal(GoalError::Backend { .. }))
@@ -89,7 +91,9 @@ fn poses_with_their_elbow_move_the_joints_of_the_robot_as_the_reference() {
             let aside = Translation3::new(0.0, 0.1, 0.05) * up(&lockstep, 0.05);
             let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.2, -0.1, 0.3));
             let goal = Target::Pose(aside * turn);
-            let goal = lockstep.within(engaged, goal, Then::Stay).unwrap();
+            let goal = lockstep
+                .within(engaged, goal, OnArrival::ReportAndHold)
+                .unwrap();
             let (mut sent, mut off) = ([0.0; 7], 0.0_f64);
             for cycle in 0..900 {
                 if cycle % 200 == 150 {
@@ -126,7 +130,7 @@ fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
             });
             let capped = Goal {
                 force_cap: ForceCap::Newtons(20.0),
-                ..lockstep.goal(Target::Rest, Then::Hold)
+                ..lockstep.goal(Target::Rest, OnArrival::Hold)
             };
             let engagement = Engagement {
                 backend,
@@ -145,7 +149,7 @@ fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
             let up = up(&lockstep, 0.05).into();
             let capped = Goal {
                 force_cap: ForceCap::Newtons(20.0),
-                ..lockstep.goal(up, Then::Stay)
+                ..lockstep.goal(up, OnArrival::ReportAndHold)
             };
             let submitted = lockstep.submit_within(engaged, capped);
             assert_eq!(submitted, Err(refused.clone()));
@@ -154,7 +158,9 @@ fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
                 ..Tuning::default()
             };
             assert_eq!(lockstep.tune(engaged, tuning), Err(refused));
-            let goal = lockstep.within(engaged, up, Then::Stay).unwrap();
+            let goal = lockstep
+                .within(engaged, up, OnArrival::ReportAndHold)
+                .unwrap();
             lockstep
                 .until_resolved(goal, 6000)
                 .expect("nothing of it was taken");
@@ -184,7 +190,7 @@ fn only_the_guards_that_a_backend_has_bind_when_the_arm_is_pushed() {
                     rotation: 0.2,
                     joints: 0.1,
                 }),
-                ..lockstep.goal(aside.into(), Then::Hold)
+                ..lockstep.goal(aside.into(), OnArrival::Hold)
             };
             lockstep.submit_within(engaged, goal).unwrap();
             let push = Wrench::new(0.0, -60.0, 0.0, 0.0, 0.0, 0.0);
@@ -213,7 +219,7 @@ fn poses_are_refused_to_a_stretched_arm() {
             q,
             ..Lockstep::config_of(kind)
         });
-        let goal = lockstep.goal(Target::Rest, Then::Hold);
+        let goal = lockstep.goal(Target::Rest, OnArrival::Hold);
         let engagement = Engagement {
             backend: Backend::RobotController(Setpoints::Poses),
             ..Engagement::default()
@@ -238,7 +244,9 @@ fn a_setpoint_goes_on_from_where_the_robot_went_without_commands() {
                 backend: Backend::RobotController(Setpoints::Joints),
                 ..Engagement::default()
             });
-            let goal = lockstep.within(engaged, turned(0.4), Then::Stay).unwrap();
+            let goal = lockstep
+                .within(engaged, turned(0.4), OnArrival::ReportAndHold)
+                .unwrap();
             for _ in 0..4 {
                 lockstep.run(200);
                 lockstep.link.drop_commands(lost);
@@ -273,7 +281,9 @@ fn an_observer_sees_every_cycle_and_its_panic_is_its_own() {
         lockstep.run(2000);
         std::panic::set_hook(hook);
         assert_eq!(seen.load(Ordering::Relaxed), 2001);
-        let goal = lockstep.within(engaged, turned(0.1), Then::Stay).unwrap();
+        let goal = lockstep
+            .within(engaged, turned(0.1), OnArrival::ReportAndHold)
+            .unwrap();
         lockstep.until_resolved(goal, 5000).unwrap();
     });
 }

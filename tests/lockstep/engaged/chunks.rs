@@ -7,7 +7,7 @@ use super::{assert_stays, chunk, guarded, turned, turned_q, watched};
 use franka_model::READY;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{
-    Backend, Chunk, ChunkError, Goal, GoalId, Lapse, Setpoints, Stale, Target, Then,
+    Backend, Chunk, ChunkError, Goal, GoalId, Lapse, OnArrival, OnTimeout, Setpoints, Target,
 };
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
@@ -23,11 +23,11 @@ fn a_chunk_that_waits_for_its_time_is_taken_back_with_the_one_before_it() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = lockstep.goal(Target::Rest, Then::Hold);
+        let goal = lockstep.goal(Target::Rest, OnArrival::Hold);
         let first = give(&mut lockstep, engaged, goal, chunk(0.0, 0.2));
         lockstep.run(200);
         let later = lockstep.client.state.message_id + 300;
-        let goal = lockstep.goal(Target::Rest, Then::Hold);
+        let goal = lockstep.goal(Target::Rest, OnArrival::Hold);
         let waiting = chunk(0.2, 0.6).observed_at(later);
         give(&mut lockstep, engaged, goal, waiting);
         lockstep.run(20);
@@ -43,7 +43,7 @@ fn a_chunk_that_waits_for_its_time_is_taken_back_with_the_one_before_it() {
 fn a_chunk_that_is_followed_to_its_end_after_silence_still_needs_its_deadman() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
-        let goal = watched(&mut lockstep, Target::Rest, 100, Stale::Hold);
+        let goal = watched(&mut lockstep, Target::Rest, 100, OnTimeout::Hold);
         let point = |k: u32| (Duration::from_secs(1) * k, turned_q(0.2 * f64::from(k)));
         let long = Chunk::joints((0..=3).map(point)).expect("points a second apart");
         let goal = give(&mut lockstep, engaged, goal, long);
@@ -64,7 +64,7 @@ fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = watched(&mut lockstep, Target::Rest, 50, Stale::Hold);
+        let goal = watched(&mut lockstep, Target::Rest, 50, OnTimeout::Hold);
         let goal = give(&mut lockstep, engaged, goal, chunk(0.0, 0.05));
         // It settles, and the next chunk leaves before that is known.
         lockstep.client.is_deaf = true;
@@ -89,7 +89,7 @@ fn a_first_point_far_in_the_future_does_not_let_the_arm_run_on_until_then() {
             let mut lockstep = ready();
             let engaged = lockstep.engage();
             let target = turned(0.8);
-            lockstep.within(engaged, target, Then::Hold).unwrap();
+            lockstep.within(engaged, target, OnArrival::Hold).unwrap();
             lockstep.run(400);
             let at = lockstep.client.record.q_ref;
             assert!(lockstep.client.record.dq_ref[0] > 0.3, "it is under way");

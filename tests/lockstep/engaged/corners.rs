@@ -6,11 +6,11 @@ use std::time::Duration;
 use super::{chunk, guarded, turned, turned_q, watched};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, Tuning};
-use franka_rt::session::{Budget, Free, GoalId, Lapse, Stale, Target, Then};
+use franka_rt::session::{Budget, Free, GoalId, Lapse, OnArrival, OnTimeout, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 fn give_chunk(lockstep: &mut Lockstep, engaged: GoalId, from: f64, to: f64) -> GoalId {
-    let goal = lockstep.goal(Target::Rest, Then::Hold);
+    let goal = lockstep.goal(Target::Rest, OnArrival::Hold);
     lockstep
         .submit_chunk(engaged, goal, chunk(from, to))
         .expect("near the ready pose")
@@ -40,7 +40,7 @@ fn a_session_is_tuned_also_while_a_goal_is_taken_back() {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let goal = lockstep
-            .within(engaged, turned(0.3), Then::Stay)
+            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
             .expect("near the ready pose");
         lockstep.run(300);
         lockstep.cancel(goal);
@@ -64,7 +64,7 @@ fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = watched(&mut lockstep, turned(0.2), 50, Stale::Brake);
+        let goal = watched(&mut lockstep, turned(0.2), 50, OnTimeout::Brake);
         let goal = lockstep.submit_within(engaged, goal).expect("it is near");
         let outcome = lockstep.until_resolved(goal, 3000);
         assert!(
@@ -74,7 +74,7 @@ fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
         lockstep.run(1000);
         assert_eq!(lockstep.client.outcome(engaged), None);
         let back = lockstep
-            .within(engaged, turned(0.0), Then::Stay)
+            .within(engaged, turned(0.0), OnArrival::ReportAndHold)
             .expect("the session goes on");
         lockstep
             .until_resolved(back, 5000)
@@ -110,14 +110,14 @@ fn a_session_that_is_to_end_ends_though_its_last_goal_is_taken_back() {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let last = lockstep
-            .within(engaged, turned(0.2), Then::Finish)
+            .within(engaged, turned(0.2), OnArrival::ReportAndFinish)
             .expect("near the ready pose");
         lockstep.run(100);
-        let more = lockstep.within(engaged, Target::Rest, Then::Stay);
+        let more = lockstep.within(engaged, Target::Rest, OnArrival::ReportAndHold);
         assert_eq!(more, Err(MotionError::Disengaged));
         lockstep.cancel(last);
         lockstep.client.lifecycle.close(last);
-        let more = lockstep.within(engaged, Target::Rest, Then::Stay);
+        let more = lockstep.within(engaged, Target::Rest, OnArrival::ReportAndHold);
         assert_eq!(more, Err(MotionError::Disengaged), "as it was told before");
         for ended in [last, engaged] {
             let outcome = lockstep.until_resolved(ended, 1500);
@@ -135,7 +135,7 @@ fn a_stop_that_comes_too_late_for_a_session_ends_it_nevertheless() {
             let mut lockstep = ready();
             let engaged = lockstep.engage();
             let goal = lockstep
-                .within(engaged, Target::Rest, Then::Finish)
+                .within(engaged, Target::Rest, OnArrival::ReportAndFinish)
                 .expect("there is nothing to it");
             lockstep.run(100 + wait);
             let before = lockstep.client.outcome(goal).is_some();
@@ -160,7 +160,10 @@ fn a_chunk_goes_on_when_its_budget_is_tuned() {
         let engaged = lockstep.engage();
         give_chunk(&mut lockstep, engaged, 0.0, 0.2);
         lockstep.run(200);
-        let slow = lockstep.goal(Target::Rest, Then::Hold).budget.scaled(0.5);
+        let slow = lockstep
+            .goal(Target::Rest, OnArrival::Hold)
+            .budget
+            .scaled(0.5);
         let budget = |budget: Budget| Tuning {
             budget: Some(budget),
             ..Tuning::default()
@@ -184,7 +187,7 @@ fn a_goal_that_was_given_up_and_rests_is_not_taken_up_again() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = watched(&mut lockstep, turned(0.05), 50, Stale::Hold);
+        let goal = watched(&mut lockstep, turned(0.05), 50, OnTimeout::Hold);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         // It settles, and the next target leaves before that is known.
         lockstep.client.is_deaf = true;
@@ -205,7 +208,7 @@ fn a_hand_that_leads_to_no_last_target_is_braked_and_says_so() {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let silence = Duration::from_millis(50);
-        let goal = watched(&mut lockstep, Target::Guide(Free::ALL), 50, Stale::Hold);
+        let goal = watched(&mut lockstep, Target::Guide(Free::ALL), 50, OnTimeout::Hold);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         let outcome = lockstep.until_resolved(goal, 2000);
         let braked = MotionError::Braked(Lapse::Silent { silence });

@@ -5,14 +5,17 @@ use std::time::Duration;
 use super::{assert_stays, guarded, turned, watched};
 use franka_model::{READY, Wrench};
 use franka_rt::lifecycle::{MotionError, Tuning};
-use franka_rt::session::{Free, GoalId, Guard, Lapse, Stale, Target, Then};
+use franka_rt::session::{Free, GoalId, Guard, Lapse, OnArrival, OnTimeout, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 /// A session that follows a stream which falls silent, and how that ends.
-fn silent_stream(ready: &dyn Fn() -> Lockstep, stale: Stale) -> (Lockstep, GoalId, MotionError) {
+fn silent_stream(
+    ready: &dyn Fn() -> Lockstep,
+    on_timeout: OnTimeout,
+) -> (Lockstep, GoalId, MotionError) {
     let mut lockstep = ready();
     let engaged = lockstep.engage();
-    let goal = watched(&mut lockstep, turned(0.01), 100, stale);
+    let goal = watched(&mut lockstep, turned(0.01), 100, on_timeout);
     let goal = lockstep.submit_within(engaged, goal).unwrap();
     for step in 2..12 {
         lockstep.run(90);
@@ -33,7 +36,7 @@ fn a_stream_that_falls_silent_is_held_or_braked_and_the_outcome_says_which() {
         let lapse = Lapse::Silent { silence };
         let last = READY[0] + 0.66;
 
-        let (mut lockstep, engaged, error) = silent_stream(ready, Stale::Hold);
+        let (mut lockstep, engaged, error) = silent_stream(ready, OnTimeout::Hold);
         assert_eq!(error, MotionError::Held(lapse));
         assert!(
             (lockstep.robot.q()[0] - last).abs() < 2e-3,
@@ -41,12 +44,14 @@ fn a_stream_that_falls_silent_is_held_or_braked_and_the_outcome_says_which() {
         );
         assert_stays(&mut lockstep, engaged);
 
-        let (mut lockstep, engaged, error) = silent_stream(ready, Stale::Brake);
+        let (mut lockstep, engaged, error) = silent_stream(ready, OnTimeout::Brake);
         assert_eq!(error, MotionError::Braked(lapse));
         assert!((lockstep.robot.q()[0] - last).abs() > 0.02, "short of it");
         assert_stays(&mut lockstep, engaged);
         // The session is as good as before.
-        let goal = lockstep.within(engaged, turned(0.0), Then::Stay).unwrap();
+        let goal = lockstep
+            .within(engaged, turned(0.0), OnArrival::ReportAndHold)
+            .unwrap();
         lockstep.until_resolved(goal, 5000).unwrap();
     });
 }
@@ -55,7 +60,9 @@ fn a_stream_that_falls_silent_is_held_or_braked_and_the_outcome_says_which() {
 fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
-        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        let goal = lockstep
+            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
+            .unwrap();
         for _ in 0..10 {
             lockstep.run(40);
             token.keep_alive();
@@ -64,11 +71,15 @@ fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
         assert_eq!(lockstep.until_resolved(goal, 1000), held);
         assert!(lockstep.client.record.bindings.contains(Guard::Deadman));
         assert!(lockstep.robot.q()[0] < READY[0] + 0.25, "short of the goal");
-        let another = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        let another = lockstep
+            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
+            .unwrap();
         assert_eq!(lockstep.until_resolved(another, 1000), held);
         assert_stays(&mut lockstep, engaged);
 
-        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        let goal = lockstep
+            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
+            .unwrap();
         for _ in 0..200 {
             token.keep_alive();
             lockstep.run(20);
@@ -76,7 +87,9 @@ fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
         lockstep.until_resolved(goal, 1).unwrap();
 
         drop(token);
-        let goal = lockstep.within(engaged, turned(0.0), Then::Stay).unwrap();
+        let goal = lockstep
+            .within(engaged, turned(0.0), OnArrival::ReportAndHold)
+            .unwrap();
         assert_eq!(lockstep.until_resolved(goal, 1000), held);
     });
 }
@@ -86,7 +99,9 @@ fn a_stream_does_not_outlive_the_deadman_however_often_its_targets_come() {
     for_each_robot(|ready| {
         for period in [1, 20, 90] {
             let (mut lockstep, engaged, token) = guarded(ready, 50);
-            let goal = lockstep.within(engaged, turned(0.3), Then::Hold).unwrap();
+            let goal = lockstep
+                .within(engaged, turned(0.3), OnArrival::Hold)
+                .unwrap();
             for _ in 0..10 {
                 token.keep_alive();
                 lockstep.run(40);
@@ -111,7 +126,7 @@ fn a_stream_does_not_outlive_the_deadman_however_often_its_targets_come() {
 
 /// As stiff as ever, and as fast: what a program that tunes all the time sends.
 fn same_again(lockstep: &mut Lockstep, engaged: GoalId, budget: f64) {
-    let goal = lockstep.goal(turned(0.0), Then::Hold);
+    let goal = lockstep.goal(turned(0.0), OnArrival::Hold);
     let tuning = Tuning {
         gains: Some(goal.gains),
         budget: Some(goal.budget.scaled(budget)),
@@ -126,7 +141,7 @@ fn who_tunes_does_not_stand_in_for_a_stream_that_is_silent() {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let silence = Duration::from_millis(100);
-        let goal = watched(&mut lockstep, turned(0.8), 100, Stale::Brake);
+        let goal = watched(&mut lockstep, turned(0.8), 100, OnTimeout::Brake);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         let mut tuned = 0;
         // Also while the arm brakes, when the stream is given up already.
@@ -145,7 +160,7 @@ fn who_tunes_does_not_stand_in_for_a_stream_that_is_silent() {
 #[test]
 fn who_tunes_does_not_send_the_arm_on_to_what_was_given_up() {
     for_each_robot(|ready| {
-        let (mut lockstep, engaged, error) = silent_stream(ready, Stale::Brake);
+        let (mut lockstep, engaged, error) = silent_stream(ready, OnTimeout::Brake);
         assert!(matches!(error, MotionError::Braked(_)));
         lockstep.run(100);
         let at = lockstep.robot.q()[0];
@@ -173,7 +188,7 @@ fn an_arm_that_was_guided_is_held_firmly_once_its_deadman_is_dropped() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 5000);
         let guided = Target::Guide(Free::ALL);
-        let goal = lockstep.within(engaged, guided, Then::Hold).unwrap();
+        let goal = lockstep.within(engaged, guided, OnArrival::Hold).unwrap();
         lockstep.run(1000);
         drop(token);
         let held = Err(MotionError::Held(Lapse::Deadman));
@@ -188,7 +203,7 @@ fn a_stream_that_guides_does_not_soften_the_hold_of_its_silent_deadman() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
         let guided = Target::Guide(Free::ALL);
-        let goal = lockstep.within(engaged, guided, Then::Hold).unwrap();
+        let goal = lockstep.within(engaged, guided, OnArrival::Hold).unwrap();
         for _ in 0..20 {
             token.keep_alive();
             lockstep.run(40);
@@ -211,7 +226,12 @@ fn tuning_does_not_soften_the_hold_of_a_silent_guide() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = watched(&mut lockstep, Target::Guide(Free::ALL), 100, Stale::Brake);
+        let goal = watched(
+            &mut lockstep,
+            Target::Guide(Free::ALL),
+            100,
+            OnTimeout::Brake,
+        );
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         let silence = Duration::from_millis(100);
         let braked = Err(MotionError::Braked(Lapse::Silent { silence }));

@@ -17,7 +17,8 @@ use std::time::Duration;
 use franka_model::{READY, Wrench};
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{
-    Chunk, Deadman, Free, Goal, GoalError, GoalId, PoseError, Stale, Target, Then, Watchdog,
+    Chunk, Deadman, Free, Goal, GoalError, GoalId, OnArrival, OnTimeout, PoseError, Target,
+    Watchdog,
 };
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3};
@@ -47,23 +48,28 @@ fn chunk(from: f64, to: f64) -> Chunk {
 }
 
 /// A goal that is to be held, and may be silent for so many milliseconds.
-fn watched(lockstep: &mut Lockstep, target: Target, milliseconds: u64, stale: Stale) -> Goal {
+fn watched(
+    lockstep: &mut Lockstep,
+    target: Target,
+    milliseconds: u64,
+    on_timeout: OnTimeout,
+) -> Goal {
     Goal {
         watchdog: Some(Watchdog {
             silence: Duration::from_millis(milliseconds),
-            stale,
+            on_timeout,
         }),
-        ..lockstep.goal(target, Then::Hold)
+        ..lockstep.goal(target, OnArrival::Hold)
     }
 }
 
 /// An arm engaged by a session that is bound to a deadman, which may be silent for so many
 /// milliseconds.
 fn guarded(ready: &dyn Fn() -> Lockstep, milliseconds: u64) -> (Lockstep, GoalId, Deadman) {
-    let (token, grip) = Deadman::new(Duration::from_millis(milliseconds));
+    let (token, monitor) = Deadman::new(Duration::from_millis(milliseconds));
     let mut lockstep = ready();
     let engaged = lockstep.engage_with(Engagement {
-        deadman: Some(grip),
+        deadman: Some(monitor),
         ..Engagement::default()
     });
     (lockstep, engaged, token)
@@ -84,7 +90,9 @@ fn goals_come_to_their_ends_and_the_session_goes_on_until_it_is_ended() {
         let engaged = lockstep.engage();
         let pose = up(&lockstep, 0.05);
         for target in [Target::Pose(pose), turned(0.1), Target::Rest] {
-            let goal = lockstep.within(engaged, target, Then::Stay).unwrap();
+            let goal = lockstep
+                .within(engaged, target, OnArrival::ReportAndHold)
+                .unwrap();
             let report = lockstep.until_resolved(goal, 6000).unwrap();
             assert_eq!(report.final_error.is_none(), target == Target::Rest);
             assert_stays(&mut lockstep, engaged);
@@ -95,7 +103,7 @@ fn goals_come_to_their_ends_and_the_session_goes_on_until_it_is_ended() {
         lockstep.until_resolved(engaged, 1000).unwrap();
         lockstep.until_resolved(next, 6000).unwrap();
         assert!(lockstep.client.lifecycle.is_idle());
-        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        let late = lockstep.within(engaged, turned(0.0), OnArrival::ReportAndHold);
         assert_eq!(late, Err(MotionError::Disengaged));
     });
 }
@@ -113,7 +121,9 @@ fn a_goal_of_another_kind_takes_over_in_mid_motion() {
             Target::Pose(pose),
             turned(0.0),
         ] {
-            let goal = lockstep.within(engaged, target, Then::Stay).unwrap();
+            let goal = lockstep
+                .within(engaged, target, OnArrival::ReportAndHold)
+                .unwrap();
             if let Some(before) = before.replace(goal) {
                 let superseded = lockstep.until_resolved(before, 1);
                 assert_eq!(superseded, Err(MotionError::Superseded));
@@ -131,9 +141,11 @@ fn nobody_else_gets_the_arm_meanwhile_but_anybody_can_stop_it() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = lockstep.goal(turned(0.1), Then::Finish);
+        let goal = lockstep.goal(turned(0.1), OnArrival::ReportAndFinish);
         assert_eq!(lockstep.submit(goal), Err(MotionError::Busy));
-        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        let goal = lockstep
+            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
+            .unwrap();
         lockstep.run(300);
         let stop = lockstep.stop().expect("it moves");
         lockstep.until_resolved(stop, 2000).unwrap();
@@ -141,7 +153,7 @@ fn nobody_else_gets_the_arm_meanwhile_but_anybody_can_stop_it() {
             let outcome = lockstep.until_resolved(ended, 1);
             assert_eq!(outcome, Err(MotionError::Stopped));
         }
-        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        let late = lockstep.within(engaged, turned(0.0), OnArrival::ReportAndHold);
         assert_eq!(late, Err(MotionError::Stopped));
     });
 }
@@ -151,7 +163,9 @@ fn a_goal_that_is_taken_back_leaves_the_arm_held() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        let goal = lockstep
+            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
+            .unwrap();
         lockstep.run(300);
         lockstep.cancel(goal);
         let outcome = lockstep.until_resolved(goal, 2000);
@@ -168,7 +182,9 @@ fn a_reflex_is_what_every_goal_hears_that_comes_after_it() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
-        let goal = lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        let goal = lockstep
+            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
+            .unwrap();
         lockstep.run(300);
         lockstep.robot.press_user_stop(true);
         let outcome = lockstep.until_resolved(goal, 2000);
@@ -176,7 +192,7 @@ fn a_reflex_is_what_every_goal_hears_that_comes_after_it() {
             panic!("{outcome:?}");
         };
         assert_eq!(lockstep.until_resolved(engaged, 1), outcome);
-        let late = lockstep.within(engaged, turned(0.0), Then::Stay);
+        let late = lockstep.within(engaged, turned(0.0), OnArrival::ReportAndHold);
         assert_eq!(late, Err(MotionError::Control(error.clone())));
     });
 }
@@ -190,7 +206,7 @@ fn a_goal_that_comes_while_the_session_is_ending_hears_how_it_ended() {
         let mut late = Vec::new();
         while lockstep.client.outcome(engaged).is_none() {
             lockstep.tick();
-            late.extend(lockstep.within(engaged, turned(0.1), Then::Stay));
+            late.extend(lockstep.within(engaged, turned(0.1), OnArrival::ReportAndHold));
         }
         let outcome = lockstep.until_resolved(engaged, 1);
         assert!(matches!(outcome, Err(MotionError::Control(_))));
@@ -212,7 +228,7 @@ fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
             elbow: false,
         };
         lockstep
-            .within(engaged, Target::Guide(free), Then::Hold)
+            .within(engaged, Target::Guide(free), OnArrival::Hold)
             .unwrap();
         lockstep.run(400);
         let start = lockstep.true_pose();
@@ -225,7 +241,9 @@ fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
         let turned = PoseError::between(&lockstep.true_pose(), &start).rotation;
         assert!(turned < 0.05, "{turned} rad");
         // Taken over while the hand still moves it.
-        let hold = lockstep.within(engaged, Target::Rest, Then::Stay).unwrap();
+        let hold = lockstep
+            .within(engaged, Target::Rest, OnArrival::ReportAndHold)
+            .unwrap();
         lockstep.until_resolved(hold, 5000).unwrap();
         assert_stays(&mut lockstep, engaged);
     });
@@ -269,7 +287,7 @@ fn chunks_of_a_slow_policy_become_one_smooth_motion() {
         // A pose takes over from the last chunk.
         let pose = up(&lockstep, 0.05);
         let goal = lockstep
-            .within(engaged, Target::Pose(pose), Then::Stay)
+            .within(engaged, Target::Pose(pose), OnArrival::ReportAndHold)
             .unwrap();
         lockstep.until_resolved(goal, 6000).unwrap();
         let stale = Chunk::joints([(Duration::ZERO, predicted(0.0))]).unwrap();

@@ -5,7 +5,7 @@ use franka_model::Wrench;
 use franka_model::collision::Obstacle;
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{ForceCap, Free, Goal, GoalError, Guard, Lapse, Target, Then};
+use franka_rt::session::{ForceCap, Free, Goal, GoalError, Guard, Lapse, OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 #[test]
@@ -65,7 +65,7 @@ fn gains_that_do_not_hold_for_a_guiding_hand_are_checked_for_what_comes_after() 
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         lockstep
-            .within(engaged, Target::Guide(Free::ALL), Then::Hold)
+            .within(engaged, Target::Guide(Free::ALL), OnArrival::Hold)
             .expect("it is held");
         lockstep.run(300);
         let mut hard = Gains::cartesian();
@@ -132,7 +132,7 @@ fn a_session_keeps_out_of_its_regions_and_refuses_what_is_none() {
         });
         let down = up(&lockstep, -0.2);
         let goal = lockstep
-            .within(engaged, Target::Pose(down), Then::Stay)
+            .within(engaged, Target::Pose(down), OnArrival::ReportAndHold)
             .unwrap();
         let outcome = lockstep.until_resolved(goal, 20_000);
         assert_eq!(outcome, Err(MotionError::Braked(Lapse::Blocked)));
@@ -165,7 +165,7 @@ fn gains_that_would_not_hold_the_arm_are_refused() {
             ..Gains::joint()
         },
     ] {
-        let goal = lockstep.goal(turned(0.1), Then::Finish);
+        let goal = lockstep.goal(turned(0.1), OnArrival::ReportAndFinish);
         let refused = lockstep.submit(Goal { gains, ..goal });
         assert_eq!(refused, Err(MotionError::Goal(GoalError::Unheld)));
     }

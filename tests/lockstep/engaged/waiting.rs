@@ -5,7 +5,7 @@ use franka_proto::MoveControllerMode;
 use franka_rt::control::{Callback, Torques};
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{Engagement, MotionError};
-use franka_rt::session::{GoalId, Then};
+use franka_rt::session::{GoalId, OnArrival};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 fn ask(lockstep: &mut Lockstep) -> Result<GoalId, MotionError> {
@@ -17,7 +17,9 @@ fn moving(ready: &dyn Fn() -> Lockstep, engaged: bool) -> (Lockstep, GoalId) {
     let mut lockstep = ready();
     let motion = if engaged {
         let engaged = lockstep.engage();
-        lockstep.within(engaged, turned(0.3), Then::Stay).unwrap();
+        lockstep
+            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
+            .unwrap();
         engaged
     } else {
         lockstep.begin(turned(0.3))
@@ -36,7 +38,7 @@ fn a_session_waits_for_the_end_of_what_was_dropped() {
             let session = ask(&mut lockstep).expect("the arm is let go");
             // It has the arm already, as far as others are concerned.
             assert_eq!(ask(&mut lockstep), Err(MotionError::Busy));
-            let goal = lockstep.goal(turned(0.0), Then::Finish);
+            let goal = lockstep.goal(turned(0.0), OnArrival::ReportAndFinish);
             assert_eq!(lockstep.submit(goal), Err(MotionError::Busy));
             while lockstep.client.record.goal != session.0 {
                 lockstep.tick();
@@ -90,7 +92,7 @@ fn a_stream_that_ends_while_it_waits_for_the_end_of_a_session_ends_its_own_motio
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         lockstep.disengage(engaged);
-        let goal = lockstep.goal(turned(0.1), Then::Hold);
+        let goal = lockstep.goal(turned(0.1), OnArrival::Hold);
         let goal = lockstep.submit(goal).expect("the arm is let go");
         lockstep.client.lifecycle.close(goal);
         assert!(lockstep.client.outcome(engaged).is_none(), "it waited");

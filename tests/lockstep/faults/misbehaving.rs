@@ -3,7 +3,7 @@
 use franka_proto::MoveGeneratorMode;
 use franka_rt::control::{AsynchronousTarget, WriteError};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalError, Target, Then};
+use franka_rt::session::{GoalError, OnArrival, Target};
 use franka_rt::shaping::{FilterFault, InvalidCommand, Shaper, Signal};
 use franka_tests::lockstep::Lockstep;
 
@@ -166,7 +166,7 @@ fn a_goal_that_is_none_is_refused_and_the_motion_goes_on() {
                 let mut trial = Trial::begin(variant, Deed::Faultless);
                 trial.until(moment);
                 let none = Target::Joints([f64::NAN; 7]);
-                let goal = trial.lockstep.goal(none, Then::Finish);
+                let goal = trial.lockstep.goal(none, OnArrival::ReportAndFinish);
                 let refused = trial.lockstep.submit(goal);
                 assert_eq!(refused, Err(MotionError::Goal(GoalError::NotFinite)));
                 if variant.way == Way::Target(Gesture::Follow) {

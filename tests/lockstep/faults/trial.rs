@@ -6,7 +6,7 @@ use franka_model::READY;
 use franka_proto::{General, MoveGeneratorMode, MoveRequest, Request, RobotMode};
 use franka_rt::control::{ActiveControl, AsynchronousPositions, AsynchronousTarget, WriteError};
 use franka_rt::driver::{Activity, Program};
-use franka_rt::session::{GoalId, Target, Then};
+use franka_rt::session::{GoalId, OnArrival, Target};
 use franka_rt::shaping::Shaper;
 use franka_rt::slot::SlotWriter;
 use franka_tests::lockstep::{Link, Lockstep, Outcome};
@@ -124,15 +124,19 @@ impl Trial {
                 let start = lockstep.true_pose();
                 let mut q: [f64; 7] = READY.into();
                 q[course::JOINT] += 0.02;
-                let (target, then, hand) = match gesture {
+                let (target, on_arrival, hand) = match gesture {
                     Gesture::MoveTo => {
                         let up = Translation3::new(0.0, 0.0, 0.01) * start;
-                        (Target::Pose(up), Then::Finish, Hand::None)
+                        (Target::Pose(up), OnArrival::ReportAndFinish, Hand::None)
                     }
-                    Gesture::MoveJoints => (Target::Joints(q), Then::Finish, Hand::None),
-                    Gesture::Follow => (Target::Pose(start), Then::Hold, Hand::Leader { start }),
+                    Gesture::MoveJoints => {
+                        (Target::Joints(q), OnArrival::ReportAndFinish, Hand::None)
+                    }
+                    Gesture::Follow => {
+                        (Target::Pose(start), OnArrival::Hold, Hand::Leader { start })
+                    }
                 };
-                let goal = lockstep.goal(target, then);
+                let goal = lockstep.goal(target, on_arrival);
                 (lockstep.submit(goal), hand)
             }
         };

@@ -6,7 +6,7 @@ use franka_model::EndEffector;
 use franka_rt::driver::Record;
 use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::{
-    GoalId, Guard, Lapse, PoseError, Stale, Target, Then, Tolerance, Watchdog,
+    GoalId, Guard, Lapse, OnArrival, OnTimeout, PoseError, Target, Tolerance, Watchdog,
 };
 use franka_sim::Tool;
 use franka_tests::lockstep::{Lockstep, Outcome, pose_of};
@@ -41,7 +41,7 @@ pub(super) enum Work {
 pub(super) struct Given {
     pub(super) id: GoalId,
     pub(super) work: Work,
-    pub(super) then: Then,
+    pub(super) on_arrival: OnArrival,
     pub(super) watchdog: Option<Watchdog>,
     /// Its newest sign of life, `[ms]`.
     pub(super) heard: u64,
@@ -63,11 +63,11 @@ pub(super) struct Given {
 }
 
 impl Given {
-    pub(super) fn new(id: GoalId, work: Work, then: Then, now: u64) -> Self {
+    pub(super) fn new(id: GoalId, work: Work, on_arrival: OnArrival, now: u64) -> Self {
         Self {
             id,
             work,
-            then,
+            on_arrival,
             watchdog: None,
             heard: now,
             superseded: false,
@@ -107,9 +107,12 @@ impl Given {
     fn may_be_ok(&self) -> bool {
         match self.work {
             // The arm that a goal lets go has reached it, whatever comes after that.
-            Work::Goal(_) if self.then == Then::Finish && self.stopped => true,
+            Work::Goal(_) if self.on_arrival == OnArrival::ReportAndFinish && self.stopped => true,
             Work::Goal(_) | Work::Chunks => {
-                self.then != Then::Hold && !self.cancelled && !self.superseded && !self.stopped
+                self.on_arrival != OnArrival::Hold
+                    && !self.cancelled
+                    && !self.superseded
+                    && !self.stopped
             }
             Work::Session => self.released,
             Work::Stop => true,
@@ -152,17 +155,17 @@ impl Given {
             MotionError::Disengaged => goal && self.released,
             MotionError::Held(Lapse::Deadman) => self.deadman && self.work != Work::Stop,
             MotionError::Held(Lapse::Silent { silence }) => {
-                goal && self.was_silent(Stale::Hold, *silence, now)
+                goal && self.was_silent(OnTimeout::Hold, *silence, now)
             }
             MotionError::Braked(Lapse::Silent { silence }) => {
-                goal && self.was_silent(Stale::Brake, *silence, now)
+                goal && self.was_silent(OnTimeout::Brake, *silence, now)
             }
-            MotionError::Short(off) => {
+            MotionError::TargetNotReached(off) => {
                 let far = off.translation > 1e-3 || off.rotation > 1e-3;
                 let may = causes.pushed || self.soft || self.hindered;
                 far && may && (goal || self.finishing)
             }
-            MotionError::Braked(Lapse::CarriedOff) => causes.pushed,
+            MotionError::Braked(Lapse::Displaced) => causes.pushed,
             MotionError::Braked(Lapse::Blocked) => self.hindered,
             MotionError::Control(error) => causes.excuse(error),
             MotionError::Rejected(_) => causes.any(),
@@ -170,12 +173,17 @@ impl Given {
         }
     }
 
-    fn was_silent(&self, how: Stale, reported: Duration, now: u64) -> bool {
-        let Some(Watchdog { silence, stale, .. }) = self.watchdog else {
+    fn was_silent(&self, how: OnTimeout, reported: Duration, now: u64) -> bool {
+        let Some(Watchdog {
+            silence,
+            on_timeout,
+            ..
+        }) = self.watchdog
+        else {
             return false;
         };
         // A gap in the states makes it longer, but not as long as it now is.
         let since = Duration::from_millis(now + 1 - self.heard);
-        stale == how && reported >= silence && reported <= since
+        on_timeout == how && reported >= silence && reported <= since
     }
 }

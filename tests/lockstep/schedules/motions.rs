@@ -4,7 +4,7 @@ use franka_model::{READY, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotError, RobotMode};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalId, Target, Then};
+use franka_rt::session::{GoalId, OnArrival, Target};
 use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Vector3};
 use rand::rngs::SmallRng;
@@ -79,15 +79,15 @@ impl Motions {
         match self.random.random_range(0..if self.calm { 10 } else { 16 }) {
             0..=2 => {
                 let target = self.pose();
-                self.submit(target, Then::Finish);
+                self.submit(target, OnArrival::ReportAndFinish);
             }
             3..=4 => {
                 let target = self.joints();
-                self.submit(target, Then::Finish);
+                self.submit(target, OnArrival::ReportAndFinish);
             }
             5 => {
                 let target = self.pose();
-                self.held = self.submit(target, Then::Hold);
+                self.held = self.submit(target, OnArrival::Hold);
             }
             6..=7 => self.update(),
             8 => match self.held.take() {
@@ -151,8 +151,8 @@ impl Motions {
         Target::Joints(draw::joints(&mut self.random, 0.3))
     }
 
-    fn submit(&mut self, target: Target, then: Then) -> Option<GoalId> {
-        let mut goal = self.lockstep.goal(target, then);
+    fn submit(&mut self, target: Target, on_arrival: OnArrival) -> Option<GoalId> {
+        let mut goal = self.lockstep.goal(target, on_arrival);
         let speeds = [0.2, 0.5, 1.0, 1.0, 1.4];
         let speed = speeds[self.random.random_range(0..speeds.len())];
         goal.budget = goal.budget.scaled(speed);

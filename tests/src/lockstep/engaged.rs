@@ -1,7 +1,7 @@
 //! Sessions that go from goal to goal.
 
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{Backend, Chunk, Goal, GoalId, Target, Then};
+use franka_rt::session::{Backend, Chunk, Goal, GoalId, OnArrival, Target};
 
 use super::Lockstep;
 use super::guard::CommandGuard;
@@ -46,7 +46,7 @@ impl Lockstep {
     /// # Errors
     /// As the lifecycle.
     pub fn try_engage(&mut self, engagement: Engagement) -> Result<GoalId, MotionError> {
-        let goal = self.goal(Target::Rest, Then::Hold);
+        let goal = self.goal(Target::Rest, OnArrival::Hold);
         self.submit_by(goal, |lifecycle, goal, state, now| {
             lifecycle.engage(goal, engagement, state, now)
         })
@@ -61,9 +61,9 @@ impl Lockstep {
         &mut self,
         engaged: GoalId,
         target: Target,
-        then: Then,
+        on_arrival: OnArrival,
     ) -> Result<GoalId, MotionError> {
-        let goal = self.goal(target, then);
+        let goal = self.goal(target, on_arrival);
         self.submit_within(engaged, goal)
     }
 
@@ -82,7 +82,7 @@ impl Lockstep {
     /// # Errors
     /// As the lifecycle.
     pub fn chunk(&mut self, engaged: GoalId, chunk: Chunk) -> Result<(), MotionError> {
-        let goal = self.goal(chunk.target(), Then::Hold);
+        let goal = self.goal(chunk.target(), OnArrival::Hold);
         self.submit_chunk(engaged, goal, chunk).map(|_| ())
     }
 

@@ -16,7 +16,7 @@ use franka_rt::driver::{Activity, Program};
 use franka_rt::law::{Gains, Law};
 use franka_rt::session::{
     Backend, Chunk, ChunkWriter, Deadman, Fate, ForceCap, Free, Goal, GoalId, Guard, KeepOut, Lead,
-    Setpoints, Stale, Target, TargetSession, Then, Watchdog, chunk_ring,
+    OnArrival, OnTimeout, Setpoints, Target, TargetSession, Watchdog, chunk_ring,
 };
 use franka_rt::slot::{SlotWriter, slot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
@@ -104,14 +104,14 @@ impl Guarded {
         let home = lockstep.true_pose();
         let (mut goals, reader) = slot();
         let (chunks, taken) = chunk_ring();
-        let (deadman, grip) = Deadman::new(SILENCE);
-        let goal = Goal::new(GoalId(1), Target::Rest, Then::Hold, limits());
+        let (deadman, monitor) = Deadman::new(SILENCE);
+        let goal = Goal::new(GoalId(1), Target::Rest, OnArrival::Hold, limits());
         goals.write(&goal);
         let session = TargetSession::new(Model::fr3().clone().into(), version, reader)
             .going_on()
             .out_of(regions(&home))
             .with_backend(backend)
-            .bound_to(grip)
+            .bound_to(monitor)
             .with_chunks(taken);
         let (controller, generator) = match backend {
             Backend::Torques => (
@@ -257,10 +257,10 @@ impl Guarded {
     fn submit(&mut self, target: Target) {
         let id = GoalId(self.goal.id.0 + 1);
         self.turns += 1;
-        let stale = if self.turns.is_multiple_of(2) {
-            Stale::Hold
+        let on_timeout = if self.turns.is_multiple_of(2) {
+            OnTimeout::Hold
         } else {
-            Stale::Brake
+            OnTimeout::Brake
         };
         let goal = Goal {
             force_cap: match self.backend {
@@ -270,9 +270,9 @@ impl Guarded {
             lead: Some(LEAD),
             watchdog: Some(Watchdog {
                 silence: SILENT_STREAM,
-                stale,
+                on_timeout,
             }),
-            ..Goal::new(id, target, Then::Hold, limits())
+            ..Goal::new(id, target, OnArrival::Hold, limits())
         };
         self.goal = match (self.turns % 3, target) {
             (0, _) | (_, Target::Guide(_)) => goal,
@@ -289,7 +289,7 @@ impl Guarded {
                     feedforward_cutoff: 50.0,
                     ..Gains::cartesian()
                 },
-                then: Then::Stay,
+                on_arrival: OnArrival::ReportAndHold,
                 ..goal
             },
         };

@@ -31,7 +31,7 @@ use franka_proto::{MoveRequest, Request, RobotCommand, RobotState};
 use franka_rt::control::{Callback, Command, WriteError};
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport};
-use franka_rt::session::{Goal, GoalError, GoalId, Target, Then};
+use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Target};
 use franka_rt::together::StartTicket;
 use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
@@ -290,9 +290,9 @@ impl Lockstep {
     }
 
     /// A goal with the defaults of the async face: see `franka_async::Motion`.
-    pub fn goal(&mut self, target: Target, then: Then) -> Goal {
+    pub fn goal(&mut self, target: Target, on_arrival: OnArrival) -> Goal {
         let limits = self.model.joint_limits();
-        Goal::new(self.client.next_goal(), target, then, limits)
+        Goal::new(self.client.next_goal(), target, on_arrival, limits)
     }
 
     /// Submits a goal.
@@ -352,7 +352,7 @@ impl Lockstep {
     /// # Panics
     /// If the goal is not accepted.
     pub fn begin(&mut self, target: Target) -> GoalId {
-        let goal = self.goal(target, Then::Finish);
+        let goal = self.goal(target, OnArrival::ReportAndFinish);
         self.submit(goal).expect("the goal is accepted")
     }
 

@@ -3,7 +3,7 @@
 
 use franka_model::READY;
 use franka_rt::law::{Gains, Law};
-use franka_rt::session::{ForceCap, Goal, GoalId, Target, Then};
+use franka_rt::session::{ForceCap, Goal, GoalId, OnArrival, Target};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -30,7 +30,7 @@ impl Wander {
     /// An arm in this system, on its way from where it is.
     pub fn of(mut lockstep: Lockstep, seed: u64) -> Self {
         let home = lockstep.true_pose();
-        let goal = lockstep.goal(Target::Pose(home), Then::Hold);
+        let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
         let id = lockstep.submit(goal).expect("the arm is there already");
         let mut this = Self {
             lockstep,
@@ -76,7 +76,7 @@ impl Wander {
     }
 
     fn submit(&mut self, target: Target) {
-        let goal = in_turn(self.turns, self.lockstep.goal(target, Then::Hold));
+        let goal = in_turn(self.turns, self.lockstep.goal(target, OnArrival::Hold));
         self.turns += 1;
         self.goal = self
             .lockstep

@@ -5,7 +5,7 @@ use franka_model::Model;
 use super::{Active, Stage};
 use crate::session::chunk::ChunkReader;
 use crate::session::course::Course;
-use crate::session::{Goal, Target, Then};
+use crate::session::{Goal, OnArrival, Target};
 
 impl Active {
     /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is
@@ -38,7 +38,7 @@ impl Active {
             self.planned = true;
             // A goal that had fallen silent was to be held until a newer one.
             if self.lapse.take().is_some() {
-                self.goal.then = Then::Hold;
+                self.goal.on_arrival = OnArrival::Hold;
             }
             self.heard = now;
             self.stage = Stage::UnderWay;

@@ -16,7 +16,7 @@ use super::backend::{Backend, Stream};
 use super::chunk::{ChunkCourse, ChunkReader};
 use super::course::{self, Course};
 use super::effort::Effort;
-use super::goal::{Goal, Stale, Target, Then};
+use super::goal::{Goal, OnArrival, OnTimeout, Target};
 use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Deviation;
 use super::guard::{Bindings, Guard, leash};
@@ -46,12 +46,12 @@ pub(super) struct Active {
     drive: Drive,
     deviation: Deviation,
     /// What follows a goal that is held and has to be given up.
-    afterwards: Then,
+    afterwards: OnArrival,
     stage: Stage,
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
     /// Why the goal was given up, and what the arm does since.
-    lapse: Option<(Stale, Lapse)>,
+    lapse: Option<(OnTimeout, Lapse)>,
     /// Whether the goal was changed to one of coming to rest: chunks that waited for their time are
     /// none of it.
     taken_back: bool,
@@ -93,7 +93,7 @@ impl Active {
         backend: Backend,
         version: Version,
         keep_out: KeepOut,
-        afterwards: Then,
+        afterwards: OnArrival,
         state: &RobotState,
     ) -> Option<Self> {
         let (q, drive) = match backend {
@@ -142,7 +142,7 @@ impl Active {
             return;
         }
         let named = goal.id == self.goal.id;
-        let taken_back = goal.target == Target::Rest && goal.then != Then::Hold;
+        let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
         let tuned = goal.revision == self.goal.revision;
         // The caller has not yet seen the abort: ignore where the update leads.
         let aborted = !taken_back && self.is_given_up_for_good();
@@ -153,7 +153,7 @@ impl Active {
         let same = named
             && self.lapse.is_none()
             && goal.target == self.goal.target
-            && goal.then == self.goal.then;
+            && goal.on_arrival == self.goal.on_arrival;
         if same && !matches!(self.stage, Stage::Releasing(_)) {
             return self.tune(model, goal);
         }
@@ -170,16 +170,18 @@ impl Active {
     /// Goes on as before, but as fast, as stiff, and as it lands, as `goal` says. The gains of a
     /// guiding hand would let go of an arm that is held since.
     fn tune(&mut self, model: &Model, goal: Goal) {
-        let Goal { target, then, .. } = self.goal;
+        let Goal {
+            target, on_arrival, ..
+        } = self.goal;
         let gains = match target {
             Target::Guide(_) => goal.gains,
-            Target::Rest | Target::Joints(_) | Target::Pose(_) => goal.at_rest(then).gains,
+            Target::Rest | Target::Joints(_) | Target::Pose(_) => goal.at_rest(on_arrival).gains,
         };
         let before = core::mem::replace(
             &mut self.goal,
             Goal {
                 target,
-                then,
+                on_arrival,
                 gains,
                 ..goal
             },

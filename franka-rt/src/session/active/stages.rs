@@ -5,7 +5,9 @@ use franka_model::{Frame, Model};
 use super::{Active, Drive, Measured};
 use crate::law::hybrid::Reference;
 use crate::session::landing::{Landing, Release, Verdict};
-use crate::session::{Lapse, STALL_TIMEOUT, SessionEvent, Settlement, Stale, Target, Then, rigid};
+use crate::session::{
+    Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, rigid,
+};
 
 /// Joint velocity, `[rad/s]`, below which the reference may be stopped in one cycle. Joints at
 /// their bounds may still creep after a pose has come to its end.
@@ -40,7 +42,7 @@ impl Active {
         match &mut self.stage {
             Stage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                if self.goal.then != Then::Hold && (self.route.is_done() || stalled) {
+                if self.goal.on_arrival != OnArrival::Hold && (self.route.is_done() || stalled) {
                     if stalled && self.route.is_hindered() {
                         self.give_up(model, Lapse::Blocked);
                     } else if stalled && heading != Target::Rest {
@@ -64,27 +66,31 @@ impl Active {
                     Verdict::Settling => return None,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
-                if self.goal.then == Then::Finish && self.reference.dq.amax() > REFERENCE_REST {
+                if self.goal.on_arrival == OnArrival::ReportAndFinish
+                    && self.reference.dq.amax() > REFERENCE_REST
+                {
                     if self.aim != Target::Rest {
                         self.turn_to(model, Target::Rest);
                     }
                     return None;
                 }
-                self.stage = match (self.goal.then, &self.drive) {
-                    (Then::Hold | Then::Stay, _) => Stage::Staying,
-                    (Then::Finish, Drive::Torques(_)) => {
+                self.stage = match (self.goal.on_arrival, &self.drive) {
+                    (OnArrival::Hold | OnArrival::ReportAndHold, _) => Stage::Staying,
+                    (OnArrival::ReportAndFinish, Drive::Torques(_)) => {
                         self.route.rest();
                         Stage::Releasing(Release::new(arm.q, &self.reference.q))
                     }
                     // The robot holds the arm at its setpoint as it is.
-                    (Then::Finish, Drive::Setpoints(_)) => Stage::Finished,
+                    (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => Stage::Finished,
                 };
                 Some(SessionEvent::Settled {
                     goal: self.goal.id,
                     settlement: match self.lapse {
-                        Some((Stale::Hold, lapse)) => Settlement::Held(lapse),
-                        Some((Stale::Brake, Lapse::Deadman)) => Settlement::Held(Lapse::Deadman),
-                        Some((Stale::Brake, lapse)) => Settlement::Braked(lapse),
+                        Some((OnTimeout::Hold, lapse)) => Settlement::Held(lapse),
+                        Some((OnTimeout::Brake, Lapse::Deadman)) => {
+                            Settlement::Held(Lapse::Deadman)
+                        }
+                        Some((OnTimeout::Brake, lapse)) => Settlement::Braked(lapse),
                         None => settlement,
                     },
                     duration_ms: (now - self.since).saturating_sub(held),

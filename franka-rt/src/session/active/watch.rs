@@ -8,7 +8,7 @@ use franka_model::Model;
 use super::{Active, Measured, Stage};
 use crate::session::course::Course;
 use crate::session::guard::lead::LEAD_FRESH_MS;
-use crate::session::{Lapse, Stale, Target, Then};
+use crate::session::{Lapse, OnArrival, OnTimeout, Target};
 
 impl Active {
     /// Draws a target nearer that is too far ahead of the arm; tells whether it is.
@@ -32,10 +32,10 @@ impl Active {
 
     /// Gives the goal up, and brakes.
     pub(super) fn give_up(&mut self, model: &Model, lapse: Lapse) {
-        self.goal = self.goal.at_rest(self.goal.then);
+        self.goal = self.goal.at_rest(self.goal.on_arrival);
         self.fade_gains();
         self.set_out(model);
-        self.lapse(Stale::Brake, lapse);
+        self.lapse(OnTimeout::Brake, lapse);
     }
 
     /// Whether neither an update nor a chunk brings back a goal that was given up.
@@ -47,11 +47,11 @@ impl Active {
     }
 
     /// Has the goal come to its end where the arm comes to rest.
-    fn lapse(&mut self, stale: Stale, lapse: Lapse) {
-        if self.goal.then == Then::Hold {
-            self.goal.then = self.afterwards;
+    fn lapse(&mut self, on_timeout: OnTimeout, lapse: Lapse) {
+        if self.goal.on_arrival == OnArrival::Hold {
+            self.goal.on_arrival = self.afterwards;
         }
-        self.lapse = Some((stale, lapse));
+        self.lapse = Some((on_timeout, lapse));
     }
 
     /// Gives up a goal whose arm is being carried off; tells whether it is.
@@ -61,7 +61,7 @@ impl Active {
             return false;
         }
         if matches!(self.heading(), Target::Rest | Target::Guide(_)) {
-            return matches!(self.lapse, Some((_, Lapse::CarriedOff)));
+            return matches!(self.lapse, Some((_, Lapse::Displaced)));
         }
         let exceeded = self
             .deviation
@@ -71,16 +71,17 @@ impl Active {
             Stage::UnderWay | Stage::Landing(_) | Stage::Staying
         );
         if exceeded && follows {
-            self.give_up(model, Lapse::CarriedOff);
+            self.give_up(model, Lapse::Displaced);
         }
         exceeded
     }
 
     /// Gives the goal up: its updates stay away, or its deadman is silent.
     pub(super) fn watch(&mut self, model: &Model, alive: bool, now: u64) {
-        let given_up = matches!(self.lapse, Some((Stale::Brake, _)));
+        let given_up = matches!(self.lapse, Some((OnTimeout::Brake, _)));
         // Whoever asks for rest gets it, with or without a deadman.
-        let comes_to_rest = self.heading() == Target::Rest && self.goal.then != Then::Hold;
+        let comes_to_rest =
+            self.heading() == Target::Rest && self.goal.on_arrival != OnArrival::Hold;
         if given_up || comes_to_rest || matches!(self.stage, Stage::Releasing(_) | Stage::Finished)
         {
             return;
@@ -90,14 +91,14 @@ impl Active {
         }
         let silence = Duration::from_millis(now.saturating_sub(self.heard));
         if let Some(watchdog) = self.goal.watchdog
-            && self.goal.then == Then::Hold
+            && self.goal.on_arrival == OnArrival::Hold
             && silence >= watchdog.silence
         {
             let silent = Lapse::Silent { silence };
-            match (watchdog.stale, self.goal.target) {
+            match (watchdog.on_timeout, self.goal.target) {
                 // A hand leads to no last target.
-                (Stale::Brake, _) | (_, Target::Guide(_)) => self.give_up(model, silent),
-                (Stale::Hold, _) => self.lapse(Stale::Hold, silent),
+                (OnTimeout::Brake, _) | (_, Target::Guide(_)) => self.give_up(model, silent),
+                (OnTimeout::Hold, _) => self.lapse(OnTimeout::Hold, silent),
             }
         }
     }

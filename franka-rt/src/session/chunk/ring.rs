@@ -35,7 +35,7 @@ pub enum Fate {
     /// All of its points had passed when it was to be taken up.
     Late,
     /// It belongs to a goal that another one has taken the place of.
-    Stale,
+    Obsolete,
 }
 
 /// A chunk that the thread is done with.
@@ -95,7 +95,7 @@ impl ChunkWriter {
     /// Sends `chunk` for `goal`. A newer chunk of a goal takes the place of those before it.
     ///
     /// A chunk may be sent before its goal is seen, but not before it is written to the goals'
-    /// slot: chunks of older goals are returned as [`Fate::Stale`].
+    /// slot: chunks of older goals are returned as [`Fate::Obsolete`].
     ///
     /// # Errors
     /// [`Full`] with the chunk if [`CHUNKS_MAX`] of them have not been [collected](Self::collect).
@@ -135,7 +135,7 @@ impl ChunkReader {
         let newest = self.newest.take_if(|newest| newest.goal <= goal)?;
         let Sent { goal: of, chunk } = newest;
         if of != goal {
-            self.give_back(of, chunk, Fate::Stale);
+            self.give_back(of, chunk, Fate::Obsolete);
             return None;
         }
         let t = chunk.since_origin(now);
@@ -154,7 +154,7 @@ impl ChunkReader {
     pub(in crate::session) fn discard(&mut self, goal: GoalId) {
         self.receive();
         if let Some(Sent { goal, chunk }) = self.newest.take_if(|newest| newest.goal <= goal) {
-            self.give_back(goal, chunk, Fate::Stale);
+            self.give_back(goal, chunk, Fate::Obsolete);
         }
     }
 
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(reader.poll(GOAL, 161, true), None);
         writer.send(GoalId(4), chunk()).unwrap();
         assert_eq!(reader.poll(GOAL, 162, true), None);
-        assert_eq!(fates(&mut writer), [Fate::Late, Fate::Stale]);
+        assert_eq!(fates(&mut writer), [Fate::Late, Fate::Obsolete]);
         writer.send(GOAL, chunk().observed_at(100)).unwrap();
         assert!(
             reader.poll(GOAL, 160, true).is_some(),

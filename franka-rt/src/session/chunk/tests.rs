@@ -17,7 +17,7 @@ use crate::law::hybrid::Reference;
 use crate::session::kinematics::Drift;
 use crate::session::pose::PoseState;
 use crate::session::{
-    Budget, Goal, GoalId, SessionEvent, Settlement, Target, TargetSession, Then, rigid,
+    Budget, Goal, GoalId, OnArrival, SessionEvent, Settlement, Target, TargetSession, rigid,
 };
 use crate::slot::{SlotWriter, slot};
 
@@ -374,8 +374,8 @@ impl Session {
         }
     }
 
-    fn set(&mut self, id: u64, target: Target, then: Then) {
-        let goal = Goal::new(GoalId(id), target, then, Model::fr3().joint_limits());
+    fn set(&mut self, id: u64, target: Target, on_arrival: OnArrival) {
+        let goal = Goal::new(GoalId(id), target, on_arrival, Model::fr3().joint_limits());
         self.goals.write(&goal);
     }
 
@@ -413,7 +413,7 @@ impl Session {
 fn a_session_follows_the_chunks_of_its_goal_and_arrives_where_they_end() {
     let mut session = Session::new();
     session.chunks.send(GOAL, Session::way()).unwrap();
-    session.set(1, Target::Rest, Then::Stay);
+    session.set(1, Target::Rest, OnArrival::ReportAndHold);
     assert_eq!(session.run(501), None);
     let half = JointVector::from(session.state.q) - READY;
     assert!((half.add_scalar(-0.05)).amax() < 2e-4, "{half}");
@@ -440,13 +440,13 @@ fn a_session_follows_the_chunks_of_its_goal_and_arrives_where_they_end() {
 fn another_goal_takes_over_from_a_chunk_whose_memory_goes_back() {
     let mut session = Session::new();
     session.chunks.send(GOAL, Session::way()).unwrap();
-    session.set(1, Target::Rest, Then::Hold);
+    session.set(1, Target::Rest, OnArrival::Hold);
     session.run(500);
-    session.set(2, Target::Joints(READY.into()), Then::Hold);
+    session.set(2, Target::Joints(READY.into()), OnArrival::Hold);
     session.run(2);
     assert_eq!(session.fates(), [Fate::Replaced]);
     session.chunks.send(GOAL, Session::way()).unwrap();
     session.run(3000);
-    assert_eq!(session.fates(), [Fate::Stale]);
+    assert_eq!(session.fates(), [Fate::Obsolete]);
     assert!((JointVector::from(session.state.q) - READY).amax() < 1e-6);
 }

@@ -3,7 +3,7 @@
 use franka_model::READY;
 use franka_proto::{Request, RobotMode};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalId, Lapse, Target, Then};
+use franka_rt::session::{GoalId, Lapse, OnArrival, Target};
 use franka_tests::lockstep::Link;
 use rand::Rng;
 
@@ -25,7 +25,12 @@ impl Sessions<'_> {
                 for given in &mut self.open {
                     given.stopped = true;
                 }
-                self.add(Given::new(stop, Work::Stop, Then::Finish, now));
+                self.add(Given::new(
+                    stop,
+                    Work::Stop,
+                    OnArrival::ReportAndFinish,
+                    now,
+                ));
             }
             return;
         }
@@ -47,7 +52,12 @@ impl Sessions<'_> {
             for given in &mut self.open {
                 given.stopped = true;
             }
-            self.add(Given::new(stop, Work::Stop, Then::Finish, now));
+            self.add(Given::new(
+                stop,
+                Work::Stop,
+                OnArrival::ReportAndFinish,
+                now,
+            ));
         }
     }
 

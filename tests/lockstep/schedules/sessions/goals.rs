@@ -1,7 +1,7 @@
 //! Goals that are given, changed and taken back.
 
 use franka_rt::lifecycle::{MotionError, Tuning};
-use franka_rt::session::{Backend, Budget, ForceCap, Free, Goal, GoalId, Target, Then};
+use franka_rt::session::{Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target};
 use rand::Rng;
 
 use super::super::draw;
@@ -25,17 +25,17 @@ impl Sessions<'_> {
                 elbow: self.random.random_bool(0.5),
             }),
         };
-        let then = match self.random.random_range(0..20) {
-            0 if !matches!(target, Target::Guide(_)) => Then::Finish,
-            1..=9 if !matches!(target, Target::Guide(_)) => Then::Stay,
-            _ => Then::Hold,
+        let on_arrival = match self.random.random_range(0..20) {
+            0 if !matches!(target, Target::Guide(_)) => OnArrival::ReportAndFinish,
+            1..=9 if !matches!(target, Target::Guide(_)) => OnArrival::ReportAndHold,
+            _ => OnArrival::Hold,
         };
-        self.submit(target, then);
+        self.submit(target, on_arrival);
     }
 
     /// Submits a goal that goes about it in any way. Returns whether it was taken.
-    pub(super) fn submit(&mut self, target: Target, then: Then) -> bool {
-        let mut goal = self.lockstep.goal(target, then);
+    pub(super) fn submit(&mut self, target: Target, on_arrival: OnArrival) -> bool {
+        let mut goal = self.lockstep.goal(target, on_arrival);
         goal.budget = self.budget();
         let mut soft = false;
         if !matches!(target, Target::Guide(_)) && self.random.random_bool(0.3) {
@@ -47,7 +47,7 @@ impl Sessions<'_> {
             soft = true;
         }
         // Nothing streams to a hand.
-        let streams = then == Then::Hold && !matches!(target, Target::Guide(_));
+        let streams = on_arrival == OnArrival::Hold && !matches!(target, Target::Guide(_));
         if streams && self.random.random_bool(0.5) {
             goal.watchdog = Some(self.watchdog());
         }
@@ -74,7 +74,7 @@ impl Sessions<'_> {
         match taken {
             Ok(id) => {
                 assert!(!session.over, "no goal is taken after the last");
-                session.over = goal.then == Then::Finish;
+                session.over = goal.on_arrival == OnArrival::ReportAndFinish;
                 let before = session.current.replace(id);
                 let current = session.id;
                 for given in &mut self.open {
@@ -84,9 +84,10 @@ impl Sessions<'_> {
                         // Of a session that is ending, everybody hears its end.
                         assert!(told || causes, "{given:?} is superseded");
                     }
-                    given.finishing |= given.id == current && goal.then == Then::Finish;
+                    given.finishing |=
+                        given.id == current && goal.on_arrival == OnArrival::ReportAndFinish;
                 }
-                let mut given = Given::new(id, work, goal.then, now);
+                let mut given = Given::new(id, work, goal.on_arrival, now);
                 given.watchdog = goal.watchdog;
                 given.soft = soft;
                 self.add(given);
@@ -109,7 +110,7 @@ impl Sessions<'_> {
     }
 
     pub(super) fn budget(&mut self) -> Budget {
-        let goal = self.lockstep.goal(Target::Rest, Then::Hold);
+        let goal = self.lockstep.goal(Target::Rest, OnArrival::Hold);
         let speeds = [0.3, 0.6, 1.0, 1.0, 1.4, 1.7];
         goal.budget
             .scaled(speeds[self.random.random_range(0..speeds.len())])
@@ -158,7 +159,7 @@ impl Sessions<'_> {
         if let Some(id) = self.held() {
             self.lockstep.client.lifecycle.close(id);
             let given = self.open.iter_mut().find(|given| given.id == id);
-            given.expect("it is open").then = Then::Stay;
+            given.expect("it is open").on_arrival = OnArrival::ReportAndHold;
         }
     }
 
@@ -169,8 +170,9 @@ impl Sessions<'_> {
         };
         let begin = self.lockstep.now();
         let ends = |given: &Given| {
-            let watched = given.watchdog.is_some() && given.then == Then::Hold;
-            given.id == current && (given.then != Then::Hold || given.cancelled || watched)
+            let watched = given.watchdog.is_some() && given.on_arrival == OnArrival::Hold;
+            given.id == current
+                && (given.on_arrival != OnArrival::Hold || given.cancelled || watched)
         };
         while self.open.iter().any(ends) {
             self.run(1);

@@ -4,7 +4,7 @@ use franka_model::Wrench;
 use franka_proto::RobotError;
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Backend, Target, Then};
+use franka_rt::session::{Backend, OnArrival, Target};
 use nalgebra::Vector3;
 use rand::Rng;
 
@@ -32,7 +32,7 @@ impl Sessions<'_> {
 
     /// Somebody else wants the arm.
     pub(super) fn interfere(&mut self) {
-        let goal = self.lockstep.goal(Target::Rest, Then::Finish);
+        let goal = self.lockstep.goal(Target::Rest, OnArrival::ReportAndFinish);
         let has_it = self.session.as_ref().is_some_and(|session| {
             let ended = self.lockstep.client.outcome(session.id).is_some();
             let of_it = self.open.iter().find(|given| given.id == session.id);

@@ -13,7 +13,7 @@ use std::time::Duration;
 use franka_model::RobotKind;
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::Engagement;
-use franka_rt::session::{Backend, Deadman, GoalId, Setpoints, Then};
+use franka_rt::session::{Backend, Deadman, GoalId, OnArrival, Setpoints};
 use franka_tests::lockstep::{Link, Lockstep};
 use nalgebra::Isometry3;
 use rand::rngs::SmallRng;
@@ -117,9 +117,9 @@ impl<'a> Sessions<'a> {
         };
         let bound = self.random.random_bool(0.5);
         let silence = self.random.random_range(30..80);
-        let (token, grip) = Deadman::new(Duration::from_millis(silence));
+        let (token, monitor) = Deadman::new(Duration::from_millis(silence));
         let id = self.lockstep.begin_session(Engagement {
-            deadman: bound.then_some(grip),
+            deadman: bound.then_some(monitor),
             backend,
             ..Engagement::default()
         });
@@ -136,7 +136,7 @@ impl<'a> Sessions<'a> {
             current: None,
             over: false,
         });
-        self.add(Given::new(id, Work::Session, Then::Hold, now));
+        self.add(Given::new(id, Work::Session, OnArrival::Hold, now));
         // It holds the arm, or the robot has refused: one that was pushed may trip after it has
         // shown itself idle.
         while self.lockstep.client.record.goal != id.0 && self.lockstep.client.outcome(id).is_none()

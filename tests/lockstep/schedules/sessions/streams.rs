@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use franka_rt::session::{GoalId, Stale, Target, Then, Watchdog};
+use franka_rt::session::{GoalId, OnArrival, OnTimeout, Target, Watchdog};
 use rand::Rng;
 
 use super::super::draw;
@@ -14,7 +14,7 @@ impl Sessions<'_> {
     pub(super) fn stream(&mut self) {
         if self.held().is_none() {
             let target = draw::pose(&mut self.random, &self.lockstep.true_pose(), 0.02, 0.05);
-            self.submit(target, Then::Hold);
+            self.submit(target, OnArrival::Hold);
         }
         let Some(id) = self.held() else {
             return;
@@ -54,7 +54,7 @@ impl Sessions<'_> {
         let current = self.session.as_ref()?.current?;
         let given = self.open.iter().find(|given| given.id == current)?;
         let guided = matches!(given.work, Work::Goal(Target::Guide(_)) | Work::Chunks);
-        (given.then == Then::Hold && !given.cancelled && !guided).then_some(current)
+        (given.on_arrival == OnArrival::Hold && !given.cancelled && !guided).then_some(current)
     }
 
     /// Some chunks one after the other, as of a policy: most come before the one before them has
@@ -71,7 +71,7 @@ impl Sessions<'_> {
             );
             let now = self.lockstep.client.state.message_id;
             let chunk = draw::chunk(&mut self.random, &q, &pose, now);
-            let mut goal = self.lockstep.goal(chunk.target(), Then::Hold);
+            let mut goal = self.lockstep.goal(chunk.target(), OnArrival::Hold);
             goal.budget = self.budget();
             if self.random.random_bool(0.3) {
                 goal.watchdog = Some(self.watchdog());
@@ -99,7 +99,7 @@ impl Sessions<'_> {
     pub(super) fn watchdog(&mut self) -> Watchdog {
         Watchdog {
             silence: Duration::from_millis(self.random.random_range(20..200)),
-            stale: [Stale::Hold, Stale::Brake][self.random.random_range(0..2)],
+            on_timeout: [OnTimeout::Hold, OnTimeout::Brake][self.random.random_range(0..2)],
         }
     }
 }
