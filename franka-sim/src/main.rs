@@ -121,10 +121,16 @@ struct Arguments {
     #[arg(long)]
     realtime: bool,
 
+    /// Keeps to the clock on the wall even where the host holds the simulator up: the states that are
+    /// due then come in a burst, and answers that they leave no time for count as lost. Without, the
+    /// robot's clock slips by what the host is late. How often that was is logged at the end.
+    #[arg(long)]
+    strict_clock: bool,
+
     /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a
     /// motion the next millisecond begins when the answer to the last state is there, within a
     /// second. For tests, and for clients slower than a robot allows.
-    #[arg(long, conflicts_with = "realtime")]
+    #[arg(long, conflicts_with_all = ["realtime", "strict_clock"])]
     virtual_time: bool,
 }
 
@@ -231,7 +237,8 @@ impl Arguments {
     fn sim(&self) -> Result<Sim, String> {
         let sim = Sim::new(self.config())
             .bind(SocketAddr::new(self.bind, self.port))
-            .realtime(self.realtime);
+            .realtime(self.realtime)
+            .strict_clock(self.strict_clock);
         let sim = match self.virtual_time {
             true => sim.virtual_time(PATIENCE),
             false => sim,
@@ -471,6 +478,7 @@ mod tests {
         assert!(parse(&["--virtual-time"]).is_ok());
         for wrong in [
             ["--virtual-time", "--realtime"],
+            ["--virtual-time", "--strict-clock"],
             ["--q", "1,2"],
             ["--q", "nan,0,0,0,0,0,0"],
             ["--payload", "-1"],

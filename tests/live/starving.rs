@@ -40,7 +40,7 @@ struct Window {
     commands: u64,
     /// States that never came or gave way to a newer one.
     lost: u64,
-    /// States that the simulator sent in a burst, late: there was no time to answer the one before.
+    /// States for which the simulator's own thread was late.
     late: u64,
     report: MotionReport,
 }
@@ -72,7 +72,7 @@ fn run(beside: Beside, strict: bool) -> Window {
     let count = || {
         let stats = robot.stats();
         let lost = stats.lost.get() + stats.skipped.get();
-        let late = elsewhere.block_on(sim.pace()).expect("it runs").burst;
+        let late = elsewhere.block_on(sim.pace()).expect("it runs").late();
         [stats.states.get(), stats.commands.get(), lost, late]
     };
     let (before, after) = match beside {

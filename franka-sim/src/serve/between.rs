@@ -5,12 +5,14 @@ use std::time::{Duration, Instant};
 
 use crate::network::Network;
 
-/// A network in real time, and where it leads.
+/// A network in the time of the thread's clock, and where it leads.
 #[derive(Debug)]
 pub(super) struct Between {
     network: Network,
     /// Where the network's time begins.
     origin: Instant,
+    /// The latest time seen, since the network's must not run backwards.
+    latest: Duration,
     /// Where the client listens, once a state has been sent there.
     listener: Option<SocketAddr>,
 }
@@ -20,30 +22,40 @@ impl Between {
         Self {
             network,
             origin: Instant::now(),
+            latest: Duration::ZERO,
             listener: None,
         }
     }
 
+    fn time(&mut self, now: Instant) -> Duration {
+        self.latest = self.latest.max(now.saturating_duration_since(self.origin));
+        self.latest
+    }
+
     /// A state for the client that listens there.
-    pub(super) fn send_state(&mut self, datagram: &[u8], listener: SocketAddr) {
+    pub(super) fn send_state(&mut self, now: Instant, datagram: &[u8], listener: SocketAddr) {
         self.listener = Some(listener);
-        self.network.to_client.send(self.origin.elapsed(), datagram);
+        let time = self.time(now);
+        self.network.to_client.send(time, datagram);
     }
 
     /// The next state that has arrived, and where.
-    pub(super) fn take_state(&mut self) -> Option<(Vec<u8>, SocketAddr)> {
-        let delivery = self.network.to_client.take(self.origin.elapsed())?;
+    pub(super) fn take_state(&mut self, now: Instant) -> Option<(Vec<u8>, SocketAddr)> {
+        let time = self.time(now);
+        let delivery = self.network.to_client.take(time)?;
         Some((delivery.datagram, self.listener?))
     }
 
     /// A command, just read from the socket.
-    pub(super) fn send_command(&mut self, datagram: &[u8]) {
-        self.network.to_robot.send(self.origin.elapsed(), datagram);
+    pub(super) fn send_command(&mut self, now: Instant, datagram: &[u8]) {
+        let time = self.time(now);
+        self.network.to_robot.send(time, datagram);
     }
 
     /// The next command that has arrived.
-    pub(super) fn take_command(&mut self) -> Option<Vec<u8>> {
-        let delivery = self.network.to_robot.take(self.origin.elapsed())?;
+    pub(super) fn take_command(&mut self, now: Instant) -> Option<Vec<u8>> {
+        let time = self.time(now);
+        let delivery = self.network.to_robot.take(time)?;
         Some(delivery.datagram)
     }
 
@@ -55,9 +67,9 @@ impl Between {
 
     /// How long nothing has to be done: until the next state arrives, and not long, since a command
     /// may come, whose time of arrival is when it is read.
-    pub(super) fn pause(&self) -> Duration {
+    pub(super) fn pause(&self, now: Instant) -> Duration {
         let next = self.network.to_client.next_arrival();
-        let left = next.map(|at| at.saturating_sub(self.origin.elapsed()));
+        let left = next.map(|at| (self.origin + at).saturating_duration_since(now));
         left.unwrap_or(GLANCE).min(GLANCE)
     }
 }

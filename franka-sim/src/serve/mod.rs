@@ -10,6 +10,7 @@
 //! queues and sockets of their own and share thread and clock.
 
 mod between;
+mod clock;
 mod cycle;
 mod device;
 mod hands;
@@ -20,7 +21,7 @@ mod seat;
 mod service;
 mod tcp;
 
-pub use cycle::Pace;
+pub use clock::Pace;
 pub use service::{Service, Stopped};
 
 use std::io;
@@ -59,6 +60,7 @@ pub struct Sim {
     hand: Option<(Fingers, u16)>,
     vacuum_gripper: Option<(Suction, u16)>,
     realtime: bool,
+    strict_clock: bool,
     /// How long to wait for an answer, if the client's answers are the clock.
     patience: Option<Duration>,
     /// The host's alone if there is none.
@@ -89,6 +91,7 @@ impl Sim {
             hand: None,
             vacuum_gripper: None,
             realtime: false,
+            strict_clock: false,
             patience: None,
             network: None,
         }
@@ -189,6 +192,14 @@ impl Sim {
         self
     }
 
+    /// Keeps to the clock on the wall even where the host holds the simulator up: the states that are
+    /// due then come in a burst, and answers that they leave no time for count as lost. By default
+    /// the clock slips instead: see [`Pace`].
+    pub fn strict_clock(mut self, strict: bool) -> Self {
+        self.strict_clock = strict;
+        self
+    }
+
     /// Lets robot time pass as fast as the client answers, instead of by the clock on the wall: for
     /// tests and for programs that learn, which nobody watches.
     ///
@@ -269,7 +280,7 @@ impl Sim {
             hand: hand_seat,
             vacuum: vacuum_seat,
         };
-        let (realtime, patience) = (self.realtime, self.patience);
+        let (realtime, strict, patience) = (self.realtime, self.strict_clock, self.patience);
         let (done, finished) = watch::channel(());
         std::thread::Builder::new()
             .name("franka-sim".into())
@@ -279,7 +290,7 @@ impl Sim {
                 }
                 match patience {
                     Some(patience) => cycle.run_on_answers(patience),
-                    None => cycle.run(),
+                    None => cycle.run(strict),
                 }
                 drop(done);
             })?;

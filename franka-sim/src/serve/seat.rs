@@ -8,7 +8,7 @@ use franka_proto::{RobotCommand, server};
 use tokio::sync::mpsc;
 
 use super::between::Between;
-use super::cycle::Pace;
+use super::clock::Pace;
 use super::device::Device;
 use crate::network::Network;
 use crate::robot::Awaited;
@@ -81,9 +81,9 @@ impl<D: Device> Seat<D> {
         &mut self.device
     }
 
-    /// One millisecond: commands, orders, hands, state, replies. False at the end.
-    pub(super) fn cycle(&mut self, pace: Pace) -> bool {
-        self.take_commands();
+    /// One millisecond, at `now`: commands, orders, hands, state, replies. False at the end.
+    pub(super) fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
+        self.take_commands(now);
         self.take_orders();
         if !self.lend_hands(pace) {
             return false;
@@ -94,18 +94,18 @@ impl<D: Device> Seat<D> {
             let mut listener = *peer;
             listener.set_port(datagram.port);
             match &mut self.between {
-                Some(between) => between.send_state(datagram.bytes, listener),
+                Some(between) => between.send_state(now, datagram.bytes, listener),
                 None => publish(&self.socket, datagram.bytes, listener),
             }
         }
-        self.deliver_states();
+        self.deliver_states(now);
         self.send_replies();
         true
     }
 
     /// Whether datagrams are to be [`relay`](Self::relay)ed, and how long not.
-    pub(super) fn pause(&self) -> Option<Duration> {
-        self.between.as_ref().map(Between::pause)
+    pub(super) fn pause(&self, now: Instant) -> Option<Duration> {
+        self.between.as_ref().map(|between| between.pause(now))
     }
 
     /// The command that the newest state asks for and that has not come.
@@ -119,7 +119,7 @@ impl<D: Device> Seat<D> {
     pub(super) fn await_command(&mut self, patience: Duration, pace: Pace) -> bool {
         let begun = Instant::now();
         loop {
-            self.relay();
+            self.relay(Instant::now());
             if self.awaits() == Awaited::Nothing || begun.elapsed() >= patience {
                 return true;
             }
@@ -128,7 +128,8 @@ impl<D: Device> Seat<D> {
                 return false;
             }
             self.send_replies();
-            self.wait_for_datagram(self.pause().unwrap_or(ATTENTION));
+            let pause = self.pause(Instant::now());
+            self.wait_for_datagram(pause.unwrap_or(ATTENTION));
         }
     }
 
@@ -151,18 +152,21 @@ impl<D: Device> Seat<D> {
     }
 
     /// What the network does between two milliseconds.
-    pub(super) fn relay(&mut self) {
-        self.take_commands();
-        self.deliver_states();
+    pub(super) fn relay(&mut self, now: Instant) {
+        self.take_commands(now);
+        self.deliver_states(now);
     }
 
-    fn deliver_states(&mut self) {
-        while let Some((state, listener)) = self.between.as_mut().and_then(Between::take_state) {
+    fn deliver_states(&mut self, now: Instant) {
+        let Some(between) = &mut self.between else {
+            return;
+        };
+        while let Some((state, listener)) = between.take_state(now) {
             publish(&self.socket, &state, listener);
         }
     }
 
-    fn take_commands(&mut self) {
+    fn take_commands(&mut self, now: Instant) {
         let mut buffer = [0; RobotCommand::MAX_SIZE];
         for _ in 0..DATAGRAMS {
             match self.socket.recv_from(&mut buffer) {
@@ -170,7 +174,7 @@ impl<D: Device> Seat<D> {
                     let known = self.client.as_ref().map(|(peer, _)| peer.ip());
                     if known == Some(source.ip()) {
                         match &mut self.between {
-                            Some(between) => between.send_command(&buffer[..length]),
+                            Some(between) => between.send_command(now, &buffer[..length]),
                             None => self.device.command(&buffer[..length]),
                         }
                     }
@@ -180,8 +184,10 @@ impl<D: Device> Seat<D> {
                 Err(_) => break,
             }
         }
-        while let Some(command) = self.between.as_mut().and_then(Between::take_command) {
-            self.device.command(&command);
+        if let Some(between) = &mut self.between {
+            while let Some(command) = between.take_command(now) {
+                self.device.command(&command);
+            }
         }
     }
 

@@ -8,7 +8,7 @@ use tokio::net::TcpListener;
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
 
-use super::cycle::Pace;
+use super::clock::Pace;
 use super::device::Device;
 use super::seat::{Hands, Seat};
 use super::tcp;

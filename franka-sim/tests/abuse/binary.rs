@@ -93,6 +93,26 @@ impl Binary {
         self.log.lock().expect("no panic").join("\n")
     }
 
+    /// Stops the process, and continues it after `stop`.
+    pub(crate) fn stop_for(&self, stop: Duration) {
+        self.signal(libc::SIGSTOP);
+        std::thread::sleep(stop);
+        self.signal(libc::SIGCONT);
+    }
+
+    /// Asks the process to end.
+    pub(crate) fn interrupt(&self) {
+        self.signal(libc::SIGINT);
+    }
+
+    fn signal(&self, signal: libc::c_int) {
+        let process = self.child.lock().expect("no panic").id();
+        let process = libc::pid_t::try_from(process).expect("a process id");
+        // SAFETY: it sends a signal to a child that has not been waited for, and touches no memory.
+        let result = unsafe { libc::kill(process, signal) };
+        assert_eq!(result, 0, "{}", std::io::Error::last_os_error());
+    }
+
     /// Memory that the process has and shares with no file, `[KiB]`.
     pub(crate) fn memory(&self) -> usize {
         self.status("RssAnon:")

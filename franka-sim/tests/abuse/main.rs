@@ -7,7 +7,8 @@
 //! | `port` | a service as bytes see it |
 //! | `good` | the good client, which is the project's own |
 //! | `client` | a client of the robot that can do wrong in mid-session |
-//! | `handshakes`, `messages`, `seats`, `motions`, `datagrams`, `commands`, `growth` | the tests |
+//! | `handshakes`, `messages`, `seats`, `motions`, `datagrams`, `commands`, `growth`,
+//! `stopped` | the tests |
 
 mod binary;
 mod client;
@@ -20,6 +21,7 @@ mod messages;
 mod motions;
 mod port;
 mod seats;
+mod stopped;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -1,0 +1,276 @@
+//! The millisecond of the thread that serves the devices: when a state is due, and what becomes of
+//! the time for which the host did not run the thread.
+
+use std::time::{Duration, Instant};
+
+/// How well a simulation has kept its millisecond.
+///
+/// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) asks for
+/// another, so the host lets it sleep over deadlines now and then. The clock of a robot does not
+/// stand still, and no client of a robot loses commands by that. So the clock slips here: a state
+/// that is late by more than [`Pace::TOLERANCE`] moves all later ones by as much. `message_id`
+/// advances by one per state in any case; robot time then runs behind the clock on the wall.
+///
+/// With a [strict clock](super::Sim::strict_clock) the states that are due are published in a burst
+/// instead, as a robot's network does after a stall. When more than [`Pace::BURST`] are due, the
+/// rest of the lost time is skipped.
+///
+/// In [virtual time](super::Sim::virtual_time) there is no such clock, and nothing is late.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct Pace {
+    /// States due so far.
+    pub cycles: u64,
+    /// How often the clock slipped.
+    pub slips: u64,
+    /// By how much in all.
+    pub slipped: Duration,
+    /// With a strict clock: states that followed another one in a burst. The client had no time to
+    /// answer the one before.
+    pub burst: u64,
+    /// With a strict clock: milliseconds skipped.
+    pub skipped: u64,
+}
+
+impl Pace {
+    /// The most states published at once by a strict clock.
+    pub const BURST: u32 = 4;
+
+    /// Lateness of a state up to which the next one keeps to the schedule. Half a period: ordinary
+    /// wake-ups are below it, and clients are never shown states less than half a period apart
+    /// unless they have answered the first of them.
+    pub const TOLERANCE: Duration = Duration::from_micros(500);
+
+    /// Cycles in which the host, not the client, was late: slips, bursts and skipped states.
+    pub fn late(&self) -> u64 {
+        self.slips + self.burst + self.skipped
+    }
+
+    /// Logs what the host's lateness came to, if there was any.
+    pub(super) fn log(&self) {
+        let Self {
+            cycles,
+            slips,
+            slipped,
+            burst,
+            skipped,
+        } = self;
+        if *slips > 0 {
+            tracing::info!(
+                "the host was late for {slips} of {cycles} states: the clock slipped by {slipped:?}"
+            );
+        }
+        if burst + skipped > 0 {
+            tracing::info!(
+                "the host was late: of {cycles} states, {burst} in bursts, and {skipped} ms skipped"
+            );
+        }
+    }
+}
+
+/// From one state to the next.
+pub(super) const PERIOD: Duration = Duration::from_millis(1);
+
+/// A clock that runs with the wall's, less the time that it slipped. All instants are its own,
+/// except those named `wall`.
+#[derive(Debug)]
+pub(super) struct Clock {
+    strict: bool,
+    /// When the next state is due.
+    due: Instant,
+    /// When the last state left, on the wall.
+    published_wall: Instant,
+    pace: Pace,
+}
+
+impl Clock {
+    /// A clock whose first state is due one period after `wall`.
+    pub(super) fn new(wall: Instant, strict: bool) -> Self {
+        Self {
+            strict,
+            due: wall + PERIOD,
+            published_wall: wall,
+            pace: Pace::default(),
+        }
+    }
+
+    pub(super) fn pace(&self) -> Pace {
+        self.pace
+    }
+
+    /// The time of this clock at `wall`.
+    pub(super) fn at(&self, wall: Instant) -> Instant {
+        wall - self.pace.slipped
+    }
+
+    /// When the next state is due.
+    pub(super) fn due(&self) -> Instant {
+        self.due
+    }
+
+    /// Gives the client a whole period to answer the last state, however late that one left: the
+    /// next state is due after it. Returns when that is. A strict clock gives it no more than was
+    /// left.
+    pub(super) fn wait_for_answer(&mut self) -> Instant {
+        if !self.strict {
+            self.due = self.due.max(self.at(self.published_wall) + PERIOD);
+        }
+        self.due
+    }
+
+    /// Takes note that the thread woke at `wall`, and had meant to at `meant`: slips if it is late.
+    pub(super) fn woke(&mut self, wall: Instant, meant: Instant) {
+        let late = self.at(wall).saturating_duration_since(meant);
+        if late > Pace::TOLERANCE && !self.strict {
+            self.pace.slips += 1;
+            self.pace.slipped += late;
+        }
+    }
+
+    /// Begins the cycle that is due, at `wall`. Returns how many states to publish at once.
+    pub(super) fn begin(&mut self, wall: Instant) -> u32 {
+        // The last cycle may have been held up, too.
+        self.woke(wall, self.due);
+        let mut states = 1;
+        if self.strict {
+            let late = self.at(wall).saturating_duration_since(self.due);
+            let periods = u32::try_from(late.as_micros() / PERIOD.as_micros());
+            let due = periods.unwrap_or(u32::MAX - 1).saturating_add(1);
+            states = due.min(Pace::BURST);
+            self.pace.burst += u64::from(states - 1);
+            self.pace.skipped += u64::from(due - states);
+            self.due += PERIOD * (due - 1);
+        }
+        self.due += PERIOD;
+        states
+    }
+
+    /// Takes note that a state left at `wall`.
+    pub(super) fn published(&mut self, wall: Instant) {
+        self.pace.cycles += 1;
+        self.published_wall = wall;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::Random;
+
+    /// A wall that is looked at by a thread which the host may keep waiting.
+    struct Host {
+        wall: Instant,
+        random: Random,
+        /// How likely it is, each time that the host could, that it keeps the thread waiting.
+        likelihood: f64,
+    }
+
+    impl Host {
+        /// Time in which the thread computes, or less, and is kept waiting now and then.
+        fn compute(&mut self) -> Instant {
+            self.wall += Duration::from_micros(50);
+            if self.random.uniform() < self.likelihood {
+                self.wall += Duration::from_secs_f64(0.05 * self.random.uniform());
+            }
+            self.wall
+        }
+
+        fn sleep_until(&mut self, clock: &mut Clock, until: Instant) {
+            let left = until.saturating_duration_since(clock.at(self.wall));
+            if !left.is_zero() {
+                self.wall += left;
+                let wall = self.compute();
+                clock.woke(wall, until);
+            }
+        }
+    }
+
+    /// Runs the thread's loop with a client that answers each state after `turnaround`. Returns how
+    /// many answers were late, what the clock counted, and the time on the wall.
+    fn late_answers(strict: bool, likelihood: f64, turnaround: Duration) -> (u64, Pace, Duration) {
+        let begun = Instant::now();
+        let mut host = Host {
+            wall: begun,
+            random: Random::new(7),
+            likelihood,
+        };
+        let mut clock = Clock::new(begun, strict);
+        let (mut late, mut answer) = (0, begun);
+        for _ in 0..5000 {
+            let due = clock.due();
+            host.sleep_until(&mut clock, due);
+            host.compute();
+            if answer > host.wall {
+                let due = clock.wait_for_answer();
+                host.sleep_until(&mut clock, due);
+            }
+            let states = clock.begin(host.compute());
+            for _ in 0..states {
+                late += u64::from(answer > host.wall);
+                // The state leaves, and then the host may keep the thread waiting.
+                answer = host.compute() + turnaround;
+                clock.published(host.compute());
+            }
+        }
+        (late, clock.pace(), host.wall - begun)
+    }
+
+    #[test]
+    fn lateness_of_the_host_is_no_lateness_of_a_client() {
+        for turnaround in [10, 400, 990] {
+            let turnaround = Duration::from_micros(turnaround);
+            let (late, pace, wall) = late_answers(false, 0.02, turnaround);
+            assert_eq!(late, 0, "{turnaround:?}: {pace:?}");
+            assert_eq!((pace.cycles, pace.burst, pace.skipped), (5000, 0, 0));
+            assert!(pace.slips > 100, "{pace:?}");
+            assert!(pace.slipped < wall - 5000 * PERIOD, "{pace:?}, {wall:?}");
+        }
+    }
+
+    #[test]
+    fn a_client_that_is_late_stays_late() {
+        let (late, ..) = late_answers(false, 0.02, Duration::from_millis(2));
+        assert!(late > 2000, "{late}");
+    }
+
+    #[test]
+    fn a_strict_clock_counts_what_it_sends_in_bursts() {
+        let (late, pace, wall) = late_answers(true, 0.02, Duration::from_micros(500));
+        assert!(late >= pace.burst && pace.burst > 100, "{late}, {pace:?}");
+        assert_eq!((pace.slips, pace.slipped), (0, Duration::ZERO));
+        // It loses no time but that which it counts as skipped.
+        let scheduled = PERIOD * u32::try_from(pace.cycles + pace.skipped).expect("few");
+        assert!(
+            wall < scheduled + Duration::from_millis(60),
+            "{wall:?}, {scheduled:?}"
+        );
+    }
+
+    #[test]
+    fn small_delays_move_no_schedule() {
+        let begun = Instant::now();
+        let mut clock = Clock::new(begun, false);
+        for n in 1..100 {
+            let due = begun + PERIOD * n;
+            assert_eq!(clock.due(), due);
+            let wall = due + Pace::TOLERANCE * (n % 2);
+            clock.woke(wall, due);
+            assert_eq!(clock.begin(wall), 1);
+            clock.published(wall);
+        }
+        assert_eq!(clock.pace().slips, 0);
+    }
+
+    #[test]
+    fn one_long_stop_moves_the_schedule_once() {
+        let begun = Instant::now();
+        let mut clock = Clock::new(begun, false);
+        let wall = begun + Duration::from_millis(51);
+        clock.woke(wall, clock.due());
+        assert_eq!(clock.begin(wall), 1);
+        clock.published(wall);
+        assert_eq!(clock.due(), clock.at(wall + PERIOD));
+        let pace = clock.pace();
+        assert_eq!((pace.slips, pace.slipped), (1, Duration::from_millis(50)));
+    }
+}

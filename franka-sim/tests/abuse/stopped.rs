@@ -1,0 +1,113 @@
+//! The simulator's process stopped and continued in the middle of a motion: what a busy host does to
+//! it, made worse. A robot's clock does not stand still, so no client's motion suffers.
+
+use std::f64::consts::PI;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, sleep};
+use std::time::Duration;
+
+use franka_async::{CartesianPose, Finish as _, JointPositions, MotionError, Realtime, Robot};
+use tokio::runtime::Builder;
+
+use crate::alone;
+use crate::binary::Binary;
+
+/// From one stop to the next.
+const PERIOD: Duration = Duration::from_millis(250);
+
+/// Stops the process for `stop`, four times a second, while `work` runs.
+fn stopping<R>(binary: &Binary, stop: Duration, work: impl FnOnce() -> R) -> R {
+    let over = AtomicBool::new(false);
+    thread::scope(|scope| {
+        scope.spawn(|| {
+            while !over.load(Ordering::Relaxed) {
+                binary.stop_for(stop);
+                sleep(PERIOD - stop);
+            }
+        });
+        let _over = EndOnDrop(&over);
+        work()
+    })
+}
+
+/// Ends the stops, also when the work panics.
+struct EndOnDrop<'a>(&'a AtomicBool);
+
+impl Drop for EndOnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// A way of half a cosine there and back within a second: from 0 to 1 to 0.
+fn there_and_back(time: f64) -> f64 {
+    0.5 - 0.5 * (2.0 * PI * time.min(DURATION) / DURATION).cos()
+}
+
+/// Of a motion by a generator, `[s]`.
+const DURATION: f64 = 1.5;
+
+async fn joint_positions(robot: &Robot) -> Result<(), MotionError> {
+    let (mut time, mut start) = (0.0, None);
+    let control = robot.control_joint_positions(move |state, step| {
+        time += step.as_secs_f64();
+        let mut q = *start.get_or_insert(state.q_d);
+        q[3] += 0.1 * there_and_back(time);
+        JointPositions(q).finish_if(time >= DURATION)
+    });
+    control.await.map(drop)
+}
+
+async fn cartesian_pose(robot: &Robot) -> Result<(), MotionError> {
+    let (mut time, mut start) = (0.0, None);
+    let control = robot.control_cartesian_pose(move |state, step| {
+        time += step.as_secs_f64();
+        let mut pose = *start.get_or_insert(state.O_T_EE_c);
+        pose[14] -= 0.04 * there_and_back(time);
+        let command = CartesianPose {
+            O_T_EE: pose,
+            elbow: None,
+        };
+        command.finish_if(time >= DURATION)
+    });
+    control.await.map(drop)
+}
+
+fn connected<R>(binary: &Binary, work: impl AsyncFnOnce(&Robot) -> R) -> R {
+    let mut builder = Builder::new_multi_thread();
+    let runtime = builder.worker_threads(1).enable_all().build();
+    runtime.expect("a runtime").block_on(async {
+        let robot = Robot::builder(binary.robot().address).realtime(Realtime::Ignore);
+        let robot = robot.connect().await.expect("a session");
+        let result = work(&robot).await;
+        robot.shutdown().await;
+        result
+    })
+}
+
+#[test]
+fn a_stopped_simulator_disturbs_no_motion() {
+    let _alone = alone();
+    for kind in ["fr3", "fer"] {
+        for stop in [Duration::from_millis(4), Duration::from_millis(50)] {
+            let binary = Binary::start(kind);
+            stopping(&binary, stop, || {
+                connected(&binary, async |robot| {
+                    let case = format!("{kind}, stopped for {stop:?}");
+                    let torques = {
+                        let mut q = robot.state().q;
+                        q[0] += 0.3;
+                        robot.move_joints(q).await
+                    };
+                    assert!(torques.is_ok(), "torques, {case}: {torques:?}");
+                    let joints = joint_positions(robot).await;
+                    assert!(joints.is_ok(), "joint positions, {case}: {joints:?}");
+                    let pose = cartesian_pose(robot).await;
+                    assert!(pose.is_ok(), "poses, {case}: {pose:?}");
+                });
+            });
+            binary.interrupt();
+            binary.assert_logged("the clock slipped");
+        }
+    }
+}
