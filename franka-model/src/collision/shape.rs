@@ -70,10 +70,14 @@ impl Shape<'static> {
         }
     }
 
-    /// Capsules that contain every vertex of the links' collision meshes: what has to stay out of
-    /// obstacles.
+    /// Capsules that contain the links: what has to stay out of obstacles.
     ///
-    /// They are up to 3.4 cm thicker than the links. So a small negative distance need not be a
+    /// They contain the whole surface of the vendor's meshes, of the FR3 the collision and the
+    /// visual ones, of the FER the visual ones. With the [Hand](Self::with_hand) that holds for its
+    /// body and for the fingers at any width. Nothing else that is mounted on an arm is contained:
+    /// cables, cameras, covers.
+    ///
+    /// They are up to 3.5 cm thicker than the links. So a small negative distance need not be a
     /// collision, and its pairs of links are only those of the base, link 1 and link 2 with links 5
     /// to 7: closer ones touch in postures that the arm takes every day.
     pub const fn covering(kind: RobotKind) -> Self {
@@ -83,7 +87,6 @@ impl Shape<'static> {
         };
         Self {
             arm,
-            // Both have the same number of capsules on each link.
             pairs: &COVERING_PAIRS,
             tool: &[],
             hand: &COVERING_HAND,

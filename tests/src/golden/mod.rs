@@ -26,6 +26,7 @@
 
 mod analytic_ik;
 mod control_loop;
+mod link_surfaces;
 mod model;
 mod node;
 mod otg;
@@ -80,6 +81,10 @@ pub const SUITES: &[Suite] = &[
     Suite {
         file: "model/velocity_limit_vectors_fr3.json",
         check: model::velocity_envelope,
+    },
+    Suite {
+        file: "model/link_surfaces.json",
+        check: link_surfaces::covered,
     },
     Suite {
         file: "model/ik_vectors.json",

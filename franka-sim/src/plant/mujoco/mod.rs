@@ -24,7 +24,7 @@ use scene::{JOINT, Places};
 /// forces, and their slopes as dampers that the integrator takes implicitly.
 ///
 /// The links touch what is around them, and the outer ones the inner ones, with the capsules of
-/// [`Shape::covering`](franka_model::collision::Shape::covering), which are up to 3.4 cm thicker
+/// [`Shape::covering`](franka_model::collision::Shape::covering), which are up to 3.5 cm thicker
 /// than the links. The Hand and its fingers have shapes of their own (see [`Scene::with_hand`]).
 #[derive(Debug)]
 pub struct MujocoArm {
