@@ -35,6 +35,8 @@ mod handle;
 mod lease;
 mod lifetime;
 
+use core::hint::black_box;
+use core::mem::MaybeUninit;
 use std::io;
 use std::net::{IpAddr, UdpSocket};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -135,11 +137,11 @@ pub fn spawn<C: Core>(
     let meter = Meter::new();
     let stats = meter.stats().clone();
     let lifetime = Arc::new(Lifetime::default());
-    let (orders, order_queue) = rtrb::RingBuffer::new(capacity.orders.max(1));
-    let (notice_queue, notices) = rtrb::RingBuffer::new(capacity.notices.max(1));
-    let (record_ring, records) = touched_ring(capacity.records.max(1), core.record());
+    let (orders, order_queue) = touched_ring(capacity.orders);
+    let (notice_queue, notices) = touched_ring(capacity.notices);
+    let (record_ring, records) = touched_ring(capacity.records);
     let datagram = Datagram([0; RobotState::MAX_SIZE]);
-    let (state_ring, states) = touched_ring(capacity.states.max(1), datagram);
+    let (state_ring, states) = touched_ring(capacity.states);
     let (state_slot, state_reader) = slot::slot();
     let desk = Arc::new(Desk::new(exchange::TICK));
     let wait = exchange::wait_for(core.link_timeout());
@@ -231,10 +233,17 @@ pub fn spawn<C: Core>(
     })
 }
 
-/// A ring whose memory has been written to, so that no cycle meets a page of it for the first time.
-fn touched_ring<T: Copy>(capacity: usize, value: T) -> (rtrb::Producer<T>, rtrb::Consumer<T>) {
-    let (mut producer, mut consumer) = rtrb::RingBuffer::new(capacity);
-    while producer.push(value).is_ok() {}
-    while consumer.pop().is_ok() {}
+/// A ring of at least one element whose memory has been written to, so that no cycle meets a page of
+/// it for the first time.
+fn touched_ring<T>(capacity: usize) -> (rtrb::Producer<T>, rtrb::Consumer<T>) {
+    let capacity = capacity.max(1);
+    let (mut producer, consumer) = rtrb::RingBuffer::new(capacity);
+    if let Ok(mut unused) = producer.write_chunk_uninit(capacity) {
+        let (elements, wrapped) = unused.as_mut_slices();
+        debug_assert!(wrapped.is_empty(), "a new ring begins at its start");
+        elements.fill_with(MaybeUninit::zeroed);
+        black_box(elements);
+        // Nothing is committed: the ring stays empty.
+    }
     (producer, consumer)
 }

@@ -5,6 +5,7 @@
 
 mod audience;
 mod cores;
+mod faults;
 mod lease;
 mod receiving;
 mod stopping;
