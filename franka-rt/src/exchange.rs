@@ -58,6 +58,8 @@ pub struct Exchange {
     message_id: Option<u64>,
     /// Sender of `newest`, whom a command answers.
     reply_to: Option<SockAddr>,
+    /// Whether the last receive failed, rather than found nothing.
+    failed: bool,
 }
 
 /// What one call of [`Exchange::receive`] found.
@@ -107,6 +109,7 @@ impl Exchange {
             incoming: vec![0; state_size].into(),
             message_id: None,
             reply_to: None,
+            failed: false,
         })
     }
 
@@ -137,7 +140,19 @@ impl Exchange {
 
     /// Waits for a datagram, up to [`TICK`] or what [`with_wait`](Self::with_wait) was given, then
     /// takes those that are there, up to [`DRAIN_MAX`] in all.
+    ///
+    /// A receive that fails does not wait. After one that did, this sleeps for a millisecond first,
+    /// so that an error that lasts does not keep the processor busy.
     pub fn receive(&mut self) -> Reception {
+        if self.failed {
+            sys::sleep_a_millisecond();
+        }
+        let reception = self.drain();
+        self.failed = reception.error.is_some();
+        reception
+    }
+
+    fn drain(&mut self) -> Reception {
         let mut reception = Reception::default();
         let mut flags = 0;
         for _ in 0..DRAIN_MAX {

@@ -1,11 +1,12 @@
-//! What the operating system grants the thread: scheduling class, processor, memory, a socket that
-//! is polled.
+//! What the operating system grants the thread: scheduling class, processor, memory, freedom from
+//! signal handlers, a socket that is polled.
 //!
 //! [`Scheduling::enter`] asks for what concerns the calling thread, [`Scheduling::tune`] for what
 //! concerns its socket. Under [`Realtime::Enforce`] the first refusal is an error; under
 //! [`Realtime::Ignore`] the same requests are made and the refusals are listed in [`Granted`]. What
 //! no host can grant is an error under both.
 
+mod kernel;
 mod stack;
 
 use core::time::Duration;
@@ -14,6 +15,7 @@ use std::os::fd::AsFd;
 
 use crate::sys;
 
+pub use kernel::{Kernel, kernel_is_realtime};
 pub use stack::{DEFAULT as PREFAULT_DEFAULT, MAX as PREFAULT_MAX};
 
 /// Whether the thread may run without what it asked the operating system for.
@@ -86,7 +88,7 @@ pub struct Granted {
 
 /// Why the thread cannot run as asked. The numbers are errno values; the texts of the first three
 /// are libfranka's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SchedError {
     /// The system does not name a highest `SCHED_FIFO` priority.
@@ -96,9 +98,10 @@ pub enum SchedError {
     /// low.
     #[error("libfranka: unable to set realtime scheduling: {}", sys::error_text(*.0))]
     SetScheduling(i32),
-    /// `/sys/kernel/realtime` is absent or does not hold 1. Under [`Realtime::Enforce`] only.
-    #[error("libfranka: Running kernel does not have realtime capabilities.")]
-    KernelNotRealtime,
+    /// Nothing shows that the kernel is a real-time one. Under [`Realtime::Enforce`] only.
+    /// libfranka's text, and then what was read.
+    #[error("libfranka: Running kernel does not have realtime capabilities. ({0})")]
+    KernelNotRealtime(Box<Kernel>),
     /// The processor asked for does not exist or is not open to this process.
     #[error("unable to run on processor {cpu}: {}", sys::error_text(*.errno))]
     Pin {
@@ -144,21 +147,34 @@ impl SchedError {
 }
 
 impl Scheduling {
-    /// Applies the options to the calling thread and touches its stack. The order is that of
-    /// libfranka 0.21: scheduling first, then the question after the kernel.
+    /// Applies the options to the calling thread, touches its stack and blocks signals, so that no
+    /// handler of the process runs on it. The order is that of libfranka 0.21: scheduling first,
+    /// then the question after the kernel.
+    ///
+    /// Signals that report a fault of the thread itself (such as `SIGSEGV`) are not blocked.
+    /// Threads and processes that the thread starts later inherit the rest.
     ///
     /// # Errors
     /// Under [`Realtime::Enforce`], the first request that was refused. Requests granted before it
     /// stay granted. Under either, an option that is out of range: nothing is asked for then.
     pub fn enter(&self) -> Result<Granted, SchedError> {
+        self.enter_on(Kernel::read)
+    }
+
+    /// [`Self::enter`] on a host with this kernel.
+    fn enter_on(&self, kernel: impl FnOnce() -> Kernel) -> Result<Granted, SchedError> {
         self.check()?;
+        sys::block_signals();
         let mut granted = Granted::default();
         match self.set_fifo() {
             Ok(priority) => granted.priority = Some(priority),
             Err(error) => self.refused(error, &mut granted)?,
         }
-        if self.realtime == Realtime::Enforce && !kernel_is_realtime() {
-            return Err(SchedError::KernelNotRealtime);
+        if self.realtime == Realtime::Enforce {
+            let kernel = kernel();
+            if !kernel.is_realtime() {
+                return Err(SchedError::KernelNotRealtime(kernel.into()));
+            }
         }
         if let Some(cpu) = self.cpu
             && let Err(errno) = sys::pin_to(cpu)
@@ -257,11 +273,6 @@ impl Scheduling {
             }
         }
     }
-}
-
-/// Whether the running kernel says that it is a real-time one: `/sys/kernel/realtime` holds 1.
-pub fn kernel_is_realtime() -> bool {
-    std::fs::read_to_string("/sys/kernel/realtime").is_ok_and(|flag| flag.trim() == "1")
 }
 
 #[cfg(test)]

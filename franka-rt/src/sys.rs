@@ -70,6 +70,43 @@ pub(crate) fn lock_memory() -> Result<(), i32> {
     }
 }
 
+/// Blocks every signal on the calling thread, and only it, so that the kernel delivers those of the
+/// process to other threads; all but those that report a fault of the thread itself.
+pub(crate) fn block_signals() {
+    // SAFETY: `sigset_t` is a C bit array, for which all zeros is a valid value. It is a set once
+    // `sigfillset` has filled it below.
+    let mut signals: libc::sigset_t = unsafe { core::mem::zeroed() };
+    // SAFETY: `signals` is valid for reads and writes, and each signal's number is a constant of
+    // the platform's, so no call can fail.
+    unsafe {
+        libc::sigfillset(&raw mut signals);
+        for fault in FAULTS {
+            libc::sigdelset(&raw mut signals, fault);
+        }
+    }
+    // SAFETY: `signals` is initialised and only read; a null pointer asks for no previous mask.
+    // The call fails only for an invalid first argument.
+    unsafe { libc::pthread_sigmask(libc::SIG_BLOCK, &raw const signals, core::ptr::null_mut()) };
+}
+
+/// Signals that the kernel raises for what a thread itself does. Blocked, they would end the process
+/// without the handler that prints why.
+const FAULTS: [libc::c_int; 7] = [
+    libc::SIGABRT,
+    libc::SIGBUS,
+    libc::SIGFPE,
+    libc::SIGILL,
+    libc::SIGSEGV,
+    libc::SIGSYS,
+    libc::SIGTRAP,
+];
+
+/// Sleeps for a millisecond, by `poll`.
+pub(crate) fn sleep_a_millisecond() {
+    // SAFETY: no descriptors are passed, so nothing is read or written through the null pointer.
+    unsafe { libc::poll(core::ptr::null_mut(), 0, 1) };
+}
+
 /// Has receives from `socket` poll the network card's queue for that long, in whole microseconds,
 /// before they sleep. The error is an errno value.
 pub(crate) fn busy_poll(socket: &impl AsFd, duration: Duration) -> Result<(), i32> {
@@ -161,6 +198,8 @@ fn last_errno() -> i32 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
 
     #[test]
@@ -168,6 +207,35 @@ mod tests {
         assert_eq!(error_text(libc::EPERM), "Operation not permitted");
         assert_eq!(error_text(libc::EINVAL), "Invalid argument");
         assert_eq!(error_text(99_999), "Unknown error 99999");
+    }
+
+    /// Threads that have run the handler below.
+    static HANDLED: AtomicUsize = AtomicUsize::new(0);
+
+    extern "C" fn handle(_: libc::c_int) {
+        HANDLED.fetch_add(1, Ordering::Relaxed);
+    }
+
+    #[test]
+    fn a_handler_of_the_process_does_not_run_on_a_thread_with_blocked_signals() {
+        // SAFETY: the handler only adds to an atomic, which is async-signal-safe; nothing else in
+        // this process uses the signal.
+        unsafe { libc::signal(libc::SIGUSR2, handle as *const () as libc::sighandler_t) };
+        let handled_on_a_thread = |blocks: bool| {
+            let before = HANDLED.load(Ordering::Relaxed);
+            let thread = std::thread::spawn(move || {
+                if blocks {
+                    block_signals();
+                }
+                // SAFETY: the number is a signal's. It goes to this very thread, and a handler that
+                // runs has run when the call returns.
+                unsafe { libc::raise(libc::SIGUSR2) };
+            });
+            thread.join().expect("no panic");
+            HANDLED.load(Ordering::Relaxed) - before
+        };
+        assert_eq!(handled_on_a_thread(false), 1);
+        assert_eq!(handled_on_a_thread(true), 0);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! States and commands over loopback.
 
+use std::os::fd::OwnedFd;
 use std::time::Instant;
 
 use super::*;
@@ -113,6 +114,31 @@ fn a_number_impossibly_far_ahead_does_not_make_the_link_deaf() {
         (true, 1, Some(11 + LEAP_MAX))
     );
     assert_eq!(bench.exchange.message_id(), Some(10 + LEAP_MAX));
+}
+
+#[test]
+fn a_receive_that_fails_again_and_again_does_not_keep_the_processor_busy() {
+    let mut bench = Bench::new();
+    // A descriptor that is no socket: every receive fails at once.
+    let file = std::fs::File::open("/dev/null").expect("Linux has it");
+    let working = std::mem::replace(&mut bench.exchange.socket, OwnedFd::from(file).into());
+    let failed = Reception {
+        error: Some(libc::ENOTSOCK),
+        ..Reception::default()
+    };
+    let start = Instant::now();
+    for _ in 0..20 {
+        assert_eq!(bench.exchange.receive(), failed);
+    }
+    // A sleep may last longer, never shorter; the first receive does not sleep.
+    assert!(
+        start.elapsed() >= Duration::from_millis(19),
+        "{:?}",
+        start.elapsed()
+    );
+    bench.exchange.socket = working;
+    bench.states(&[1]);
+    assert!(bench.exchange.receive().fresh, "it goes on");
 }
 
 #[test]

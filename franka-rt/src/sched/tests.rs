@@ -83,21 +83,65 @@ fn a_priority_out_of_range_is_refused() {
 
 #[test]
 fn enforce_needs_both_the_right_to_fifo_and_a_realtime_kernel() {
-    let outcome = entered(Scheduling::default()).0;
-    if kernel_is_realtime() {
-        assert!(
-            matches!(outcome, Ok(_) | Err(SchedError::SetScheduling(_))),
-            "{outcome:?}"
-        );
-    } else {
-        let error = outcome.expect_err("the kernel is no real-time one");
-        assert!(
-            matches!(
-                error,
-                SchedError::KernelNotRealtime | SchedError::SetScheduling(_)
-            ),
-            "{error:?}"
-        );
+    let enter = |version: &str| {
+        let kernel = Kernel {
+            version: version.into(),
+            ..Kernel::default()
+        };
+        let asked = Scheduling {
+            priority: Some(1),
+            ..Scheduling::default()
+        };
+        let entered = std::thread::spawn(move || asked.enter_on(|| kernel));
+        entered.join().expect("entering does not panic")
+    };
+    match enter("#1 SMP PREEMPT_RT") {
+        Ok(granted) => {
+            assert_eq!((granted.priority, granted.refusals.len()), (Some(1), 0));
+            let refused = enter("#1 SMP PREEMPT_DYNAMIC");
+            let Err(SchedError::KernelNotRealtime(kernel)) = refused else {
+                panic!("{refused:?}")
+            };
+            assert_eq!(kernel.version, "#1 SMP PREEMPT_DYNAMIC");
+        }
+        Err(error) => {
+            let fifo = SchedError::SetScheduling(libc::EPERM);
+            assert_eq!(error, fifo, "the process may not use SCHED_FIFO");
+            assert_eq!(
+                enter("#1 SMP PREEMPT_DYNAMIC"),
+                Err(fifo),
+                "this comes first"
+            );
+        }
+    }
+}
+
+#[test]
+fn signals_are_blocked_but_for_those_that_report_a_fault() {
+    let (_, _, status) = entered(Scheduling {
+        realtime: Realtime::Ignore,
+        ..Scheduling::default()
+    });
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigBlk:"));
+    let mask = u64::from_str_radix(mask.expect("a mask").trim(), 16).expect("a number");
+    let blocked = |signal: i32| mask >> (signal - 1) & 1 == 1;
+    for signal in [
+        libc::SIGINT,
+        libc::SIGTERM,
+        libc::SIGALRM,
+        libc::SIGPROF,
+        libc::SIGUSR1,
+    ] {
+        assert!(blocked(signal), "{signal}: {status}");
+    }
+    for signal in [
+        libc::SIGSEGV,
+        libc::SIGBUS,
+        libc::SIGFPE,
+        libc::SIGILL,
+        libc::SIGABRT,
+    ] {
+        assert!(!blocked(signal), "{signal}: {status}");
     }
 }
 
@@ -149,9 +193,10 @@ fn a_socket_is_polled_as_asked_or_the_refusal_is_told() {
             assert_eq!(granted.refusals, []);
         }
         None => {
-            let [refusal] = granted.refusals[..] else {
+            let [refusal] = &granted.refusals[..] else {
                 panic!("{granted:?}")
             };
+            let refusal = refusal.clone();
             println!("not polled: {refusal}");
             asked.realtime = Realtime::Enforce;
             assert_eq!(asked.tune(&socket, &mut granted), Err(refusal));
@@ -175,9 +220,12 @@ fn what_cannot_be_polled_is_refused_under_enforce_and_noted_under_ignore() {
         let mut granted = Granted::default();
         let outcome = asked.tune(&file, &mut granted);
         match realtime {
-            Realtime::Enforce => assert_eq!(outcome, Err(refusal)),
+            Realtime::Enforce => assert_eq!(outcome, Err(refusal.clone())),
             Realtime::Ignore => {
-                assert_eq!((outcome, &granted.refusals[..]), (Ok(()), &[refusal][..]));
+                assert_eq!(
+                    (outcome, &granted.refusals[..]),
+                    (Ok(()), core::slice::from_ref(&refusal))
+                );
             }
         }
         assert_eq!(granted.busy_poll, None);
@@ -196,7 +244,7 @@ fn options_out_of_range_are_refused_whether_enforced_or_not() {
             ..good.clone()
         };
         let refusal = SchedError::BusyPollRange { got };
-        assert_eq!(asked.probe(), Err(refusal));
+        assert_eq!(asked.probe(), Err(refusal.clone()));
         assert_eq!(asked.enter(), Err(refusal));
     }
     let asked = Scheduling {
@@ -227,8 +275,10 @@ fn the_texts_are_those_of_libfranka() {
             "libfranka: unable to set realtime scheduling: Operation not permitted",
         ),
         (
-            SchedError::KernelNotRealtime,
-            "libfranka: Running kernel does not have realtime capabilities.",
+            SchedError::KernelNotRealtime(Box::default()),
+            "libfranka: Running kernel does not have realtime capabilities. (uname: ``, expected \
+             PREEMPT_RT in it; /sys/kernel/realtime: cannot be read; /boot/config- and \
+             /lib/modules//config: cannot be read)",
         ),
     ] {
         assert_eq!(error.to_string(), text);

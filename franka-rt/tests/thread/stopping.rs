@@ -82,7 +82,7 @@ fn what_is_enforced_and_refused_starts_nothing() {
         assert!(
             matches!(
                 error,
-                SchedError::KernelNotRealtime | SchedError::SetScheduling(_)
+                SchedError::KernelNotRealtime(_) | SchedError::SetScheduling(_)
             ),
             "{error}"
         );

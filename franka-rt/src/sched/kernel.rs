@@ -1,0 +1,188 @@
+//! Whether the running kernel is a real-time one.
+//!
+//! Up to Linux 6.11 real time (`PREEMPT_RT`) was a patch, which also added the file
+//! `/sys/kernel/realtime`. Since 6.12 it is an option of the kernel itself, mostly without that
+//! file. The version text of `uname` names the option in both. The release name (`-rt`) is chosen
+//! freely and proves nothing.
+
+use core::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a host says of its kernel. [`Kernel::read`] asks the host that this runs on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Kernel {
+    /// Release, such as `6.12.43-rt`.
+    pub release: String,
+    /// Version text of `uname`, such as `#1 SMP PREEMPT_RT Debian 6.12.43-1`.
+    pub version: String,
+    /// Contents of `/sys/kernel/realtime`; `None` if it cannot be read.
+    pub flag: Option<String>,
+    /// Whether the kernel's configuration file has `CONFIG_PREEMPT_RT=y`; `None` if there is no
+    /// file that can be read.
+    pub configured: Option<bool>,
+}
+
+impl Kernel {
+    /// Reads what the running host says.
+    pub fn read() -> Self {
+        Self::read_below(Path::new("/"))
+    }
+
+    /// Reads the files below `root`, such as those of another host.
+    pub fn read_below(root: &Path) -> Self {
+        let read = |path: &str| fs::read_to_string(root.join(path)).ok();
+        let line = |path| read(path).unwrap_or_default().trim().to_owned();
+        let release = line("proc/sys/kernel/osrelease");
+        let configuration = configuration_files(&release)
+            .into_iter()
+            .find_map(|path| read(path.strip_prefix("/").ok()?.to_str()?));
+        Self {
+            version: line("proc/sys/kernel/version"),
+            flag: read("sys/kernel/realtime").map(|flag| flag.trim().to_owned()),
+            configured: configuration.map(|text| {
+                text.lines()
+                    .any(|line| line.trim() == "CONFIG_PREEMPT_RT=y")
+            }),
+            release,
+        }
+    }
+
+    /// Whether any of the readings shows a real-time kernel.
+    pub fn is_realtime(&self) -> bool {
+        self.names_realtime() || self.flag.as_deref() == Some("1") || self.configured == Some(true)
+    }
+
+    /// Whether the version text has the word `PREEMPT_RT` or, as kernels with the older patch, the
+    /// words `PREEMPT RT`. `PREEMPT` and `PREEMPT_DYNAMIC` are no real time.
+    fn names_realtime(&self) -> bool {
+        let words: Vec<&str> = self.version.split_whitespace().collect();
+        words.contains(&"PREEMPT_RT") || words.windows(2).any(|pair| pair == ["PREEMPT", "RT"])
+    }
+}
+
+/// What was looked at, and what was read there.
+impl fmt::Display for Kernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "uname: `{}`, expected PREEMPT_RT in it", self.version)?;
+        match &self.flag {
+            Some(flag) => write!(f, "; /sys/kernel/realtime: `{flag}`, expected `1`")?,
+            None => write!(f, "; /sys/kernel/realtime: cannot be read")?,
+        }
+        match self.configured {
+            Some(_) => write!(f, "; kernel configuration: no CONFIG_PREEMPT_RT=y"),
+            None => {
+                let [boot, modules] = configuration_files(&self.release);
+                let (boot, modules) = (boot.display(), modules.display());
+                write!(f, "; {boot} and {modules}: cannot be read")
+            }
+        }
+    }
+}
+
+/// Where distributions keep the configuration of a kernel.
+fn configuration_files(release: &str) -> [PathBuf; 2] {
+    [
+        format!("/boot/config-{release}").into(),
+        format!("/lib/modules/{release}/config").into(),
+    ]
+}
+
+/// Whether the running kernel is a real-time one, by [`Kernel::is_realtime`].
+pub fn kernel_is_realtime() -> bool {
+    Kernel::read().is_realtime()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A kernel with this version text, flag and configuration.
+    fn kernel(version: &str, flag: Option<&str>, configured: Option<bool>) -> Kernel {
+        Kernel {
+            release: "6.12.43".into(),
+            version: version.into(),
+            flag: flag.map(Into::into),
+            configured,
+        }
+    }
+
+    #[test]
+    fn any_reading_that_shows_real_time_counts_and_no_lesser_preemption_does() {
+        let plain = "#1 SMP PREEMPT_DYNAMIC Debian 6.12.43-1 (2025-08-27)";
+        for (version, flag, configured, expected) in [
+            // Debian 13, since 6.12: no file.
+            ("#1 SMP PREEMPT_RT Debian 6.12.43-1", None, None, true),
+            // Patched kernels up to 6.11, with the file, and older ones, which spell it so.
+            ("#14 SMP PREEMPT_RT Thu Oct 6", Some("1"), None, true),
+            ("#1 SMP PREEMPT RT Mon Mar 9", None, None, true),
+            // A distribution with a version text of its own.
+            ("custom", Some("1"), None, true),
+            ("custom", None, Some(true), true),
+            (plain, None, None, false),
+            (plain, Some("0"), Some(false), false),
+            ("#1 SMP PREEMPT Tue Mar 5", None, None, false),
+            ("#1 SMP PREEMPT_RTX RT", None, None, false),
+            ("", None, None, false),
+        ] {
+            let kernel = kernel(version, flag, configured);
+            assert_eq!(kernel.is_realtime(), expected, "{kernel:?}");
+        }
+        let named = Kernel {
+            release: "6.8.0-rt8".into(),
+            ..kernel(plain, None, None)
+        };
+        assert!(!named.is_realtime(), "a name proves nothing");
+    }
+
+    #[test]
+    fn the_text_says_what_was_looked_at_and_what_was_read() {
+        assert_eq!(
+            kernel("#1 SMP PREEMPT", None, None).to_string(),
+            "uname: `#1 SMP PREEMPT`, expected PREEMPT_RT in it; /sys/kernel/realtime: cannot be \
+             read; /boot/config-6.12.43 and /lib/modules/6.12.43/config: cannot be read"
+        );
+        assert_eq!(
+            kernel("#2", Some("0"), Some(false)).to_string(),
+            "uname: `#2`, expected PREEMPT_RT in it; /sys/kernel/realtime: `0`, expected `1`; \
+             kernel configuration: no CONFIG_PREEMPT_RT=y"
+        );
+    }
+
+    #[test]
+    fn the_files_of_a_host_are_read() {
+        let root = std::env::temp_dir().join(format!("franka-kernel-{}", std::process::id()));
+        let write = |path: &str, text: &str| {
+            let path = root.join(path);
+            fs::create_dir_all(path.parent().expect("it has one")).expect("a directory");
+            fs::write(path, text).expect("a file");
+        };
+        assert_eq!(
+            Kernel::read_below(&root),
+            Kernel::default(),
+            "nothing there"
+        );
+        write("proc/sys/kernel/osrelease", "6.6.1-x\n");
+        write("proc/sys/kernel/version", "#3 SMP PREEMPT\n");
+        write("sys/kernel/realtime", "0\n");
+        write(
+            "lib/modules/6.6.1-x/config",
+            "CONFIG_PREEMPT=y\n# CONFIG_PREEMPT_RT is not set\n",
+        );
+        let expected = Kernel {
+            release: "6.6.1-x".into(),
+            ..kernel("#3 SMP PREEMPT", Some("0"), Some(false))
+        };
+        assert_eq!(Kernel::read_below(&root), expected);
+        write("boot/config-6.6.1-x", "CONFIG_PREEMPT_RT=y\n");
+        assert!(Kernel::read_below(&root).is_realtime());
+        fs::remove_dir_all(root).expect("it is ours");
+    }
+
+    #[test]
+    fn the_running_host_has_a_release_and_a_version() {
+        let kernel = Kernel::read();
+        assert!(!kernel.release.is_empty() && !kernel.version.is_empty());
+        assert_eq!(kernel.is_realtime(), kernel_is_realtime());
+    }
+}
