@@ -13,7 +13,7 @@ use crate::{JointVector, joint_vector};
 
 pub(crate) static FER: Description = Description {
     client: &CLIENT,
-    realisable: &REALISABLE,
+    physically_consistent: &PHYSICALLY_CONSISTENT,
     cartesian: CARTESIAN,
 };
 
@@ -164,7 +164,7 @@ const LINK_7_INSIDE: (f64, [f64; 3]) = (
 /// Source: a least-squares fit to the library's torques at 300 random states with every body's
 /// pseudo-inertia kept positive definite, drawn towards the feasible set of Gaz, Cognetti, Oliva,
 /// Robuffo Giordano and De Luca, Dynamic Identification of the Franka Emika Panda Robot, 2019.
-static REALISABLE: Model = Model {
+static PHYSICALLY_CONSISTENT: Model = Model {
     kind: RobotKind::Fer,
     base: BASE,
     links: [

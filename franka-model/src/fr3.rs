@@ -9,7 +9,7 @@ use crate::model::Model;
 
 pub(crate) static FR3: Description = Description {
     client: &MODEL,
-    realisable: &MODEL,
+    physically_consistent: &MODEL,
     cartesian: CARTESIAN,
 };
 

@@ -24,7 +24,7 @@ fn models() -> [&'static Model; 3] {
     [
         Model::fr3(),
         Model::fer(),
-        Model::realisable(RobotKind::Fer),
+        Model::physically_consistent(RobotKind::Fer),
     ]
 }
 
@@ -260,7 +260,7 @@ fn a_free_swing_keeps_its_energy() {
     };
     let mut random = Random::new(45);
     for kind in RobotKind::ALL {
-        let model = Model::realisable(kind);
+        let model = Model::physically_consistent(kind);
         for _ in 0..20 {
             let mut case = Case {
                 q: random.posture(model),
@@ -402,9 +402,9 @@ fn least_second_moment(body: &RigidBody) -> f64 {
 }
 
 #[test]
-fn realisable_models_are_made_of_bodies_that_can_exist() {
+fn physically_consistent_models_have_bodies_that_can_exist() {
     for kind in RobotKind::ALL {
-        for body in Model::realisable(kind).links() {
+        for body in Model::physically_consistent(kind).links() {
             assert!(body.mass > 0.0);
             assert!(least_second_moment(body) > 0.0, "{kind:?}: {body:?}");
         }
@@ -414,10 +414,10 @@ fn realisable_models_are_made_of_bodies_that_can_exist() {
 }
 
 #[test]
-fn the_realisable_fer_is_near_the_one_of_the_clients() {
+fn the_physically_consistent_fer_is_near_the_one_of_the_clients() {
     for_each_case_of(Model::fer(), 43, &|model, case| {
         let Case { q, dq, .. } = case;
-        let other = Model::realisable(RobotKind::Fer);
+        let other = Model::physically_consistent(RobotKind::Fer);
         let none = &Load::NONE;
         // 0.018, 0.013 and 0.083 at the reference states, whose velocities are about this large.
         assert!((model.mass(q, none) - other.mass(q, none)).amax() < 0.03);

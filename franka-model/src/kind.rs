@@ -32,6 +32,6 @@ pub(crate) struct Description {
     /// The vendor's model, for clients.
     pub(crate) client: &'static Model,
     /// A model that a physical arm could have, for simulation.
-    pub(crate) realisable: &'static Model,
+    pub(crate) physically_consistent: &'static Model,
     pub(crate) cartesian: CartesianLimits,
 }

@@ -15,7 +15,7 @@ use crate::{Jacobian, JointVector, MassMatrix};
 
 /// A robot's constants: kinematics, bodies and limits.
 ///
-/// The vendor's numbers are static values ([`of`](Self::of), [`realisable`](Self::realisable)); a
+/// The vendor's numbers are static values ([`of`](Self::of), [`physically_consistent`](Self::physically_consistent)); a
 /// description that a robot serves gives a value of its own. Both answer the same questions, and
 /// take the same time to do so.
 ///
@@ -43,7 +43,7 @@ impl Model {
     /// That library is no exact mechanics: some of the [`links`](Self::links) that meet it have
     /// negative moments, and a load joins link 7 without the lever of link 7's own mass, which is
     /// 3.0e-3 kg·m² of the mass matrix under 1.23 kg. For physics take
-    /// [`realisable`](Self::realisable).
+    /// [`physically_consistent`](Self::physically_consistent).
     pub const fn fer() -> &'static Self {
         Self::of(RobotKind::Fer)
     }
@@ -54,14 +54,14 @@ impl Model {
         kind.description().client
     }
 
-    /// A model of a kind that a physical arm could have: what a simulation moves.
+    /// A model of a kind with physically consistent inertial parameters: what a simulation moves.
     ///
     /// For the Franka Research 3 it is [`of`](Self::of). For the FER it is another set of bodies,
     /// which loads join as mechanics has it. Without a load and upright the two differ by less than
     /// 0.1 N·m at moderate speed; in a tilted base joint 1 differs by up to 0.08 N·m per m/s² of
     /// horizontal gravity.
-    pub const fn realisable(kind: RobotKind) -> &'static Self {
-        kind.description().realisable
+    pub const fn physically_consistent(kind: RobotKind) -> &'static Self {
+        kind.description().physically_consistent
     }
 
     /// Which robot this is.

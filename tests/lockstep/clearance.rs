@@ -28,12 +28,12 @@ fn into_itself() -> Target {
     Target::Joints(q)
 }
 
-/// Runs until the goal is resolved, and tells the least that `room` was at the reference, and
+/// Runs until the goal is resolved, and tells the least that `margin` was at the reference, and
 /// whether clearance bound.
 fn least_room(
     lockstep: &mut Lockstep,
     goal: GoalId,
-    room: impl Fn(&JointVector) -> f64,
+    margin: impl Fn(&JointVector) -> f64,
 ) -> (f64, bool) {
     let (mut least, mut bound) = (f64::INFINITY, false);
     while lockstep.client.outcome(goal).is_none() {
@@ -41,7 +41,7 @@ fn least_room(
         assert!(lockstep.now() < 60_000, "it is resolved");
         let record = &lockstep.client.record;
         if record.activity == Activity::Running {
-            least = least.min(room(&record.q_ref.into()));
+            least = least.min(margin(&record.q_ref.into()));
             bound |= record.bindings.contains(Guard::Clearance);
         }
     }
@@ -98,9 +98,9 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
         let mut regions = KeepOut::default();
         regions[2] = Some(table);
         lockstep.client.lifecycle.keep_out_of(regions);
-        let room = |q: &JointVector| room_to(kind, &table, q);
+        let margin = |q: &JointVector| room_to(kind, &table, q);
         let down = lockstep.begin(Target::Pose(Translation3::new(0.02, 0.0, -0.2) * start));
-        let (least, bound) = least_room(&mut lockstep, down, room);
+        let (least, bound) = least_room(&mut lockstep, down, margin);
         println!("{:.2} mm", least * 1e3);
         assert!(bound && least >= KEEP_OUT_STOP - CURVE, "{least}");
         assert!(least < KEEP_OUT_STOP + 0.01, "{least}");
@@ -130,11 +130,11 @@ fn above_a_table(ready: &dyn Fn() -> Lockstep) -> (Lockstep, GoalId, impl Fn(&Lo
         keep_out: Some(vec![table]),
         ..Engagement::default()
     });
-    let room = move |lockstep: &Lockstep| {
+    let margin = move |lockstep: &Lockstep| {
         let q = lockstep.client.record.q_ref;
         room_to(kind, &table, &q.into()) - KEEP_OUT_STOP
     };
-    (lockstep, engaged, room)
+    (lockstep, engaged, margin)
 }
 
 /// A policy that would go through the table, and predicts anew every 60 ms.
@@ -142,7 +142,7 @@ fn above_a_table(ready: &dyn Fn() -> Lockstep) -> (Lockstep, GoalId, impl Fn(&Lo
 fn chunks_that_follow_each_other_lead_no_nearer_than_one_does() {
     for_each_robot(|ready| {
         for joints in [false, true] {
-            let (mut lockstep, engaged, room) = above_a_table(ready);
+            let (mut lockstep, engaged, margin) = above_a_table(ready);
             let start = lockstep.true_pose();
             let mut least = f64::INFINITY;
             let mut bound = 0;
@@ -169,7 +169,7 @@ fn chunks_that_follow_each_other_lead_no_nearer_than_one_does() {
                     .expect("points in the ranges of the joints");
                 for _ in 0..60 {
                     lockstep.tick();
-                    least = least.min(room(&lockstep));
+                    least = least.min(margin(&lockstep));
                     let bindings = lockstep.client.record.bindings;
                     bound += u32::from(bindings.contains(Guard::Clearance));
                 }
@@ -194,7 +194,7 @@ fn a_gentler_goal_that_takes_over_comes_no_nearer() {
         for target in [None, Some(-0.3)] {
             let mut least = f64::INFINITY;
             for after in (300..700).step_by(20) {
-                let (mut lockstep, engaged, room) = above_a_table(ready);
+                let (mut lockstep, engaged, margin) = above_a_table(ready);
                 let start = lockstep.true_pose();
                 let below = |z: f64| Target::Pose(Translation3::new(0.0, 0.0, z) * start);
                 let mut quick = lockstep.goal(below(-0.3), OnArrival::ReportAndHold);
@@ -216,7 +216,7 @@ fn a_gentler_goal_that_takes_over_comes_no_nearer() {
                     .expect("a gentle one");
                 for _ in 0..1500 {
                     lockstep.tick();
-                    least = least.min(room(&lockstep));
+                    least = least.min(margin(&lockstep));
                 }
             }
             println!("{:.2} mm left", least * 1e3);

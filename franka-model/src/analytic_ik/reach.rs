@@ -42,7 +42,7 @@ pub fn pose(model: &Model, target: &Isometry3<f64>, ee: &EndEffector) -> Result<
     let flange = flange_of(target, ee)?;
     let limits = model.joint_limits();
     let mut search = PoseSearch { model, seed: None };
-    let posture = roomiest(model, &flange)
+    let posture = max_margin(model, &flange)
         .map(|solution| solution.q)
         .or_else(|| search.posture(&flange));
     search.seed = posture;
@@ -117,9 +117,10 @@ impl PoseSearch<'_> {
     }
 }
 
-fn roomiest(model: &Model, flange: &Isometry3<f64>) -> Option<Solution> {
+fn max_margin(model: &Model, flange: &Isometry3<f64>) -> Option<Solution> {
     let limits = model.joint_limits();
-    sweep(model, flange, STEPS).max_by(|a, b| a.room(limits).total_cmp(&b.room(limits)))
+    sweep(model, flange, STEPS)
+        .max_by(|a, b| a.limit_margin(limits).total_cmp(&b.limit_margin(limits)))
 }
 
 /// Signed distance along the line through the shoulder at which `reaches(shift)` changes.

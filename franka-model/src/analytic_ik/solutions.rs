@@ -44,8 +44,8 @@ impl Solution {
         (self.q - limits.lower).inf(&(limits.upper - self.q))
     }
 
-    /// The least of [`limit_distances`](Self::limit_distances).
-    pub fn room(&self, limits: &JointLimits) -> f64 {
+    /// The least of [`limit_distances`](Self::limit_distances), `[rad]`.
+    pub fn limit_margin(&self, limits: &JointLimits) -> f64 {
         self.limit_distances(limits).min()
     }
 
@@ -192,10 +192,10 @@ impl Solutions {
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// The solution whose joints keep most off their limits.
-    pub fn roomiest(&self, limits: &JointLimits) -> Option<Solution> {
+    /// The solution with the greatest [`Solution::limit_margin`].
+    pub fn max_margin(&self, limits: &JointLimits) -> Option<Solution> {
         self.iter()
-            .max_by(|a, b| a.room(limits).total_cmp(&b.room(limits)))
+            .max_by(|a, b| a.limit_margin(limits).total_cmp(&b.limit_margin(limits)))
             .copied()
     }
 }

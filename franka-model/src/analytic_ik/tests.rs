@@ -152,7 +152,7 @@ fn the_ready_pose_has_eight_solutions_and_one_within_the_limits() {
         assert_eq!(found.len(), 1);
         assert!((found[0].q - READY).amax() < 1e-13);
         let limits = model.joint_limits();
-        assert_eq!(found[0].room(limits), READY[3] - limits.lower[3]);
+        assert_eq!(found[0].limit_margin(limits), READY[3] - limits.lower[3]);
         let singularity = found[0].singularity();
         let expected = (
             FRAC_PI_2 / 2.0,
@@ -204,8 +204,11 @@ fn with_joint_2_at_zero_joints_1_and_3_share_the_turn_and_slide() {
             slid[0] += step;
             slid[2] -= step;
             assert!(miss(&slid, &target) < 1e-12);
-            let room = (slid - limits.lower).inf(&(limits.upper - slid)).min();
-            assert!(room.abs() < 1e-12, "the slide ends at a limit: {room:e}");
+            let margin = (slid - limits.lower).inf(&(limits.upper - slid)).min();
+            assert!(
+                margin.abs() < 1e-12,
+                "the slide ends at a limit: {margin:e}"
+            );
         }
         let nearest = found.nearest(&q).expect("a solution");
         assert!((nearest.q - q).amax() < 1e-12);

@@ -59,7 +59,7 @@ mod tests;
 
 pub use obstacle::Obstacle;
 pub use shape::{Capsule, Shape, ToolError};
-pub use spacing::{Arrangement, Item, Leeway, Open, REGIONS_MAX, Spacing};
+pub use spacing::{Arrangement, CandidateMask, Item, MotionBound, REGIONS_MAX, Spacing};
 
 use nalgebra::Vector3;
 

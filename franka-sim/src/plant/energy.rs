@@ -10,7 +10,7 @@ const STEP: f64 = 0.000_25;
 
 /// Nothing in the surroundings, and what hangs on it does.
 fn plants(kind: RobotKind, parameters: &ArmParameters, load: Load) -> Vec<Box<dyn Plant>> {
-    let model = Model::realisable(kind);
+    let model = Model::physically_consistent(kind);
     vec![
         Box::new(RigidArm::new(model, parameters.clone(), READY, load)),
         #[cfg(feature = "mujoco")]
@@ -39,7 +39,7 @@ fn for_each(friction: Option<Friction>, test: impl Fn(&str, &mut Book)) {
                 .zip(["rigid", "MuJoCo"])
             {
                 let mut book = Book {
-                    model: Model::realisable(kind),
+                    model: Model::physically_consistent(kind),
                     load,
                     plant,
                     potential: 0.0,

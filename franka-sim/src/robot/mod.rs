@@ -125,7 +125,7 @@ impl Robot {
     /// A robot at rest, with the rigid-body plant.
     pub fn new(config: Config) -> Self {
         let plant = RigidArm::new(
-            Model::realisable(config.kind),
+            Model::physically_consistent(config.kind),
             ArmParameters::of(config.kind),
             config.q,
             Load::NONE,
@@ -139,7 +139,7 @@ impl Robot {
         plant.attach(config.tool.load.combine(&config.payload));
         plant.place(&config.q);
         let kind = Description::of(config.kind);
-        let model = Model::realisable(config.kind);
+        let model = Model::physically_consistent(config.kind);
         let settings = Settings::new(config.tool, &config.unpublished);
         let q = *plant.q();
         let desired = Desired::resting(&Arm::new(kind, model, &settings.frames, &config), q);

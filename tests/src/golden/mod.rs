@@ -76,7 +76,7 @@ pub const SUITES: &[Suite] = &[
     },
     Suite {
         file: "model/model_vectors_fer.json",
-        check: model::fer_realisable,
+        check: model::fer_physically_consistent,
     },
     Suite {
         file: "model/velocity_limit_vectors_fr3.json",

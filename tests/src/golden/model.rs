@@ -12,7 +12,7 @@ const POSE: f64 = 1e-13;
 const JACOBIAN: f64 = 1e-13;
 const MASS: f64 = 1e-13;
 const TORQUE: f64 = 1e-12;
-/// How far the realisable FER may be from the vendor's without a load: what its description
+/// How far the physically consistent FER may be from the vendor's without a load: what its description
 /// says, rounded up.
 const FIT_MASS: f64 = 0.02;
 const FIT_GRAVITY: f64 = 0.02;
@@ -30,15 +30,17 @@ pub(super) fn fer(root: &Node<'_>) -> Result<Report, Malformed> {
     rigid_body(root, Model::fer())
 }
 
-/// Checks in `model_vectors_fer.json` how far the realisable FER is from the vendor's library, at
+/// Checks in `model_vectors_fer.json` how far the physically consistent FER is from the vendor's library, at
 /// the configurations without a load.
-pub(super) fn fer_realisable(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn fer_physically_consistent(root: &Node<'_>) -> Result<Report, Malformed> {
     let mut report = Report::default();
     for sample in root.get("samples")?.list()? {
         let state = State::read(root, &sample)?;
         let bare = sample.get("loads")?.list()?.swap_remove(0);
         let torques = Torques::read(&bare)?;
-        report.case(bare.path(), |case| torques.check_realisable(case, &state));
+        report.case(bare.path(), |case| {
+            torques.check_physically_consistent(case, &state)
+        });
     }
     Ok(report)
 }
@@ -264,8 +266,8 @@ impl Torques {
     }
 
     /// Without a load.
-    fn check_realisable(&self, case: &mut Case<'_>, state: &State) {
-        let (model, none) = (Model::realisable(RobotKind::Fer), &Load::NONE);
+    fn check_physically_consistent(&self, case: &mut Case<'_>, state: &State) {
+        let (model, none) = (Model::physically_consistent(RobotKind::Fer), &Load::NONE);
         let State { q, dq, gravity, .. } = state;
         let mass = model.mass(q, none);
         case.near("mass", mass.as_slice(), &self.mass, FIT_MASS);

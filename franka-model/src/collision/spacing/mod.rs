@@ -1,28 +1,28 @@
-//! What of an arm is nearer to itself, or to regions, than it is to be.
+//! Which distances of an arm to itself and to regions are below their minimum.
 //!
 //! ```text
-//! Spacing (who keeps what distance from whom; made once)
+//! Spacing (pairs and their minimum distances; made once)
 //!    │ at(q)
 //!    v
-//! Arrangement ──> room_below(item, limit)    what is near, and only that is measured
-//!             ──> leeway(limit)              how far the joints may turn before what is near
+//! Arrangement ──> margin_below(item, limit)    measures a distance only if it may be small
+//!             ──> motion_bound(limit)          bounds how fast distances shrink from here
 //! ```
 //!
-//! Nearly all that could meet is far apart nearly always. One pass places the capsules; balls and
-//! boxes around them tell what is far, and what may be near is measured. What they tell at one
-//! posture remains as its [`Leeway`], which saves looking at most of it, or at all of it, at the
-//! next ones.
+//! Most distances are large at most postures. One pass places the capsules; bounding balls and
+//! boxes rule out the large distances, and the others are measured. The bounds found at one posture
+//! are kept as its [`MotionBound`], which at nearby postures rules out most distances, or all,
+//! without another pass.
 
-mod leeway;
+mod motion_bound;
 mod mounted;
 mod region;
 #[cfg(test)]
 mod tests;
 
-pub use leeway::{Leeway, Open};
+pub use motion_bound::{CandidateMask, MotionBound};
 
-use leeway::{GROUPS_MAX, Groups};
-use mounted::{Mounted, Spot};
+use motion_bound::{GROUPS_MAX, Groups};
+use mounted::{Location, Mounted};
 use region::Region;
 
 use super::segment::Segment;
@@ -32,69 +32,68 @@ use crate::chain::Chain;
 use crate::inertia::dot;
 use crate::scalar::sqrt;
 
-/// Regions that a [`Spacing`] has room for.
+/// The most regions that a [`Spacing`] holds.
 pub const REGIONS_MAX: usize = 4;
 
-/// Pairs of links, and of links and a tool, that any shape has.
+/// The most pairs of capsules that a shape has.
 const PAIRS_MAX: usize = capsules::COVERING_PAIRS.len() + capsules::ARM_MAX * shape::TOOL_MAX;
 
-/// Room, `[m]`, beyond which a bound stands for what is left of a distance. Joints take a while to
-/// turn that far.
+/// Margins above this, `[m]`, are bounded and not measured: it takes many cycles to use them up.
 const AMPLE: f64 = 0.15;
 
-/// Who keeps what distance from whom: an arm from itself, and from regions.
+/// Pairs and their minimum distances: of an arm to itself, and to regions.
 ///
-/// The distances are those of [`Placed`](super::Placed). What is left of one above the distance to
-/// be kept is called its room, and is negative where that is not kept.
+/// The distances are those of [`Placed`](super::Placed). The margin of one is how much it is above
+/// its minimum, `[m]`; negative below it.
 #[derive(Debug, Clone)]
 pub struct Spacing {
-    /// The capsules that keep from each other.
-    arm: Crowd,
+    /// The capsules of the pairs.
+    arm: LinkCapsules,
     pairs: [Pair; PAIRS_MAX],
     pair_count: usize,
-    /// Distance that they keep, `[m]`.
+    /// The minimum distance of the pairs, `[m]`.
     apart: f64,
-    /// The capsules that keep from regions, if there are any. The base stands where it stands: it
-    /// is left out.
-    cover: Crowd,
+    /// The capsules whose distance to regions counts: all but the base, which never moves. Empty
+    /// without regions.
+    cover: LinkCapsules,
     regions: [Region; REGIONS_MAX],
     region_count: usize,
-    /// Distance that they keep, `[m]`.
+    /// The minimum distance to regions, `[m]`.
     out: f64,
     groups: Groups,
 }
 
-/// One of the distances that are kept.
+/// One distance of a [`Spacing`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Item(Kind);
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// By its number.
+    /// Index of the pair.
     Pair(usize),
-    /// A region and a capsule.
+    /// Indices of the region and of the capsule.
     Region(usize, usize),
 }
 
-/// Two capsules that keep from each other.
+/// Two capsules with a minimum distance.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     inner: usize,
     outer: usize,
-    /// What both reach from their middles, `[m]`, radii included.
+    /// Sum of the radii of the balls around both capsules, `[m]`.
     reach: f64,
     group: usize,
 }
 
-/// Capsules on links.
+/// The capsules of a shape, each in the frame of its link.
 #[derive(Debug, Clone)]
-struct Crowd {
+struct LinkCapsules {
     all: [Mounted; CAPACITY],
     count: usize,
 }
 
-impl Crowd {
-    const NOBODY: Self = Self {
+impl LinkCapsules {
+    const EMPTY: Self = Self {
         all: [Mounted::NONE; CAPACITY],
         count: 0,
     };
@@ -107,12 +106,12 @@ impl Crowd {
     }
 
     fn from(capsules: impl Iterator<Item = Mounted>) -> Self {
-        let mut crowd = Self::NOBODY;
-        for (place, mounted) in crowd.all.iter_mut().zip(capsules) {
+        let mut this = Self::EMPTY;
+        for (place, mounted) in this.all.iter_mut().zip(capsules) {
             *place = mounted;
-            crowd.count += 1;
+            this.count += 1;
         }
-        crowd
+        this
     }
 
     fn each(&self) -> &[Mounted] {
@@ -120,21 +119,22 @@ impl Crowd {
     }
 
     #[inline(always)]
-    fn at(&self, chain: &Chain) -> [Spot; CAPACITY] {
-        let mut spots = [Spot::NOWHERE; CAPACITY];
-        for (spot, mounted) in spots.iter_mut().zip(self.each()) {
-            *spot = mounted.at(chain);
+    fn at(&self, chain: &Chain) -> [Location; CAPACITY] {
+        let mut locations = [Location::NONE; CAPACITY];
+        for (location, mounted) in locations.iter_mut().zip(self.each()) {
+            *location = mounted.at(chain);
         }
-        spots
+        locations
     }
 }
 
 impl Spacing {
-    /// The pairs of `arm` that can meet keep `distance`, `[m]`, between bodies that are `links` or
-    /// more links apart along the chain; a tool comes after link 7. Closer ones may touch.
+    /// A spacing with the minimum `distance`, `[m]`, for those pairs of `arm` that can meet and are
+    /// `links` or more links apart along the chain; a tool comes after link 7. Pairs closer along
+    /// the chain may touch.
     pub fn within(arm: &Shape<'_>, distance: f64, links: u8) -> Self {
         let mut this = Self {
-            arm: Crowd::of(arm),
+            arm: LinkCapsules::of(arm),
             pairs: [Pair {
                 inner: 0,
                 outer: 0,
@@ -143,8 +143,8 @@ impl Spacing {
             }; PAIRS_MAX],
             pair_count: 0,
             apart: distance,
-            cover: Crowd::NOBODY,
-            regions: [Region::NOWHERE; REGIONS_MAX],
+            cover: LinkCapsules::EMPTY,
+            regions: [Region::NONE; REGIONS_MAX],
             region_count: 0,
             out: 0.0,
             groups: Groups::NONE,
@@ -164,7 +164,8 @@ impl Spacing {
         this
     }
 
-    /// And all of `cover` that moves keeps `distance`, `[m]`, from each of `regions`.
+    /// This spacing with the minimum `distance`, `[m]`, of everything in `cover` that moves to each
+    /// of `regions`.
     #[must_use]
     pub fn out_of(
         mut self,
@@ -178,10 +179,10 @@ impl Spacing {
             self.regions[self.region_count] = Region::of(region);
             self.region_count += 1;
         }
-        self.cover = Crowd::NOBODY;
+        self.cover = LinkCapsules::EMPTY;
         if self.region_count > 0 {
-            let all = Crowd::of(cover);
-            self.cover = Crowd::from(all.each().iter().copied().filter(|m| m.number > 0));
+            let all = LinkCapsules::of(cover);
+            self.cover = LinkCapsules::from(all.each().iter().copied().filter(|m| m.number > 0));
         }
         for i in 0..self.cover.count {
             self.cover.all[i].group = self.groups.join(0, &self.cover.all[i]);
@@ -189,14 +190,14 @@ impl Spacing {
         self
     }
 
-    /// The distances that are kept, of those that are `open`.
+    /// The distances in the groups of `candidates`.
     #[inline]
-    pub fn items(&self, open: Open) -> impl Iterator<Item = Item> + '_ {
+    pub fn items(&self, candidates: CandidateMask) -> impl Iterator<Item = Item> + '_ {
         let pairs = self.pairs[..self.pair_count].iter().enumerate();
-        let pairs = pairs.filter(move |(_, pair)| open.has(pair.group));
+        let pairs = pairs.filter(move |(_, pair)| candidates.has(pair.group));
         let of_region = move |region| {
             let bodies = self.cover.each().iter().enumerate();
-            let bodies = bodies.filter(move |(_, capsule)| open.has(capsule.group));
+            let bodies = bodies.filter(move |(_, capsule)| candidates.has(capsule.group));
             bodies.map(move |(body, _)| Kind::Region(region, body))
         };
         let regions = (0..self.region_count).flat_map(of_region);
@@ -204,7 +205,7 @@ impl Spacing {
         pairs.chain(regions).map(Item)
     }
 
-    /// Where everything is at the joint positions `q`, `[rad]`.
+    /// The capsules at the joint positions `q`, `[rad]`.
     pub fn at(&self, q: &JointVector) -> Arrangement<'_> {
         let chain = Chain::at(q);
         Arrangement {
@@ -221,15 +222,15 @@ impl Spacing {
 pub struct Arrangement<'a> {
     spacing: &'a Spacing,
     q: JointVector,
-    arm: [Spot; CAPACITY],
-    cover: [Spot; CAPACITY],
+    arm: [Location; CAPACITY],
+    cover: [Location; CAPACITY],
 }
 
 impl Arrangement<'_> {
-    /// The room of `item`, `[m]`, if that is less than `limit`; also if it is not a number.
+    /// The margin of `item`, `[m]`, if it is less than `limit` or not a number; `None` otherwise.
     #[inline]
-    pub fn room_below(&self, item: Item, limit: f64) -> Option<f64> {
-        let room = match item.0 {
+    pub fn margin_below(&self, item: Item, limit: f64) -> Option<f64> {
+        let margin = match item.0 {
             Kind::Pair(pair) => {
                 let pair = &self.spacing.pairs[pair];
                 let gap = self.arm[pair.outer].middle - self.arm[pair.inner].middle;
@@ -237,7 +238,7 @@ impl Arrangement<'_> {
                 if near <= 0.0 || dot(&gap, &gap) >= near * near {
                     return None;
                 }
-                self.room_of(pair)
+                self.margin_of(pair)
             }
             Kind::Region(region, body) => {
                 let region = &self.spacing.regions[region];
@@ -246,46 +247,47 @@ impl Arrangement<'_> {
                 region.distance_below(&self.cover[body], capsule, near)? - self.spacing.out
             }
         };
-        if room >= limit { None } else { Some(room) }
+        if margin >= limit { None } else { Some(margin) }
     }
 
-    /// The room of `item`, `[m]`.
-    pub fn room(&self, item: Item) -> f64 {
-        self.room_below(item, f64::INFINITY)
+    /// The margin of `item`, `[m]`.
+    pub fn margin(&self, item: Item) -> f64 {
+        self.margin_below(item, f64::INFINITY)
             .unwrap_or(f64::INFINITY)
     }
 
-    fn room_of(&self, pair: &Pair) -> f64 {
+    fn margin_of(&self, pair: &Pair) -> f64 {
         let axis = |i: usize| self.arm[i].axis(&self.spacing.arm.all[i]);
         axis(pair.inner).nearest(&axis(pair.outer)).distance - self.spacing.apart
     }
 
-    /// How far the joints may turn from here before any room can be less than `limit`, `[m]`.
-    pub fn leeway(&self, limit: f64) -> Leeway {
+    /// A bound on how far the joints may turn from here before any margin can fall below `limit`,
+    /// `[m]`.
+    pub fn motion_bound(&self, limit: f64) -> MotionBound {
         let mut spare = [f64::INFINITY; GROUPS_MAX];
-        let mut bound = |group: usize, room: f64| spare[group] = spare[group].min(room - limit);
+        let mut bound = |group: usize, margin: f64| spare[group] = spare[group].min(margin - limit);
         for pair in &self.spacing.pairs[..self.spacing.pair_count] {
             let gap = self.arm[pair.outer].middle - self.arm[pair.inner].middle;
-            let room = sqrt(dot(&gap, &gap)) - pair.reach - self.spacing.apart;
-            let room = if room < AMPLE {
-                self.room_of(pair)
+            let margin = sqrt(dot(&gap, &gap)) - pair.reach - self.spacing.apart;
+            let margin = if margin < AMPLE {
+                self.margin_of(pair)
             } else {
-                room
+                margin
             };
-            bound(pair.group, room);
+            bound(pair.group, margin);
         }
         for region in &self.spacing.regions[..self.spacing.region_count] {
-            for (spot, capsule) in self.cover.iter().zip(self.spacing.cover.each()) {
-                let room = region.distance_at_least(spot, capsule) - self.spacing.out;
-                bound(capsule.group, room);
+            for (location, capsule) in self.cover.iter().zip(self.spacing.cover.each()) {
+                let margin = region.distance_at_least(location, capsule) - self.spacing.out;
+                bound(capsule.group, margin);
             }
         }
-        Leeway::new(self.q, spare)
+        MotionBound::new(self.q, spare)
     }
 }
 
-impl Spot {
-    /// The axis of a capsule whose spot this is.
+impl Location {
+    /// The axis of `capsule` at this location.
     #[inline(always)]
     fn axis(&self, capsule: &Mounted) -> Segment {
         Segment::around(&self.middle, &self.half, capsule.radius)

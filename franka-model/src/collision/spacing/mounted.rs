@@ -1,4 +1,4 @@
-//! A capsule in the frame of its link, with what does not depend on the posture.
+//! A capsule in the frame of its link: everything that does not depend on the posture.
 
 use nalgebra::Vector3;
 
@@ -11,7 +11,7 @@ use crate::scalar::sqrt;
 /// A capsule on a link or on the flange.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Mounted {
-    /// Of the link, counted from the base; that of a tool is 8.
+    /// Number of the link, counted from the base; 8 for a tool.
     pub(super) number: u8,
     /// Middle of the axis, `[m]`: in the frame of the link that it moves with; of the base, from
     /// the shoulder.
@@ -22,19 +22,19 @@ pub(super) struct Mounted {
     pub(super) reach: f64,
     /// `[m]`.
     pub(super) radius: f64,
-    /// Group of what keeps from regions.
+    /// Group of its distances to regions.
     pub(super) group: usize,
 }
 
-/// Where a capsule is, from the shoulder, in base axes.
+/// Where a capsule is: relative to the shoulder, in base axes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spot {
+pub(super) struct Location {
     pub(super) middle: Vector3<f64>,
     pub(super) half: Vector3<f64>,
 }
 
-impl Spot {
-    pub(super) const NOWHERE: Self = Self {
+impl Location {
+    pub(super) const NONE: Self = Self {
         middle: Vector3::new(0.0, 0.0, 0.0),
         half: Vector3::new(0.0, 0.0, 0.0),
     };
@@ -83,15 +83,15 @@ impl Mounted {
     }
 
     #[inline(always)]
-    pub(super) fn at(&self, chain: &Chain) -> Spot {
+    pub(super) fn at(&self, chain: &Chain) -> Location {
         match self.joints() {
-            0 => Spot {
+            0 => Location {
                 middle: self.middle,
                 half: self.half,
             },
             joints => {
                 let (turn, origin) = (&chain.rotation[joints - 1], &chain.origin[joints - 1]);
-                Spot {
+                Location {
                     middle: origin + turn * self.middle,
                     half: turn * self.half,
                 }
@@ -99,8 +99,8 @@ impl Mounted {
         }
     }
 
-    /// How far the axis moves at most, `[m/rad]`, if joint number `joint` of those that move it
-    /// turns, at any posture.
+    /// How far any point of the axis moves, `[m/rad]`, when joint number `joint` turns; the most
+    /// over all postures.
     pub(super) fn lever(&self, joint: usize) -> f64 {
         let ends = [self.middle - self.half, self.middle + self.half];
         let levers = ends.map(|end| lever(self.joints(), &end, joint));
@@ -108,12 +108,12 @@ impl Mounted {
     }
 }
 
-/// How far `point`, in the frame of a link, is at most from the axis of a joint before it, or of
-/// its own.
+/// The greatest distance of `point`, in the frame of a link, from the axis of joint number `joint`,
+/// which is the link's own or an earlier one.
 ///
-/// A point stays at its distance from every point of a joint's axis. So from the axis that is named
-/// here on to that of the joint it is that much further away at most as the points on them are
-/// apart.
+/// Turning a joint keeps the distance of a point from every point of that joint's axis. So the
+/// distance to an earlier axis is at most the distance to the axis named here plus the distances
+/// between the points in which the axes meet.
 fn lever(link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
     let aside = length(point.x, point.y);
     let (away, axis) = match (link, joint) {
@@ -130,8 +130,8 @@ fn lever(link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
     away + (joint..axis).map(step).sum::<f64>()
 }
 
-/// From the point on the axis of joint number `joint` to that on the next: the shoulder on the
-/// first three, the elbow on the fourth, the wrist on the fifth and the sixth.
+/// The distance from the reference point of the axis of joint number `joint` to that of the next:
+/// the shoulder for the first three, the elbow for the fourth, the wrist for the fifth and sixth.
 fn step(joint: usize) -> f64 {
     match joint {
         3 => length(UPPER_ARM, ELBOW),
@@ -144,5 +144,5 @@ fn length(a: f64, b: f64) -> f64 {
     sqrt(a * a + b * b)
 }
 
-/// What is mounted on the flange comes after the last link.
+/// The number of a tool on the flange: it comes after the last link.
 const TOOL: u8 = 8;

@@ -2,14 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::mounted::{Mounted, Spot};
+use super::mounted::{Location, Mounted};
 use crate::collision::Obstacle;
 use crate::collision::obstacle::Axis;
 use crate::geometry::SHOULDER;
 use crate::inertia::dot;
 use crate::scalar::sqrt;
 
-/// What is to be kept out of, from the shoulder, in base axes.
+/// A region to keep out of: relative to the shoulder, in base axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Region {
     Plane {
@@ -25,8 +25,8 @@ pub(super) enum Region {
 }
 
 impl Region {
-    /// What nothing can come near to.
-    pub(super) const NOWHERE: Self = Self::Plane {
+    /// A region infinitely far from everything.
+    pub(super) const NONE: Self = Self::Plane {
         normal: Vector3::new(0.0, 0.0, 0.0),
         offset: f64::NEG_INFINITY,
     };
@@ -46,19 +46,24 @@ impl Region {
         }
     }
 
-    /// The distance of a capsule, `[m]`, if that may be less than `limit`.
+    /// The distance of a capsule, `[m]`; `None` if it is certainly not below `limit`.
     #[inline(always)]
-    pub(super) fn distance_below(&self, spot: &Spot, capsule: &Mounted, limit: f64) -> Option<f64> {
+    pub(super) fn distance_below(
+        &self,
+        location: &Location,
+        capsule: &Mounted,
+        limit: f64,
+    ) -> Option<f64> {
         match self {
-            Self::Plane { normal, offset } => Some(from_plane(normal, *offset, spot, capsule)),
+            Self::Plane { normal, offset } => Some(from_plane(normal, *offset, location, capsule)),
             Self::Box { turn, centre, half } => {
-                let middle = turn * (spot.middle - centre);
+                let middle = turn * (location.middle - centre);
                 let near = limit + capsule.radius;
                 let ball = near + capsule.reach;
                 if ball > 0.0 && beyond(&(middle.abs() - half)) >= ball * ball {
                     return None;
                 }
-                let along = turn * spot.half;
+                let along = turn * location.half;
                 if near > 0.0 && beyond(&(middle.abs() - along.abs() - half)) >= near * near {
                     return None;
                 }
@@ -72,15 +77,15 @@ impl Region {
         }
     }
 
-    /// What the distance of a capsule is at least, `[m]`. No bound at all where a box around its
-    /// axis meets the region.
+    /// A lower bound on the distance of a capsule, `[m]`: −∞ where a box around its axis meets the
+    /// region.
     #[inline(always)]
-    pub(super) fn distance_at_least(&self, spot: &Spot, capsule: &Mounted) -> f64 {
+    pub(super) fn distance_at_least(&self, location: &Location, capsule: &Mounted) -> f64 {
         match self {
-            Self::Plane { normal, offset } => from_plane(normal, *offset, spot, capsule),
+            Self::Plane { normal, offset } => from_plane(normal, *offset, location, capsule),
             Self::Box { turn, centre, half } => {
-                let middle = turn * (spot.middle - centre);
-                let along = turn * spot.half;
+                let middle = turn * (location.middle - centre);
+                let along = turn * location.half;
                 let beyond = beyond(&(middle.abs() - along.abs() - half));
                 if beyond > 0.0 {
                     sqrt(beyond) - capsule.radius
@@ -92,14 +97,14 @@ impl Region {
     }
 }
 
-/// The lower end counts, whichever it is.
+/// Distance to a plane: that of the end nearer to it.
 #[inline(always)]
-fn from_plane(normal: &Vector3<f64>, offset: f64, spot: &Spot, capsule: &Mounted) -> f64 {
-    dot(normal, &spot.middle) - dot(normal, &spot.half).abs() - offset - capsule.radius
+fn from_plane(normal: &Vector3<f64>, offset: f64, location: &Location, capsule: &Mounted) -> f64 {
+    dot(normal, &location.middle) - dot(normal, &location.half).abs() - offset - capsule.radius
 }
 
-/// Square of the distance of a box from another one with the same axes, between which `gaps` are
-/// left along these, negative where they lie side by side.
+/// The square of the distance between two boxes with parallel axes; `gaps` are the gaps along
+/// these, negative where the boxes overlap.
 #[inline(always)]
 fn beyond(gaps: &Vector3<f64>) -> f64 {
     let gaps = gaps.map(|x| if x > 0.0 { x } else { 0.0 });

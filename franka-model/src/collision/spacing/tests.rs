@@ -47,7 +47,7 @@ fn random_regions(random: &mut Random) -> [Option<Obstacle>; REGIONS_MAX] {
     })
 }
 
-/// All rooms by the distances of all pairs, in the order of the items.
+/// All margins by the distances of all pairs, in the order of the items.
 fn plain(
     (arm, cover): &(Shape<'_>, Shape<'_>),
     links: u8,
@@ -57,12 +57,12 @@ fn plain(
     let arm = arm.at(q);
     let far = |(a, b): (Body, Body)| number(b) - number(a) >= links;
     let pairs = arm.distances().filter(|(bodies, _)| far(*bodies));
-    let mut rooms: Vec<f64> = pairs.map(|(_, distance)| distance - APART).collect();
+    let mut margins: Vec<f64> = pairs.map(|(_, distance)| distance - APART).collect();
     let cover = cover.at(q);
     for region in regions.iter().flatten() {
-        rooms.extend(cover.to(region).map(|near| near.distance - OUT));
+        margins.extend(cover.to(region).map(|near| near.distance - OUT));
     }
-    rooms
+    margins
 }
 
 #[test]
@@ -77,17 +77,17 @@ fn rooms_are_what_the_distances_leave_and_those_below_a_limit_are_told() {
         let q = random.posture(Model::fr3());
         let arrangement = spacing.at(&q);
         let expected = plain(&shapes, links, &regions, &q);
-        let items: Vec<_> = spacing.items(Open::ALL).collect();
+        let items: Vec<_> = spacing.items(CandidateMask::ALL).collect();
         assert_eq!(items.len(), expected.len());
         let limit = random.uniform(-0.1, 0.2);
         for (item, expected) in items.into_iter().zip(expected) {
-            let room = arrangement.room(item);
+            let margin = arrangement.margin(item);
             assert!(
-                (room - expected).abs() < 1e-12,
-                "{item:?}: {room}, {expected}"
+                (margin - expected).abs() < 1e-12,
+                "{item:?}: {margin}, {expected}"
             );
-            let below = arrangement.room_below(item, limit);
-            assert_eq!(below, (room < limit).then_some(room), "{item:?}");
+            let below = arrangement.margin_below(item, limit);
+            assert_eq!(below, (margin < limit).then_some(margin), "{item:?}");
             near += usize::from(below.is_some());
             far += usize::from(below.is_none());
         }
@@ -96,7 +96,7 @@ fn rooms_are_what_the_distances_leave_and_those_below_a_limit_are_told() {
 }
 
 #[test]
-fn within_the_leeway_of_a_posture_nothing_is_near() {
+fn within_a_motion_bound_no_margin_is_below_the_limit() {
     let mut random = Random::new(302);
     let (mut covered, mut others) = (0, 0);
     for case in 0..4000 {
@@ -108,57 +108,59 @@ fn within_the_leeway_of_a_posture_nothing_is_near() {
         let spacing = Spacing::within(&shapes.0, APART, 3).out_of(&shapes.1, OUT, &regions);
         let q = random.posture(Model::fr3());
         let limit = random.uniform(0.0, 0.1);
-        let leeway = spacing.at(&q).leeway(limit);
+        let bound = spacing.at(&q).motion_bound(limit);
         let mut size = 0.5;
         for _ in 0..8 {
             size *= 0.6;
             let q = q + JointVector::from_fn(|_, _| random.uniform(-size, size));
             let turns = JointVector::from_fn(|_, _| random.uniform(0.0, size));
-            let open: Vec<_> = spacing.items(leeway.open(&spacing, &q, &turns)).collect();
+            let candidates: Vec<_> = spacing
+                .items(bound.candidates(&spacing, &q, &turns))
+                .collect();
             for _ in 0..4 {
                 let ends = turns.map(|turn| turn * random.uniform(-1.0, 1.0).signum());
                 let at = spacing.at(&(q + ends));
-                for item in spacing.items(Open::ALL) {
-                    let near = at.room_below(item, limit - 1e-12).is_some();
-                    assert!(!near || open.contains(&item), "{item:?}");
+                for item in spacing.items(CandidateMask::ALL) {
+                    let near = at.margin_below(item, limit - 1e-12).is_some();
+                    assert!(!near || candidates.contains(&item), "{item:?}");
                 }
             }
-            let all = spacing.items(Open::ALL).count();
-            covered += all - open.len();
-            others += open.len();
+            let all = spacing.items(CandidateMask::ALL).count();
+            covered += all - candidates.len();
+            others += candidates.len();
         }
     }
     assert!(covered > 100_000 && others > 100_000, "{covered}, {others}");
 }
 
 #[test]
-fn what_is_near_or_is_no_number_has_no_leeway() {
+fn small_margins_and_nan_postures_stay_candidates() {
     let floor = [Some(Obstacle::floor(0.0)), None, None, None];
     let cover = Shape::covering(RobotKind::Fr3);
     let spacing = Spacing::within(&Shape::vendor(), APART, 3).out_of(&cover, OUT, &floor);
     let still = JointVector::zeros();
     let spare = |q: &JointVector, limit| {
-        let leeway = spacing.at(q).leeway(limit);
-        leeway.open(&spacing, q, &still).is_empty()
+        let bound = spacing.at(q).motion_bound(limit);
+        bound.candidates(&spacing, q, &still).is_empty()
     };
     // Link 1 is a decimetre above the floor.
     assert!(spare(&crate::READY, 0.05));
     assert!(!spare(&crate::READY, 0.15));
     let nowhere = JointVector::repeat(f64::NAN);
-    let leeway = spacing.at(&crate::READY).leeway(0.05);
-    assert!(!leeway.open(&spacing, &nowhere, &still).is_empty());
+    let bound = spacing.at(&crate::READY).motion_bound(0.05);
+    assert!(!bound.candidates(&spacing, &nowhere, &still).is_empty());
     let at = spacing.at(&nowhere);
     let moving = spacing
-        .items(Open::ALL)
-        .filter(|item| at.room_below(*item, 0.05).is_some());
+        .items(CandidateMask::ALL)
+        .filter(|item| at.margin_below(*item, 0.05).is_some());
     assert!(moving.count() > 10);
 }
 
 /// The ends of the axes, from the shoulder.
-fn ends(crowd: &Crowd, q: &JointVector) -> Vec<[Vector3<f64>; 2]> {
-    let spots = crowd.at(&Chain::at(q));
-    let spots = spots.iter().take(crowd.count);
-    spots
+fn ends(capsules: &LinkCapsules, q: &JointVector) -> Vec<[Vector3<f64>; 2]> {
+    let locations = capsules.at(&Chain::at(q));
+    let locations = locations.iter().take(capsules.count);
+    locations
         .map(|s| [s.middle - s.half, s.middle + s.half])
         .collect()
 }
@@ -168,22 +170,22 @@ fn no_joint_moves_a_capsule_with_more_than_its_lever() {
     const STEP: f64 = 1e-6;
     let mut random = Random::new(303);
     for shape in [Shape::vendor(), Shape::covering(RobotKind::Fer)] {
-        let crowd = Crowd::of(&shape.with_hand());
-        let mut most = std::vec![[0.0_f64; 7]; crowd.count];
+        let capsules = LinkCapsules::of(&shape.with_hand());
+        let mut most = std::vec![[0.0_f64; 7]; capsules.count];
         for _ in 0..3000 {
             let q = random.posture(Model::fr3());
-            let here = ends(&crowd, &q);
+            let here = ends(&capsules, &q);
             for joint in 1..=7 {
                 let mut turned = q;
                 turned[joint - 1] += STEP;
-                for (i, moved) in ends(&crowd, &turned).iter().enumerate() {
+                for (i, moved) in ends(&capsules, &turned).iter().enumerate() {
                     for (a, b) in here[i].iter().zip(moved) {
                         most[i][joint - 1] = most[i][joint - 1].max((b - a).norm() / STEP);
                     }
                 }
             }
         }
-        for (mounted, most) in crowd.each().iter().zip(most) {
+        for (mounted, most) in capsules.each().iter().zip(most) {
             for joint in 1..=mounted.joints() {
                 let (lever, most) = (mounted.lever(joint), most[joint - 1]);
                 let case = (mounted.number, joint, lever, most);

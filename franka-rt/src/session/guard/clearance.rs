@@ -12,7 +12,9 @@
 //! Only what comes nearer is held up. A motion out of a zone is free, also for an arm that begins
 //! inside.
 
-use franka_model::collision::{Arrangement, Leeway, Obstacle, Open, REGIONS_MAX, Shape, Spacing};
+use franka_model::collision::{
+    Arrangement, CandidateMask, MotionBound, Obstacle, REGIONS_MAX, Shape, Spacing,
+};
 use franka_model::{JointVector, RobotKind};
 
 /// Distance, `[m]`, that two links keep that have two others between them: what the robot's
@@ -52,10 +54,10 @@ pub(crate) struct Clearance {
 /// What is known from a posture that the arm was about to pass.
 #[derive(Debug)]
 struct Known {
-    /// How far the joints may turn from there before anything is near.
-    leeway: Leeway,
-    /// What could be near on the way to rest when it was passed.
-    open: Open,
+    /// A bound on how far the joints may turn from there before a distance is small.
+    bound: MotionBound,
+    /// The distances that could be small on the way to rest when it was passed.
+    candidates: CandidateMask,
 }
 
 /// What lies on the way to rest.
@@ -99,25 +101,25 @@ impl Clearance {
         // Nearly always the arm has not come far enough since it was looked at last for anything
         // else to be near.
         if let Some(known) = &self.known {
-            let open = known.leeway.open(&self.spacing, &half, &way);
-            if open.is_empty() {
+            let candidates = known.bound.candidates(&self.spacing, &half, &way);
+            if candidates.is_empty() {
                 return Ahead::Clear;
             }
-            if open == known.open {
-                let there = known.leeway.open(&self.spacing, &half, &still);
+            if candidates == known.candidates {
+                let there = known.bound.candidates(&self.spacing, &half, &still);
                 let half = self.spacing.at(&half);
-                return self.on_the_way(now, (&half, there), (end, open));
+                return self.on_the_way(now, (&half, there), (end, candidates));
             }
         }
         let middle = self.spacing.at(&half);
-        let leeway = middle.leeway(SLOW_ZONE);
-        let open = leeway.open(&self.spacing, &half, &way);
-        let there = leeway.open(&self.spacing, &half, &still);
-        self.known = Some(Known { leeway, open });
-        if open.is_empty() {
+        let bound = middle.motion_bound(SLOW_ZONE);
+        let candidates = bound.candidates(&self.spacing, &half, &way);
+        let there = bound.candidates(&self.spacing, &half, &still);
+        self.known = Some(Known { bound, candidates });
+        if candidates.is_empty() {
             return Ahead::Clear;
         }
-        self.on_the_way(now, (&middle, there), (end, open))
+        self.on_the_way(now, (&middle, there), (end, candidates))
     }
 
     /// Whether it is known without another look that nothing is too near ahead of `next`, if the
@@ -126,35 +128,35 @@ impl Clearance {
         let half = (next + end) * 0.5;
         let way = (end - half).abs();
         self.known.as_ref().is_some_and(|known| {
-            let open = known
-                .leeway
-                .open_below(SLOW_ZONE, &self.spacing, &half, &way);
-            open.is_empty()
+            let candidates = known
+                .bound
+                .candidates_below(SLOW_ZONE, &self.spacing, &half, &way);
+            candidates.is_empty()
         })
     }
 
-    /// What it means to go from `now` to `half` and to `end`, if no more than what is open may be
-    /// near there.
+    /// What it means to go from `now` to `half` and to `end`, if only distances of the candidates
+    /// may be small there.
     ///
     /// Only what is near there is compared with where it is now. Once something is known to be
     /// near, what could still make a difference is what would be too near.
     fn on_the_way(
         &self,
         now: &JointVector,
-        half: (&Arrangement<'_>, Open),
-        end: (&JointVector, Open),
+        half: (&Arrangement<'_>, CandidateMask),
+        end: (&JointVector, CandidateMask),
     ) -> Ahead {
         let mut ahead = Ahead::Clear;
         let mut limit = SLOW_ZONE;
         let mut here = None;
-        let (end, open) = (self.spacing.at(end.0), end.1);
-        for (there, open) in [half, (&end, open)] {
-            for item in self.spacing.items(open) {
-                let Some(then) = there.room_below(item, limit) else {
+        let (end, candidates) = (self.spacing.at(end.0), end.1);
+        for (there, candidates) in [half, (&end, candidates)] {
+            for item in self.spacing.items(candidates) {
+                let Some(then) = there.margin_below(item, limit) else {
                     continue;
                 };
                 let here = here.get_or_insert_with(|| self.spacing.at(now));
-                ahead = ahead.max(judge(here.room(item), then));
+                ahead = ahead.max(judge(here.margin(item), then));
                 match ahead {
                     Ahead::Clear => {}
                     Ahead::Near => limit = 0.0,
@@ -166,7 +168,7 @@ impl Clearance {
     }
 }
 
-/// What it means to go from where the room is `now` to where it is `then`, both in metres.
+/// What it means that a margin changes from `now` to `then`, both in metres.
 fn judge(now: f64, then: f64) -> Ahead {
     if then >= SLOW_ZONE || then >= now - NEARER {
         Ahead::Clear

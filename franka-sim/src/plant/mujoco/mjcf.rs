@@ -18,7 +18,7 @@ pub(super) fn arm(
     load: &Load,
     has_hand: bool,
 ) -> String {
-    let model = Model::realisable(kind);
+    let model = Model::physically_consistent(kind);
     let shapes = Shapes::of(kind, has_hand);
     let mut text = String::new();
     // A load may have any moments of inertia; MuJoCo takes the nearest that a body can have.

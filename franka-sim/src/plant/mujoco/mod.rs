@@ -16,8 +16,9 @@ use super::{ArmParameters, FingerDrive, Plant};
 use fingers::FingerJoints;
 use scene::{JOINT, Places};
 
-/// The links of [`Model::realisable`](franka_model::Model::realisable) in MuJoCo, with the rotors,
-/// friction and end stops of a [`RigidArm`](super::RigidArm) and the surroundings of a [`Scene`].
+/// The links of [`Model::physically_consistent`](franka_model::Model::physically_consistent) in
+/// MuJoCo, with the rotors, friction and end stops of a [`RigidArm`](super::RigidArm) and the
+/// surroundings of a [`Scene`].
 ///
 /// Away from contact it is the same arm: each step solves the same equation in the same way, with
 /// inertia and bias forces that are MuJoCo's own. Friction and end stops of the joints enter as

@@ -79,7 +79,7 @@ fn random_motion(random: &mut Random, model: &Model) -> (JointVector, JointVecto
 fn inertia_and_bias_are_those_of_the_rigid_arm() {
     let mut random = Random::new(7);
     for (name, kind, load, mut arm) in arms() {
-        let model = Model::realisable(kind);
+        let model = Model::physically_consistent(kind);
         let parameters = ArmParameters::of(kind);
         let (mut worst_mass, mut worst_bias) = (0.0_f64, 0.0_f64);
         for _ in 0..100 {
@@ -108,7 +108,7 @@ fn inertia_and_bias_are_those_of_the_rigid_arm() {
 #[test]
 fn five_seconds_of_torques_move_both_arms_alike() {
     for (name, kind, load, mut mujoco) in arms() {
-        let model = Model::realisable(kind);
+        let model = Model::physically_consistent(kind);
         let mut rigid = RigidArm::new(model, ArmParameters::of(kind), READY, load);
         let (mut apart, mut travel) = (0.0_f64, 0.0_f64);
         let none = JointVector::zeros();
@@ -175,7 +175,7 @@ fn a_load_can_change_while_the_arm_moves() {
     arm.attach(Tool::hand().load);
     assert_eq!((*arm.q(), *arm.dq()), (q, dq));
     let gravity = franka_model::GRAVITY_EARTH;
-    let model = Model::realisable(RobotKind::Fr3);
+    let model = Model::physically_consistent(RobotKind::Fr3);
     let load = Tool::hand().load;
     arm.place(&q);
     let expected = model.gravity(&q, &load, &gravity);
@@ -202,7 +202,7 @@ fn a_scene_that_is_none_says_why() {
 #[test]
 fn a_fall_is_the_rigid_arms_until_it_ends_on_the_table() {
     for kind in RobotKind::ALL {
-        let model = Model::realisable(kind);
+        let model = Model::physically_consistent(kind);
         let mut arm = MujocoArm::new(kind, Scene::table()).expect("a scene");
         let mut free = RigidArm::new(model, ArmParameters::of(kind), READY, Load::NONE);
         let none = JointVector::zeros();

@@ -11,8 +11,8 @@ use crate::session::{Budget, course};
 /// Whether it is known that nothing is near within `turns` of `q`.
 fn is_clear(clearance: &Clearance, q: &JointVector, turns: &JointVector) -> bool {
     let known = clearance.known.as_ref();
-    let open = known.map(|known| known.leeway.open(&clearance.spacing, q, turns));
-    open.is_some_and(Open::is_empty)
+    let candidates = known.map(|known| known.bound.candidates(&clearance.spacing, q, turns));
+    candidates.is_some_and(CandidateMask::is_empty)
 }
 
 fn of(keep_out: KeepOut) -> Clearance {
@@ -20,7 +20,7 @@ fn of(keep_out: KeepOut) -> Clearance {
 }
 
 /// What is left at a posture of every distance that is to be kept.
-fn rooms(keep_out: &KeepOut, q: &JointVector) -> Vec<f64> {
+fn margins(keep_out: &KeepOut, q: &JointVector) -> Vec<f64> {
     let number = |body| match body {
         Body::Link(link) => link,
         Body::Tool => 8,
@@ -28,24 +28,24 @@ fn rooms(keep_out: &KeepOut, q: &JointVector) -> Vec<f64> {
     let arm = Shape::vendor().with_hand().at(q);
     let far = |(a, b)| number(b) - number(a) >= APART;
     let pairs = arm.distances().filter(|(bodies, _)| far(*bodies));
-    let mut rooms: Vec<f64> = pairs.map(|(_, distance)| distance - SELF_STOP).collect();
+    let mut margins: Vec<f64> = pairs.map(|(_, distance)| distance - SELF_STOP).collect();
     let cover = Shape::covering(RobotKind::Fr3).with_hand().at(q);
     for region in keep_out.iter().flatten() {
-        rooms.extend(cover.to(region).map(|near| near.distance - KEEP_OUT_STOP));
+        margins.extend(cover.to(region).map(|near| near.distance - KEEP_OUT_STOP));
     }
-    rooms
+    margins
 }
 
 fn least(q: &JointVector) -> f64 {
-    let rooms = rooms(&KeepOut::default(), q);
-    rooms.into_iter().fold(f64::INFINITY, f64::min)
+    let margins = margins(&KeepOut::default(), q);
+    margins.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// What [`Clearance::ahead`] is to say, by all distances at all three postures.
 fn plain(keep_out: &KeepOut, now: &JointVector, next: &JointVector, end: &JointVector) -> Ahead {
-    let now = rooms(keep_out, now);
+    let now = margins(keep_out, now);
     let judged = [(next + end) * 0.5, *end].map(|there| {
-        let there = rooms(keep_out, &there);
+        let there = margins(keep_out, &there);
         let all = now.iter().zip(&there);
         all.map(|(&now, &then)| judge(now, then)).max()
     });
@@ -113,19 +113,19 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
     assert!(safely_near > 1000, "{safely_near}");
 }
 
-/// The arm bent forwards at joint 2 until it has this much room to itself.
-fn bent(room: f64) -> JointVector {
+/// The arm bent forwards at joint 2 until its distance to itself has this margin.
+fn bent(margin: f64) -> JointVector {
     let at = |angle: f64| {
         let mut q = READY;
         q[1] += angle;
         q
     };
     let (mut far, mut near) = (1.1, 1.9);
-    assert!(least(&at(far)) > room);
-    assert!(least(&at(near)) < room);
+    assert!(least(&at(far)) > margin);
+    assert!(least(&at(near)) < margin);
     for _ in 0..60 {
         let middle = 0.5 * (near + far);
-        if least(&at(middle)) < room {
+        if least(&at(middle)) < margin {
             near = middle;
         } else {
             far = middle;

@@ -1,44 +1,49 @@
-//! How far joints may turn before anything comes near.
+//! Bounds on how fast distances shrink when joints turn.
 //!
-//! A body moves against another by the joints between them, and by no more than the length of the
-//! lever with which each of these moves it. What moves by the same joints is kept together in a
-//! group.
+//! A joint between two bodies changes their distance by at most its angle times its lever: the
+//! greatest distance of the outer body from the joint's axis. Distances between the same two bodies
+//! have the same joints in between and form a group.
 
 use super::mounted::Mounted;
 use crate::JointVector;
 
-/// How far the joints may turn from a posture before anything is near: from each posture within,
-/// everything has more room than the limit for which it was made.
+/// A bound on the margins around a posture: as long as the joints have turned by less than this
+/// allows, every margin is above the limit for which it was made.
 #[derive(Debug, Clone)]
-pub struct Leeway {
+pub struct MotionBound {
     q: JointVector,
-    /// What each group has left above that limit, `[m]`.
+    /// By group, how far its least margin is above that limit, `[m]`.
     spare: [f64; GROUPS_MAX],
 }
 
-impl Leeway {
+impl MotionBound {
     pub(super) const fn new(q: JointVector, spare: [f64; GROUPS_MAX]) -> Self {
         Self { q, spare }
     }
 
-    /// What may be near at a posture that is within `turns`, `[rad]`, none of them negative, of
-    /// `q`.
+    /// The distances whose margin may be below the limit at some posture that is within `turns`,
+    /// `[rad]`, of `q`; `turns` must not be negative.
     #[must_use]
-    pub fn open(&self, spacing: &super::Spacing, q: &JointVector, turns: &JointVector) -> Open {
-        self.open_below(0.0, spacing, q, turns)
+    pub fn candidates(
+        &self,
+        spacing: &super::Spacing,
+        q: &JointVector,
+        turns: &JointVector,
+    ) -> CandidateMask {
+        self.candidates_below(0.0, spacing, q, turns)
     }
 
-    /// What may have so much less room there than the limit for which this was made, `[m]`.
+    /// The distances whose margin may be below the limit less `less`, `[m]`, at such a posture.
     #[must_use]
-    pub fn open_below(
+    pub fn candidates_below(
         &self,
         less: f64,
         spacing: &super::Spacing,
         q: &JointVector,
         turns: &JointVector,
-    ) -> Open {
+    ) -> CandidateMask {
         let groups = &spacing.groups;
-        // All groups that there could be: whole rows are added in a few instructions.
+        // Padded to full SIMD rows: groups beyond the count have no levers.
         let mut moved = [0.0; GROUPS_MAX];
         for (i, levers) in groups.levers.iter().enumerate() {
             let turn = (q[i] - self.q[i]).abs() + turns[i];
@@ -47,23 +52,23 @@ impl Leeway {
             }
         }
         let all = moved.iter().zip(&self.spare).enumerate();
-        // What is not a number is not clear.
+        // NaN compares false, so it stays a candidate.
         let clear = all.fold(0, |clear, (i, (moved, spare))| {
             clear | u64::from(*moved <= spare + less) << i
         });
-        Open(!clear & groups.mask())
+        CandidateMask(!clear & groups.mask())
     }
 }
 
-/// Some of the distances that are kept: those that may be near.
+/// A set of groups of distances of a [`Spacing`](super::Spacing): those that have to be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Open(u64);
+pub struct CandidateMask(u64);
 
-impl Open {
-    /// All of them.
+impl CandidateMask {
+    /// Every distance.
     pub const ALL: Self = Self(u64::MAX);
 
-    /// Whether there are none.
+    /// Whether no distance has to be measured.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
@@ -75,13 +80,13 @@ impl Open {
     }
 }
 
-/// Groups of pairs of bodies.
+/// The groups of distances, by the pair of bodies.
 #[derive(Debug, Clone)]
 pub(super) struct Groups {
-    /// Numbers of the bodies, the inner one first; of two regions and the base alike 0.
+    /// Numbers of the bodies, the inner one first. Regions do not move and count as the base, 0.
     numbers: [(u8, u8); GROUPS_MAX],
     count: usize,
-    /// By joint, and by group, how far a turn moves the outer body against the inner one,
+    /// By joint and group: how far a turn moves the outer body relative to the inner one, at most,
     /// `[m/rad]`.
     levers: [[f64; GROUPS_MAX]; 7],
 }
@@ -93,13 +98,13 @@ impl Groups {
         levers: [[0.0; GROUPS_MAX]; 7],
     };
 
-    /// A bit for each of them.
+    /// One bit for each group.
     const fn mask(&self) -> u64 {
         (1 << self.count) - 1
     }
 
-    /// Adds a capsule that keeps from something on the body with the number `inner`, and gives its
-    /// group.
+    /// The group of the distances from `outer` to the body with the number `inner`; adds it if it
+    /// is new, and widens its levers.
     pub(super) fn join(&mut self, inner: u8, outer: &Mounted) -> usize {
         let numbers = (inner, outer.number);
         let known = self.numbers[..self.count].iter();
@@ -117,5 +122,5 @@ impl Groups {
     }
 }
 
-/// All pairs of the base, seven links and a tool.
+/// The most groups: all pairs of the base, seven links and a tool.
 pub(super) const GROUPS_MAX: usize = 36;
