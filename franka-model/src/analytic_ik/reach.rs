@@ -212,14 +212,33 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_that_no_place_on_the_line_allows_is_infinitely_far() {
-        // Straight up above the base, hand up: joint 6 cannot bend back that far.
-        let up = Isometry3::translation(0.0, 0.0, 0.2);
-        let reach = pose(Model::fr3(), &up, &EndEffector::default()).expect("finite");
-        let high = Isometry3::translation(3.0, 0.0, 0.333);
-        let beyond = pose(Model::fr3(), &high, &EndEffector::default()).expect("finite");
-        assert!(!beyond.within() && beyond.margin < 0.0);
-        assert_eq!(reach.within(), reach.margin >= 0.0);
+    fn a_pose_beyond_reach_is_as_far_as_the_line_says_or_infinitely_far() {
+        // Joints within 0.1 rad of the ready posture keep the hand pointing down.
+        let limits = JointLimits {
+            lower: READY.add_scalar(-0.1),
+            upper: READY.add_scalar(0.1),
+            ..*Model::fr3().joint_limits()
+        };
+        let model = Model::fr3().clone().with_joint_limits(limits);
+        let reach = |target: &Isometry3<f64>| {
+            pose(&model, target, &EndEffector::default()).expect("finite")
+        };
+        let ready = flange(&READY);
+        let inside = reach(&ready);
+        assert!(inside.within() && (0.0..0.1).contains(&inside.margin));
+
+        let outward = ready.translation.vector - Vector3::new(0.0, 0.0, SHOULDER);
+        let mut target = ready;
+        target.translation.vector += outward.normalize() * 0.3;
+        let outside = reach(&target);
+        assert_eq!(outside.posture, None);
+        let apart = inside.margin - outside.margin;
+        assert!((apart - 0.3).abs() < 2e-6, "{apart}");
+
+        target.rotation *=
+            nalgebra::UnitQuaternion::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI);
+        let nowhere = reach(&target);
+        assert_eq!((nowhere.posture, nowhere.margin), (None, f64::NEG_INFINITY));
     }
 
     #[test]
