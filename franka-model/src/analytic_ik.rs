@@ -27,6 +27,11 @@
 //! | [`solutions`] | the answers: branch, distance to limits and singularities, the nearest |
 //! | [`reach`] | whether a pose or a point is within reach, and how far from the boundary |
 //!
+//! The driver's own cycle does not call this module: it follows poses with
+//! [`differential_ik`](crate::differential_ik) and starts from
+//! [`inverse_kinematics`](crate::inverse_kinematics). It is for programs that choose a posture, or
+//! refuse a target, before anything moves: planners, paths through waypoints, tools.
+//!
 //! # Singularities
 //!
 //! Seen from a solver, a singularity is where solutions meet. With joint 7 locked they are where

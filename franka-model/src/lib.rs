@@ -29,6 +29,12 @@
 //! | `urdf` (a feature) | models from the description that a robot serves |
 //! | `model_library` (a feature) | the code that a Franka Emika Robot computes with |
 //!
+//! Control uses `frame` to `elbow`, the dynamics and `collision`. [`analytic_ik`],
+//! [`manipulability`] and [`JointMargins`] are for the program around it: which postures reach a
+//! pose, whether a target can be reached before anything moves, and how close to its limits an arm
+//! is. They cost a program that does not call them nothing: there is no static data and no
+//! dependency behind them, so they have no feature of their own.
+//!
 //! # Conventions
 //!
 //! SI units and radians. The base frame O is that of link 0: at the centre of the base, z along the
@@ -67,8 +73,6 @@ mod bodies;
 mod box_qp;
 mod chain;
 mod dynamics;
-mod fer;
-mod fr3;
 mod inertia;
 mod jacobian;
 mod kind;
@@ -76,6 +80,7 @@ mod ldl;
 mod margins;
 mod merge;
 mod model;
+mod robots;
 mod scalar;
 
 pub mod analytic_ik;

@@ -4,8 +4,8 @@
 //! All values are nominal, the ones that the robot checks against. A client stays below them by
 //! [`CLIENT_MARGIN`] (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
 
+use crate::JointVector;
 use crate::scalar::sqrt;
-use crate::{JointVector, RobotKind};
 
 /// What libfranka keeps off every limit: the same number in every unit
 /// (libfranka 0.21, `rate_limiting.h`).
@@ -55,11 +55,6 @@ impl BrakingEnvelope {
 }
 
 impl JointLimits {
-    /// The limits of a kind of robot.
-    pub const fn of(kind: RobotKind) -> &'static Self {
-        &kind.description().client.joints
-    }
-
     /// Velocities allowed at the positions `q`: `(lower, upper)`, `[rad/s]`.
     ///
     /// With a [`BrakingEnvelope`] the speed towards a position limit is bounded by what stops
@@ -109,17 +104,10 @@ pub struct CartesianLimits {
     pub elbow: MotionLimits,
 }
 
-impl CartesianLimits {
-    /// The limits of a kind of robot.
-    pub const fn of(kind: RobotKind) -> &'static Self {
-        &kind.description().cartesian
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::READY;
+    use crate::{READY, RobotKind};
 
     #[test]
     fn the_envelope_is_the_nominal_speed_far_from_the_limits() {

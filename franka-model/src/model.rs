@@ -8,7 +8,7 @@ use crate::frame::{EndEffector, Frame};
 use crate::inertia::RigidBody;
 use crate::jacobian::{self, Placement};
 use crate::kind::RobotKind;
-use crate::limits::{CartesianLimits, JointLimits};
+use crate::limits::JointLimits;
 use crate::load::Load;
 use crate::merge::Merge;
 use crate::{Jacobian, JointVector, MassMatrix};
@@ -33,37 +33,6 @@ pub struct Model {
 }
 
 impl Model {
-    /// The Franka Research 3.
-    pub const fn fr3() -> &'static Self {
-        Self::of(RobotKind::Fr3)
-    }
-
-    /// The Franka Emika Robot (Panda), as its own model library computes it.
-    ///
-    /// That library is no exact mechanics: some of the [`links`](Self::links) that meet it have
-    /// negative moments, and a load joins link 7 without the lever of link 7's own mass, which is
-    /// 3.0e-3 kg·m² of the mass matrix under 1.23 kg. For physics take
-    /// [`physically_consistent`](Self::physically_consistent).
-    pub const fn fer() -> &'static Self {
-        Self::of(RobotKind::Fer)
-    }
-
-    /// The model that the vendor's client has of a kind: what a controller computes with, so that
-    /// its torques are those that libfranka's would be.
-    pub const fn of(kind: RobotKind) -> &'static Self {
-        kind.description().client
-    }
-
-    /// A model of a kind with physically consistent inertial parameters: what a simulation moves.
-    ///
-    /// For the Franka Research 3 it is [`of`](Self::of). For the FER it is another set of bodies,
-    /// which loads join as mechanics has it. Without a load and upright the two differ by less than
-    /// 0.1 N·m at moderate speed; in a tilted base joint 1 differs by up to 0.08 N·m per m/s² of
-    /// horizontal gravity.
-    pub const fn physically_consistent(kind: RobotKind) -> &'static Self {
-        kind.description().physically_consistent
-    }
-
     /// Which robot this is.
     pub fn kind(&self) -> RobotKind {
         self.kind
@@ -91,11 +60,6 @@ impl Model {
             joints: limits,
             ..self
         }
-    }
-
-    /// What its end effector and elbow may do.
-    pub fn cartesian_limits(&self) -> &'static CartesianLimits {
-        CartesianLimits::of(self.kind)
     }
 
     /// Pose of `frame` in the base frame.

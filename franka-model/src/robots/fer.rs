@@ -4,14 +4,15 @@
 //! gives: hence one model that meets the library, for clients, and one that an arm could have, for
 //! simulation.
 
+use super::Description;
 use crate::inertia::RigidBody;
-use crate::kind::{Description, RobotKind};
+use crate::kind::RobotKind;
 use crate::limits::{CartesianLimits, JointLimits, MotionLimits};
 use crate::merge::Merge;
 use crate::model::Model;
 use crate::{JointVector, joint_vector};
 
-pub(crate) static FER: Description = Description {
+pub(super) static FER: Description = Description {
     client: &CLIENT,
     physically_consistent: &PHYSICALLY_CONSISTENT,
     cartesian: CARTESIAN,

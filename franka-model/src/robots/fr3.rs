@@ -1,13 +1,14 @@
 //! The Franka Research 3.
 
+use super::Description;
 use crate::inertia::RigidBody;
 use crate::joint_vector;
-use crate::kind::{Description, RobotKind};
+use crate::kind::RobotKind;
 use crate::limits::{BrakingEnvelope, CartesianLimits, JointLimits, MotionLimits};
 use crate::merge::Merge;
 use crate::model::Model;
 
-pub(crate) static FR3: Description = Description {
+pub(super) static FR3: Description = Description {
     client: &MODEL,
     physically_consistent: &MODEL,
     cartesian: CARTESIAN,
