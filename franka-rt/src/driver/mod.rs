@@ -188,7 +188,7 @@ impl Driver {
     ///
     /// Bounded work: at most one step of the program. A state that is not newer than the newest so
     /// far is ignored, as the robot numbers its cycles strictly upwards. A motion does not answer a
-    /// state whose joint positions, velocities or torques are not finite: the robot bridges the
+    /// state in which a number that its program computes with is not finite: the robot bridges the
     /// gap, or stops by itself if more of them follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let missing = match self.newest {
@@ -206,7 +206,9 @@ impl Driver {
         }
         match core::mem::replace(&mut self.phase, Phase::Watching) {
             Phase::Watching => None,
-            Phase::Armed(motion) if motion.modes.shown_by(state) && is_sound(state) => {
+            Phase::Armed(motion)
+                if motion.modes.shown_by(state) && motion.program.can_read(state) =>
+            {
                 self.events.push(Event::Started {
                     motion: motion.id,
                     time: state.message_id,
@@ -223,7 +225,7 @@ impl Driver {
             Phase::Running(motion) => {
                 if motion.is_left_by(state) {
                     self.end_at(state, motion, Ending::Aborted)
-                } else if is_sound(state) {
+                } else if motion.program.can_read(state) {
                     self.run(motion, state)
                 } else {
                     self.record.activity = Activity::Running;
@@ -391,11 +393,4 @@ impl Driver {
             observer,
         }));
     }
-}
-
-/// Whether what every program computes with is finite. Anything a program made of other numbers
-/// would go to the motors.
-fn is_sound(state: &RobotState) -> bool {
-    let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
-    numbers.copied().all(f64::is_finite)
 }

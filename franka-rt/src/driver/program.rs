@@ -4,10 +4,10 @@ use core::any::Any;
 
 use franka_proto::{RobotState, Version};
 
-use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command};
+use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command, Torques};
 use crate::driver::Record;
 use crate::session::{self, SessionEvent, TargetSession};
-use crate::shaping::InvalidCommand;
+use crate::shaping::{InvalidCommand, check};
 use crate::together::Gate;
 
 /// What answers the states of a running motion. Built outside the thread and freed outside it.
@@ -53,6 +53,18 @@ pub(super) enum Answer {
 }
 
 impl Program {
+    /// Whether everything that it computes with is finite in `state`. Anything made of other numbers
+    /// would go to the motors.
+    pub(super) fn can_read(&self, state: &RobotState) -> bool {
+        let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
+        let finite = numbers.copied().all(f64::is_finite);
+        finite
+            && match self {
+                Self::Target(session) => session.can_read(state),
+                Self::Callback(_) | Self::Active(_) | Self::Asynchronous(_) => true,
+            }
+    }
+
     /// Whether what the motion was to begin with has been taken back or replaced. Asked only while
     /// the motion waits.
     pub(super) fn is_withdrawn(&mut self) -> bool {
@@ -78,6 +90,16 @@ impl Program {
                     Gate::Closed => session.hold(state, record),
                     Gate::Broken(fault) => session.give_up(fault, state, record),
                 };
+                let valid = match &step.answer {
+                    session::Answer::Torques(Torques(torques)) => check::finite(torques),
+                    session::Answer::Setpoint(setpoint) => setpoint.validate(),
+                };
+                if let Err(invalid) = valid {
+                    return Step {
+                        answer: Answer::Failed(Failure::Invalid(invalid)),
+                        event: None,
+                    };
+                }
                 return Step {
                     answer: Answer::Command {
                         command: match step.answer {

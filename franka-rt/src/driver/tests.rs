@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use franka_model::{Model, READY};
 use franka_proto::{ControllerMode, MotionGeneratorMode, RobotMode, RobotState, Version};
+use nalgebra::Isometry3;
 
 use super::*;
 use crate::control::{ActiveControl, Callback, Torques};
 use crate::law::Gains;
-use crate::session::{Goal, GoalId, OnArrival, Target, TargetSession};
+use crate::session::{Backend, Goal, GoalId, OnArrival, Setpoints, Target, TargetSession};
 use crate::shaping::{InvalidCommand, Shaper};
 use crate::slot;
 use crate::stats::{Arrival, CycleTimes};
@@ -29,28 +30,22 @@ fn moving(time: u64) -> RobotState {
     }
 }
 
-fn armed(target: Target) -> Driver {
+fn session(target: Target, backend: Backend) -> Program {
     let (mut goals, reader) = slot::slot();
     let limits = Model::fr3().joint_limits();
     goals.write(&Goal {
         gains: Gains::joint(),
         ..Goal::new(GoalId(1), target, OnArrival::ReportAndFinish, limits)
     });
-    let mut driver = Driver::new(Version::V10);
-    driver.on_order(Order::Arm {
-        motion: MotionId(1),
-        modes: MODES,
-        program: Program::Target(Box::new(TargetSession::new(
-            Model::fr3().clone().into(),
-            Version::V10,
-            reader,
-        ))),
-        log: ControlLog::with_capacity(5),
-        ticket: None,
-        times: Arc::default(),
-        observer: None,
-    });
-    driver
+    let session = TargetSession::new(Model::fr3().clone().into(), Version::V10, reader);
+    Program::Target(Box::new(session.with_backend(backend)))
+}
+
+/// A target of the joints, a tenth of a radian from the ready posture.
+fn nearby() -> Target {
+    let mut target: [f64; 7] = READY.into();
+    target[0] += 0.1;
+    Target::Joints(target)
 }
 
 /// A cycle in which nothing takes time.
@@ -71,14 +66,12 @@ fn times(time: u64, late: u64, turnaround: u64) -> CycleTimes {
 
 #[test]
 fn a_state_that_is_not_finite_gets_no_answer_and_does_no_harm() {
-    let mut target: [f64; 7] = READY.into();
-    target[0] += 0.1;
     for spoil in [
         |state: &mut RobotState| state.q[3] = f64::NAN,
         |state: &mut RobotState| state.dq[0] = f64::INFINITY,
         |state: &mut RobotState| state.tau_J_d[6] = f64::NAN,
     ] {
-        let mut driver = armed(Target::Joints(target));
+        let mut driver = armed_with(session(nearby(), Backend::Torques));
         let mut time = 100;
         for step in 0..60 {
             time += 1;
@@ -99,6 +92,78 @@ fn a_state_that_is_not_finite_gets_no_answer_and_does_no_harm() {
         assert!(answer(&mut driver, &state).is_none());
         assert!(driver.is_watching(), "a reflex is seen all the same");
     }
+}
+
+#[test]
+fn a_setpoint_that_is_not_finite_gets_no_answer_either() {
+    let pose = Isometry3::translation(0.3, 0.0, 0.5);
+    let rigid: [f64; 16] = core::array::from_fn(|i| pose.to_homogeneous().as_slice()[i]);
+    for (setpoints, target) in [
+        (Setpoints::Joints, nearby()),
+        (Setpoints::Poses, Target::Rest),
+    ] {
+        for (spoil, read) in [
+            (
+                (|state| state.q_d[3] = f64::NAN) as fn(&mut RobotState),
+                true,
+            ),
+            (|state| state.dq_d[0] = f64::INFINITY, true),
+            (|state| state.ddq_d[6] = f64::NAN, true),
+            (
+                |state| state.O_T_EE_c[12] = f64::NAN,
+                setpoints == Setpoints::Poses,
+            ),
+            (
+                |state| state.elbow_c[0] = f64::NAN,
+                setpoints == Setpoints::Poses,
+            ),
+        ] {
+            let backend = Backend::RobotController(setpoints);
+            let mut driver = armed_with(session(target, backend));
+            for step in 0..60 {
+                let mut state = RobotState {
+                    q_d: READY.into(),
+                    O_T_EE_c: rigid,
+                    elbow_c: [READY[2], -1.0],
+                    ..moving(101 + step)
+                };
+                let bad = step < 2 || step % 7 == 0;
+                if bad {
+                    spoil(&mut state);
+                }
+                let command = answer(&mut driver, &state);
+                assert_eq!(command.is_none(), bad && read, "{setpoints:?}, {step}");
+                let sent = command.unwrap_or_default();
+                let numbers = sent.q_c.iter().chain(&sent.O_T_EE_c);
+                assert!(
+                    numbers.copied().all(f64::is_finite),
+                    "{setpoints:?}, {step}"
+                );
+            }
+        }
+    }
+}
+
+/// Velocities that are finite, and Coriolis torques that are not.
+#[test]
+fn a_session_whose_command_is_not_finite_fails_and_sends_nothing() {
+    let mut driver = armed_with(session(nearby(), Backend::Torques));
+    assert!(answer(&mut driver, &moving(101)).is_some());
+    let wild = RobotState {
+        dq: [1e200; 7],
+        ..moving(102)
+    };
+    assert_eq!(answer(&mut driver, &wild), None);
+    assert_eq!(driver.record().activity, Activity::Silent);
+    assert!(matches!(driver.take_event(), Some(Event::Started { .. })));
+    assert!(matches!(
+        driver.take_event(),
+        Some(Event::Failed {
+            failure: Failure::Invalid(InvalidCommand::NotFinite),
+            ..
+        })
+    ));
+    assert_eq!(answer(&mut driver, &moving(103)), None);
 }
 
 /// A state at rest, after a motion.

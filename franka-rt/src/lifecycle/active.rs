@@ -80,6 +80,8 @@ pub(super) struct Goals {
     pub(super) current: Waiting,
     pub(super) settled: Option<Settled>,
     pub(super) bad_tool: bool,
+    /// Why the session could not go on, if that has happened.
+    pub(super) failure: Option<MotionError>,
     /// The session that the goals belong to, if it goes on from goal to goal.
     pub(super) engaged: Option<Engaged>,
     /// Who turns setpoints into torques.
@@ -256,7 +258,7 @@ impl Work {
     pub(super) fn failure(&self) -> Option<&MotionError> {
         match self {
             Self::Program(program) => program.failure.as_ref(),
-            Self::Goals(_) => None,
+            Self::Goals(goals) => goals.failure.as_ref(),
         }
     }
 
@@ -348,6 +350,18 @@ impl Goals {
     }
 }
 
+/// Why a program could not go on, in words that can cross tasks.
+impl From<Failure> for MotionError {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Invalid(invalid) => Self::Invalid(invalid),
+            Failure::Panicked(payload) => Self::Panicked {
+                message: panic::message(&*payload),
+            },
+        }
+    }
+}
+
 impl Programmed {
     pub(super) fn new(id: GoalId) -> Self {
         Self {
@@ -356,16 +370,6 @@ impl Programmed {
             stopped: None,
             stops: Vec::new(),
         }
-    }
-
-    /// Notes why the program could not go on, in words that can cross tasks.
-    pub(super) fn note_failure(&mut self, failure: Failure) {
-        self.failure = Some(match failure {
-            Failure::Invalid(invalid) => MotionError::Invalid(invalid),
-            Failure::Panicked(payload) => MotionError::Panicked {
-                message: panic::message(&*payload),
-            },
-        });
     }
 
     /// How a motion turned out that finished well or was stopped as asked.

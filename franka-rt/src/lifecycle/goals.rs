@@ -352,6 +352,7 @@ impl Lifecycle {
             current: waiting,
             settled: None,
             bad_tool: false,
+            failure: None,
             engaged,
             backend,
             chunks,

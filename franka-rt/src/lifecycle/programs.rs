@@ -5,7 +5,7 @@ use core::time::Duration;
 use franka_proto::{MoveRequest, Request};
 
 use super::active::{CommandSide, Programmed, Work};
-use super::{Lifecycle, MotionError, Phase};
+use super::{END_TIMEOUT, Lifecycle, MotionError, Phase};
 use crate::control::Callback;
 use crate::driver::{Failure, MotionId, Program};
 use crate::session::GoalId;
@@ -97,13 +97,22 @@ impl Lifecycle {
         true
     }
 
-    /// Takes note that the program of a motion could not go on.
+    /// Takes note that the program of a motion could not go on, and has the robot stop.
     pub(super) fn on_failure(&mut self, motion: MotionId, failure: Failure, now: Duration) {
-        if self.active(motion).is_some()
-            && let Some(program) = self.program()
-        {
-            program.note_failure(failure);
-            self.send_stop(now);
+        let Some(active) = self.active(motion) else {
+            return;
+        };
+        let failure = MotionError::from(failure);
+        match &mut active.work {
+            Work::Program(program) => {
+                program.failure = Some(failure);
+                self.send_stop(now);
+            }
+            Work::Goals(goals) => {
+                goals.failure = Some(failure);
+                active.deadline = active.deadline.or(Some(now + END_TIMEOUT));
+                self.send(motion, Request::StopMove);
+            }
         }
     }
 

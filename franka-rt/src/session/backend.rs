@@ -89,7 +89,8 @@ impl Backend {
             | Guard::Clearance
             | Guard::Lead
             | Guard::Watchdog
-            | Guard::Deadman => true,
+            | Guard::Deadman
+            | Guard::PlanFailure => true,
             Guard::Leash
             | Guard::Deviation
             | Guard::TorqueClamp
@@ -144,6 +145,25 @@ impl Backend {
         limits.jerk *= BACKSTOP;
         limits.upper[3] = limits.upper[3].min(FLIP_ANGLE);
         Some(model.clone().with_joint_limits(limits))
+    }
+
+    /// Whether the desired state of the robot, which setpoints go on from, is finite where it is
+    /// read.
+    pub(super) fn can_read(self, state: &RobotState) -> bool {
+        let Self::RobotController(setpoints) = self else {
+            return true;
+        };
+        let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
+        let joints = [&state.q_d, &state.dq_d, &state.ddq_d].map(|joints| finite(joints));
+        let pose = || {
+            finite(&state.O_T_EE_c)
+                && finite(&state.O_dP_EE_c)
+                && finite(&state.O_ddP_EE_c)
+                && [&state.elbow_c, &state.delbow_c, &state.ddelbow_c]
+                    .into_iter()
+                    .all(|elbow| finite(elbow))
+        };
+        joints == [true; 3] && (setpoints == Setpoints::Joints || pose())
     }
 
     /// The answer that holds the arm: what the robot desires already, or no torques beside its
@@ -272,7 +292,7 @@ impl Stream {
     }
 
     /// The command for `reference`, and whether the backstop changed it. A command that cannot be
-    /// shaped, which takes a state with numbers that are none, is the robot's own setpoint.
+    /// shaped, as from a reference that is not finite, is the robot's own setpoint.
     pub(super) fn command(
         &mut self,
         model: &Model,

@@ -34,6 +34,8 @@ pub(super) struct Step {
     pub(super) held: bool,
     /// Whether a leash of the course's own moved the reference with the arm.
     pub(super) leashed: bool,
+    /// Whether the pose that waits could not be planned on from where it is.
+    pub(super) failed: bool,
 }
 
 impl Step {
@@ -44,6 +46,7 @@ impl Step {
             bounds: Held::default(),
             held: false,
             leashed: false,
+            failed: false,
         }
     }
 }
@@ -51,21 +54,12 @@ impl Step {
 impl Course {
     /// Turns towards a new goal from wherever the reference is and however it moves.
     ///
-    /// Goals are checked where they are accepted, so planning cannot fail but by a defect; the
-    /// course then goes on to where it was heading, which is safe and ends short of the goal.
-    pub(super) fn head_for(
-        &mut self,
-        model: &Model,
-        ee: &EndEffector,
-        reference: &Reference,
-        goal: &Goal,
-    ) {
-        let planned = self.plan(model, ee, reference, goal);
-        debug_assert!(planned.is_ok(), "{planned:?}");
-    }
-
     /// Courses are some kilobytes large: one of the same kind is planned anew in place.
-    fn plan(
+    ///
+    /// # Errors
+    /// [`PlanError`], by a defect only: goals are checked where they are accepted. The course goes
+    /// on to where it was heading, which is safe and ends short of the goal.
+    pub(super) fn head_for(
         &mut self,
         model: &Model,
         ee: &EndEffector,
@@ -166,15 +160,18 @@ impl Course {
                 let budget = generator.budget();
                 let (reference, bounds) =
                     kinematics::follow(model, ee, posture, drift, reference, &next, budget);
-                let held = bounds.any() && {
+                let tethered = if bounds.any() {
                     let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
                     leash::tether(generator, &reached)
+                } else {
+                    Ok(false)
                 };
                 Step {
                     reference,
                     bounds,
-                    held,
+                    held: tethered.unwrap_or(true),
                     leashed: false,
+                    failed: tethered.is_err(),
                 }
             }
         }

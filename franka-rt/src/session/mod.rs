@@ -254,6 +254,12 @@ impl TargetSession {
         self.held.map(|held| held.id).or(active)
     }
 
+    /// Whether everything that the session computes with beside measured joints and torques is finite
+    /// in `state`.
+    pub(crate) fn can_read(&self, state: &RobotState) -> bool {
+        self.backend.can_read(state)
+    }
+
     /// Answers one state. Bounded work, no allocation.
     pub(crate) fn step(&mut self, state: &RobotState, record: &mut Record) -> Step {
         let held = self.held.take();

@@ -37,6 +37,8 @@ pub(super) struct Route {
     judged: Budget,
     /// A chunk that a brake has taken the place of.
     pub(super) left: Option<ChunkCourse>,
+    /// Whether a plan could not be made since the last answer.
+    failed: bool,
 }
 
 #[derive(Debug)]
@@ -64,6 +66,7 @@ impl Route {
             hindered: 0,
             judged: budget,
             left: None,
+            failed: false,
         }
     }
 
@@ -76,7 +79,18 @@ impl Route {
         goal: &Goal,
     ) {
         let paced = self.paced(goal);
-        self.course.head_for(model, ee, reference, &paced);
+        self.plan(model, ee, reference, &paced);
+    }
+
+    /// Turns the course towards `goal`, or notes that it could not.
+    fn plan(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
+        let planned = self.course.head_for(model, ee, reference, goal);
+        self.failed |= planned.is_err();
+    }
+
+    /// Whether a plan could not be made since this was asked last.
+    pub(super) fn take_failure(&mut self) -> bool {
+        core::mem::take(&mut self.failed)
     }
 
     /// Follows a chunk towards its end, `goal`. What was near stays near for now. Gives back the
@@ -116,7 +130,7 @@ impl Route {
         let paced = self.paced(goal);
         match &mut self.course {
             Course::Chunk(chunk) => chunk.keep_to(model, reference, paced.budget),
-            course => course.head_for(model, ee, reference, &paced),
+            _ => self.plan(model, ee, reference, &paced),
         }
     }
 
@@ -186,7 +200,7 @@ impl Route {
             ..*goal
         };
         let rest = self.braking(&rest);
-        self.course.head_for(model, ee, reference, &rest);
+        self.plan(model, ee, reference, &rest);
     }
 
     /// Stays where it is.

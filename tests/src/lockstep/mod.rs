@@ -31,7 +31,7 @@ use franka_proto::{MoveRequest, Request, RobotCommand, RobotState};
 use franka_rt::control::{Callback, Command, WriteError};
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport};
-use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Target};
+use franka_rt::session::{Goal, GoalError, GoalId, Guard, OnArrival, Target};
 use franka_rt::together::StartTicket;
 use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
@@ -274,6 +274,10 @@ impl Lockstep {
         let Client { state, record, .. } = &self.client;
         let version = self.client.version();
         let decoded = RobotCommand::decode(version, command).expect("a command of this version");
+        assert!(
+            !record.bindings.contains(Guard::PlanFailure),
+            "a goal that is accepted can be planned"
+        );
         if let Some(guard) = &mut self.guard {
             guard.check(&decoded, state, record);
         }

@@ -271,6 +271,7 @@ impl Active {
             bounds,
             held,
             leashed: guided,
+            failed,
         } = if self.stayed {
             self.route.stay(&self.reference)
         } else {
@@ -288,14 +289,15 @@ impl Active {
         bindings.set(Guard::PositionEnvelope, bounds.position);
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         let event = self.advance_stage(model, &arm, at_rest, state.message_id);
-        let leashed = match self.drive {
+        let leash = match self.drive {
             Drive::Torques(_) => {
                 leash::hold(&mut self.route.course, &mut self.reference, &q, &arm.pose)
             }
             // What pulls is the robot's own controller, on whose setpoint the reference is
             // anchored.
-            Drive::Setpoints(_) => false,
+            Drive::Setpoints(_) => Ok(false),
         };
+        let leashed = leash.unwrap_or(true);
         bindings.set(Guard::Leash, leashed || guided);
         let carried_off = self.watch_deviation(model, &arm, leashed);
         bindings.set(Guard::Deviation, carried_off);
@@ -317,6 +319,8 @@ impl Active {
             }
         };
 
+        let failed = failed || leash.is_err() || self.route.take_failure();
+        bindings.set(Guard::PlanFailure, failed);
         record.goal = self.goal.id.0;
         record.q_ref = self.reference.q.into();
         record.dq_ref = self.reference.dq.into();

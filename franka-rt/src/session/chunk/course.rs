@@ -152,6 +152,7 @@ impl ChunkCourse {
                 bounds: Held::default(),
                 held: false,
                 leashed: false,
+                failed: false,
             },
             Play::Poses {
                 player,
@@ -177,6 +178,7 @@ impl ChunkCourse {
                     bounds,
                     held,
                     leashed: false,
+                    failed: false,
                 }
             }
         }

@@ -171,8 +171,11 @@ impl ChunkReader {
     /// Gives back a chunk that is done with.
     pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
         let returned = Returned { goal, fate, chunk };
-        let pushed = self.returns.push(returned);
-        debug_assert!(pushed.is_ok(), "the writer lets out as many as fit");
+        if let Err(rtrb::PushError::Full(returned)) = self.returns.push(returned) {
+            // The writer lets out as many as fit. Were it not so, memory would rather be lost than
+            // freed on this thread.
+            core::mem::forget(returned);
+        }
     }
 }
 

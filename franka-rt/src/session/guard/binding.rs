@@ -37,6 +37,8 @@ pub enum Guard {
     Deviation,
     /// The target was further ahead of the arm than it may be, and was drawn nearer.
     Lead,
+    /// No plan could be made to the target, which takes a defect; the course before it goes on.
+    PlanFailure,
 }
 
 /// A set of guards.
@@ -44,7 +46,7 @@ pub enum Guard {
 pub struct Bindings(u16);
 
 impl Guard {
-    const ALL: [Self; 14] = [
+    const ALL: [Self; 15] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
@@ -59,6 +61,7 @@ impl Guard {
         Self::Clearance,
         Self::Deviation,
         Self::Lead,
+        Self::PlanFailure,
     ];
 }
 

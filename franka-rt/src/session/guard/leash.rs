@@ -2,7 +2,7 @@
 //! that is held back is pulled by a bounded spring and does not leap when it is let go.
 
 use franka_model::{JointVector, rotation};
-use franka_otg::State;
+use franka_otg::{PlanError, State};
 use nalgebra::{Isometry3, Translation3};
 
 use crate::law::hybrid::Reference;
@@ -29,34 +29,32 @@ const ROTATION_TETHER: f64 = 5e-3;
 ///
 /// The course keeps its velocity and plans on from where it is held, so the arm follows smoothly
 /// once it is free.
+///
+/// # Errors
+/// [`PlanError`], by a defect only; the reference is held, and the course goes on as planned.
 pub(crate) fn hold(
     course: &mut Course,
     reference: &mut Reference,
     q: &JointVector,
     measured: &Isometry3<f64>,
-) -> bool {
+) -> Result<bool, PlanError> {
     let held = reference.q.zip_map(q, |reference, q| {
         reference.clamp(q - JOINT_LEASH, q + JOINT_LEASH)
     });
     let mut bound = held != reference.q;
     reference.q = held;
-    let planned = match course {
+    match course {
         Course::Joints(generator) if bound => generator.set_state(State {
             position: held.into(),
             ..*generator.state()
-        }),
-        Course::Pose(generator, _) => match within(
-            &generator.pose(),
-            measured,
-            TRANSLATION_LEASH,
-            ROTATION_LEASH,
-        ) {
-            Some(pose) => {
+        })?,
+        Course::Pose(generator, _) => {
+            let pose = generator.pose();
+            if let Some(pose) = within(&pose, measured, TRANSLATION_LEASH, ROTATION_LEASH) {
                 bound = true;
-                generator.reanchor(pose)
+                generator.reanchor(pose)?;
             }
-            None => Ok(()),
-        },
+        }
         Course::Chunk(chunk) => {
             let ahead = chunk.pose().and_then(|(state, _)| {
                 within(&state.pose, measured, TRANSLATION_LEASH, ROTATION_LEASH)
@@ -65,14 +63,10 @@ pub(crate) fn hold(
                 bound = true;
                 chunk.reanchor(pose);
             }
-            Ok(())
         }
-        Course::Rest | Course::Joints(_) | Course::Guide(_) => Ok(()),
-    };
-    // A measured state that is not finite; the robot will not send one, and the course then goes on
-    // as planned.
-    debug_assert!(planned.is_ok(), "{planned:?}");
-    bound
+        Course::Rest | Course::Joints(_) | Course::Guide(_) => {}
+    }
+    Ok(bound)
 }
 
 /// Holds a pose that runs ahead of the joints that are to follow it, where their bounds keep them
@@ -80,13 +74,17 @@ pub(crate) fn hold(
 ///
 /// Without it the pose would go on to its target, and the joints would chase it off the line, all
 /// of them at their bounds.
-pub(crate) fn tether(generator: &mut PoseGenerator, reached: &Isometry3<f64>) -> bool {
-    let Some(pose) = tethered(&generator.pose(), reached) else {
-        return false;
-    };
-    let planned = generator.reanchor(pose);
-    debug_assert!(planned.is_ok(), "{planned:?}");
-    true
+///
+/// # Errors
+/// [`PlanError`], by a defect only; the pose goes on as planned.
+pub(crate) fn tether(
+    generator: &mut PoseGenerator,
+    reached: &Isometry3<f64>,
+) -> Result<bool, PlanError> {
+    match tethered(&generator.pose(), reached) {
+        Some(pose) => generator.reanchor(pose).map(|()| true),
+        None => Ok(false),
+    }
 }
 
 /// The pose nearest to `pose` that does not run ahead of the joints at `reached`, if that is
