@@ -5,7 +5,7 @@ use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
 use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Translation3, vector};
 
-use super::motion::stacked;
+use super::motion::{JointExtent, stacked};
 use super::player::Player;
 use super::quintic::Phase;
 use super::ring::{ChunkReader, Fate};
@@ -80,7 +80,7 @@ impl ChunkCourse {
         } = chunk;
         let play = match points {
             Points::Joints(curve) => Play::Joints {
-                limits: joint_limits(model.joint_limits(), curve.states(), reference, &budget),
+                limits: joint_limits(model.joint_limits(), curve.extent(), reference, &budget),
                 player: Player::new(curve, origin, blend, reference, now),
             },
             Points::Poses(curve) => {
@@ -108,8 +108,8 @@ impl ChunkCourse {
         self.budget = changed;
         match &mut self.play {
             Play::Joints { player, limits } => {
-                let points = player.curve().states();
-                *limits = joint_limits(model.joint_limits(), points, reference, &changed);
+                let extent = player.curve().extent();
+                *limits = joint_limits(model.joint_limits(), extent, reference, &changed);
             }
             Play::Poses {
                 state,
@@ -237,23 +237,21 @@ fn pose_limits(model: &Model, now: &PoseState, budget: &Budget) -> Budget {
     budget.able_to_stop(&now.twist, &now.acceleration, model.cartesian_limits())
 }
 
-/// What each joint may do on the way through `points`: its budget, unless it moves and does not
+/// What each joint may do on the way through points of this `extent`: its budget, unless it moves and does not
 /// keep that, made gentle enough for the points nearest to the ends of its range.
 fn joint_limits(
     robot: &JointLimits,
-    points: &[Reference],
+    extent: &JointExtent,
     reference: &Reference,
     budget: &Budget,
 ) -> [AxisLimits; 7] {
     core::array::from_fn(|i| {
         let q = reference.q[i];
-        let positions = || points.iter().map(|point| point.q[i]);
-        let least = positions().fold(q, f64::min);
-        let most = positions().fold(q, f64::max);
+        let (lower, upper) = (extent.lower[i].min(q), extent.upper[i].max(q));
         let limits = limits_of_joint(i, robot, reference, budget.joints[i], false);
-        let limits = approach::limits(i, robot, q, most, limits);
-        if least < q {
-            approach::limits(i, robot, q, least, limits)
+        let limits = approach::limits(i, robot, q, upper, limits);
+        if lower < q {
+            approach::limits(i, robot, q, lower, limits)
         } else {
             limits
         }

@@ -9,9 +9,11 @@ use super::motion::Motion;
 
 /// States at increasing times, seconds from the chunk's origin. Never empty.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Curve<M> {
+pub(super) struct Curve<M: Motion> {
     times: Vec<f64>,
     states: Vec<M>,
+    /// Found here, outside the thread: the cycle that takes a chunk up has no time for all points.
+    extent: M::Extent,
 }
 
 impl<M: Motion> Curve<M> {
@@ -21,7 +23,12 @@ impl<M: Motion> Curve<M> {
         assert!(!states.is_empty() && times.len() == states.len());
         let last = states.len() - 1;
         states[last] = states[last].resting();
-        Self { times, states }
+        let extent = M::extent(&states);
+        Self {
+            times,
+            states,
+            extent,
+        }
     }
 
     pub(super) fn begin(&self) -> f64 {
@@ -39,6 +46,11 @@ impl<M: Motion> Curve<M> {
     /// At rest.
     pub(super) fn last(&self) -> &M {
         &self.states[self.states.len() - 1]
+    }
+
+    /// The range that the points take up.
+    pub(super) fn extent(&self) -> &M::Extent {
+        &self.extent
     }
 
     pub(super) fn states(&self) -> &[M] {
@@ -62,5 +74,27 @@ impl<M: Motion> Curve<M> {
                 )
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::hybrid::Reference;
+    use franka_model::JointVector;
+
+    #[test]
+    fn the_extent_has_the_least_and_the_greatest_of_each_joint() {
+        let at = |values: [f64; 7]| Reference::at_rest(JointVector::from(values));
+        let states = vec![
+            at([0.0, 1.0, -1.0, 2.0, 0.5, 0.0, 0.0]),
+            at([0.1, 0.5, -2.0, 2.5, 0.5, 0.0, -1.0]),
+            at([-0.1, 0.7, 3.0, 2.2, 0.5, 0.0, -2.0]),
+        ];
+        let curve = Curve::new(vec![0.0, 0.1, 0.2], states);
+        let extent = curve.extent();
+        let lower = [-0.1, 0.5, -2.0, 2.0, 0.5, 0.0, -2.0];
+        let upper = [0.1, 1.0, 3.0, 2.5, 0.5, 0.0, 0.0];
+        assert_eq!((extent.lower, extent.upper), (lower.into(), upper.into()));
     }
 }

@@ -1,7 +1,7 @@
 //! What moves along a chunk: joints, or a pose; how to go from one of their states to another, and
 //! how the distance between two is let go.
 
-use franka_model::{Twist, rotation};
+use franka_model::{JointVector, Twist, rotation};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::curve::Curve;
@@ -15,6 +15,9 @@ pub(super) trait Motion: Copy {
     /// How far one state is from another, with derivatives.
     type Gap: Copy + core::fmt::Debug;
 
+    /// The range that several states take up.
+    type Extent: Clone + core::fmt::Debug + PartialEq;
+
     /// The state at `t` on the way from `from` at 0 to `to` at `duration`, seconds.
     fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self;
 
@@ -27,12 +30,23 @@ pub(super) trait Motion: Copy {
     /// At rest in the same place.
     fn resting(&self) -> Self;
 
+    /// The range that `states` take up.
+    fn extent(states: &[Self]) -> Self::Extent;
+
     /// A curve of such states as the points of a chunk.
     fn points(curve: Curve<Self>) -> Points;
 }
 
+/// The least and the greatest position of each joint, `[rad]`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct JointExtent {
+    pub(super) lower: JointVector,
+    pub(super) upper: JointVector,
+}
+
 impl Motion for Reference {
     type Gap = Phase<7>;
+    type Extent = JointExtent;
 
     fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self {
         quintic::between(&from.phase(), &to.phase(), duration, t).into()
@@ -57,6 +71,15 @@ impl Motion for Reference {
 
     fn resting(&self) -> Self {
         Self::at_rest(self.q)
+    }
+
+    fn extent(states: &[Self]) -> JointExtent {
+        let positions = || states.iter().map(|state| state.q);
+        let infinite = JointVector::repeat(f64::INFINITY);
+        JointExtent {
+            lower: positions().fold(infinite, |lower, q| lower.inf(&q)),
+            upper: positions().fold(-infinite, |upper, q| upper.sup(&q)),
+        }
     }
 
     fn points(curve: Curve<Self>) -> Points {
@@ -94,6 +117,7 @@ pub(super) struct PoseGap {
 
 impl Motion for PoseState {
     type Gap = PoseGap;
+    type Extent = ();
 
     /// The rotation goes in the chart around the orientation of `from`, which the one of `to` has
     /// to be less than half a turn away from.
@@ -158,6 +182,8 @@ impl Motion for PoseState {
             acceleration: Twist::zeros(),
         }
     }
+
+    fn extent(_: &[Self]) {}
 
     fn points(curve: Curve<Self>) -> Points {
         Points::Poses(curve)

@@ -99,6 +99,10 @@ impl ChunkWriter {
     ///
     /// # Errors
     /// [`Full`] with the chunk if [`CHUNKS_MAX`] of them have not been [collected](Self::collect).
+    #[expect(
+        clippy::result_large_err,
+        reason = "once per chunk, outside the thread; the chunk goes back to its owner"
+    )]
     pub fn send(&mut self, goal: GoalId, chunk: Chunk) -> Result<(), Full> {
         if self.under_way >= CHUNKS_MAX {
             return Err(Full(chunk));
