@@ -7,8 +7,8 @@ use franka_async::{
 };
 use franka_proto::{MoveControllerMode, RobotError};
 
-use crate::alone;
 use crate::control::each;
+use crate::{SOON, alone, under_way};
 
 /// Runs `work` on a thread of its own, as active control wants, and returns what it does.
 async fn on_a_thread<C: Send + 'static, T: Send + 'static>(
@@ -49,7 +49,7 @@ fn hold(mut control: Active<Torques>, cycles: u64) -> Result<u64, ActiveError> {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_thread_holds_the_arm_by_torques_and_hands_it_back() {
     let _alone = alone();
-    for (robot, _sim) in each(false).await {
+    for (robot, _sim) in each().await {
         for _ in 0..2 {
             let control = robot.active_torques().await.unwrap();
             let held = on_a_thread(control, |control| hold(control, 300)).await;
@@ -65,7 +65,7 @@ async fn a_thread_holds_the_arm_by_torques_and_hands_it_back() {
 #[tokio::test(flavor = "multi_thread")]
 async fn what_the_motion_does_not_take_is_refused_and_it_goes_on() {
     let _alone = alone();
-    for (robot, _sim) in each(false).await {
+    for (robot, _sim) in each().await {
         let control = robot.active_joint_velocities(MoveControllerMode::JointImpedance);
         let control = control.await.unwrap();
         on_a_thread(control, |mut control| {
@@ -126,14 +126,14 @@ fn until_it_ends(mut control: Active<Torques>) -> ActiveError {
 async fn started(robot: &Robot) -> tokio::task::JoinHandle<ActiveError> {
     let control = robot.active_torques().await.unwrap();
     let thread = tokio::task::spawn_blocking(move || until_it_ends(control));
-    tokio::time::sleep(Duration::from_millis(100)).await;
+    under_way(robot).await;
     thread
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_stop_a_reflex_and_a_shutdown_reach_the_thread() {
     let _alone = alone();
-    for (robot, sim) in each(false).await {
+    for (robot, sim) in each().await {
         let thread = started(&robot).await;
         assert_eq!(robot.active_torques().await.unwrap_err(), MotionError::Busy);
         robot.stop().await.expect("the arm rests");
@@ -162,7 +162,7 @@ async fn a_stop_a_reflex_and_a_shutdown_reach_the_thread() {
         .await;
         let mut states = robot.states();
         let rests = states.wait_for(|state| state.robot_mode != RobotMode::Move);
-        tokio::time::timeout(Duration::from_secs(5), rests)
+        tokio::time::timeout(SOON, rests)
             .await
             .expect("the robot was told to stop")
             .expect("the connection lives");
@@ -177,7 +177,7 @@ async fn a_stop_a_reflex_and_a_shutdown_reach_the_thread() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_panic_of_the_thread_has_the_robot_stop_and_the_connection_goes_on() {
     let _alone = alone();
-    for (robot, _sim) in each(false).await {
+    for (robot, _sim) in each().await {
         let control = robot.active_torques().await.unwrap();
         let work = tokio::task::spawn_blocking(move || {
             let mut control = control;
@@ -187,7 +187,7 @@ async fn a_panic_of_the_thread_has_the_robot_stop_and_the_connection_goes_on() {
         assert!(work.await.unwrap_err().is_panic());
         let mut states = robot.states();
         let rests = states.wait_for(|state| state.robot_mode != RobotMode::Move);
-        tokio::time::timeout(Duration::from_secs(5), rests)
+        tokio::time::timeout(SOON, rests)
             .await
             .expect("the robot was told to stop")
             .expect("the connection lives");

@@ -6,11 +6,10 @@ use std::pin::{Pin, pin};
 use std::task::Poll;
 use std::time::Duration;
 
-use franka_async::{Arm, Chunk, Engage, Free, MotionError, Pose, Realtime, Robot, Tuning};
-use franka_sim::{Sim, Tool};
+use franka_async::{Arm, Chunk, Engage, Free, MotionError, Pose, Robot, Tuning};
 use tokio::sync::watch;
 
-use crate::alone;
+use crate::{SOON, alone, simulated};
 
 /// Most polls that any of them may take to its end.
 const POLLS_MAX: u32 = 60;
@@ -41,7 +40,7 @@ async fn ends_within(future: impl Future<Output = Result<(), MotionError>>, poll
 async fn rests(robot: &Robot, what: &str) {
     let mut states = robot.states();
     let still = states.wait_for(|state| state.dq.iter().all(|dq| dq.abs() < 5e-3));
-    tokio::time::timeout(Duration::from_secs(20), still)
+    tokio::time::timeout(SOON, still)
         .await
         .unwrap_or_else(|_| panic!("{what}: the arm does not come to rest"))
         .expect("the connection lives");
@@ -67,18 +66,6 @@ async fn drop_at_every_poll<'a>(
         rests(robot, what).await;
     }
     panic!("{what} takes more than {POLLS_MAX} polls");
-}
-
-async fn simulated() -> (Robot, franka_sim::Running) {
-    let sim = Sim::fr3()
-        .tool(Tool::hand())
-        .virtual_time(Duration::from_millis(100))
-        .start()
-        .await
-        .expect("a simulator starts");
-    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
-    let robot = builder.connect().await.expect("it takes a client");
-    (robot, sim)
 }
 
 fn up(robot: &Robot) -> Pose {

@@ -11,21 +11,14 @@ use franka_async::{
 use franka_proto::{MoveControllerMode, RequestError, RobotError};
 use franka_sim::{Running, Sim, Tool};
 
-use crate::{alone, connect};
+use crate::{SOON, alone, at_the_clients_pace, by_the_clock, under_way, until};
 
-/// A simulated robot of each kind with its hand, and a handle on it. A busy machine loses cycles,
-/// which shows as a step in what a function commands: that is for lockstep to judge, so these
-/// robots mind neither unless `strict`.
-pub(crate) async fn each(strict: bool) -> Vec<(Robot, Running)> {
+/// A simulated robot of each kind with its hand, at the pace of the client's answers, and a handle
+/// on it.
+pub(crate) async fn each() -> Vec<(Robot, Running)> {
     let mut robots = Vec::new();
     for sim in [Sim::fr3(), Sim::fer()] {
-        let sim = sim.enforce_limits(strict).enforce_communication(strict);
-        let sim = sim
-            .tool(Tool::hand())
-            .start()
-            .await
-            .expect("a simulator starts");
-        robots.push((connect(&sim).await, sim));
+        robots.push(at_the_clients_pace(sim.tool(Tool::hand())).await);
     }
     robots
 }
@@ -59,7 +52,7 @@ fn timed<C: Finish>(
 #[tokio::test(flavor = "multi_thread")]
 async fn each_generator_takes_the_arm_where_the_function_says() {
     let _alone = alone();
-    for (robot, _sim) in each(false).await {
+    for (robot, _sim) in each().await {
         let before = robot.state();
         let mut start = None;
         let report = robot
@@ -84,8 +77,7 @@ async fn each_generator_takes_the_arm_where_the_function_says() {
             .await
             .unwrap();
         let moved = robot.state().q[0] - before.q[0];
-        // Velocities are open loop: what a lost cycle adds or takes stays.
-        assert!(moved.abs() < 0.03, "{moved}");
+        assert!(moved.abs() < 5e-3, "{moved}");
 
         let mut start = None;
         let from = robot.pose();
@@ -115,7 +107,7 @@ async fn each_generator_takes_the_arm_where_the_function_says() {
             .await
             .unwrap();
         let up = robot.pose().translation.z - from.translation.z;
-        assert!(up.abs() < 0.012, "{up}");
+        assert!(up.abs() < 2e-3, "{up}");
         robot.shutdown().await;
     }
 }
@@ -123,7 +115,7 @@ async fn each_generator_takes_the_arm_where_the_function_says() {
 #[tokio::test(flavor = "multi_thread")]
 async fn torques_alone_and_beside_a_generator() {
     let _alone = alone();
-    for (robot, _sim) in each(false).await {
+    for (robot, _sim) in each().await {
         // A damped spring to where the arm is.
         let spring = |state: &RobotState, q: &[f64; 7]| {
             Torques(std::array::from_fn(|i| {
@@ -142,10 +134,8 @@ async fn torques_alone_and_beside_a_generator() {
             .await
             .unwrap();
         let calls = calls.load(Ordering::Relaxed);
-        assert!(
-            calls + report.lost_states + report.skipped_states >= 499 && calls <= 502,
-            "{calls} calls"
-        );
+        assert_eq!((report.lost_states, report.skipped_states), (0, 0));
+        assert!((499..=502).contains(&calls), "{calls} calls");
 
         let before = robot.state().q[0];
         let mut start = None;
@@ -172,7 +162,7 @@ async fn torques_alone_and_beside_a_generator() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_panic_or_a_bad_number_stops_the_motion_and_the_thread_lives_on() {
     let _alone = alone();
-    for (robot, _sim) in each(false).await {
+    for (robot, _sim) in each().await {
         let mut calls = 0;
         let panicking = robot.control_joint_velocities(move |_: &RobotState, _| {
             calls += 1;
@@ -182,8 +172,7 @@ async fn a_panic_or_a_bad_number_stops_the_motion_and_the_thread_lives_on() {
         let error = panicking.await.unwrap_err();
         let text = "the control function panicked: a bug of the user's";
         assert_eq!(error.to_string(), text);
-        // Printing a panic can take longer than the robot waits for commands; it has then stopped
-        // itself.
+        // The robot has missed the commands of a function that panicked, or not.
         robot.recover().await.unwrap();
 
         let mut calls = 0;
@@ -204,7 +193,7 @@ async fn a_panic_or_a_bad_number_stops_the_motion_and_the_thread_lives_on() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_program_has_the_arm_for_itself_until_it_is_stopped_or_dropped() {
     let _alone = alone();
-    for (robot, _sim) in each(false).await {
+    for (robot, _sim) in each().await {
         let turning =
             || robot.control_joint_velocities(|_: &RobotState, _| JointVelocities([0.0; 7]));
         let running = tokio::spawn(turning().into_future());
@@ -228,9 +217,11 @@ async fn a_program_has_the_arm_for_itself_until_it_is_stopped_or_dropped() {
             owned.as_mut();
             JointVelocities([0.0; 7])
         });
-        let cut = tokio::time::timeout(Duration::from_millis(200), holding.into_future()).await;
-        assert!(cut.is_err(), "it would have gone on");
-        let freed = tokio::time::timeout(Duration::from_secs(2), alive).await;
+        tokio::select! {
+            outcome = holding.into_future() => panic!("{outcome:?}"),
+            () = under_way(&robot) => {}
+        }
+        let freed = tokio::time::timeout(SOON, alive).await;
         assert!(
             freed.is_ok_and(|end| end.is_err()),
             "the function is dropped with its motion"
@@ -243,7 +234,7 @@ async fn a_program_has_the_arm_for_itself_until_it_is_stopped_or_dropped() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_reflex_comes_back_with_the_cycles_that_led_to_it() {
     let _alone = alone();
-    for (robot, _sim) in each(true).await {
+    for (robot, _sim) in each().await {
         let mut calls = 0;
         let stepping = robot.control_joint_velocities(move |_: &RobotState, _| {
             calls += 1;
@@ -288,18 +279,20 @@ async fn a_reflex_comes_back_with_the_cycles_that_led_to_it() {
 #[tokio::test(flavor = "multi_thread")]
 async fn the_robot_itself_goes_from_target_to_target() {
     let _alone = alone();
-    let robots = each(false).await;
-    let (robot, sim) = &robots[0];
+    // Of a motion that needs no commands, the client's pace is none.
+    let sims = [Sim::fr3(), Sim::fer()];
+    let [fr3, fer] = sims.map(|sim| by_the_clock(sim.tool(Tool::hand())));
+    let (robot, sim) = &fr3.await;
+    let (fer, _sim) = &fer.await;
     let control = robot
         .asynchronous_joint_positions(AsynchronousOptions::default())
         .await
         .unwrap();
     assert_eq!(control.status(), TargetStatus::Idle);
     let mut q = robot.state().q_d;
-    q[0] += 0.15;
+    q[0] += 0.5;
     control.set_target(q).unwrap();
-    tokio::time::sleep(Duration::from_millis(100)).await;
-    assert_eq!(control.status(), TargetStatus::Executing);
+    until(robot, |_| control.status() == TargetStatus::Executing).await;
     q[1] += 0.1;
     control.set_target(q).unwrap();
     control.reached().await.unwrap();
@@ -323,7 +316,6 @@ async fn the_robot_itself_goes_from_target_to_target() {
     assert_eq!(control.status(), TargetStatus::Aborted(AbortReason::Ended));
     drop(control);
 
-    let (fer, _sim) = &robots[1];
     let error = fer
         .asynchronous_joint_positions(AsynchronousOptions::default())
         .await
@@ -335,7 +327,7 @@ async fn the_robot_itself_goes_from_target_to_target() {
         ),
         "{error}"
     );
-    for (robot, _) in &robots {
+    for robot in [robot, fer] {
         robot.shutdown().await;
     }
 }

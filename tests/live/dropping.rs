@@ -11,7 +11,7 @@ use tokio::sync::watch;
 use tokio::task::JoinSet;
 use tokio::time::timeout;
 
-use crate::{alone, connect, long_way, simulated};
+use crate::{SOON, alone, connect, long_way, simulated, under_way};
 
 /// Polls a future `polls` times, up to `pause` apart, from a thread without a runtime, and drops
 /// it.
@@ -63,7 +63,7 @@ async fn a_future_may_be_dropped_at_any_poll() {
         }
     }
     // Whatever was left behind: the arm can be stopped, moves again, and takes parameters.
-    let done = timeout(Duration::from_secs(20), async {
+    let done = timeout(SOON, async {
         robot.stop().await.unwrap();
         assert!(!robot.state().motion_running());
         robot
@@ -87,10 +87,7 @@ async fn a_hundred_motions_at_once_all_resolve() {
         motions.spawn(robot.move_to(target).into_future());
     }
     let mut arrived = 0;
-    while let Some(motion) = timeout(Duration::from_secs(20), motions.join_next())
-        .await
-        .expect("no hang")
-    {
+    while let Some(motion) = timeout(SOON, motions.join_next()).await.expect("no hang") {
         match motion.unwrap() {
             Ok(_) => arrived += 1,
             Err(error) => assert_eq!(error, MotionError::Superseded),
@@ -108,7 +105,7 @@ async fn clones_of_a_motion_are_motions_of_their_own() {
     let other = motion.clone();
     let canceller = motion.canceller();
     let first = tokio::spawn(motion.into_future());
-    tokio::time::sleep(Duration::from_millis(200)).await;
+    under_way(&robot).await;
     let second = tokio::spawn(other.speed(0.5).into_future());
     assert_eq!(first.await.unwrap(), Err(MotionError::Superseded));
     canceller.cancel();
@@ -135,10 +132,7 @@ async fn parameters_from_many_tasks_at_once_are_all_answered() {
             }
         });
     }
-    while let Some(call) = timeout(Duration::from_secs(10), calls.join_next())
-        .await
-        .expect("no hang")
-    {
+    while let Some(call) = timeout(SOON, calls.join_next()).await.expect("no hang") {
         call.unwrap().unwrap();
     }
     robot.shutdown().await;
@@ -155,8 +149,12 @@ async fn a_connection_given_up_at_any_poll_leaves_the_robot_free() {
         // Either outcome is fine, and in both the robot is dropped.
         let _ = timeout(Duration::from_micros(micros), connecting).await;
     }
-    // The simulator may take a moment to see that the last one has gone.
-    tokio::time::sleep(Duration::from_millis(100)).await;
+    let gone = async {
+        while sim.with(|robot| robot.is_connected()).await.unwrap() {
+            tokio::task::yield_now().await;
+        }
+    };
+    timeout(SOON, gone).await.expect("the robot is free");
     connect(&sim).await.shutdown().await;
 }
 

@@ -10,9 +10,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
 
-use crate::{alone, connect, long_way, simulated};
-
-const SOON: Duration = Duration::from_secs(3);
+use crate::{SOON, alone, at_the_clients_pace, connect, long_way, simulated, under_way};
 
 /// Control threads of this process.
 fn control_threads() -> usize {
@@ -23,25 +21,31 @@ fn control_threads() -> usize {
         .count()
 }
 
+/// For a delay: until the motion is under way.
+const WAY: u64 = u64::MAX;
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_robot_that_dies_in_any_phase_of_a_motion_resolves_it() {
     let _alone = alone();
-    // Before the answer to `Move`, at the first commands, on the way, and braking.
+    // Before the answer to `Move`, about the first commands, on the way, and braking.
     for (delay, braking) in [
         (0, false),
         (2, false),
         (30, false),
-        (500, false),
-        (500, true),
+        (WAY, false),
+        (WAY, true),
     ] {
         let (robot, sim) = simulated().await;
         let motion = long_way(&robot);
         let canceller = motion.canceller();
         let moving = tokio::spawn(motion.into_future());
-        sleep(Duration::from_millis(delay)).await;
+        match delay {
+            WAY => under_way(&robot).await,
+            // Any phase will do, and few of them are shown by a state.
+            _ => sleep(Duration::from_millis(delay)).await,
+        }
         if braking {
             canceller.cancel();
-            sleep(Duration::from_millis(30)).await;
         }
         sim.stop().await;
         let outcome = timeout(SOON, moving).await.expect("no hang").unwrap();
@@ -102,7 +106,8 @@ async fn a_client_that_vanishes_after_its_move_makes_room_at_once() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_cancelled_token_brakes_ends_and_closes() {
     let _alone = alone();
-    let sim = Sim::fr3().start().await.unwrap();
+    let (robot, sim) = simulated().await;
+    robot.shutdown().await;
     let token = CancellationToken::new();
     let builder = Robot::builder(sim.addr())
         .realtime(Realtime::Ignore)
@@ -110,7 +115,7 @@ async fn a_cancelled_token_brakes_ends_and_closes() {
     let robot = builder.connect().await.unwrap();
     let mut states = robot.states();
     let moving = tokio::spawn(long_way(&robot).into_future());
-    sleep(Duration::from_millis(400)).await;
+    under_way(&robot).await;
     token.cancel();
     assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
     timeout(SOON, async { while states.changed().await.is_ok() {} })
@@ -145,10 +150,11 @@ fn a_runtime_that_ends_in_mid_motion_leaves_nothing_running() {
             .unwrap()
     };
     let (elsewhere, runtime) = (build(), build());
-    let sim = elsewhere.block_on(Sim::fr3().start()).unwrap();
+    let (first, sim) = elsewhere.block_on(at_the_clients_pace(Sim::fr3()));
+    elsewhere.block_on(first.shutdown());
     let robot = runtime.block_on(connect(&sim));
     let moving = elsewhere.spawn(long_way(&robot).into_future());
-    std::thread::sleep(Duration::from_millis(300));
+    elsewhere.block_on(under_way(&robot));
     drop(runtime);
     let text = "the runtime that served the connection has ended";
     let outcome = elsewhere.block_on(moving).unwrap();

@@ -7,9 +7,10 @@ use franka_async::{
     Activity, Chunk, Deadman, Engage, Free, GoalError, Lapse, MotionError, OnTimeout, Pose,
     PoseError, Record, Tuning,
 };
+use franka_sim::{Sim, Tool};
 use tokio::sync::watch;
 
-use crate::{alone, simulated};
+use crate::{SOON, alone, by_the_clock, robot_time, simulated, under_way};
 
 #[tokio::test(flavor = "multi_thread")]
 async fn goals_of_every_kind_are_reached_within_one_session() {
@@ -24,7 +25,7 @@ async fn goals_of_every_kind_are_reached_within_one_session() {
     arm.move_to(up).await.unwrap();
     assert!(PoseError::between(&robot.pose(), &up).translation < 1e-3);
     arm.set(start).await.unwrap();
-    tokio::time::sleep(Duration::from_millis(100)).await;
+    robot_time(&robot, 100).await;
     arm.move_joints(ready).await.unwrap();
 
     let (sender, targets) = watch::channel(up);
@@ -41,7 +42,7 @@ async fn goals_of_every_kind_are_reached_within_one_session() {
     let chunk = Chunk::joints([(Duration::from_millis(300), q)]).unwrap();
     let observed = robot.state().message_id;
     arm.chunk(chunk.observed_at(observed)).await.unwrap();
-    tokio::time::sleep(Duration::from_millis(800)).await;
+    robot_time(&robot, 800).await;
     assert!((robot.state().q[0] - q[0]).abs() < 5e-3);
     arm.hold().await.unwrap();
 
@@ -70,16 +71,16 @@ async fn a_session_ends_with_its_last_handle_or_by_a_stop() {
     let arm = robot.engage(Engage::default()).await.unwrap();
     let ended = arm.ended();
     let far = Pose::translation(0.0, 0.1, 0.1) * robot.pose();
-    let moving = tokio::spawn(arm.move_to(far).into_future());
+    let moving = tokio::spawn(arm.move_to(far).speed(0.05).into_future());
     drop(arm);
-    tokio::time::sleep(Duration::from_millis(300)).await;
+    under_way(&robot).await;
     assert!(!moving.is_finished(), "a motion is a handle too");
     moving.abort();
     ended.await.unwrap();
 
     let arm = robot.engage(Engage::default()).await.unwrap();
-    let moving = tokio::spawn(arm.move_to(far).into_future());
-    tokio::time::sleep(Duration::from_millis(300)).await;
+    let moving = tokio::spawn(arm.move_to(far).speed(0.05).into_future());
+    robot_time(&robot, 300).await;
     robot.stop().await.unwrap();
     assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
     assert_eq!(arm.ended().await, Err(MotionError::Stopped));
@@ -93,7 +94,7 @@ async fn silence_of_a_stream_and_of_a_deadman_hold_the_arm_under_their_names() {
     let (robot, _sim) = simulated().await;
     let start = robot.pose();
     let far = Pose::translation(0.0, 0.1, 0.1) * start;
-    let (token, monitor) = Deadman::new(Duration::from_millis(1500));
+    let (token, monitor) = Deadman::new(Duration::from_secs(60));
     let arm = robot
         .engage(Engage::default().deadman(monitor))
         .await
@@ -106,7 +107,7 @@ async fn silence_of_a_stream_and_of_a_deadman_hold_the_arm_under_their_names() {
     let braked = matches!(outcome, Err(MotionError::Braked(Lapse::Silent { .. })));
     assert!(braked, "{outcome:?}");
     token.keep_alive();
-    let moving = tokio::spawn(arm.move_to(far).into_future());
+    let moving = tokio::spawn(arm.move_to(far).speed(0.05).into_future());
     drop(token);
     let held = Err(MotionError::Held(Lapse::Deadman));
     assert_eq!(moving.await.unwrap(), held);
@@ -122,10 +123,10 @@ async fn a_stream_that_has_no_target_yet_ends_with_its_session() {
     let arm = robot.engage(Engage::default()).await.unwrap();
     let nothing = || tokio_stream::pending::<Pose>();
     let waiting = tokio::spawn(arm.follow_stream(nothing()).into_future());
-    tokio::time::sleep(Duration::from_millis(50)).await;
+    robot_time(&robot, 50).await;
     assert!(!waiting.is_finished());
     robot.stop().await.unwrap();
-    let outcome = tokio::time::timeout(Duration::from_secs(5), waiting).await;
+    let outcome = tokio::time::timeout(SOON, waiting).await;
     let outcome = outcome.expect("its session has ended").unwrap();
     assert_eq!(outcome, Err(MotionError::Stopped));
 
@@ -155,7 +156,8 @@ async fn a_session_says_why_it_ended_after_another_one_has() {
 #[tokio::test(flavor = "multi_thread")]
 async fn an_observer_sees_the_records_that_the_stream_has() {
     let _alone = alone();
-    let (robot, _sim) = simulated().await;
+    // At the client's pace, records come faster than a reader on a busy machine takes them.
+    let (robot, _sim) = by_the_clock(Sim::fr3().tool(Tool::hand())).await;
     let mut records = robot.records();
     let streamed = tokio::spawn(async move {
         let mut streamed = Vec::new();

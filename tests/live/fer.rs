@@ -1,7 +1,5 @@
 //! The Franka Emika Robot: the same programs, over the protocol that negotiation finds.
 
-use std::time::Duration;
-
 use franka_async::{
     CommandError, ConnectError, Filters, Pose, PoseError, Realtime, Robot, Version, VersionPolicy,
 };
@@ -9,14 +7,11 @@ use franka_model::RobotKind;
 use franka_proto::RequestError;
 use franka_sim::{Running, Sim, Tool};
 
-use crate::{alone, connect, simulated};
+use crate::{alone, at_the_clients_pace, simulated, under_way};
 
 /// A simulated FER with a hand, and a handle on it.
 async fn fer() -> (Robot, Running) {
-    let sim = Sim::fer().tool(Tool::hand());
-    let sim = sim.start().await.expect("a simulator starts");
-    let robot = connect(&sim).await;
-    (robot, sim)
+    at_the_clients_pace(Sim::fer().tool(Tool::hand())).await
 }
 
 fn assert_near(robot: &Robot, target: &Pose) {
@@ -52,7 +47,7 @@ async fn a_watch_is_followed_and_a_motion_stopped() {
     assert_near(&robot, &last);
 
     let moving = tokio::spawn(crate::long_way(&robot).into_future());
-    tokio::time::sleep(Duration::from_millis(500)).await;
+    under_way(&robot).await;
     robot.stop().await.unwrap();
     assert!(moving.await.unwrap().is_err(), "stopped");
     assert!(!robot.state().motion_running());

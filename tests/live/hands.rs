@@ -5,16 +5,13 @@ use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
 use franka_async::{
-    ActionError, ConnectError, Grasp, Gripper, GripperState, Profile, Vacuum, VacuumGripper,
+    ActionError, ConnectError, Grasp, Gripper, GripperState, Pose, Profile, Vacuum, VacuumGripper,
 };
 use franka_proto::{gripper, server, vacuum};
 use franka_sim::{Fingers, Running, Sim, Suction};
 use tokio::time::{sleep, timeout};
 
-use crate::{alone, connect, long_way};
-
-/// Time within which whatever is told to end has ended, on a loaded machine too.
-const SOON: Duration = Duration::from_secs(3);
+use crate::{SOON, alone, connect};
 
 const ABORTED: &str = "libfranka gripper: Command aborted!";
 const FAILED: &str = "libfranka gripper: Command failed!";
@@ -22,7 +19,8 @@ const FAILED: &str = "libfranka gripper: Command failed!";
 /// A robot with a hand that has an object of 5 cm between its fingers and knows its width.
 async fn with_hand() -> (Gripper, Running) {
     let sim = Sim::fr3().hand(Fingers::new().with_object(0.05), 0);
-    let sim = sim.start().await.expect("a simulator starts");
+    let sim = sim.enforce_communication(false).start().await;
+    let sim = sim.expect("a simulator starts");
     let gripper = hand_of(&sim).await.expect("a hand takes a client");
     assert_eq!(gripper.state().max_width, 0.0);
     assert!(gripper.homing().await.expect("a homing"));
@@ -39,7 +37,18 @@ fn object() -> Grasp {
 }
 
 fn slow_grasp() -> Grasp {
-    Grasp::new(0.05, 0.01, 40.0)
+    Grasp::new(0.05, 0.002, 40.0)
+}
+
+/// Waits until the fingers have begun to move.
+async fn fingers_move(gripper: &Gripper) {
+    let begin = gripper.state().width;
+    let mut states = gripper.states();
+    let moved = states.wait_for(|state| state.width != begin);
+    timeout(SOON, moved)
+        .await
+        .expect("the fingers move")
+        .expect("a connection");
 }
 
 /// Waits for a width at which the fingers then stay.
@@ -64,7 +73,8 @@ async fn a_hand_moves_grasps_and_lets_go_while_the_arm_moves() {
     let _alone = alone();
     let (gripper, sim) = with_hand().await;
     let robot = connect(&sim).await;
-    let moving = tokio::spawn(long_way(&robot).into_future());
+    let up = Pose::translation(0.0, 0.0, 0.1) * robot.pose();
+    let moving = tokio::spawn(robot.move_to(up).speed(0.25).into_future());
     assert!(gripper.move_to(0.06, 0.1).await.expect("a move"));
     assert!((gripper.state().width - 0.06).abs() < 1e-9);
     let error = gripper.move_to(0.09, 0.1).await.unwrap_err();
@@ -98,8 +108,8 @@ async fn stop_interrupts_the_action_that_runs() {
     let _alone = alone();
     let (gripper, _sim) = with_hand().await;
     let other = gripper.clone();
-    let moving = tokio::spawn(async move { other.move_to(0.06, 0.01).await });
-    sleep(Duration::from_millis(200)).await;
+    let moving = tokio::spawn(async move { other.move_to(0.06, 0.002).await });
+    fingers_move(&gripper).await;
     assert!(gripper.stop().await.expect("a stop"));
     let error = moving.await.expect("no panic").unwrap_err();
     assert_eq!(error.to_string(), ABORTED);
@@ -107,7 +117,7 @@ async fn stop_interrupts_the_action_that_runs() {
     // And so does a newer action.
     let other = gripper.clone();
     let homing = tokio::spawn(async move { other.homing().await });
-    sleep(Duration::from_millis(200)).await;
+    fingers_move(&gripper).await;
     assert!(gripper.move_to(0.08, 0.1).await.expect("a move"));
     assert_eq!(homing.await.unwrap().unwrap_err().to_string(), ABORTED);
 }
@@ -121,13 +131,14 @@ async fn dropping_an_action_stops_it_and_nothing_else() {
         let dropped = async {
             match action {
                 0 => gripper.grasp(slow_grasp()).await,
-                1 => gripper.move_to(0.06, 0.01).await,
+                1 => gripper.move_to(0.06, 0.002).await,
                 _ => gripper.homing().await,
             }
         };
-        timeout(Duration::from_millis(200), dropped)
-            .await
-            .expect_err("it takes longer");
+        tokio::select! {
+            outcome = dropped => panic!("{outcome:?}"),
+            () = fingers_move(&gripper) => {}
+        }
         let width = width_at_rest(&gripper).await;
         assert!(width > 0.06 && width < 0.08, "{action}: {width}");
         assert!(!gripper.state().is_grasped);
@@ -135,9 +146,10 @@ async fn dropping_an_action_stops_it_and_nothing_else() {
     // One whose place a newer one has taken stops nothing.
     assert!(gripper.move_to(0.08, 0.1).await.expect("a move"));
     let mut older = Box::pin(gripper.move_to(0.06, 0.001));
-    timeout(Duration::from_millis(100), &mut older)
-        .await
-        .expect_err("it takes longer");
+    tokio::select! {
+        outcome = &mut older => panic!("{outcome:?}"),
+        () = fingers_move(&gripper) => {}
+    }
     let newer = gripper.grasp(Grasp::new(0.05, 0.03, 40.0));
     let (grasped, ()) = tokio::join!(newer, async {
         sleep(Duration::from_millis(100)).await;
@@ -158,8 +170,10 @@ async fn one_client_at_a_time_and_one_that_goes_stops_its_action() {
     let gripper = eventually(&sim).await;
     assert!(gripper.state().is_grasped, "a grasp outlasts its client");
     assert!(gripper.move_to(0.08, 0.1).await.expect("a move"));
-    let moving = tokio::spawn(async move { gripper.move_to(0.06, 0.005).await });
-    sleep(Duration::from_millis(200)).await;
+    let other = gripper.clone();
+    let moving = tokio::spawn(async move { other.move_to(0.06, 0.002).await });
+    fingers_move(&gripper).await;
+    drop(gripper);
     moving.abort();
     let gripper = eventually(&sim).await;
     assert!(width_at_rest(&gripper).await > 0.07);
@@ -182,7 +196,7 @@ async fn a_hand_that_goes_ends_everything_and_says_why() {
     let (gripper, sim) = with_hand().await;
     let (other, mut states) = (gripper.clone(), gripper.states());
     let moving = tokio::spawn(async move { other.move_to(0.06, 0.001).await });
-    sleep(Duration::from_millis(100)).await;
+    fingers_move(&gripper).await;
     sim.stop().await;
     let error = timeout(SOON, moving).await.expect("no hang").unwrap();
     let text = "libfranka: server closed connection";
@@ -215,9 +229,7 @@ async fn garbage_costs_a_client_its_connection_and_nobody_else() {
         });
         // An orderly end, or a reset if the hand had not read everything.
         assert!(!matches!(closed.await.unwrap(), Ok(1..)));
-        let start = Instant::now();
         drop(eventually(&sim).await);
-        assert!(start.elapsed() < Duration::from_secs(1));
     }
 }
 

@@ -1,7 +1,10 @@
 //! The driver and the simulator over real sockets on this machine, where the socket or the clock is
 //! what is tested.
 //!
-//! Run one at a time: each test has a robot, and two cores carry only so many.
+//! One test at a time, as two cores carry only so many robots. Most robots run at the pace of the
+//! client's answers, [`simulated`]: a busy machine makes them slow, and loses nothing. Where the
+//! wall's millisecond is part of what is tested, they run [`by_the_clock`], and mind no command
+//! that comes late. What a test waits for is shown by states; how long it took decides nothing.
 
 mod active;
 mod addresses;
@@ -30,9 +33,10 @@ mod together;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use franka_async::{Motion, Pose, Realtime, Robot};
+use franka_async::{Motion, Pose, Realtime, Robot, RobotState};
 use franka_sim::{Running, Sim, Tool};
 use tokio::sync::watch;
+use tokio::time::timeout;
 
 /// Held by each test, so that they do not disturb each other's clocks.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -47,15 +51,26 @@ fn alone() -> Alone {
     Alone { _guard }
 }
 
-/// A simulated FR3 with a hand, and a handle on it.
+/// A simulated FR3 with a hand, at the pace of the client's answers, and a handle on it.
 async fn simulated() -> (Robot, Running) {
-    let sim = Sim::fr3()
-        .tool(Tool::hand())
-        .start()
-        .await
-        .expect("a simulator starts");
-    let robot = connect(&sim).await;
-    (robot, sim)
+    at_the_clients_pace(Sim::fr3().tool(Tool::hand())).await
+}
+
+/// This robot, which waits for each command of the client.
+async fn at_the_clients_pace(sim: Sim) -> (Robot, Running) {
+    let sim = sim.virtual_time(PATIENCE).start().await;
+    let sim = sim.expect("a simulator starts");
+    (connect(&sim).await, sim)
+}
+
+/// This robot, at a thousand states per second, which minds no command that comes late or is
+/// missing. Its thread stands for another computer: it does not wait for this one's load where that
+/// is granted.
+async fn by_the_clock(sim: Sim) -> (Robot, Running) {
+    let sim = sim.enforce_limits(false).enforce_communication(false);
+    let sim = sim.realtime(true).start().await;
+    let sim = sim.expect("a simulator starts");
+    (connect(&sim).await, sim)
 }
 
 async fn connect(sim: &Running) -> Robot {
@@ -63,11 +78,37 @@ async fn connect(sim: &Running) -> Robot {
     builder.connect().await.expect("a simulator takes a client")
 }
 
-/// A motion of about four seconds.
+/// A motion that takes the robot some twenty seconds: long enough to be met on its way.
 fn long_way(robot: &Robot) -> Motion {
     robot
         .move_to(Pose::translation(0.0, 0.0, 0.1) * robot.pose())
-        .speed(0.25)
+        .speed(0.05)
+}
+
+/// Waits for a state of which `holds` is true.
+async fn until(robot: &Robot, mut holds: impl FnMut(&RobotState) -> bool) {
+    let mut states = robot.state_stream();
+    let shown = async {
+        loop {
+            let reading = states.next().await.expect("the connection lives");
+            if holds(&reading.state) {
+                return;
+            }
+        }
+    };
+    timeout(SOON, shown).await.expect("a state shows it");
+}
+
+/// Waits for so many milliseconds of the robot's time.
+async fn robot_time(robot: &Robot, milliseconds: u64) {
+    let end = robot.state().message_id + milliseconds;
+    until(robot, |state| state.message_id >= end).await;
+}
+
+/// Waits until a motion has run for a while.
+async fn under_way(robot: &Robot) {
+    until(robot, RobotState::motion_running).await;
+    robot_time(robot, 200).await;
 }
 
 /// Has the arm follow ten steps of 4 mm at 10 Hz to the end; returns the last target.
@@ -79,10 +120,17 @@ async fn follow_steps(robot: &Robot) -> Pose {
     for step in 1..=10_u32 {
         last = Pose::translation(0.0, 0.004 * f64::from(step), 0.0) * start;
         sender.send(last).expect("the motion goes on");
-        tokio::time::sleep(Duration::from_millis(100)).await;
+        robot_time(robot, 100).await;
     }
     drop(sender);
     let outcome = following.await.expect("no panic");
     outcome.expect("the last target is reached");
     last
 }
+
+/// How long a robot at the client's pace waits for a command. Twenty that are missing in a row end
+/// a motion.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// What has not happened within this time never will, on a machine that is busy as well.
+const SOON: Duration = Duration::from_secs(30);

@@ -12,10 +12,7 @@ use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
 use crate::peer::{Manners, Peer, Treatment, reply};
-use crate::{alone, long_way};
-
-/// Time within which whatever is told to end has ended, on a loaded machine too.
-const SOON: Duration = Duration::from_secs(3);
+use crate::{SOON, alone, long_way, under_way};
 
 const LOAD: Load = Load {
     m_load: 0.1,
@@ -55,7 +52,9 @@ async fn garbage_in_mid_session_closes_everything_and_says_why() {
             let robot = peer.connect().await;
             let (mut states, mut records) = (robot.states(), robot.records());
             let moving = in_motion.then(|| tokio::spawn(long_way(&robot).into_future()));
-            sleep(Duration::from_millis(200)).await;
+            if in_motion {
+                under_way(&robot).await;
+            }
             peer.inject(garbage);
             if text.ends_with("closed connection") {
                 peer.close();
@@ -160,7 +159,7 @@ async fn a_motion_whose_start_cannot_be_read_is_stopped() {
     still.await.expect("the robot was told to stop");
     // A motion that is asked for at once may meet the end of the abandoned one; it resolves, and
     // another one arrives.
-    let arrived = timeout(Duration::from_secs(20), async {
+    let arrived = timeout(SOON, async {
         while let Err(error) = robot.move_to(robot.pose()).await {
             assert!(
                 !matches!(error, MotionError::ConnectionClosed { .. }),
@@ -199,7 +198,7 @@ async fn a_robot_that_does_not_begin_is_told_to_stop_and_given_up() {
             let begun = Instant::now();
             let error = robot.move_to(robot.pose()).await.unwrap_err();
             assert!(matches!(error, MotionError::Protocol { .. }), "{error:?}");
-            assert!(begun.elapsed() < Duration::from_secs(20), "{error}");
+            assert!(begun.elapsed() < 2 * SOON, "{error}");
             robot.set_load(LOAD).await.unwrap();
             robot.shutdown().await;
         });
@@ -215,7 +214,7 @@ async fn a_robot_that_reads_no_requests_holds_up_no_stop() {
     let peer = Peer::start(Manners::default());
     let robot = peer.connect().await;
     let moving = tokio::spawn(long_way(&robot).into_future());
-    sleep(Duration::from_millis(300)).await;
+    under_way(&robot).await;
     peer.stop_reading();
     // More than may wait for their answers at once: the rest waits for its turn.
     let mut calls = JoinSet::new();
@@ -267,7 +266,7 @@ async fn no_pose_is_followed_after_the_robot_has_gone() {
     let robot = peer.connect().await;
     let (sender, targets) = tokio::sync::watch::channel(robot.pose());
     let following = tokio::spawn(robot.follow(targets).into_future());
-    sleep(Duration::from_millis(200)).await;
+    under_way(&robot).await;
     drop(peer);
     let outcome = timeout(SOON, following).await.expect("no hang").unwrap();
     assert!(

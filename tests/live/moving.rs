@@ -1,12 +1,13 @@
 //! Motions over sockets: what a program sees of them.
 
+use std::future::IntoFuture;
 use std::time::Duration;
 
 use franka_async::{CollisionBehavior, CommandError, Load, MotionError, Pose, PoseError};
 use franka_proto::{SetterStatus, Status};
 use tokio::sync::watch;
 
-use crate::{alone, simulated};
+use crate::{alone, robot_time, simulated, under_way};
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_pose_and_joints_are_reached() {
@@ -41,14 +42,16 @@ async fn a_dropped_motion_brakes_and_a_new_one_takes_over() {
     let (robot, _sim) = simulated().await;
     let start = robot.pose();
     let far = Pose::translation(0.0, 0.1, 0.1) * start;
-    let dropped =
-        tokio::time::timeout(Duration::from_millis(500), robot.move_to(far).into_future()).await;
-    assert!(dropped.is_err(), "still under way");
+    let slow = || robot.move_to(far).speed(0.05).into_future();
+    tokio::select! {
+        outcome = slow() => panic!("{outcome:?}"),
+        () = under_way(&robot) => {}
+    }
     let report = robot.move_to(start).await.unwrap();
     assert!(report.final_error.unwrap().translation < 1e-3);
 
-    let first = tokio::spawn(robot.move_to(far).into_future());
-    tokio::time::sleep(Duration::from_millis(300)).await;
+    let first = tokio::spawn(slow());
+    under_way(&robot).await;
     robot.move_to(start).await.unwrap();
     assert_eq!(first.await.unwrap(), Err(MotionError::Superseded));
     robot.shutdown().await;
@@ -58,12 +61,12 @@ async fn a_dropped_motion_brakes_and_a_new_one_takes_over() {
 async fn nothing_moves_before_the_first_poll_and_a_canceller_brakes() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
-    let motion = robot.move_to(Pose::translation(0.0, 0.0, 0.1) * robot.pose());
+    let motion = crate::long_way(&robot);
     let canceller = motion.canceller();
-    tokio::time::sleep(Duration::from_millis(200)).await;
+    robot_time(&robot, 200).await;
     assert!(!robot.state().motion_running());
     let moving = tokio::spawn(motion.into_future());
-    tokio::time::sleep(Duration::from_millis(500)).await;
+    under_way(&robot).await;
     canceller.cancel();
     assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
     // Stopping what rests is no error.
@@ -81,7 +84,7 @@ async fn a_watch_is_followed_to_its_last_value() {
 
     let (sender, targets) = watch::channel(robot.pose());
     let following = tokio::spawn(robot.follow(targets).into_future());
-    tokio::time::sleep(Duration::from_millis(200)).await;
+    under_way(&robot).await;
     sender.send(Pose::translation(5.0, 0.0, 0.0)).unwrap();
     let error = following.await.unwrap().unwrap_err();
     assert!(matches!(error, MotionError::Goal(_)), "{error:?}");
@@ -134,10 +137,8 @@ async fn parameters_are_taken_at_rest_and_refused_in_motion() {
         Status::Setter(SetterStatus::InvalidArgumentRejected)
     );
 
-    robot
-        .move_to(Pose::translation(0.0, 0.0, 0.05) * robot.pose())
-        .detach();
-    tokio::time::sleep(Duration::from_millis(300)).await;
+    crate::long_way(&robot).detach();
+    under_way(&robot).await;
     let refused = robot.set_joint_impedance([3000.0; 7]).await.unwrap_err();
     assert_eq!(
         refused.to_string(),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use franka_async::{Finish, MotionError, Pose, ReadError, Reading, Robot, Torques};
 use franka_proto::RobotError;
@@ -11,16 +11,11 @@ use futures::StreamExt;
 use tokio::task::JoinHandle;
 use tokio::time::{sleep, timeout};
 
-use crate::{alone, connect};
+use crate::{SOON, alone, by_the_clock, robot_time, under_way};
 
 /// A robot that does not mind what a busy machine loses.
 async fn patient() -> (Robot, Running) {
-    let sim = Sim::fr3()
-        .enforce_limits(false)
-        .enforce_communication(false);
-    let sim = sim.tool(Tool::hand()).start().await;
-    let sim = sim.expect("a simulator starts");
-    (connect(&sim).await, sim)
+    by_the_clock(Sim::fr3().tool(Tool::hand())).await
 }
 
 /// `message_id` of all states of a stream, each with what was missed before it. Ends with the
@@ -62,7 +57,7 @@ async fn a_stream_has_every_state_whatever_moves() {
     let _alone = alone();
     let (robot, sim) = patient().await;
     let (states, records) = (collect(&robot), records(&robot));
-    sleep(Duration::from_millis(200)).await;
+    robot_time(&robot, 200).await;
     let up = Pose::translation(0.0, 0.0, 0.03) * robot.pose();
     robot.move_to(up).await.expect("it arrives");
     float(&robot, 300).await.expect("it floats");
@@ -80,17 +75,17 @@ async fn a_stream_has_every_state_whatever_moves() {
     active.await.expect("no panic");
 
     let tripped = async {
-        sleep(Duration::from_millis(200)).await;
+        under_way(&robot).await;
         sim.with(|robot| robot.trip(RobotError::CartesianReflex))
             .await
     };
-    let (outcome, tripped) = tokio::join!(float(&robot, 5000), tripped);
+    let (outcome, tripped) = tokio::join!(float(&robot, 60_000), tripped);
     tripped.expect("the simulator runs");
     assert!(
         matches!(outcome, Err(MotionError::Control(_))),
         "{outcome:?}"
     );
-    sleep(Duration::from_millis(100)).await;
+    robot_time(&robot, 100).await;
     robot.shutdown().await;
 
     let (mut states, mut records) = (states.await.unwrap(), records.await.unwrap());
@@ -114,11 +109,11 @@ async fn a_slow_reader_is_told_how_many_states_it_missed() {
     let first = slow.next().await.expect("states come");
     assert_eq!(first.missed, 0);
     // More than the reader may lag behind.
-    sleep(Duration::from_millis(1800)).await;
+    robot_time(&robot, 1800).await;
     let late = slow.next().await.expect("states come");
     let prompt = slow.next().await.expect("states come");
     let mut never = robot.state_stream();
-    sleep(Duration::from_millis(1800)).await;
+    robot_time(&robot, 1800).await;
     let lagged = never.next().await.expect("states come");
     robot.shutdown().await;
     while slow.next().await.is_some() {}
@@ -179,13 +174,13 @@ async fn reading_ends_when_the_closure_says_so() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn reading_ends_with_an_error_when_the_robot_falls_silent_or_the_connection_ends() {
-    const SOON: Duration = Duration::from_secs(5);
     let forever = |robot: &Robot| {
         let robot = robot.clone();
         tokio::spawn(async move { robot.read::<()>(|_| ControlFlow::Continue(())).await })
     };
     let _alone = alone();
     let (robot, sim) = patient().await;
+    let (release, held) = std::sync::mpsc::channel::<()>();
     // Both the one that was there before the robot fell silent, and one that comes when it is.
     let readings = async {
         for _ in 0..2 {
@@ -195,15 +190,11 @@ async fn reading_ends_with_an_error_when_the_robot_falls_silent_or_the_connectio
             let text = "libfranka: UDP receive: Timeout";
             assert!(error.to_string().starts_with(text), "{error}");
         }
-        Instant::now()
+        drop(release);
     };
-    let silence = async {
-        let silence = sim.with(|_| std::thread::sleep(Duration::from_millis(2500)));
-        silence.await.unwrap();
-        Instant::now()
-    };
-    let (told, back) = tokio::join!(readings, silence);
-    assert!(told < back, "the second one was told while it lasted");
+    let silence = sim.with(move |_| held.recv().is_err());
+    let ((), silent) = tokio::join!(readings, silence);
+    assert_eq!(silent, Ok(true));
 
     // The robot is back, and the stream with it.
     let mut stream = robot.state_stream();
