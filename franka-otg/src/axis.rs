@@ -6,6 +6,7 @@ use crate::given_duration::lasting;
 use crate::least_time::{Least, Shape, least_time};
 use crate::limits::AxisLimits;
 use crate::passing::{Passing, Way};
+use crate::possible::Possible;
 use crate::profile::Profile;
 use crate::state::AxisState;
 use crate::task::{ROUNDING, Task};
@@ -95,7 +96,7 @@ impl Axis {
             return duration;
         };
         let left = duration / self.unit - self.braking;
-        let possible = passing.from(left, self.slack());
+        let possible = passing.from(left);
         if possible == left {
             duration
         } else {
@@ -103,9 +104,34 @@ impl Axis {
         }
     }
 
-    /// [`TOGETHER`] in units of the axis.
-    fn slack(&self) -> f64 {
-        TOGETHER / self.unit
+    /// The last duration before `duration` that it can take, if it cannot take `duration`.
+    pub(crate) fn before(&self, duration: f64) -> Option<f64> {
+        let Motion::Through(passing) = &self.motion else {
+            return None;
+        };
+        let earlier = passing.before(duration / self.unit - self.braking)?;
+        Some(self.unit * (self.braking + earlier))
+    }
+
+    /// Whether it can be at its target after `duration`, but for rounding.
+    pub(crate) fn can_take(&self, duration: f64) -> bool {
+        let left = duration / self.unit - self.braking;
+        match &self.motion {
+            Motion::Through(passing) => passing.can_take(left),
+            Motion::ToRest(least) => least.duration <= left || earlier(least, left).is_some(),
+        }
+    }
+
+    /// Replaces a motion to rest that takes longer than `duration` by rounding alone with one that
+    /// does not.
+    pub(crate) fn round_to(&mut self, duration: f64) {
+        let left = duration / self.unit - self.braking;
+        if let Motion::ToRest(least) = &mut self.motion
+            && least.duration > left
+            && let Some(earlier) = earlier(least, left)
+        {
+            *least = earlier;
+        }
     }
 
     /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes
@@ -123,7 +149,7 @@ impl Axis {
                 self.lay_out_shape(least.sign * solution.sign, &solution.shape, 0.0, profile);
             }
             Motion::Through(passing) => {
-                match passing.way(left.max(passing.least()), self.slack()) {
+                match passing.way(left.max(passing.least())) {
                     Way::Shape(sign, shape) => {
                         self.begin(profile);
                         self.lay_out_shape(sign, &shape, 0.0, profile);
@@ -169,6 +195,25 @@ impl Axis {
     }
 }
 
+/// The least-time motion to a position that differs from the target by rounding alone, if that
+/// motion takes no longer than `duration` but for rounding.
+///
+/// Near the end of a motion the least duration is uncertain by the third root of the rounding of
+/// positions: microseconds, which are micrometres of an axis that moves.
+fn earlier(least: &Least, duration: f64) -> Option<Least> {
+    let possible = Possible::new(&least.task, 0.0, 0.0);
+    let d = least.task.d - possible.drift(least.duration);
+    let earlier = least_time(Task {
+        d: d.max(least.task.stop_point().0),
+        ..least.task
+    });
+    let takes = earlier.duration <= duration || possible.are_same(duration, earlier.duration);
+    takes.then_some(Least {
+        sign: least.sign * earlier.sign,
+        ..earlier
+    })
+}
+
 /// Whether the numbers are close enough together to plan from `start`.
 pub(crate) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
     Task::new(start, start.position, limits).is_some()
@@ -192,10 +237,10 @@ fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
         velocity,
         acceleration,
         ..
-    } = profile.front().after(0.0, CYCLE + TOGETHER);
+    } = profile.front().after(0.0, CYCLE);
     let change = 0.5 * acceleration * acceleration / limits.jerk;
     if velocity.abs() + change <= limits.velocity * (1.0 + AT_LIMIT) {
-        profile.push(0.0, CYCLE + TOGETHER);
+        profile.push(0.0, CYCLE);
     }
     append_stop(limits, profile);
 }
@@ -246,14 +291,6 @@ fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
         (-sign * limits.jerk, t3 * unit),
     ]
 }
-
-/// Times, in seconds, that count as together where an axis would need a detour to lose the
-/// difference.
-///
-/// A quarter of a cycle, in which it goes on behind its target as the target does. The time at
-/// which another axis comes to rest is known no better: near its end it is the third root of what a
-/// position is rounded by, over its jerk.
-const TOGETHER: f64 = 0.25 * CYCLE;
 
 /// Relative excess over a limit that counts as rounding of a target that is at the limit.
 const AT_LIMIT: f64 = 1e-12;

@@ -77,29 +77,43 @@ impl Passing {
         self.candidates.iter().next().unwrap_or(0.0)
     }
 
-    /// The least possible duration that is not less than `t`, or than a little before it: one that
-    /// ends up to `slack` ahead of `t` counts as `t`.
-    pub(crate) fn from(&self, t: f64, slack: f64) -> f64 {
-        if self.possible().is_possible(t) || self.just_before(t, slack).is_some() {
+    /// The least possible duration that is not less than `t`, but for rounding.
+    pub(crate) fn from(&self, t: f64) -> f64 {
+        if self.can_take(t) {
             return t;
         }
         // Behind the last one all durations are possible, whatever rounding says.
         self.candidates.iter().find(|&next| next > t).unwrap_or(t)
     }
 
-    /// The last candidate up to `slack` ahead of `t`.
-    fn just_before(&self, t: f64, slack: f64) -> Option<f64> {
-        let near = |&candidate: &f64| candidate <= t && t - candidate <= slack;
-        self.candidates.iter().filter(near).last()
+    /// The last candidate before `t`, if `t` itself is blocked.
+    pub(crate) fn before(&self, t: f64) -> Option<f64> {
+        if self.can_take(t) {
+            return None;
+        }
+        self.candidates.iter().filter(|&earlier| earlier < t).last()
     }
 
-    /// How to move for a duration that [`from`](Self::from) gives for the same `slack`.
-    pub(crate) fn way(&self, t: f64, slack: f64) -> Way {
+    /// Whether the axis can be at its target after `t`, but for rounding.
+    pub(crate) fn can_take(&self, t: f64) -> bool {
+        let possible = self.possible();
+        possible.is_possible(t) || self.same(&possible, t).is_some()
+    }
+
+    /// The candidate that `t` is, but for rounding.
+    fn same(&self, possible: &Possible, t: f64) -> Option<f64> {
+        self.candidates
+            .iter()
+            .find(|&candidate| possible.are_same(t, candidate))
+    }
+
+    /// How to move for a duration that [`from`](Self::from) gives.
+    pub(crate) fn way(&self, t: f64) -> Way {
         let possible = self.possible();
         let t = if possible.is_possible(t) {
             t
         } else {
-            self.just_before(t, slack).unwrap_or(t)
+            self.same(&possible, t).unwrap_or(t)
         };
         let (up, down) = (possible.up.reach(t), possible.down.reach(t));
         if possible.meets(&up, t) {
@@ -165,7 +179,7 @@ mod tests {
         let passing = Passing::new(&task, 0.5, 0.0);
         let least = passing.least();
         assert!(least < 2e-3, "{least}");
-        let next = passing.from(0.1, 0.0);
+        let next = passing.from(0.1);
         assert!(next > 2.0, "{next}");
         // It slows down to nothing and less, and comes again with as much.
         let possible = passing.possible();

@@ -158,7 +158,7 @@ impl<const N: usize> Plan<N> {
         limits: &Limits<N>,
         until: f64,
     ) -> Result<(), PlanError> {
-        let axes: [_; N] =
+        let mut axes: [_; N] =
             core::array::from_fn(|i| Axis::new(state.axis(i), target.axis(i), limits.axis(i)));
         let mut duration = 0.0_f64;
         for (i, axis) in axes.iter().enumerate() {
@@ -169,7 +169,13 @@ impl<const N: usize> Plan<N> {
         }
         let moves = !target.is_at_rest();
         if moves {
-            duration = common_duration(&axes, duration);
+            let common = common_duration(&axes, duration);
+            if common < duration {
+                for axis in axes.iter_mut().flatten() {
+                    axis.round_to(common);
+                }
+            }
+            duration = common;
         }
         for (axis, profile) in axes.iter().flatten().zip(&mut self.axes) {
             axis.lay_out(duration, profile);
@@ -292,15 +298,22 @@ impl<const N: usize> Plan<N> {
 ///
 /// An axis that cannot take a duration asks for the next one that it can, which is one of its
 /// candidates; the duration only grows, so each candidate is asked for once at most.
+///
+/// Rounding alone must not cause a detour: an axis that would need one may have been possible just
+/// before, by less than the other axes know when they can arrive.
 fn common_duration<const N: usize>(axes: &[Result<Axis, Refusal>; N], at_least: f64) -> f64 {
+    let axes = || axes.iter().flatten();
     let mut duration = at_least;
     for _ in 0..N * CANDIDATES {
-        let next = axes
-            .iter()
-            .flatten()
-            .fold(duration, |duration, axis| axis.from(duration));
+        let next = axes().fold(duration, |next, axis| axis.from(next));
         if next == duration {
             break;
+        }
+        let earlier = axes()
+            .filter_map(|axis| axis.before(duration))
+            .fold(duration, f64::min);
+        if axes().all(|axis| axis.can_take(earlier)) {
+            return earlier;
         }
         duration = next;
     }

@@ -14,6 +14,8 @@ pub(crate) struct Possible {
     pub(crate) down: Farthest,
     change: VelocityChange,
     size: Size,
+    vf: f64,
+    af: f64,
 }
 
 /// Durations at which possible ones begin or end.
@@ -27,7 +29,24 @@ impl Possible {
             down: Farthest::new(&task.mirrored(-1.0), -vf, -af),
             change: VelocityChange::new(task, vf, af),
             size: Size::new(task, vf, af),
+            vf,
+            af,
         }
+    }
+
+    /// Whether an axis that is at its target after `other` is there after `t`, too, but for
+    /// rounding of its position and velocity.
+    pub(crate) fn are_same(&self, t: f64, other: f64) -> bool {
+        let apart = (t - other).abs();
+        let (speed, bend) = (self.vf.abs(), self.af.abs());
+        let position = apart * (speed + apart * (bend + apart));
+        let velocity = apart * (bend + apart);
+        position <= self.drift(t) && velocity <= DRIFT * self.change.size()
+    }
+
+    /// What the position of the target may be rounded by after a chain of plans.
+    pub(crate) fn drift(&self, t: f64) -> f64 {
+        DRIFT * self.size.at(t, self.vf)
     }
 
     /// Whether a motion of duration `t` ends at the target but for rounding.

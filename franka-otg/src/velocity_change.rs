@@ -34,6 +34,11 @@ impl VelocityChange {
         }
     }
 
+    /// What the velocities are rounded relative to.
+    pub(crate) const fn size(&self) -> f64 {
+        self.size
+    }
+
     /// Whether the change can take `t`.
     pub(crate) fn is_possible(&self, t: f64) -> bool {
         self.is_possible_within(t, TIGHT * self.size)

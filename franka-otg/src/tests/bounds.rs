@@ -1,7 +1,7 @@
 //! How far the searches stay below the ceilings that bound them.
 
-use super::random::stop_point;
-use crate::{AxisLimits, AxisState, Generator, Limits, State, Synchronisation, steps};
+use super::random::{beside_one_that_takes, stop_point};
+use crate::{AxisLimits, AxisState, Generator, Limits, Synchronisation, steps};
 
 /// The most passes, in percent of what a search may take, over the motions from one state to a
 /// target beside an axis that takes `stretch` times as long.
@@ -10,23 +10,13 @@ fn passes(limits: AxisLimits, state: AxisState, target: AxisState, stretch: f64)
     let mut generator = Generator::new(super::random::one(state), alone).unwrap();
     let one = super::random::one(target);
     generator.set_moving_target(&one).unwrap();
-    let ramp = 0.25 * stretch * generator.time_to_target();
-    if ramp > 0.0 {
-        let beside = AxisLimits {
-            velocity: 2.0 * ramp * ramp,
-            acceleration: 2.0 * ramp,
-            jerk: 1.0,
-        };
-        let both = |one: AxisState, position| State {
-            position: [one.position, position],
-            velocity: [one.velocity, 0.0],
-            acceleration: [one.acceleration, 0.0],
-        };
-        let limits = Limits::per_axis([limits, beside]).unwrap();
-        Generator::new(both(state, 0.0), limits)
+    let duration = stretch * generator.time_to_target();
+    if duration > 0.0 {
+        let (limits, state, target) = beside_one_that_takes(duration, limits, state, target);
+        Generator::new(state, limits)
             .unwrap()
             .with_synchronisation(Synchronisation::Time)
-            .set_moving_target(&both(target, 2.0 * ramp.powi(3)))
+            .set_moving_target(&target)
             .unwrap();
     }
     steps::take_most()

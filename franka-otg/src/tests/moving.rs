@@ -5,10 +5,11 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::random::{
-    arm_limits, cases, extreme_limits, many, many_moving, mixed_limits, target_motion,
+    arm_limits, beside_one_that_takes, cases, extreme_limits, many, many_moving, mixed_limits,
+    target_motion,
 };
 use super::walk::{check_motion, check_step};
-use crate::{AxisState, CYCLE, Generator, Limits, State, Synchronisation};
+use crate::{AxisLimits, AxisState, CYCLE, Generator, Limits, State, Synchronisation};
 
 fn towards<const N: usize>(limits: Limits<N>, state: State<N>, target: &State<N>) -> Generator<N> {
     let mut generator = Generator::new(state, limits)
@@ -93,20 +94,8 @@ fn certify(
     prop_assume!(target.velocity.abs() + change <= top.velocity);
     let least = towards(limits, state, &now).time_to_target();
     prop_assert!(least <= took * (1.0 + 1e-9), "{least} instead of {took}");
-    // Beside an axis that takes as long from rest to rest, both take as long.
-    let ramp = 0.25 * took;
-    let beside = Limits::from_arrays(
-        [top.velocity, 2.0 * ramp * ramp],
-        [top.acceleration, 2.0 * ramp],
-        [top.jerk, 1.0],
-    )
-    .unwrap();
-    let both = |one: &State<1>, position| State {
-        position: [one.position[0], position],
-        velocity: [one.velocity[0], 0.0],
-        acceleration: [one.acceleration[0], 0.0],
-    };
-    let both = towards(beside, both(&state, 0.0), &both(&now, 2.0 * ramp.powi(3)));
+    let (limits, state, target) = beside_one_that_takes(took, top, state.axis(0), target);
+    let both = towards(limits, state, &target);
     let got = both.time_to_target();
     prop_assert!(
         (got - took).abs() <= 1e-9 * took,
@@ -256,3 +245,38 @@ proptest! {
 
 /// As for targets at rest: what a rounding of the position costs in time near the end.
 const ROOT_OF_ROUNDING: f64 = 2e-5;
+
+/// This axis can be at its target until 0.11403 s and again from 0.36 s on.
+#[test]
+fn an_axis_that_would_be_early_by_less_than_a_cycle_is_not_early() {
+    let limits = AxisLimits {
+        velocity: 0.19915637055060992,
+        acceleration: 14.697186906757418,
+        jerk: 21.860681939737024,
+    };
+    let state = AxisState {
+        position: 0.25,
+        velocity: 0.19206426171502156,
+        acceleration: -0.8554151344164556,
+    };
+    let target = AxisState {
+        position: 0.2688356466016486,
+        velocity: 0.17920354498482197,
+        acceleration: 0.5382449056039369,
+    };
+    for (duration, expected) in [
+        (0.1140, 0.1140),
+        (0.11404, 0.362034),
+        (0.1142, 0.362034),
+        (0.3, 0.362034),
+        (0.37, 0.37),
+    ] {
+        let problem = beside_one_that_takes(duration, limits, state, target);
+        check(problem).unwrap();
+        let arrival = towards(problem.0, problem.1, &problem.2).time_to_target();
+        assert!(
+            (arrival - expected).abs() < 1e-5,
+            "{arrival} beside {duration}"
+        );
+    }
+}

@@ -154,6 +154,32 @@ pub(super) fn many_moving<const N: usize>(
     )
 }
 
+/// One axis on its way to a target, beside one that takes `duration` from rest to rest.
+pub(super) fn beside_one_that_takes(
+    duration: f64,
+    limits: AxisLimits,
+    state: AxisState,
+    target: AxisState,
+) -> (Limits<2>, State<2>, State<2>) {
+    // Four ramps of the jerk that neither velocity nor acceleration limit: distance 2 ramp^3.
+    let ramp = 0.25 * duration;
+    let beside = AxisLimits {
+        velocity: 2.0 * ramp * ramp,
+        acceleration: 2.0 * ramp,
+        jerk: 1.0,
+    };
+    let both = |one: AxisState, position| State {
+        position: [one.position, position],
+        velocity: [one.velocity, 0.0],
+        acceleration: [one.acceleration, 0.0],
+    };
+    (
+        Limits::per_axis([limits, beside]).unwrap(),
+        both(state, 0.0),
+        both(target, 2.0 * ramp.powi(3)),
+    )
+}
+
 /// So many cases, without a file of seeds beside the source: a case that failed is printed, and
 /// becomes a test of its own.
 pub(crate) fn cases(count: u32) -> ProptestConfig {

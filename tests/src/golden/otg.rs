@@ -4,7 +4,7 @@
 //! not: of the axes that wait for the slowest one only the common duration is, and what they must
 //! keep is checked.
 
-use franka_otg::{CYCLE, Generator, Limits, PlanError, State, Synchronisation};
+use franka_otg::{Generator, Limits, PlanError, State, Synchronisation};
 
 use super::{Case, Malformed, Node, Report};
 
@@ -15,9 +15,6 @@ const DURATION: f64 = 1e-9;
 const SAMPLE: f64 = 1e-8;
 /// Of limits, relative.
 const EXCESS: f64 = 1e-9;
-/// Arrivals that the generator counts as simultaneous where an axis cannot wait, in seconds: a
-/// quarter of a cycle.
-const TOGETHER: f64 = 0.25 * CYCLE;
 /// Samples of a motion whose limits are checked.
 const SAMPLES: u32 = 200;
 /// Instants of the samples in the file, as parts of the duration.
@@ -289,11 +286,7 @@ impl Problem<1> {
             let behind = to + 1e-6 * (to - from);
             expected.extend([(before, before), (behind, behind)]);
             for part in [1e-4, 0.5, 1.0 - 1e-6] {
-                let asked = from + part * (to - from);
-                // An axis that is early by less does not go back for it.
-                if asked - from > TOGETHER {
-                    expected.push((asked, to));
-                }
+                expected.push((from + part * (to - from), to));
             }
         }
         for (asked, expected) in expected {

@@ -1,12 +1,109 @@
 //! One generator and what happens to it.
 
-use franka_otg::{CYCLE, Generator, Limits, PlanError, State, Synchronisation};
+use franka_otg::{
+    AxisLimits, AxisState, CYCLE, Generator, Limits, PlanError, State, Synchronisation,
+};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
 use crate::problem::{self, Kind};
 use crate::tally::Tally;
 use crate::watch::Watch;
+
+/// Makes a plan to targets in motion, with limits of all kinds, from a random state.
+///
+/// Single plans meet more kinds of starts than a closed loop leads to.
+pub(crate) fn plan(seed: u64, tally: &mut Tally) {
+    let mut random = SmallRng::seed_from_u64(seed);
+    match random.random_range(0..4) {
+        0 => single::<1>(seed, &mut random, tally),
+        1 => single::<2>(seed, &mut random, tally),
+        2 => single::<3>(seed, &mut random, tally),
+        _ => single::<7>(seed, &mut random, tally),
+    }
+}
+
+fn single<const N: usize>(seed: u64, random: &mut SmallRng, tally: &mut Tally) {
+    let limits = Kind::Mixed.limits::<N>(random);
+    let state = problem::departure(random, &limits);
+    let target = problem::target(random, &state, &limits, true);
+    let failures = tally.failures.len();
+    let check_optimum = random.random_bool(0.01);
+    if let Some(least) = follow(seed, limits, state, &target, check_optimum, tally) {
+        blocked(
+            seed,
+            random,
+            (limits.axis(0), state.axis(0), target.axis(0)),
+            least,
+            tally,
+        );
+    }
+    tally.failures.truncate(failures + 1);
+}
+
+/// Checks one plan from its start to rest; returns when it is at the target.
+fn follow<const N: usize>(
+    seed: u64,
+    limits: Limits<N>,
+    state: State<N>,
+    target: &State<N>,
+    check_optimum: bool,
+    tally: &mut Tally,
+) -> Option<f64> {
+    let mut watch = Watch::new(seed, Synchronisation::Time);
+    let planned = Generator::new(state, limits).and_then(|generator| {
+        let mut generator = generator.with_synchronisation(Synchronisation::Time);
+        generator.set_moving_target(target)?;
+        Ok(generator)
+    });
+    let generator = planned
+        .inspect_err(|error| watch.fail(tally, error.to_string()))
+        .ok()?;
+    watch.planned(&generator, Some(target), check_optimum, tally);
+    let dt = generator.remaining() / SAMPLES;
+    let mut before = state;
+    for k in 1..=SAMPLES as u32 {
+        let after = generator.sample(dt * f64::from(k));
+        watch.step(&limits, &before, &after, dt, tally);
+        before = after;
+    }
+    Some(generator.time_to_target())
+}
+
+/// If the axis cannot take some duration above `least` though it can take a shorter one, finds
+/// where that begins and checks plans of just so long, a little shorter and a little longer.
+fn blocked(
+    seed: u64,
+    random: &mut SmallRng,
+    axis: (AxisLimits, AxisState, AxisState),
+    least: f64,
+    tally: &mut Tally,
+) {
+    let mut plan = |duration: f64| {
+        let (limits, state, target) = problem::beside_one_that_takes(duration, axis);
+        follow(seed, limits, state, &target, false, tally)
+    };
+    let mut delayed =
+        |duration: f64| plan(duration).is_some_and(|arrival| arrival > duration * (1.0 + EDGE));
+    let mut high = least * random.random_range(1.0..4.0);
+    let mut low = least;
+    if least == 0.0 || !delayed(high) || delayed(low) {
+        return;
+    }
+    while high - low > EDGE * high {
+        let middle = 0.5 * (low + high);
+        if delayed(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    for _ in 0..10 {
+        let part = 10_f64.powf(random.random_range(-12.0..-1.0));
+        plan(high * (1.0 + part));
+        plan(low * (1.0 - part));
+    }
+}
 
 /// Runs the episode of a seed.
 pub(crate) fn run(seed: u64, tally: &mut Tally) {
@@ -175,7 +272,7 @@ impl<'a, const N: usize> Loop<'a, N> {
         let before = *self.generator.state();
         let after = *self.generator.step();
         self.watch
-            .step(self.generator.limits(), &before, &after, self.tally);
+            .step(self.generator.limits(), &before, &after, CYCLE, self.tally);
     }
 
     /// Steps until rest, which is when the generator says.
@@ -199,5 +296,9 @@ impl<'a, const N: usize> Loop<'a, N> {
 
 /// Targets and other events of an episode.
 const EVENTS: usize = 150;
+/// Relative width to which the beginning of blocked durations is searched.
+const EDGE: f64 = 1e-12;
+/// Instants at which a single plan is checked.
+const SAMPLES: f64 = 100.0;
 /// Longer motions are checked as plans and not followed to their end.
 const CYCLES_MAX: usize = 4000;

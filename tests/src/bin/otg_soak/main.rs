@@ -1,12 +1,13 @@
 //! Drives the trajectory generator through random closed loops for as long as it is told to:
-//! `otg_soak [REPLANS] [SEED]`.
+//! `otg_soak [PLANS] [SEED]`. `otg_soak moving [PLANS] [SEED]` makes single plans instead, to
+//! targets in motion with limits of all kinds, each from a random state.
 //!
 //! ```text
 //! seed -> Problem: axes, limits, start -> Episode: targets, gaps, new limits, cycles -> Watch: checks -> Tally
 //! ```
 //!
-//! Each episode has a seed of its own. A failure names it, and `otg_soak replay SEED` runs that one
-//! alone.
+//! Each episode and each single plan has a seed of its own. A failure names it, and
+//! `otg_soak replay SEED` or `otg_soak moving 1 SEED` runs that one alone.
 
 mod episode;
 mod oracle;
@@ -22,28 +23,36 @@ use tally::Tally;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let (run, numbers): (Run, &[&str]) = match words.split_first() {
+        Some((&"moving", numbers)) => (episode::plan, numbers),
+        Some((&"replay", [seed])) => {
+            return seed
+                .parse()
+                .map_or_else(|_| usage(), |seed| soak(episode::run, 1, seed));
+        }
+        _ => (episode::run, &words),
+    };
     let number = |i: usize, default: u64| {
-        arguments
+        numbers
             .get(i)
-            .map_or(Some(default), |text| text.parse().ok())
+            .map_or(Ok(default), |text| text.parse::<u64>())
     };
-    if arguments.first().is_some_and(|word| word == "replay") {
-        let Some(seed) = arguments.get(1).and_then(|text| text.parse().ok()) else {
-            return usage();
-        };
-        let mut tally = Tally::default();
-        episode::run(seed, &mut tally);
-        println!("{tally}");
-        return tally.outcome();
+    match (number(0, PLANS), number(1, SEED)) {
+        (Ok(plans), Ok(seed)) if numbers.len() <= 2 => soak(run, plans, seed),
+        _ => usage(),
     }
-    let (Some(replans), Some(seed)) = (number(0, REPLANS), number(1, SEED)) else {
-        return usage();
-    };
+}
+
+type Run = fn(u64, &mut Tally);
+
+/// Runs one seed after the other until there are so many plans.
+fn soak(run: Run, plans: u64, seed: u64) -> ExitCode {
     let (mut tally, start) = (Tally::default(), Instant::now());
     let mut next = seed;
     let mut shown = 0;
-    while tally.replans < replans && tally.failures.len() < FAILURES_MAX {
-        episode::run(next, &mut tally);
+    while tally.replans < plans && tally.failures.len() < FAILURES_MAX {
+        run(next, &mut tally);
         next += 1;
         if tally.replans / SHOW_EVERY > shown {
             shown = tally.replans / SHOW_EVERY;
@@ -65,11 +74,11 @@ fn main() -> ExitCode {
 }
 
 fn usage() -> ExitCode {
-    eprintln!("usage: otg_soak [REPLANS] [SEED] | otg_soak replay SEED");
+    eprintln!("usage: otg_soak [moving] [PLANS] [SEED] | otg_soak replay SEED");
     ExitCode::from(2)
 }
 
-const REPLANS: u64 = 10_000_000;
+const PLANS: u64 = 10_000_000;
 const SEED: u64 = 1;
 const SHOW_EVERY: u64 = 1_000_000;
 /// More of the same say nothing new.

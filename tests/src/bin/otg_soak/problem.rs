@@ -1,6 +1,6 @@
 //! Random limits, states and targets.
 
-use franka_otg::{AxisLimits, Limits, State};
+use franka_otg::{AxisLimits, AxisState, Limits, State};
 use rand::Rng;
 use rand::rngs::SmallRng;
 
@@ -55,6 +55,36 @@ pub(crate) fn state<const N: usize>(random: &mut SmallRng, limits: &Limits<N>) -
     state
 }
 
+/// A state that can stay inside the limits, though no motion inside them may lead to it.
+pub(crate) fn departure<const N: usize>(random: &mut SmallRng, limits: &Limits<N>) -> State<N> {
+    let mut state = State::at_rest(std::array::from_fn(|_| random.random_range(-1.0..1.0)));
+    for i in 0..N {
+        let AxisLimits {
+            velocity,
+            acceleration,
+            jerk,
+        } = limits.axis(i);
+        let bend = part(random);
+        // The velocity that is left when the acceleration is ramped to zero.
+        let coasting = velocity * part(random);
+        let room = (2.0 * jerk * (velocity + coasting * 1_f64.copysign(bend))).sqrt();
+        let a = bend * acceleration.min(room);
+        let v = coasting - 0.5 * a * a.abs() / jerk;
+        state.velocity[i] = v.clamp(-velocity, velocity);
+        state.acceleration[i] = a;
+    }
+    state
+}
+
+/// A part of a limit, all and nothing of it included.
+fn part(random: &mut SmallRng) -> f64 {
+    match random.random_range(0..6) {
+        0 => 1.0,
+        1 => 0.0,
+        _ => random.random_range(-1.0..1.0),
+    }
+}
+
 /// Velocity and acceleration that can be met inside the limits, and left.
 fn motion(random: &mut SmallRng, limits: AxisLimits) -> (f64, f64) {
     let velocity = limits.velocity * random.random_range(-1.0..=1.0);
@@ -103,4 +133,29 @@ pub(crate) fn target<const N: usize>(
         }
     }
     target
+}
+
+/// One axis on its way from a state to a target, beside one that takes `duration` from rest to
+/// rest.
+pub(crate) fn beside_one_that_takes(
+    duration: f64,
+    (limits, state, target): (AxisLimits, AxisState, AxisState),
+) -> (Limits<2>, State<2>, State<2>) {
+    // Four ramps of the jerk that neither velocity nor acceleration limit: distance 2 ramp^3.
+    let ramp = 0.25 * duration;
+    let beside = AxisLimits {
+        velocity: 2.0 * ramp * ramp,
+        acceleration: 2.0 * ramp,
+        jerk: 1.0,
+    };
+    let both = |one: AxisState, position| State {
+        position: [one.position, position],
+        velocity: [one.velocity, 0.0],
+        acceleration: [one.acceleration, 0.0],
+    };
+    (
+        Limits::per_axis([limits, beside]).expect("the limits are positive and finite"),
+        both(state, 0.0),
+        both(target, 2.0 * ramp.powi(3)),
+    )
 }

@@ -126,16 +126,7 @@ impl<const N: usize> Watch<N> {
         for i in 0..N {
             let (to, jerk) = (target.axis(i), generator.limits().axis(i).jerk);
             let expected = to.position - left * (to.velocity - 0.5 * left * to.acceleration);
-            let miss = before.position[i] - expected;
-            // Where an axis cannot wait for the others it may be there up to a quarter of a cycle
-            // before them.
-            let early = if to.velocity != 0.0 && N > 1 {
-                (miss / to.velocity).clamp(0.0, 0.25 * CYCLE)
-            } else {
-                0.0
-            };
-            let bend = (to.acceleration.abs() + jerk * early) * early * early;
-            let error = (miss - early * to.velocity).abs() - jerk * left.powi(3) - bend;
+            let error = (before.position[i] - expected).abs() - jerk * left.powi(3);
             let error = (error / self.axes[i].size).max(0.0);
             tally.landing.see(error, self.seed);
             if error > PLACE {
@@ -175,20 +166,21 @@ impl<const N: usize> Watch<N> {
         }
     }
 
-    /// One cycle, from one state to the next.
+    /// From one state to the next, `dt` seconds later.
     pub(crate) fn step(
         &mut self,
         limits: &Limits<N>,
         before: &State<N>,
         after: &State<N>,
+        dt: f64,
         tally: &mut Tally,
     ) {
         tally.cycles += 1;
         for i in 0..N {
             let (l, p, q) = (limits.axis(i), before.axis(i), after.axis(i));
             let Axis { still, ahead, size } = self.axes[i];
-            let rounding = 4.0 * f64::EPSILON * l.acceleration.max(p.acceleration.abs()) / CYCLE;
-            let jerk = ((q.acceleration - p.acceleration).abs() / CYCLE - rounding) / l.jerk - 1.0;
+            let rounding = 4.0 * f64::EPSILON * l.acceleration.max(p.acceleration.abs()) / dt;
+            let jerk = ((q.acceleration - p.acceleration).abs() / dt - rounding) / l.jerk - 1.0;
             tally.jerk.see(jerk, self.seed);
             let mut excess = jerk;
             if self.inside {
@@ -206,10 +198,10 @@ impl<const N: usize> Watch<N> {
             }
             // Trapezoids differ from the integrals by no more than the bounded next derivative
             // allows.
-            let bend = 0.25 * l.jerk * CYCLE * CYCLE * (1.0 + EXACT);
+            let bend = 0.25 * l.jerk * dt * dt * (1.0 + EXACT);
             let fastest = l.velocity.max(p.velocity.abs());
             let gap =
-                (q.velocity - p.velocity - 0.5 * CYCLE * (p.acceleration + q.acceleration)).abs();
+                (q.velocity - p.velocity - 0.5 * dt * (p.acceleration + q.acceleration)).abs();
             if gap > bend + 10.0 * PLACE * fastest {
                 self.fail(
                     tally,
@@ -220,8 +212,8 @@ impl<const N: usize> Watch<N> {
                 .acceleration
                 .max(p.acceleration.abs())
                 .max(q.acceleration.abs());
-            let bend = 0.25 * highest * CYCLE * CYCLE * (1.0 + EXACT);
-            let gap = (q.position - p.position - 0.5 * CYCLE * (p.velocity + q.velocity)).abs();
+            let bend = 0.25 * highest * dt * dt * (1.0 + EXACT);
+            let gap = (q.position - p.position - 0.5 * dt * (p.velocity + q.velocity)).abs();
             if gap > bend + PLACE * size {
                 self.fail(tally, format!("axis {i} jumps by {gap:e}: {p:?} {q:?}"));
             }
