@@ -1,150 +1,139 @@
-//! The command of one cycle, whatever the version.
-#![allow(non_snake_case)]
+//! Commands: what can be asked of a robot, and what the commands of all services have in common.
 
-use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
+use core::fmt;
 
-use crate::error::{DecodeError, EncodeError};
-use crate::version::Version;
-use crate::wire::{self, from_wire, to_wire};
+/// Counter of a client's requests on one connection: 0 for `Connect`, then one more for each.
+/// Replies are matched by it and by nothing else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CommandId(pub u32);
 
-/// What the client commands for one cycle; the field names are the vendor's.
-///
-/// Only the fields of the active generator and controller count; the rest stays zero. The robot
-/// reads every field of the half that it runs and ignores the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+impl fmt::Display for CommandId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}
+
+/// A command of a service. `Display` is its name.
+pub trait ServiceCommand: Copy + fmt::Debug + fmt::Display + Eq + 'static {
+    /// `Connect`.
+    const CONNECT: Self;
+
+    /// How libfranka's messages about this service begin.
+    const SERVICE: &'static str;
+
+    /// Writes libfranka's text about a reply whose status has no meaning.
+    ///
+    /// # Errors
+    /// Those of the formatter.
+    fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let service = Self::SERVICE;
+        write!(f, "{service}: Unexpected response while handling command!")
+    }
+}
+
+/// The commands of all versions. Which number one has, and whether a version has it at all, is in
+/// the version table: see [`Version::command_number`](crate::Version::command_number).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct RobotCommand {
-    /// `message_id` of the state that this command answers.
-    pub message_id: u64,
-    /// Joint positions `[rad]`.
-    pub q_c: [f64; 7],
-    /// Joint velocities `[rad/s]`.
-    pub dq_c: [f64; 7],
-    /// Pose of the end effector in the base frame, column-major `[m]`.
-    pub O_T_EE_c: [f64; 16],
-    /// Twist of the end effector in the base frame, linear then angular `[m/s, rad/s]`.
-    pub O_dP_EE_c: [f64; 6],
-    /// Angle of joint 3 `[rad]` and sign of joint 4 (-1, 0 or 1); `None` leaves the redundancy to
-    /// the robot.
-    pub elbow_c: Option<[f64; 2]>,
-    /// Whether this is the last command of a motion with a generator.
-    pub motion_generation_finished: bool,
-    /// Joint torques without gravity and friction `[N m]`.
-    pub tau_J_d: [f64; 7],
-    /// Whether this is the last command of a torque motion without a generator; protocol 10 only.
-    pub torque_command_finished: bool,
+pub enum Command {
+    /// Opens a session.
+    Connect,
+    /// Starts a motion; replied to twice.
+    Move,
+    /// Stops the motion.
+    StopMove,
+    /// Reads a virtual wall; protocol 5 only.
+    GetCartesianLimit,
+    /// Sets the thresholds of contact and collision.
+    SetCollisionBehavior,
+    /// Sets the stiffness of the robot's joint controller.
+    SetJointImpedance,
+    /// Sets the stiffness of the robot's Cartesian controller.
+    SetCartesianImpedance,
+    /// Sets which axes a hand may guide.
+    SetGuidingMode,
+    /// Sets the stiffness frame.
+    SetEEToK,
+    /// Sets the end-effector frame.
+    SetNEToEE,
+    /// Sets the load.
+    SetLoad,
+    /// Sets the filters of the robot's interfaces; protocol 5 only.
+    SetFilters,
+    /// Clears errors after a reflex.
+    AutomaticErrorRecovery,
+    /// Fetches the robot's description; protocol 10 only.
+    GetRobotModel,
+    /// Fetches the robot's model as a shared library; protocol 5 only.
+    LoadModelLibrary,
 }
 
-impl RobotCommand {
-    /// Length of the longest datagram of any version in bytes: a buffer of this size always does.
-    pub const MAX_SIZE: usize = size_of::<wire::RobotCommand<u8>>();
+impl Command {
+    /// All commands of all versions.
+    pub const ALL: [Self; 15] = [
+        Self::Connect,
+        Self::Move,
+        Self::StopMove,
+        Self::GetCartesianLimit,
+        Self::SetCollisionBehavior,
+        Self::SetJointImpedance,
+        Self::SetCartesianImpedance,
+        Self::SetGuidingMode,
+        Self::SetEEToK,
+        Self::SetNEToEE,
+        Self::SetLoad,
+        Self::SetFilters,
+        Self::AutomaticErrorRecovery,
+        Self::GetRobotModel,
+        Self::LoadModelLibrary,
+    ];
 
-    /// Reads a datagram of a client. Bytes beyond the struct are ignored, as the kernel cuts them
-    /// off a real one.
-    ///
-    /// # Errors
-    /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's command has.
-    pub fn decode(version: Version, bytes: &[u8]) -> Result<Self, DecodeError> {
-        (version.table().command_codec.decode)(bytes)
-    }
-
-    /// Writes the datagram for the robot into `buffer` and returns its length in bytes.
-    ///
-    /// # Errors
-    /// [`EncodeError::Buffer`] if `buffer` is too short ([`RobotCommand::MAX_SIZE`] always does);
-    /// [`EncodeError::Unsupported`] if the version cannot say `torque_command_finished`. `buffer`
-    /// is then untouched.
-    pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
-        (version.table().command_codec.encode)(self, buffer)
-    }
-}
-
-/// Reader and writer of one version's command, for the version table.
-#[derive(Clone, Copy)]
-pub(crate) struct CommandCodec {
-    pub(crate) size: usize,
-    decode: fn(&[u8]) -> Result<RobotCommand, DecodeError>,
-    encode: fn(&RobotCommand, &mut [u8]) -> Result<usize, EncodeError>,
-}
-
-impl CommandCodec {
-    pub(crate) const fn of<F: Finish>() -> Self {
-        Self {
-            size: size_of::<wire::RobotCommand<F>>(),
-            decode: decode::<F>,
-            encode: encode::<F>,
+    /// libfranka's name in its messages. `Connect` and `LoadModelLibrary` have none there; their
+    /// own texts never use it.
+    #[must_use]
+    pub fn display_name(self) -> &'static str {
+        match self {
+            Self::Connect => "Connect",
+            Self::Move => "Move",
+            Self::StopMove => "Stop Move",
+            Self::GetCartesianLimit => "Get Cartesian Limit",
+            Self::SetCollisionBehavior => "Set Collision Behavior",
+            Self::SetJointImpedance => "Set Joint Impedance",
+            Self::SetCartesianImpedance => "Set Cartesian Impedance",
+            Self::SetGuidingMode => "Set Guiding Mode",
+            Self::SetEEToK => "Set EE to K",
+            Self::SetNEToEE => "Set NE to EE",
+            Self::SetLoad => "Set Load",
+            Self::SetFilters => "Set Filters",
+            Self::AutomaticErrorRecovery => "Automatic Error Recovery",
+            Self::GetRobotModel => "Get Robot Model",
+            Self::LoadModelLibrary => "Load Model Library",
         }
     }
 }
 
-/// The end of the torque half: a byte in protocol 10, nothing in protocol 5.
-pub(crate) trait Finish:
-    Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
-{
-    fn finished(self) -> bool;
-    fn of(finished: bool) -> Option<Self>;
-}
-
-impl Finish for u8 {
-    fn finished(self) -> bool {
-        self != 0
-    }
-
-    fn of(finished: bool) -> Option<Self> {
-        Some(u8::from(finished))
+impl fmt::Display for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.display_name())
     }
 }
 
-impl Finish for () {
-    fn finished(self) -> bool {
-        false
+impl ServiceCommand for Command {
+    const CONNECT: Self = Self::Connect;
+    const SERVICE: &'static str = "libfranka";
+
+    fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let service = Self::SERVICE;
+        match self {
+            // libfranka asks of a library only whether it is a success.
+            Self::LoadModelLibrary => write!(f, "{service}: {NO_LIBRARY}"),
+            _ => write!(
+                f,
+                "{service}: Unexpected response while handling {self} command!"
+            ),
+        }
     }
-
-    fn of(finished: bool) -> Option<Self> {
-        (!finished).then_some(())
-    }
 }
 
-fn decode<F: Finish>(bytes: &[u8]) -> Result<RobotCommand, DecodeError> {
-    let (wire, _) = wire::RobotCommand::<F>::ref_from_prefix(bytes)
-        .map_err(|_| DecodeError::datagram::<wire::RobotCommand<F>>(bytes))?;
-    let motion = &wire.motion;
-    Ok(RobotCommand {
-        message_id: wire.message_id.get(),
-        q_c: from_wire(&motion.q_c),
-        dq_c: from_wire(&motion.dq_c),
-        O_T_EE_c: from_wire(&motion.O_T_EE_c),
-        O_dP_EE_c: from_wire(&motion.O_dP_EE_c),
-        elbow_c: (motion.valid_elbow != 0).then(|| from_wire(&motion.elbow_c)),
-        motion_generation_finished: motion.motion_generation_finished != 0,
-        tau_J_d: from_wire(&wire.control.tau_J_d),
-        torque_command_finished: wire.control.torque_command_finished.finished(),
-    })
-}
-
-fn encode<F: Finish>(command: &RobotCommand, buffer: &mut [u8]) -> Result<usize, EncodeError> {
-    let size = size_of::<wire::RobotCommand<F>>();
-    let finish = F::of(command.torque_command_finished).ok_or(EncodeError::Unsupported {
-        what: "torque_command_finished",
-    })?;
-    let got = buffer.len();
-    let (wire, _) = wire::RobotCommand::<F>::mut_from_prefix(buffer)
-        .map_err(|_| EncodeError::Buffer { got, needed: size })?;
-    *wire = wire::RobotCommand {
-        message_id: command.message_id.into(),
-        motion: wire::MotionGeneratorCommand {
-            q_c: to_wire(&command.q_c),
-            dq_c: to_wire(&command.dq_c),
-            O_T_EE_c: to_wire(&command.O_T_EE_c),
-            O_dP_EE_c: to_wire(&command.O_dP_EE_c),
-            elbow_c: to_wire(&command.elbow_c.unwrap_or_default()),
-            valid_elbow: u8::from(command.elbow_c.is_some()),
-            motion_generation_finished: u8::from(command.motion_generation_finished),
-        },
-        control: wire::ControllerCommand {
-            tau_J_d: to_wire(&command.tau_J_d),
-            torque_command_finished: finish,
-        },
-    };
-    Ok(size)
-}
+/// libfranka's text about a library that the robot does not give, which names no command.
+pub(crate) const NO_LIBRARY: &str = "Server reports error when loading model library.";

@@ -19,7 +19,7 @@
 use zerocopy::byteorder::little_endian::U32;
 use zerocopy::{FromBytes, IntoBytes};
 
-use crate::service::CommandId;
+use crate::command::CommandId;
 use crate::wire::{self, CommandNumber};
 
 /// The longest message that [`next_message`] waits for, in bytes: 8 MiB.

@@ -24,6 +24,7 @@
 //! | [`Request`], [`Reply`] | the messages as meaning |
 //! | [`client`], [`server`] | the two sides of a connection as state machines |
 //! | [`gripper`], [`vacuum`] | the protocols of the Franka Hand and of the vacuum gripper |
+//! | [`Protocol`] | what a session asks of a protocol; the same sessions run all three |
 //! | [`Refusal`], [`ControlFailure`], [`IncompatibleVersion`] | libfranka's texts, to the byte |
 //!
 //! # Example
@@ -77,37 +78,31 @@ extern crate std;
 
 pub mod client;
 mod command;
-mod control_error;
 mod end_effector;
-mod error;
-mod errors;
 pub mod framing;
 pub mod gripper;
-mod modes;
+mod number_text;
 mod outgoing;
 mod pending;
 mod protocol;
-#[cfg(feature = "serde")]
-mod serde_names;
+mod robot;
 pub mod server;
-mod service;
-mod state;
 pub mod vacuum;
 mod version;
 pub mod wire;
 
-pub use command::RobotCommand;
-pub use control_error::{ControlFailure, General, SuccessRate};
-pub use error::{DecodeError, EncodeError, ReplyError, RequestError, Violation};
-pub use errors::{Errors, RobotError};
-pub use modes::{ControllerMode, MotionGeneratorMode, RobotMode};
+pub use command::{Command, CommandId, ServiceCommand};
+pub use number_text::General;
 pub use outgoing::Outgoing;
-pub use protocol::{FieldDevice, Progress, Protocol, ServiceCommand};
-pub use service::{
-    Architecture, CollisionBehavior, Command, CommandId, ConnectStatus, Deviation, Filters,
-    LibraryStatus, Load, ModelStatus, MoveControllerMode, MoveGeneratorMode, MoveRequest,
-    MoveStatus, RecoveryStatus, Refusal, Reply, Request, SetterStatus, Status, StopStatus, System,
-    VirtualWall,
+pub use protocol::{
+    ConnectStatus, DecodeError, EncodeError, Explanation, FieldDevice, IncompatibleVersion,
+    Progress, Protocol, ReplyError, RequestError, Violation,
 };
-pub use state::{RobotState, StateText, TotalLoad};
-pub use version::{Explanation, IncompatibleVersion, Version};
+pub use robot::{
+    Architecture, CollisionBehavior, ControlFailure, ControllerMode, Deviation, Errors, Filters,
+    LibraryStatus, Load, ModelStatus, MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode,
+    MoveRequest, MoveStatus, RecoveryStatus, Refusal, Reply, Request, RobotCommand, RobotError,
+    RobotMode, RobotState, SetterStatus, StateText, Status, StopStatus, SuccessRate, System,
+    TotalLoad, VirtualWall,
+};
+pub use version::Version;

@@ -5,8 +5,8 @@ use core::fmt;
 use zerocopy::byteorder::little_endian::U32;
 use zerocopy::{Immutable, IntoBytes};
 
+use crate::command::CommandId;
 use crate::framing::Header;
-use crate::service::CommandId;
 use crate::wire::{self, CommandNumber};
 
 /// One TCP message to send with one write: header and payload.

@@ -1,6 +1,6 @@
 //! The requests that wait for a reply, by command id.
 
-use crate::service::CommandId;
+use crate::command::CommandId;
 
 /// Requests of one session that may wait for replies at the same time.
 ///
@@ -74,7 +74,7 @@ impl<C: Copy> Pending<C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::service::Command;
+    use crate::command::Command;
 
     #[test]
     fn the_table_is_bounded_and_places_are_used_again() {

@@ -2,7 +2,7 @@
 //!
 //! Both are the sources of a test of `franka-proto`, which runs them on a fixed sequence of inputs.
 
-#[path = "../../franka-proto/tests/any_bytes/checks.rs"]
+#[path = "../../franka-proto/tests/protocol/any_bytes/checks.rs"]
 pub mod checks;
-#[path = "../../franka-proto/tests/any_bytes/seeds.rs"]
+#[path = "../../franka-proto/tests/protocol/any_bytes/seeds.rs"]
 pub mod seeds;

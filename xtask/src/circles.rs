@@ -20,11 +20,6 @@ use crate::workspace::Workspace;
 
 /// Circles that are known and not yet removed, as crate and modules. Nothing is added here.
 const KNOWN: &[(&str, &str)] = &[
-    (
-        "franka_proto",
-        "command, control_error, error, framing, outgoing, protocol, service, state, version",
-    ),
-    ("franka_model", "fer, fr3, kind, limits, model"),
     ("franka_otg", "axis, generator, plan"),
     ("franka_otg", "given_duration, late_push"),
     ("franka_rt", "control, driver, law, session, shaping, stats"),

@@ -1,12 +1,15 @@
 //! The session of a client.
 
-use crate::error::{DecodeError, RequestError, Violation};
+use crate::command::CommandId;
+use crate::command::ServiceCommand;
 use crate::framing::Message;
 use crate::outgoing::Outgoing;
 use crate::pending::{self, Pending};
-use crate::protocol::{Progress, Protocol, ServiceCommand};
-use crate::service::{CommandId, ConnectStatus};
-use crate::version::{IncompatibleVersion, Version};
+use crate::protocol::ConnectStatus;
+use crate::protocol::IncompatibleVersion;
+use crate::protocol::{DecodeError, RequestError, Violation};
+use crate::protocol::{Progress, Protocol};
+use crate::version::Version;
 
 /// One connection to a device, from its first byte to its last: to a robot, unless `P` says
 /// otherwise.

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::protocol::ServiceCommand;
+use crate::command::ServiceCommand;
 
 /// An action of an end effector that failed or was ended.
 ///

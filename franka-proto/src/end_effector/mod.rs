@@ -2,11 +2,11 @@
 //! header, 16-bit statuses, and one reply to every command, given when the action has ended.
 
 mod failure;
-mod protocol;
+mod service;
 mod status;
 
 pub use failure::Failure;
-pub(crate) use protocol::{Draft, EndEffector};
+pub(crate) use service::{Draft, EndEffector};
 pub use status::{Reply, Status};
 
 use zerocopy::byteorder::little_endian::U16;

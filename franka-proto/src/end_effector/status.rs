@@ -1,8 +1,8 @@
 //! How an end effector answers.
 
 use super::Failure;
-use crate::protocol::ServiceCommand;
-use crate::service::ConnectStatus;
+use crate::command::ServiceCommand;
+use crate::protocol::ConnectStatus;
 
 /// How the action of an end effector ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

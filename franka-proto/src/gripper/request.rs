@@ -3,12 +3,13 @@
 use core::fmt;
 
 use super::Version;
+use crate::command::ServiceCommand;
 use crate::end_effector::{Draft, EndEffector};
-use crate::error::DecodeError;
 use crate::framing::Message;
 use crate::outgoing::Outgoing;
-use crate::protocol::{ServiceCommand, sealed};
-use crate::service::payload;
+use crate::protocol::DecodeError;
+use crate::protocol::payload;
+use crate::protocol::sealed;
 use crate::wire;
 
 /// What can be asked of the Hand. Each has one reply, given when the action has ended.

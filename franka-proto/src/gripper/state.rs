@@ -4,8 +4,8 @@ use core::fmt;
 
 use zerocopy::FromBytes;
 
-use crate::control_error::General;
-use crate::error::DecodeError;
+use crate::number_text::General;
+use crate::protocol::DecodeError;
 use crate::wire::gripper::GripperState;
 
 /// Everything that the Hand says in one datagram.

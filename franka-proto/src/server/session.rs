@@ -1,11 +1,14 @@
 //! The session of a robot.
 
-use crate::error::{DecodeError, ReplyError, Violation};
+use crate::command::CommandId;
+use crate::command::ServiceCommand;
 use crate::framing::{Header, MAX_MESSAGE_SIZE, Message};
 use crate::outgoing::Outgoing;
 use crate::pending::{self, Pending};
-use crate::protocol::{Progress, Protocol, ServiceCommand};
-use crate::service::{CommandId, ConnectStatus, LibraryStatus, ModelStatus, Reply};
+use crate::protocol::ConnectStatus;
+use crate::protocol::{DecodeError, ReplyError, Violation};
+use crate::protocol::{Progress, Protocol};
+use crate::robot::{LibraryStatus, ModelStatus, Reply};
 use crate::version::Version;
 
 /// One connection of a client, from its first byte to its last: a client of a robot, unless `P`

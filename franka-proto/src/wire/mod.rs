@@ -18,15 +18,15 @@ macro_rules! assert_layout {
     };
 }
 
-mod command;
 pub mod gripper;
 mod header;
 mod real;
+mod robot_command;
+mod robot_state;
 pub mod service;
-mod state;
 pub mod vacuum;
 
-pub use command::{ControllerCommand, MotionGeneratorCommand, RobotCommand};
 pub use header::{CommandHeader, CommandNumber};
 pub use real::{F32, F64, Real, from_wire, to_wire};
-pub use state::{Accelerometers, RobotState};
+pub use robot_command::{ControllerCommand, MotionGeneratorCommand, RobotCommand};
+pub use robot_state::{Accelerometers, RobotState};

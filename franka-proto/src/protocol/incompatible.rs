@@ -1,0 +1,176 @@
+//! A device that speaks another version.
+
+use core::fmt;
+
+use super::Protocol;
+use crate::version::Version;
+
+/// The device speaks another version than the client announced.
+///
+/// `Display` is the text of the libfranka that speaks the client's version: 0.21 for 10, 0.9 for 5.
+/// [`IncompatibleVersion::explanation`] says in plain words what the number means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct IncompatibleVersion<P: Protocol = Version> {
+    /// The device's version.
+    pub server_version: u16,
+    /// The version that the client announced.
+    pub library_version: P,
+}
+
+impl<P: Protocol> IncompatibleVersion<P> {
+    /// What device and which system image speak the device's version, and what to do.
+    ///
+    /// ```
+    /// use franka_proto::{IncompatibleVersion, Version};
+    ///
+    /// let error = IncompatibleVersion { server_version: 5, library_version: Version::V10 };
+    /// assert_eq!(
+    ///     error.explanation().to_string(),
+    ///     "version 5 is that of a Franka Emika Robot (Panda) with system image 4.2.1 or later: \
+    ///      connect with version 5, which is understood here as well",
+    /// );
+    /// ```
+    #[must_use]
+    pub fn explanation(&self) -> Explanation<P> {
+        Explanation(*self)
+    }
+}
+
+impl<P: Protocol> fmt::Display for IncompatibleVersion<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (server, library) = (self.server_version, self.library_version.number());
+        let [updates, images] = self.library_version.incompatible_advice();
+        write!(
+            f,
+            "libfranka: Incompatible library version (server version: {server}, library version: \
+             {library}). Please check {updates} or choose a libfranka version that uses the server \
+             version {server} from the table at {images} ."
+        )
+    }
+}
+
+impl<P: Protocol> core::error::Error for IncompatibleVersion<P> {}
+
+/// What [`IncompatibleVersion::explanation`] says: `Display` is the text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Explanation<P: Protocol = Version>(IncompatibleVersion<P>);
+
+impl<P: Protocol> fmt::Display for Explanation<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let server = self.0.server_version;
+        match P::field(server) {
+            Some(field) => {
+                let (name, system) = (field.name, field.system);
+                write!(
+                    f,
+                    "version {server} is that of a {name} with system image {system}: "
+                )?;
+                match field.update {
+                    Some(update) => write!(f, "install system image {update} on it"),
+                    None => write!(
+                        f,
+                        "connect with version {server}, which is understood here as well"
+                    ),
+                }
+            }
+            None => {
+                let device = self.0.library_version.device();
+                write!(
+                    f,
+                    "no {device} with version {server} is known here; understood are"
+                )?;
+                for (position, number) in P::spoken().iter().enumerate() {
+                    let before = if position == 0 { "" } else { " and" };
+                    write!(f, "{before} {number}")?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gripper;
+    use std::string::ToString;
+
+    #[test]
+    fn the_incompatible_text_is_that_of_the_versions_libfranka() {
+        let text = |library_version, server_version| {
+            let error = IncompatibleVersion {
+                server_version,
+                library_version,
+            };
+            error.to_string()
+        };
+        assert_eq!(
+            text(Version::V10, 5),
+            "libfranka: Incompatible library version (server version: 5, library version: 10). Please check https://frankarobotics.github.io for system updates or choose a libfranka version that uses the server version 5 from the table at https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html ."
+        );
+        assert_eq!(
+            text(Version::V5, 10),
+            "libfranka: Incompatible library version (server version: 10, library version: 5). Please check https://frankaemika.github.io for Panda system updates or choose a libfranka version that uses the server version 10 from the table at https://frankaemika.github.io/docs/compatibility.html ."
+        );
+    }
+
+    #[test]
+    fn every_version_in_the_field_is_explained() {
+        let explanation = |server_version| {
+            let error = IncompatibleVersion {
+                server_version,
+                library_version: Version::V10,
+            };
+            error.explanation().to_string()
+        };
+        for (number, robot, system) in [
+            (3, "Franka Emika Robot (Panda)", "3.x"),
+            (4, "Franka Emika Robot (Panda)", "4.0"),
+            (6, "Franka Research 3", "5.2"),
+            (7, "Franka Research 3", "5.5"),
+            (8, "Franka Research 3", "5.7.0"),
+            (9, "Franka Research 3", "5.7.2"),
+        ] {
+            let update = if number < 5 { "4.2.1" } else { "5.9.0" };
+            assert_eq!(
+                explanation(number),
+                std::format!(
+                    "version {number} is that of a {robot} with system image {system}: install \
+                     system image {update} or later on it"
+                )
+            );
+        }
+        for (number, robot, system) in [
+            (5, "Franka Emika Robot (Panda)", "4.2.1"),
+            (10, "Franka Research 3", "5.9.0"),
+        ] {
+            assert_eq!(
+                explanation(number),
+                std::format!(
+                    "version {number} is that of a {robot} with system image {system} or later: \
+                     connect with version {number}, which is understood here as well"
+                )
+            );
+        }
+        assert_eq!(
+            explanation(11),
+            "no robot with version 11 is known here; understood are 5 and 10"
+        );
+    }
+
+    #[test]
+    fn an_end_effector_has_the_same_text() {
+        let error = IncompatibleVersion {
+            server_version: 2,
+            library_version: gripper::Version::V3,
+        };
+        let text = error.to_string();
+        assert!(text.starts_with(
+            "libfranka: Incompatible library version (server version: 2, library version: 3). "
+        ));
+        assert_eq!(
+            error.explanation().to_string(),
+            "no Franka Hand with version 2 is known here; understood are 3"
+        );
+    }
+}

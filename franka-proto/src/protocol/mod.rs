@@ -1,0 +1,147 @@
+//! What every service has in common: the trait by which the sessions run its protocol, its errors,
+//! and the handshake.
+
+mod error;
+mod incompatible;
+
+pub(crate) use error::payload;
+pub use error::{DecodeError, EncodeError, ReplyError, RequestError, Violation};
+pub use incompatible::{Explanation, IncompatibleVersion};
+
+use core::fmt;
+
+use crate::command::{CommandId, ServiceCommand};
+use crate::framing::Message;
+use crate::outgoing::Outgoing;
+
+/// A protocol of a TCP service: the robot's in one of its versions, the Hand's, the vacuum
+/// gripper's.
+///
+/// The sessions of both sides are written once and ask this trait for what differs. It is sealed:
+/// [`Version`](crate::Version), [`gripper::Version`](crate::gripper::Version) and
+/// [`vacuum::Version`](crate::vacuum::Version) are all there are.
+pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
+    /// What can be asked for.
+    type Command: ServiceCommand;
+    /// A request with its parameters.
+    type Request: Clone + fmt::Debug + PartialEq;
+    /// An answer to a request.
+    type Reply<'a>: Copy + fmt::Debug + PartialEq;
+
+    /// The number that the handshake carries.
+    fn number(self) -> u16;
+
+    /// What device speaks this protocol, for messages.
+    fn device(self) -> &'static str;
+
+    /// Which device of its kind speaks another version, if that is known.
+    fn field(number: u16) -> Option<FieldDevice>;
+
+    /// The versions of this protocol that this crate speaks, ascending.
+    fn spoken() -> &'static [u16];
+
+    /// Where libfranka's text about an incompatible version sends the reader: for updates, and for
+    /// the table of system images.
+    fn incompatible_advice(self) -> [&'static str; 2];
+
+    /// Which command a request is.
+    fn command_of(request: &Self::Request) -> Self::Command;
+
+    /// The handshake of a client that expects states on `udp_port`.
+    fn connect(self, udp_port: u16) -> Self::Request;
+
+    /// The version and the UDP port that a request announces, if it is the handshake.
+    fn handshake(request: &Self::Request) -> Option<(u16, u16)>;
+
+    /// The answer to a handshake.
+    fn answer_handshake(self, status: ConnectStatus) -> Self::Reply<'static>;
+
+    /// What a device answers to the request in a message whose enumerators have no meaning.
+    fn rejection(self, message: &Message<'_>) -> Option<(Self::Command, Self::Reply<'static>)>;
+
+    /// What a reply means for the request that it answers.
+    fn progress(reply: &Self::Reply<'_>) -> Progress;
+
+    /// The message of a request.
+    ///
+    /// # Errors
+    /// [`RequestError::Unsupported`] if the protocol has no such command.
+    fn encode_request(
+        self,
+        request: &Self::Request,
+        id: CommandId,
+    ) -> Result<Outgoing, RequestError>;
+
+    /// The request in a message of a client.
+    ///
+    /// # Errors
+    /// [`DecodeError`] if there is none.
+    fn decode_request(
+        self,
+        message: &Message<'_>,
+    ) -> Result<Self::Request, DecodeError<Self::Command>>;
+
+    /// The message of a reply to `command`; `extra` bytes that the caller sends behind it count in
+    /// the header's size.
+    ///
+    /// # Errors
+    /// [`ReplyError`] if the reply does not suit the command or the protocol.
+    fn encode_reply(
+        self,
+        command: Self::Command,
+        id: CommandId,
+        reply: &Self::Reply<'_>,
+        extra: usize,
+    ) -> Result<Outgoing, ReplyError<Self::Command>>;
+
+    /// The reply to `command` in a message of a device.
+    ///
+    /// # Errors
+    /// [`DecodeError`] if there is none.
+    fn decode_reply<'a>(
+        self,
+        command: Self::Command,
+        message: &Message<'a>,
+    ) -> Result<Self::Reply<'a>, DecodeError<Self::Command>>;
+}
+
+/// Answer to `Connect`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum ConnectStatus {
+    /// The session is open.
+    Success,
+    /// The robot speaks another version.
+    IncompatibleLibraryVersion,
+}
+
+impl ConnectStatus {
+    /// By number, in all versions of all protocols.
+    pub(crate) const ALL: [Self; 2] = [Self::Success, Self::IncompatibleLibraryVersion];
+}
+
+/// What a reply means for the request that it answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// The handshake has ended; the device reports this version as its own.
+    Handshake(ConnectStatus, u16),
+    /// The first of two answers.
+    Started,
+    /// The last answer.
+    Ended,
+}
+
+/// A device in the field that speaks some version of a protocol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FieldDevice {
+    /// The vendor's name of the device.
+    pub name: &'static str,
+    /// The system images with this version, such as `4.2.1 or later`.
+    pub system: &'static str,
+    /// What system to install to be understood by this crate; `None` if that is so already.
+    pub update: Option<&'static str>,
+}
+
+pub(crate) mod sealed {
+    pub trait Sealed {}
+}

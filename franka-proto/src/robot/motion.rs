@@ -1,0 +1,251 @@
+//! The start of a motion.
+
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
+
+use crate::command::CommandId;
+use crate::framing::Message;
+use crate::outgoing::Outgoing;
+use crate::protocol::payload;
+use crate::protocol::{DecodeError, RequestError};
+use crate::robot::{ControllerMode, MotionGeneratorMode};
+use crate::version::Version;
+use crate::wire::{self, from_wire, to_wire};
+
+/// The parameters of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MoveRequest {
+    /// Who controls the joints.
+    pub controller: MoveControllerMode,
+    /// What the client sends.
+    pub generator: MoveGeneratorMode,
+    /// Deviation allowed on the way.
+    pub maximum_path_deviation: Deviation,
+    /// Deviation allowed at the goal.
+    pub maximum_goal_pose_deviation: Deviation,
+    /// Joint velocities `[rad/s]` for a robot that plans between sparse joint targets; `None`
+    /// for one command per cycle. Protocol 10 only.
+    pub asynchronous: Option<[f64; 7]>,
+}
+
+impl MoveRequest {
+    /// A motion with libfranka's deviations and one command per cycle.
+    #[must_use]
+    pub fn new(controller: MoveControllerMode, generator: MoveGeneratorMode) -> Self {
+        Self {
+            controller,
+            generator,
+            maximum_path_deviation: Deviation::LIBFRANKA,
+            maximum_goal_pose_deviation: Deviation::LIBFRANKA,
+            asynchronous: None,
+        }
+    }
+}
+
+/// How far the robot may be from where it should be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Deviation {
+    /// Of the position `[m]`.
+    pub translation: f64,
+    /// Of the orientation `[rad]`.
+    pub rotation: f64,
+    /// Of the elbow `[rad]`.
+    pub elbow: f64,
+}
+
+impl Deviation {
+    /// What libfranka 0.9 and 0.21 send with every motion: wide enough never to bind.
+    pub const LIBFRANKA: Self = Self {
+        translation: 10.0,
+        rotation: 3.12,
+        elbow: 2.0 * core::f64::consts::PI,
+    };
+
+    fn to_wire(self) -> wire::service::Deviation {
+        wire::service::Deviation {
+            translation: self.translation.into(),
+            rotation: self.rotation.into(),
+            elbow: self.elbow.into(),
+        }
+    }
+
+    fn from_wire(wire: &wire::service::Deviation) -> Self {
+        Self {
+            translation: wire.translation.get(),
+            rotation: wire.rotation.get(),
+            elbow: wire.elbow.get(),
+        }
+    }
+}
+
+/// The controller of a `Move`, in the numbering of requests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum MoveControllerMode {
+    /// The robot's joint impedance controller.
+    JointImpedance,
+    /// The robot's Cartesian impedance controller.
+    CartesianImpedance,
+    /// The client's torques.
+    ExternalController,
+}
+
+impl MoveControllerMode {
+    const ALL: [Self; 3] = [
+        Self::JointImpedance,
+        Self::CartesianImpedance,
+        Self::ExternalController,
+    ];
+
+    /// The mode that the states report once the motion runs.
+    #[must_use]
+    pub fn in_state(self) -> ControllerMode {
+        match self {
+            Self::JointImpedance => ControllerMode::JointImpedance,
+            Self::CartesianImpedance => ControllerMode::CartesianImpedance,
+            Self::ExternalController => ControllerMode::ExternalController,
+        }
+    }
+}
+
+/// The motion generator of a `Move`, in the numbering of requests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum MoveGeneratorMode {
+    /// Joint positions.
+    JointPosition,
+    /// Joint velocities.
+    JointVelocity,
+    /// End-effector poses.
+    CartesianPosition,
+    /// End-effector twists.
+    CartesianVelocity,
+    /// Torques alone; protocol 10 only. See [`Version::torque_generator`].
+    None,
+}
+
+impl MoveGeneratorMode {
+    const ALL: [Self; 5] = [
+        Self::JointPosition,
+        Self::JointVelocity,
+        Self::CartesianPosition,
+        Self::CartesianVelocity,
+        Self::None,
+    ];
+
+    /// The mode that the states report once the motion runs.
+    #[must_use]
+    pub fn in_state(self) -> MotionGeneratorMode {
+        match self {
+            Self::JointPosition => MotionGeneratorMode::JointPosition,
+            Self::JointVelocity => MotionGeneratorMode::JointVelocity,
+            Self::CartesianPosition => MotionGeneratorMode::CartesianPosition,
+            Self::CartesianVelocity => MotionGeneratorMode::CartesianVelocity,
+            Self::None => MotionGeneratorMode::None,
+        }
+    }
+}
+
+/// Reader and writer of one version's `Move`, for the version table.
+#[derive(Clone, Copy)]
+pub(crate) struct MoveCodec {
+    pub(super) decode: fn(&Message<'_>) -> Result<MoveRequest, DecodeError>,
+    pub(super) encode: fn(&MoveRequest, Version, u32, CommandId) -> Result<Outgoing, RequestError>,
+}
+
+impl MoveCodec {
+    /// The codec of the layout with the tail `A`.
+    pub(crate) const fn of<A: AsynchronousPart>() -> Self {
+        Self {
+            decode: decode::<A>,
+            encode: encode::<A>,
+        }
+    }
+}
+
+/// What a version appends to a `Move` for robots that plan between targets.
+pub(crate) trait AsynchronousPart:
+    Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
+{
+    /// Whether the version has it.
+    const EXISTS: bool;
+    /// How many of [`MoveGeneratorMode::ALL`] the version has.
+    const GENERATORS: usize;
+    fn velocities(&self) -> Option<[f64; 7]>;
+    fn of(velocities: Option<[f64; 7]>) -> Option<Self>;
+}
+
+impl AsynchronousPart for wire::service::AsynchronousMotion {
+    const EXISTS: bool = true;
+    const GENERATORS: usize = 5;
+
+    fn velocities(&self) -> Option<[f64; 7]> {
+        (self.use_async_motion_generator != 0).then(|| from_wire(&self.maximum_velocity))
+    }
+
+    fn of(velocities: Option<[f64; 7]>) -> Option<Self> {
+        Some(Self {
+            use_async_motion_generator: u8::from(velocities.is_some()),
+            maximum_velocity: to_wire(&velocities.unwrap_or_default()),
+        })
+    }
+}
+
+impl AsynchronousPart for () {
+    const EXISTS: bool = false;
+    const GENERATORS: usize = 4;
+
+    fn velocities(&self) -> Option<[f64; 7]> {
+        None
+    }
+
+    fn of(velocities: Option<[f64; 7]>) -> Option<Self> {
+        velocities.is_none().then_some(())
+    }
+}
+
+fn encode<A: AsynchronousPart>(
+    request: &MoveRequest,
+    version: Version,
+    number: u32,
+    id: CommandId,
+) -> Result<Outgoing, RequestError> {
+    let generator = request.generator as u32;
+    if generator as usize >= A::GENERATORS {
+        let what = "a motion without a generator";
+        return Err(RequestError::Unsupported { what, version });
+    }
+    let asynchronous = A::of(request.asynchronous).ok_or(RequestError::Unsupported {
+        what: "an asynchronous motion",
+        version,
+    })?;
+    let payload = wire::service::MoveRequest {
+        controller_mode: (request.controller as u32).into(),
+        motion_generator_mode: generator.into(),
+        maximum_path_deviation: request.maximum_path_deviation.to_wire(),
+        maximum_goal_pose_deviation: request.maximum_goal_pose_deviation.to_wire(),
+        asynchronous,
+    };
+    Ok(Outgoing::new(number, id, &payload, 0))
+}
+
+fn decode<A: AsynchronousPart>(message: &Message<'_>) -> Result<MoveRequest, DecodeError> {
+    let wire: &wire::service::MoveRequest<A> = payload(message)?;
+    let (controller, generator) = (wire.controller_mode.get(), wire.motion_generator_mode.get());
+    let generators = &MoveGeneratorMode::ALL[..A::GENERATORS];
+    Ok(MoveRequest {
+        controller: nth(&MoveControllerMode::ALL, "controller_mode", controller)?,
+        generator: nth(generators, "motion_generator_mode", generator)?,
+        maximum_path_deviation: Deviation::from_wire(&wire.maximum_path_deviation),
+        maximum_goal_pose_deviation: Deviation::from_wire(&wire.maximum_goal_pose_deviation),
+        asynchronous: wire.asynchronous.velocities(),
+    })
+}
+
+/// The enumerator whose number is `value`.
+pub(super) fn nth<T: Copy>(all: &[T], field: &'static str, value: u32) -> Result<T, DecodeError> {
+    let index = usize::try_from(value).unwrap_or(usize::MAX);
+    let known = all.get(index).copied();
+    known.ok_or(DecodeError::UnknownValue { field, value })
+}

@@ -1,0 +1,221 @@
+//! What the robot answers.
+
+use super::{
+    LibraryStatus, ModelStatus, MoveStatus, RecoveryStatus, SetterStatus, Status, StopStatus,
+    VirtualWall,
+};
+use crate::command::{Command, CommandId};
+use crate::framing::Message;
+use crate::outgoing::Outgoing;
+use crate::protocol::{ConnectStatus, payload};
+use crate::protocol::{DecodeError, ReplyError};
+use crate::version::Version;
+use crate::wire;
+
+/// What the robot answers to one request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reply<'a> {
+    /// To `Connect`.
+    Connect {
+        /// Whether the version suits.
+        status: ConnectStatus,
+        /// Protocol version of the robot.
+        version: u16,
+    },
+    /// To `Move`: twice, unless the first answer is a refusal.
+    Move(MoveStatus),
+    /// To `StopMove`.
+    StopMove(StopStatus),
+    /// To a setter.
+    Setter(SetterStatus),
+    /// To `AutomaticErrorRecovery`.
+    Recovery(RecoveryStatus),
+    /// To `GetRobotModel`.
+    Model {
+        /// Whether the text is there.
+        status: ModelStatus,
+        /// URDF, in general UTF-8; empty after a refusal.
+        text: &'a [u8],
+    },
+    /// To `GetCartesianLimit`.
+    CartesianLimit {
+        /// Whether there is such a wall.
+        status: SetterStatus,
+        /// The wall; of no meaning after a refusal.
+        wall: VirtualWall,
+    },
+    /// To `LoadModelLibrary`.
+    ModelLibrary {
+        /// Whether the library is there.
+        status: LibraryStatus,
+        /// A file for the client's loader; empty after a refusal.
+        library: &'a [u8],
+    },
+}
+
+impl<'a> Reply<'a> {
+    /// The status; `None` for `Connect`, whose refusal has a text of its own:
+    /// [`IncompatibleVersion`](crate::IncompatibleVersion).
+    #[must_use]
+    pub fn status(&self) -> Option<Status> {
+        match *self {
+            Self::Connect { .. } => None,
+            Self::Move(status) => Some(Status::Move(status)),
+            Self::StopMove(status) => Some(Status::StopMove(status)),
+            Self::Setter(status) => Some(Status::Setter(status)),
+            Self::Recovery(status) => Some(Status::Recovery(status)),
+            Self::Model { status, .. } => Some(Status::Model(status)),
+            Self::CartesianLimit { status, .. } => Some(Status::Setter(status)),
+            Self::ModelLibrary { status, .. } => Some(Status::Library(status)),
+        }
+    }
+
+    /// What a robot answers to a request with an enumerator that does not exist, for the commands
+    /// that have enumerators.
+    pub(crate) fn to_unknown_value(command: Command) -> Option<(Command, Reply<'static>)> {
+        let reply = match command {
+            Command::Move => Reply::Move(MoveStatus::InvalidArgumentRejected),
+            Command::LoadModelLibrary => Reply::ModelLibrary {
+                status: LibraryStatus::Error,
+                library: &[],
+            },
+            _ => return None,
+        };
+        Some((command, reply))
+    }
+
+    /// Whether `command` is answered with this kind of reply.
+    #[must_use]
+    pub fn suits(&self, command: Command) -> bool {
+        match self {
+            Self::Connect { .. } => command == Command::Connect,
+            Self::Move(_) => command == Command::Move,
+            Self::StopMove(_) => command == Command::StopMove,
+            Self::Recovery(_) => command == Command::AutomaticErrorRecovery,
+            Self::Model { .. } => command == Command::GetRobotModel,
+            Self::CartesianLimit { .. } => command == Command::GetCartesianLimit,
+            Self::ModelLibrary { .. } => command == Command::LoadModelLibrary,
+            Self::Setter(_) => matches!(
+                command,
+                Command::SetCollisionBehavior
+                    | Command::SetJointImpedance
+                    | Command::SetCartesianImpedance
+                    | Command::SetGuidingMode
+                    | Command::SetEEToK
+                    | Command::SetNEToEE
+                    | Command::SetLoad
+                    | Command::SetFilters
+            ),
+        }
+    }
+
+    /// The message that carries this reply to the request `id` for `command`; `extra` bytes of a
+    /// model are sent behind it and count in the header's size. What is in `self` of the model
+    /// would not fit: it has to be empty.
+    pub(crate) fn encode(
+        &self,
+        version: Version,
+        command: Command,
+        id: CommandId,
+        extra: usize,
+    ) -> Result<Outgoing, ReplyError> {
+        if let Self::Model { text: tail, .. } | Self::ModelLibrary { library: tail, .. } = *self
+            && !tail.is_empty()
+        {
+            return Err(ReplyError::TextLength { len: tail.len() });
+        }
+        let number = version
+            .command_number(command)
+            .filter(|_| self.suits(command));
+        let number = number.ok_or(ReplyError::Mismatch { id, command })?;
+        let table = version.table();
+        let status = match *self {
+            Self::Connect { status, .. } => byte(table.connect, status),
+            Self::Move(status) => byte(table.moves, status),
+            Self::StopMove(status) => byte(table.stop, status),
+            Self::Setter(status) => byte(table.setter, status),
+            Self::Recovery(status) => byte(table.recovery, status),
+            Self::Model { status, .. } => byte(table.model, status),
+            Self::CartesianLimit { status, .. } => byte(table.setter, status),
+            Self::ModelLibrary { status, .. } => byte(table.library, status),
+        };
+        let status = status.ok_or(ReplyError::Unsupported { version })?;
+        Ok(match *self {
+            Self::Connect { version, .. } => {
+                let payload = wire::service::ConnectResponse {
+                    status,
+                    version: version.into(),
+                };
+                Outgoing::new(number, id, &payload, 0)
+            }
+            Self::CartesianLimit { wall, .. } => {
+                Outgoing::new(number, id, &wall.to_wire(status), 0)
+            }
+            _ => Outgoing::new(number, id, &status, extra),
+        })
+    }
+
+    /// The reply to `command` in a message of the robot; bytes behind a fixed reply are ignored.
+    ///
+    /// # Errors
+    /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownStatus`]
+    /// if the version gives the status byte no meaning.
+    pub fn decode(
+        version: Version,
+        command: Command,
+        message: &Message<'a>,
+    ) -> Result<Self, DecodeError> {
+        let table = version.table();
+        let &status = payload::<u8, _>(message)?;
+        let unknown = DecodeError::UnknownStatus {
+            command,
+            status: status.into(),
+        };
+        Ok(match command {
+            Command::Connect => {
+                let payload: &wire::service::ConnectResponse<u8> = payload(message)?;
+                Self::Connect {
+                    status: meaning(table.connect, status).ok_or(unknown)?,
+                    version: payload.version.get(),
+                }
+            }
+            Command::Move => Self::Move(meaning(table.moves, status).ok_or(unknown)?),
+            Command::StopMove => Self::StopMove(meaning(table.stop, status).ok_or(unknown)?),
+            Command::AutomaticErrorRecovery => {
+                Self::Recovery(meaning(table.recovery, status).ok_or(unknown)?)
+            }
+            Command::GetRobotModel => Self::Model {
+                status: meaning(table.model, status).ok_or(unknown)?,
+                text: &message.payload[1..],
+            },
+            Command::GetCartesianLimit => Self::CartesianLimit {
+                status: meaning(table.setter, status).ok_or(unknown)?,
+                wall: VirtualWall::from_wire(payload(message)?),
+            },
+            Command::LoadModelLibrary => Self::ModelLibrary {
+                status: meaning(table.library, status).ok_or(unknown)?,
+                library: &message.payload[1..],
+            },
+            Command::SetCollisionBehavior
+            | Command::SetJointImpedance
+            | Command::SetCartesianImpedance
+            | Command::SetGuidingMode
+            | Command::SetEEToK
+            | Command::SetNEToEE
+            | Command::SetLoad
+            | Command::SetFilters => Self::Setter(meaning(table.setter, status).ok_or(unknown)?),
+        })
+    }
+}
+
+/// The byte of a status: its position among the version's statuses.
+fn byte<T: PartialEq>(statuses: &[T], status: T) -> Option<u8> {
+    let position = statuses.iter().position(|known| *known == status)?;
+    u8::try_from(position).ok()
+}
+
+/// The status of a byte.
+fn meaning<T: Copy>(statuses: &[T], byte: u8) -> Option<T> {
+    statuses.get(usize::from(byte)).copied()
+}

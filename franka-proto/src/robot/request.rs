@@ -1,0 +1,251 @@
+//! What a client asks for, and its bytes.
+#![allow(non_snake_case)]
+
+use super::{Architecture, CollisionBehavior, Filters, MoveRequest, System, library};
+use crate::command::{Command, CommandId};
+use crate::framing::Message;
+use crate::outgoing::Outgoing;
+use crate::protocol::{DecodeError, RequestError, payload};
+use crate::version::Version;
+use crate::wire::{self, from_wire, to_wire};
+
+/// A request with its parameters.
+///
+/// Nothing here is checked for range: the robot does that and answers.
+// A box would need an allocator, and requests are few.
+#[allow(clippy::large_enum_variant)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Request {
+    /// Opens a session: the client's version and the port where it expects states.
+    Connect {
+        /// Protocol version of the client, which need not be one that this crate knows.
+        version: u16,
+        /// UDP port of the client.
+        udp_port: u16,
+    },
+    /// Starts a motion.
+    Move(MoveRequest),
+    /// Stops the motion.
+    StopMove,
+    /// Sets the thresholds of contact and collision.
+    SetCollisionBehavior(CollisionBehavior),
+    /// Joint stiffnesses of the robot's own controller, 0 to 14250 `[N m/rad]`.
+    SetJointImpedance([f64; 7]),
+    /// Stiffnesses of the robot's own Cartesian controller in the stiffness frame: 10 to 3000
+    /// `[N/m]`, then 1 to 300 `[N m/rad]`.
+    SetCartesianImpedance([f64; 6]),
+    /// Which axes a hand may guide.
+    SetGuidingMode {
+        /// x, y, z, roll, pitch, yaw; true is free.
+        guiding_mode: [bool; 6],
+        /// The elbow; true is free.
+        nullspace: bool,
+    },
+    /// `EE_T_K`, column-major `[m]`.
+    SetEEToK([f64; 16]),
+    /// `NE_T_EE`, column-major `[m]`.
+    SetNEToEE([f64; 16]),
+    /// Sets the load.
+    SetLoad(Load),
+    /// Clears errors after a reflex; replied to when it has ended.
+    AutomaticErrorRecovery,
+    /// Fetches the robot's description as URDF text; protocol 10 only.
+    GetRobotModel,
+    /// Reads a virtual wall (libfranka's `getVirtualWall`); protocol 5 only.
+    GetCartesianLimit {
+        /// Which wall.
+        id: i32,
+    },
+    /// Sets the filters of the robot's interfaces; protocol 5 only.
+    SetFilters(Filters),
+    /// Fetches the robot's model as a shared library; protocol 5 only.
+    LoadModelLibrary {
+        /// Processor of the client.
+        architecture: Architecture,
+        /// Operating system of the client.
+        system: System,
+    },
+}
+
+/// What the end effector carries. The end effector itself is set up in Desk.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Load {
+    /// Mass `[kg]`.
+    pub m_load: f64,
+    /// Centre of mass in the flange frame `[m]`.
+    pub F_x_Cload: [f64; 3],
+    /// Inertia about the centre of mass, column-major `[kg m^2]`.
+    pub I_load: [f64; 9],
+}
+
+impl Request {
+    /// Which command this is.
+    #[must_use]
+    pub fn command(&self) -> Command {
+        match self {
+            Self::Connect { .. } => Command::Connect,
+            Self::Move(_) => Command::Move,
+            Self::StopMove => Command::StopMove,
+            Self::SetCollisionBehavior(_) => Command::SetCollisionBehavior,
+            Self::SetJointImpedance(_) => Command::SetJointImpedance,
+            Self::SetCartesianImpedance(_) => Command::SetCartesianImpedance,
+            Self::SetGuidingMode { .. } => Command::SetGuidingMode,
+            Self::SetEEToK(_) => Command::SetEEToK,
+            Self::SetNEToEE(_) => Command::SetNEToEE,
+            Self::SetLoad(_) => Command::SetLoad,
+            Self::AutomaticErrorRecovery => Command::AutomaticErrorRecovery,
+            Self::GetRobotModel => Command::GetRobotModel,
+            Self::GetCartesianLimit { .. } => Command::GetCartesianLimit,
+            Self::SetFilters(_) => Command::SetFilters,
+            Self::LoadModelLibrary { .. } => Command::LoadModelLibrary,
+        }
+    }
+
+    /// The message that carries this request under `id`.
+    ///
+    /// # Errors
+    /// [`RequestError::Unsupported`] if the version has no such command, or none with these
+    /// parameters.
+    pub fn encode(&self, version: Version, id: CommandId) -> Result<Outgoing, RequestError> {
+        let number = version
+            .command_number(self.command())
+            .ok_or(RequestError::Unsupported {
+                what: self.command().display_name(),
+                version,
+            })?;
+        Ok(match self {
+            &Self::Connect { version, udp_port } => {
+                let payload = wire::service::ConnectRequest {
+                    version: version.into(),
+                    udp_port: udp_port.into(),
+                };
+                Outgoing::new(number, id, &payload, 0)
+            }
+            Self::Move(request) => {
+                (version.table().move_codec.encode)(request, version, number, id)?
+            }
+            Self::StopMove | Self::AutomaticErrorRecovery | Self::GetRobotModel => {
+                Outgoing::new(number, id, &(), 0)
+            }
+            Self::SetCollisionBehavior(thresholds) => {
+                Outgoing::new(number, id, &thresholds.to_wire(), 0)
+            }
+            Self::SetJointImpedance(stiffness) => {
+                let K_theta = to_wire(stiffness);
+                Outgoing::new(number, id, &wire::service::SetJointImpedance { K_theta }, 0)
+            }
+            Self::SetCartesianImpedance(stiffness) => {
+                let K_x = to_wire(stiffness);
+                Outgoing::new(number, id, &wire::service::SetCartesianImpedance { K_x }, 0)
+            }
+            &Self::SetGuidingMode {
+                guiding_mode,
+                nullspace,
+            } => {
+                let payload = wire::service::SetGuidingMode {
+                    guiding_mode: guiding_mode.map(u8::from),
+                    nullspace: u8::from(nullspace),
+                };
+                Outgoing::new(number, id, &payload, 0)
+            }
+            Self::SetEEToK(transform) | Self::SetNEToEE(transform) => {
+                let transform = to_wire(transform);
+                Outgoing::new(number, id, &wire::service::SetFrame { transform }, 0)
+            }
+            Self::SetLoad(load) => {
+                let payload = wire::service::SetLoad {
+                    m_load: load.m_load.into(),
+                    F_x_Cload: to_wire(&load.F_x_Cload),
+                    I_load: to_wire(&load.I_load),
+                };
+                Outgoing::new(number, id, &payload, 0)
+            }
+            &Self::GetCartesianLimit { id: wall } => {
+                let payload = wire::service::GetCartesianLimit { id: wall.into() };
+                Outgoing::new(number, id, &payload, 0)
+            }
+            Self::SetFilters(filters) => Outgoing::new(number, id, &filters.to_wire(), 0),
+            &Self::LoadModelLibrary {
+                architecture,
+                system,
+            } => Outgoing::new(number, id, &library::to_wire(architecture, system), 0),
+        })
+    }
+
+    /// The request in a client's message; bytes behind its struct are ignored.
+    ///
+    /// # Errors
+    /// [`DecodeError::UnknownCommand`] if the version has no such number,
+    /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownValue`]
+    /// if an enumerator in it (a mode of a `Move`, say) is none of the version's.
+    pub fn decode(version: Version, message: &Message<'_>) -> Result<Self, DecodeError> {
+        let number = message.header.command;
+        let command = version
+            .command_from_number(number)
+            .ok_or(DecodeError::UnknownCommand {
+                number,
+                version: version.number(),
+            })?;
+        Ok(match command {
+            Command::Connect => {
+                let payload: &wire::service::ConnectRequest = payload(message)?;
+                Self::Connect {
+                    version: payload.version.get(),
+                    udp_port: payload.udp_port.get(),
+                }
+            }
+            Command::Move => Self::Move((version.table().move_codec.decode)(message)?),
+            Command::StopMove => Self::StopMove,
+            Command::SetCollisionBehavior => {
+                Self::SetCollisionBehavior(CollisionBehavior::from_wire(payload(message)?))
+            }
+            Command::SetJointImpedance => {
+                let payload: &wire::service::SetJointImpedance = payload(message)?;
+                Self::SetJointImpedance(from_wire(&payload.K_theta))
+            }
+            Command::SetCartesianImpedance => {
+                let payload: &wire::service::SetCartesianImpedance = payload(message)?;
+                Self::SetCartesianImpedance(from_wire(&payload.K_x))
+            }
+            Command::SetGuidingMode => {
+                let payload: &wire::service::SetGuidingMode = payload(message)?;
+                Self::SetGuidingMode {
+                    guiding_mode: payload.guiding_mode.map(|axis| axis != 0),
+                    nullspace: payload.nullspace != 0,
+                }
+            }
+            Command::SetEEToK => Self::SetEEToK(frame(message)?),
+            Command::SetNEToEE => Self::SetNEToEE(frame(message)?),
+            Command::SetLoad => {
+                let payload: &wire::service::SetLoad = payload(message)?;
+                Self::SetLoad(Load {
+                    m_load: payload.m_load.get(),
+                    F_x_Cload: from_wire(&payload.F_x_Cload),
+                    I_load: from_wire(&payload.I_load),
+                })
+            }
+            Command::AutomaticErrorRecovery => Self::AutomaticErrorRecovery,
+            Command::GetRobotModel => Self::GetRobotModel,
+            Command::GetCartesianLimit => {
+                let payload: &wire::service::GetCartesianLimit = payload(message)?;
+                let id = payload.id.get();
+                Self::GetCartesianLimit { id }
+            }
+            Command::SetFilters => Self::SetFilters(Filters::from_wire(payload(message)?)),
+            Command::LoadModelLibrary => {
+                let (architecture, system) = library::from_wire(payload(message)?)?;
+                Self::LoadModelLibrary {
+                    architecture,
+                    system,
+                }
+            }
+        })
+    }
+}
+
+fn frame(message: &Message<'_>) -> Result<[f64; 16], DecodeError> {
+    let payload: &wire::service::SetFrame = payload(message)?;
+    Ok(from_wire(&payload.transform))
+}

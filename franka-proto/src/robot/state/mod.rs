@@ -1,0 +1,248 @@
+//! The robot's state of one millisecond, whatever the version.
+#![allow(non_snake_case)]
+
+mod codec;
+mod text;
+mod total_load;
+
+pub(crate) use codec::{AccelerometerBlock, GeneratorModes, StateCodec};
+pub use text::StateText;
+pub use total_load::TotalLoad;
+
+use crate::protocol::{DecodeError, EncodeError};
+use crate::robot::Errors;
+use crate::robot::{ControllerMode, MotionGeneratorMode, RobotMode};
+use crate::version::Version;
+use crate::wire;
+
+/// Everything that the robot says in one datagram, as `f64`; the field names are the vendor's.
+///
+/// The frames are those of the vendor: O base, F flange, NE nominal end effector, EE end effector,
+/// K stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix, column-major
+/// (index = 4 * column + row); inertia matrices are 3x3, column-major.
+///
+/// [`Default`] has identities for poses, [`ControllerMode::Other`], and zero everywhere else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RobotState {
+    /// The robot's clock: milliseconds, one more with each cycle.
+    pub message_id: u64,
+    /// Measured pose of the end effector in the base frame; column-major, `[m]`.
+    pub O_T_EE: [f64; 16],
+    /// Last desired pose of the motion generation, in the base frame; column-major, `[m]`.
+    pub O_T_EE_d: [f64; 16],
+    /// Pose of the end effector in the flange frame: `F_T_NE * NE_T_EE`; column-major, `[m]`.
+    pub F_T_EE: [f64; 16],
+    /// Pose of the stiffness frame in the end-effector frame; column-major, `[m]`.
+    pub EE_T_K: [f64; 16],
+    /// Pose of the nominal end effector in the flange frame; column-major, `[m]`.
+    pub F_T_NE: [f64; 16],
+    /// Pose of the end effector in the nominal end-effector frame; column-major, `[m]`.
+    pub NE_T_EE: [f64; 16],
+    /// Mass of the end effector; `[kg]`.
+    pub m_ee: f64,
+    /// Inertia of the end effector about its centre of mass; column-major, `[kg m^2]`.
+    pub I_ee: [f64; 9],
+    /// Centre of mass of the end effector in the flange frame; `[m]`.
+    pub F_x_Cee: [f64; 3],
+    /// Mass of the load; `[kg]`.
+    pub m_load: f64,
+    /// Inertia of the load about its centre of mass; column-major, `[kg m^2]`.
+    pub I_load: [f64; 9],
+    /// Centre of mass of the load in the flange frame; `[m]`.
+    pub F_x_Cload: [f64; 3],
+    /// Measured elbow; angle of joint 3 `[rad]` and sign of joint 4.
+    pub elbow: [f64; 2],
+    /// Desired elbow; angle of joint 3 `[rad]` and sign of joint 4.
+    pub elbow_d: [f64; 2],
+    /// Measured link-side joint torques, gravity included; `[N m]`.
+    pub tau_J: [f64; 7],
+    /// Desired joint torques, gravity excluded; `[N m]`.
+    pub tau_J_d: [f64; 7],
+    /// Derivatives of the measured joint torques; `[N m/s]`.
+    pub dtau_J: [f64; 7],
+    /// Measured joint positions; `[rad]`.
+    pub q: [f64; 7],
+    /// Desired joint positions; `[rad]`.
+    pub q_d: [f64; 7],
+    /// Measured joint velocities; `[rad/s]`.
+    pub dq: [f64; 7],
+    /// Desired joint velocities; `[rad/s]`.
+    pub dq_d: [f64; 7],
+    /// Desired joint accelerations; `[rad/s^2]`.
+    pub ddq_d: [f64; 7],
+    /// Contact level of each joint, now: 0 or 1.
+    pub joint_contact: [f64; 7],
+    /// Contact level of each Cartesian axis, now: 0 or 1.
+    pub cartesian_contact: [f64; 6],
+    /// Collision level of each joint, latched until the recovery: 0 or 1.
+    pub joint_collision: [f64; 7],
+    /// Collision level of each Cartesian axis, latched until the recovery: 0 or 1.
+    pub cartesian_collision: [f64; 6],
+    /// Estimated external joint torques, low-passed; `[N m]`.
+    pub tau_ext_hat_filtered: [f64; 7],
+    /// Estimated external wrench on the stiffness frame, in the base frame; force then torque,
+    /// positive when the robot pushes the environment, `[N, N m]`.
+    pub O_F_ext_hat_K: [f64; 6],
+    /// Estimated external wrench on the stiffness frame, in the stiffness frame; force then
+    /// torque, positive when the robot pushes the environment, `[N, N m]`.
+    pub K_F_ext_hat_K: [f64; 6],
+    /// Desired twist of the end effector in the base frame; linear then angular, `[m/s,
+    /// rad/s]`.
+    pub O_dP_EE_d: [f64; 6],
+    /// Acceleration of the base, gravity included; `[m/s^2]`.
+    pub O_ddP_O: [f64; 3],
+    /// Last commanded elbow; angle of joint 3 `[rad]` and sign of joint 4.
+    pub elbow_c: [f64; 2],
+    /// Velocity of the commanded elbow; of joint 3 `[rad/s]`, then 0.
+    pub delbow_c: [f64; 2],
+    /// Acceleration of the commanded elbow; of joint 3 `[rad/s^2]`, then 0.
+    pub ddelbow_c: [f64; 2],
+    /// Last commanded pose of the end effector in the base frame; column-major, `[m]`.
+    pub O_T_EE_c: [f64; 16],
+    /// Last commanded twist of the end effector in the base frame; linear then angular, `[m/s,
+    /// rad/s]`.
+    pub O_dP_EE_c: [f64; 6],
+    /// Last commanded acceleration of the end effector in the base frame; `[m/s^2, rad/s^2]`.
+    pub O_ddP_EE_c: [f64; 6],
+    /// Motor positions; `[rad]`.
+    pub theta: [f64; 7],
+    /// Motor velocities; `[rad/s]`.
+    pub dtheta: [f64; 7],
+    /// Upper accelerometer of joints 1 to 6, in the frame of its board `[m/s^2]`; zero in protocol
+    /// 5.
+    pub accelerometer_top: [[f32; 3]; 6],
+    /// Lower accelerometer of joints 1 to 6, in the frame of its board `[m/s^2]`; zero in protocol
+    /// 5.
+    pub accelerometer_bottom: [[f32; 3]; 6],
+    /// Active motion generator.
+    pub motion_generator_mode: MotionGeneratorMode,
+    /// Active controller.
+    pub controller_mode: ControllerMode,
+    /// Errors that hold the robot now (libfranka's `current_errors`).
+    pub errors: Errors,
+    /// Errors that ended the last motion (libfranka's `last_motion_errors`).
+    pub reflex_reason: Errors,
+    /// What the robot as a whole does.
+    pub robot_mode: RobotMode,
+    /// Share of the last 100 commands that arrived in time, 0 to 1; 0 while no control runs.
+    pub control_command_success_rate: f64,
+}
+
+impl RobotState {
+    /// Length of the longest datagram of any version in bytes: a buffer of this size always does.
+    pub const MAX_SIZE: usize = size_of::<wire::RobotState<wire::F64, ()>>();
+
+    /// Reads a datagram of the robot. Bytes beyond the struct are ignored, as the kernel cuts them
+    /// off for a client that reads into a buffer of the struct's size.
+    ///
+    /// # Errors
+    /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's state has.
+    #[inline]
+    pub fn decode(version: Version, bytes: &[u8]) -> Result<Self, DecodeError> {
+        (version.table().state_codec.decode)(bytes)
+    }
+
+    /// Writes the datagram for a client into `buffer` and returns its length in bytes.
+    ///
+    /// Numbers are rounded to the width of the version. Protocol 5 has no accelerometers: they
+    /// are left out.
+    ///
+    /// # Errors
+    /// [`EncodeError::Buffer`] if `buffer` is too short ([`RobotState::MAX_SIZE`] always does);
+    /// [`EncodeError::Unsupported`] if the version lacks the motion generator mode. `buffer` is
+    /// then untouched.
+    pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
+        (version.table().state_codec.encode)(self, buffer)
+    }
+
+    /// Whether the client has to feed a motion generator.
+    #[must_use]
+    pub fn generator_running(&self) -> bool {
+        self.motion_generator_mode.is_running()
+    }
+
+    /// Whether the client has to feed a controller.
+    #[must_use]
+    pub fn controller_running(&self) -> bool {
+        self.controller_mode.is_running()
+    }
+
+    /// Whether a motion of the client is on: one of the two above. A motion has ended when this
+    /// turns false, whatever [`RobotState::robot_mode`] says (libfranka 0.21).
+    #[must_use]
+    pub fn motion_running(&self) -> bool {
+        self.generator_running() || self.controller_running()
+    }
+
+    /// End effector and load as one body, equal to the last bit to what libfranka computes from a
+    /// state of this version.
+    ///
+    /// The masses are added in the precision in which the version sends them, as libfranka does;
+    /// everything else is computed as `f64`.
+    #[must_use]
+    pub fn total_load(&self, version: Version) -> TotalLoad {
+        let m_total = (version.table().state_codec.add)(self.m_ee, self.m_load);
+        TotalLoad::of(self, m_total)
+    }
+}
+
+impl Default for RobotState {
+    fn default() -> Self {
+        Self {
+            message_id: 0,
+            O_T_EE: IDENTITY,
+            O_T_EE_d: IDENTITY,
+            F_T_EE: IDENTITY,
+            EE_T_K: IDENTITY,
+            F_T_NE: IDENTITY,
+            NE_T_EE: IDENTITY,
+            m_ee: 0.0,
+            I_ee: [0.0; 9],
+            F_x_Cee: [0.0; 3],
+            m_load: 0.0,
+            I_load: [0.0; 9],
+            F_x_Cload: [0.0; 3],
+            elbow: [0.0; 2],
+            elbow_d: [0.0; 2],
+            tau_J: [0.0; 7],
+            tau_J_d: [0.0; 7],
+            dtau_J: [0.0; 7],
+            q: [0.0; 7],
+            q_d: [0.0; 7],
+            dq: [0.0; 7],
+            dq_d: [0.0; 7],
+            ddq_d: [0.0; 7],
+            joint_contact: [0.0; 7],
+            cartesian_contact: [0.0; 6],
+            joint_collision: [0.0; 7],
+            cartesian_collision: [0.0; 6],
+            tau_ext_hat_filtered: [0.0; 7],
+            O_F_ext_hat_K: [0.0; 6],
+            K_F_ext_hat_K: [0.0; 6],
+            O_dP_EE_d: [0.0; 6],
+            O_ddP_O: [0.0; 3],
+            elbow_c: [0.0; 2],
+            delbow_c: [0.0; 2],
+            ddelbow_c: [0.0; 2],
+            O_T_EE_c: IDENTITY,
+            O_dP_EE_c: [0.0; 6],
+            O_ddP_EE_c: [0.0; 6],
+            theta: [0.0; 7],
+            dtheta: [0.0; 7],
+            accelerometer_top: [[0.0; 3]; 6],
+            accelerometer_bottom: [[0.0; 3]; 6],
+            motion_generator_mode: MotionGeneratorMode::Idle,
+            controller_mode: ControllerMode::Other,
+            errors: Errors::NONE,
+            reflex_reason: Errors::NONE,
+            robot_mode: RobotMode::Other,
+            control_command_success_rate: 0.0,
+        }
+    }
+}
+
+/// The identity as a column-major 4x4 matrix.
+const IDENTITY: [f64; 16] = [
+    1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+];
