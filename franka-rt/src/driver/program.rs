@@ -86,10 +86,20 @@ impl Program {
         let answer = match self {
             Self::Target(session) => {
                 let step = match gate {
-                    Gate::Open => session.step(state, record),
-                    Gate::Closed => session.hold(state, record),
-                    Gate::Broken(fault) => session.give_up(fault, state, record),
+                    Gate::Open => session.step(state),
+                    Gate::Closed => session.hold(state),
+                    Gate::Broken(fault) => session.give_up(fault, state),
                 };
+                let session::Trace {
+                    goal,
+                    reference,
+                    bindings,
+                } = step.trace;
+                record.goal = goal.0;
+                record.q_ref = reference.q.into();
+                record.dq_ref = reference.dq.into();
+                record.ddq_ref = reference.ddq.into();
+                record.bindings = bindings;
                 let valid = match &step.answer {
                     session::Answer::Torques(Torques(torques)) => check::finite(torques),
                     session::Answer::Setpoint(setpoint) => setpoint.validate(),

@@ -1,6 +1,5 @@
 //! Which law the arm runs, and its stiffness and damping.
 
-use crate::session::Free;
 use crate::shaping::MAX_CUTOFF_FREQUENCY;
 
 /// How the springs and dampers of [`Gains`] become torques.
@@ -8,7 +7,7 @@ use crate::shaping::MAX_CUTOFF_FREQUENCY;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Law {
     /// Springs along the base axes and at the joints, summed in joint space: see
-    /// [`hybrid`](crate::law::hybrid).
+    /// [`law`](crate::law#the-hybrid-law).
     #[default]
     Hybrid,
     /// Springs along the base axes, coupled by the inertia at the end effector; the joints' springs
@@ -131,20 +130,6 @@ impl Gains {
             feedforward: 1.0,
             feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
             project_joint_gains: false,
-        }
-    }
-
-    /// For hand guiding: springs at the end effector as by [`Self::cartesian`] on the axes that are
-    /// not free, and a light damping of the joints.
-    pub fn guiding(free: Free) -> Self {
-        let preset = Self::cartesian();
-        let locked =
-            |gains: [f64; 6]| core::array::from_fn(|i| if free.axes[i] { 0.0 } else { gains[i] });
-        Self {
-            cartesian_stiffness: locked(preset.cartesian_stiffness),
-            cartesian_damping: locked(preset.cartesian_damping),
-            joint_damping: [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5],
-            ..preset
         }
     }
 

@@ -3,9 +3,9 @@
 use franka_model::{Jacobian, JointVector};
 use nalgebra::Matrix6;
 
+use crate::law::gain_fade::BlendedGains;
 use crate::law::operational;
 use crate::law::task_space::TaskSpace;
-use crate::law::tuning::Tuning;
 
 /// The springs of a law, or its dampers, in one cycle: at the posture in which the arm was
 /// measured.
@@ -24,44 +24,44 @@ pub(crate) struct Interaction<'a> {
 impl<'a> Interaction<'a> {
     /// The springs: errors are positions, `[rad]`.
     ///
-    /// `space` has to be there if the tuning [needs](Tuning::needs_task_space) it; without it the
+    /// `space` has to be there if the gains [need](BlendedGains::needs_task_space) it; without it the
     /// law is the hybrid one.
     pub(crate) fn springs(
-        tuning: &Tuning,
+        gains: &BlendedGains,
         jacobian: &'a Jacobian,
         space: Option<&'a TaskSpace>,
     ) -> Self {
-        let gains = (&tuning.cartesian_stiffness, &tuning.joint_stiffness);
-        Self::new(gains, tuning, jacobian, space)
+        let diagonals = (&gains.cartesian_stiffness, &gains.joint_stiffness);
+        Self::new(diagonals, gains, jacobian, space)
     }
 
     /// The dampers: errors are velocities, `[rad/s]`. `space` as for the springs.
     pub(crate) fn dampers(
-        tuning: &Tuning,
+        gains: &BlendedGains,
         jacobian: &'a Jacobian,
         space: Option<&'a TaskSpace>,
     ) -> Self {
-        let gains = (&tuning.cartesian_damping, &tuning.joint_damping);
-        Self::new(gains, tuning, jacobian, space)
+        let diagonals = (&gains.cartesian_damping, &gains.joint_damping);
+        Self::new(diagonals, gains, jacobian, space)
     }
 
     fn new(
         (cartesian, joint): (&[f64; 6], &[f64; 7]),
-        tuning: &Tuning,
+        gains: &BlendedGains,
         jacobian: &'a Jacobian,
         space: Option<&'a TaskSpace>,
     ) -> Self {
         let plain = Matrix6::from_diagonal(&(*cartesian).into());
         let cartesian = match space {
-            Some(space) if tuning.operational > 0.0 => {
-                plain + (operational::coupled(cartesian, space) - plain) * tuning.operational
+            Some(space) if gains.operational > 0.0 => {
+                plain + (operational::coupled(cartesian, space) - plain) * gains.operational
             }
             _ => plain,
         };
         Self {
             cartesian,
             joint: (*joint).into(),
-            projection: tuning.projection,
+            projection: gains.projection,
             jacobian,
             space,
         }
@@ -148,10 +148,10 @@ mod tests {
             + matrix(&gains.cartesian_damping, &gains.joint_damping) * errors.dq
     }
 
-    fn of(tuning: &Tuning, errors: &Errors, dynamics: &Dynamics) -> JointVector {
+    fn of(gains: &BlendedGains, errors: &Errors, dynamics: &Dynamics) -> JointVector {
         let (jacobian, space) = (&dynamics.jacobian, TaskSpace::of(dynamics));
-        let springs = Interaction::springs(tuning, jacobian, Some(&space));
-        let dampers = Interaction::dampers(tuning, jacobian, Some(&space));
+        let springs = Interaction::springs(gains, jacobian, Some(&space));
+        let dampers = Interaction::dampers(gains, jacobian, Some(&space));
         springs.torques(&errors.q) + dampers.torques(&errors.dq)
     }
 
@@ -198,7 +198,7 @@ mod tests {
             for gains in [Gains::cartesian(), Gains::joint(), Gains::droid()] {
                 for gains in laws(gains) {
                     let expected = definition(&gains, &errors, &dynamics);
-                    let got = of(&Tuning::new(&gains, None), &errors, &dynamics);
+                    let got = of(&BlendedGains::new(&gains, None), &errors, &dynamics);
                     // The inverse of the inertia has a condition of 10^5.
                     let error = (got - expected).amax();
                     prop_assert!(error < 1e-8 * (1.0 + expected.amax()), "{gains:?}: {error}");
@@ -213,7 +213,7 @@ mod tests {
             let dynamics = dynamics_at(&q, &JointVector::zeros());
             let errors = errors();
             let gains = Gains { project_joint_gains: true, ..Gains::joint() };
-            let tau = of(&Tuning::new(&gains, None), &errors, &dynamics);
+            let tau = of(&BlendedGains::new(&gains, None), &errors, &dynamics);
             let inverse = mobility(&dynamics);
             let free = dynamics.jacobian * inverse * JointVector::from_fn(|i, _| 600.0 * errors.q[i]);
             let moved = dynamics.jacobian * inverse * tau;
@@ -233,8 +233,8 @@ mod tests {
             let pose = dynamics.jacobian * error;
             let space = TaskSpace::of(&dynamics);
             for gains in laws(Gains::cartesian()) {
-                let tuning = Tuning::new(&gains, None);
-                let springs = Interaction::springs(&tuning, &dynamics.jacobian, Some(&space));
+                let gains = BlendedGains::new(&gains, None);
+                let springs = Interaction::springs(&gains, &dynamics.jacobian, Some(&space));
                 let tau = springs.torques(&error);
                 prop_assert!(tau.iter().all(|tau| tau.is_finite()));
                 // Correlations are at most one: each axis adds at most the geometric mean of its
@@ -256,8 +256,8 @@ mod tests {
             let dynamics = dynamics_at(&q, &dq);
             let space = TaskSpace::of(&dynamics);
             for gains in laws(Gains::cartesian()) {
-                let tuning = Tuning::new(&gains, None);
-                let dampers = Interaction::dampers(&tuning, &dynamics.jacobian, Some(&space));
+                let gains = BlendedGains::new(&gains, None);
+                let dampers = Interaction::dampers(&gains, &dynamics.jacobian, Some(&space));
                 let twist: Twist = dynamics.jacobian * dq;
                 let wrench: Wrench = dampers.cartesian * -twist;
                 prop_assert!(wrench.dot(&twist) <= 1e-9);
@@ -271,7 +271,10 @@ mod tests {
         let zero = JointVector::zeros();
         let errors = Errors { q: zero, dq: zero };
         for gains in laws(Gains::cartesian()) {
-            assert_eq!(of(&Tuning::new(&gains, None), &errors, &dynamics), zero);
+            assert_eq!(
+                of(&BlendedGains::new(&gains, None), &errors, &dynamics),
+                zero
+            );
         }
     }
 
@@ -282,11 +285,11 @@ mod tests {
         let dynamics = dynamics_at(&READY, &JointVector::zeros());
         let errors = errors();
         let [plain, projected, operational] =
-            laws(Gains::cartesian()).map(|gains| Tuning::new(&gains, None));
-        let at = |tuning| of(&tuning, &errors, &dynamics);
+            laws(Gains::cartesian()).map(|gains| BlendedGains::new(&gains, None));
+        let at = |gains| of(&gains, &errors, &dynamics);
         for (from, to) in [(plain, projected), (plain, operational)] {
             assert!((at(from) - at(to)).amax() > 0.1);
-            let mut fade = crate::law::tuning::Fade::at(from);
+            let mut fade = crate::law::gain_fade::GainFade::at(from);
             fade.towards(to);
             for cycle in 1..=300 {
                 let share = f64::from(cycle) / 300.0;

@@ -1,21 +1,36 @@
-//! Control laws: joint torques from a reference and a state.
+//! Control laws: joint torques from the error between a reference and a state.
 //!
 //! ```text
-//! Gains -> Fade -> Tuning --+-> wrench at the end effector: hybrid or operational -> J' --+
-//! reference, q, dq ---------+-> springs and dampers of the joints -> null space ---------+-> Interaction -> shaping
+//! Gains -> GainFade -> BlendedGains --+-> wrench at the end effector: hybrid or operational -> J' --+
+//! errors of q and dq -----------------+-> springs and dampers of the joints -> null space ---------+-> Interaction
 //! ```
 //!
-//! [`Gains`] are what a goal asks for. A tuning is the same in numbers, where a choice is a weight,
-//! so that the way from one to the next is continuous. [`hybrid`] and [`operational`] are the two
-//! laws; they differ in the wrench at the end effector and in where the springs of the joints act.
-//! [`shaping`] makes of the torques what the robot accepts: clamped, low-passed, slow enough.
+//! [`Gains`] are what a goal asks for. `gain_fade` has the same in numbers, where a choice is a
+//! weight, so that the way from one to the next is continuous. `interaction` makes torques of them
+//! by either law; the two differ in the wrench at the end effector and in where the springs of the
+//! joints act. What bounds these torques are guards of the session.
+//!
+//! # The hybrid law
+//!
+//! Springs and dampers at the end effector and at the joints, summed in joint space:
+//!
+//! ```text
+//! tau = Kp (q_ref - q) + Kd (g dq_ref - dq) + coriolis
+//! Kp  = J' Kx J + Kq        Kd = J' Kxd J + Kqd
+//! ```
+//!
+//! With the reference in joint space the spring at the end effector needs no pose error of its own:
+//! `J (q_ref - q)` is that error to first order, and the leash keeps it small. Gravity and friction
+//! are compensated by the robot.
+//!
+//! `g` and the low-pass on `dq_ref` are [`Gains::feedforward`] and its cutoff. With
+//! [`Gains::project_joint_gains`] the torques of `Kq` and `Kqd` pass through the null-space
+//! projection of the [operational-space law](operational) first.
 
+pub(crate) mod gain_fade;
 mod gains;
-pub mod hybrid;
 pub(crate) mod interaction;
 pub mod operational;
-pub mod shaping;
 pub(crate) mod task_space;
-pub(crate) mod tuning;
 
 pub use gains::{GainError, Gains, Law};

@@ -4,13 +4,14 @@ use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 use franka_otg::{AxisLimits, AxisState, Generator, Limits, PlanError, State};
 
-use crate::law::hybrid::Reference;
 use crate::session::active::Measured;
 use crate::session::chunk::ChunkCourse;
+use crate::session::guard::joint_bounds::BoundsReached;
 use crate::session::guard::leash;
 use crate::session::guide::Guide;
-use crate::session::kinematics::{self, Drift, Held};
+use crate::session::kinematics::{self, Drift};
 use crate::session::pose::{PoseGenerator, PoseState};
+use crate::session::reference::Reference;
 use crate::session::{Budget, Goal, Target, approach, budget, rigid};
 
 /// What moves the reference.
@@ -29,7 +30,7 @@ pub(super) enum Course {
 pub(super) struct Step {
     pub(super) reference: Reference,
     /// What held joints back that follow a pose.
-    pub(super) bounds: Held,
+    pub(super) bounds: BoundsReached,
     /// Whether the pose had to wait for joints that were held back.
     pub(super) held: bool,
     /// Whether a leash of the course's own moved the reference with the arm.
@@ -43,7 +44,7 @@ impl Step {
     pub(super) fn free(reference: Reference) -> Self {
         Self {
             reference,
-            bounds: Held::default(),
+            bounds: BoundsReached::default(),
             held: false,
             leashed: false,
             failed: false,

@@ -9,19 +9,20 @@ use franka_model::limits::JointLimits;
 use franka_model::{Dynamics, JointVector};
 use franka_proto::RobotState;
 
-use crate::law::hybrid::Reference;
+use crate::law::gain_fade::{BlendedGains, GainFade};
 use crate::law::interaction::Interaction;
-use crate::law::shaping;
 use crate::law::task_space::TaskSpace;
-use crate::law::tuning::{Fade, Tuning};
+use crate::session::guard::torque_clamp::{TORQUE_CLAMP, clamp};
+use crate::session::guard::torque_rate::limit_rate;
 use crate::session::guard::{force_cap, velocity_barrier};
+use crate::session::reference::Reference;
 use crate::session::{Bindings, Goal, Guard};
-use crate::shaping::filter;
+use crate::shaping::{CYCLE, DEFAULT_CUTOFF_FREQUENCY, filter};
 
 /// What the law remembers between cycles.
 #[derive(Debug)]
 pub(super) struct Effort {
-    fade: Fade,
+    fade: GainFade,
     /// Reference velocity behind its low-pass, `[rad/s]`.
     feedforward: JointVector,
     inertia: Inertia,
@@ -66,7 +67,7 @@ impl Effort {
     /// With the gains of the first goal, for a reference at rest.
     pub(super) fn new(goal: &Goal) -> Self {
         Self {
-            fade: Fade::at(Tuning::new(&goal.gains, goal.force_cap.newtons())),
+            fade: GainFade::at(BlendedGains::new(&goal.gains, goal.force_cap.newtons())),
             feedforward: JointVector::zeros(),
             inertia: Inertia {
                 acceleration: JointVector::zeros(),
@@ -78,7 +79,7 @@ impl Effort {
     /// Goes over to the gains and the force cap of another goal.
     pub(super) fn take_up(&mut self, goal: &Goal) {
         self.fade
-            .towards(Tuning::new(&goal.gains, goal.force_cap.newtons()));
+            .towards(BlendedGains::new(&goal.gains, goal.force_cap.newtons()));
     }
 
     /// The torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
@@ -93,7 +94,7 @@ impl Effort {
     ) -> JointVector {
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
         let last = JointVector::from(state.tau_J_d);
-        let most = JointVector::from(shaping::TORQUE_CLAMP);
+        let most = JointVector::from(TORQUE_CLAMP);
         let tuning = self.fade.step();
         self.feedforward = reference.dq.zip_map(&self.feedforward, |newest, filtered| {
             filter::mix(tuning.feedforward_share, newest, filtered)
@@ -106,11 +107,11 @@ impl Effort {
         let dampers = Interaction::dampers(&tuning, jacobian, space.as_ref());
         let springs = springs.torques(&(reference.q - q));
         let dampers = dampers.torques(&(feedforward - dq));
-        let (tau, clamped) = shaping::clamp(&(springs + dampers), &most);
+        let (tau, clamped) = clamp(&(springs + dampers), &most);
         let (tau, capped) = match (tuning.force_cap(), &space) {
             (Some(cap), Some(space)) => {
                 // The clamp leaves the dampers what the springs do not take.
-                let (springs, _) = shaping::clamp(&springs, &most);
+                let (springs, _) = clamp(&springs, &most);
                 force_cap::hold(&springs, &(tau - springs), cap, jacobian, space)
             }
             _ => (tau, false),
@@ -122,9 +123,9 @@ impl Effort {
         let inertial = dynamics.mass * (acceleration * tuning.feedforward);
         let tau = tau + dynamics.coriolis + inertial;
         let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &most);
-        let (tau, full) = shaping::clamp(&tau, &limits.torque);
-        let filtered = shaping::low_pass(&tau, &last);
-        let (tau, slowed) = shaping::limit_rate(&filtered, &last, &limits.torque_rate);
+        let (tau, full) = clamp(&tau, &limits.torque);
+        let filtered = low_pass(&tau, &last);
+        let (tau, slowed) = limit_rate(&filtered, &last, &limits.torque_rate);
 
         bindings.set(Guard::TorqueClamp, clamped || full);
         bindings.set(Guard::ForceCap, capped);
@@ -134,9 +135,25 @@ impl Effort {
     }
 }
 
+/// Low-passes `tau` against the torques that the robot last took, `tau_J_d` of its state.
+pub(super) fn low_pass(tau: &JointVector, last: &JointVector) -> JointVector {
+    tau.zip_map(last, |tau, last| filter::mix(FILTER_GAIN, tau, last))
+}
+
+/// Share of the new value in the low-pass filter, which has the cutoff frequency of libfranka's
+/// control loops.
+const FILTER_GAIN: f64 = filter::gain(CYCLE, DEFAULT_CUTOFF_FREQUENCY);
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_filter_has_the_gain_of_libfranka_at_100_hz() {
+        assert!((FILTER_GAIN - 0.385_869_545_095_037_5).abs() < 1e-16);
+        let one = low_pass(&JointVector::repeat(1.0), &JointVector::zeros());
+        assert_eq!(one[0], FILTER_GAIN);
+    }
 
     #[test]
     fn the_acceleration_of_a_leashed_reference_fades_and_comes_back_without_a_step() {

@@ -7,7 +7,7 @@ use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use crate::law::Gains;
-use crate::session::{Budget, ForceCap, Lead};
+use crate::session::{Budget, ForceCap, Lead, OnTimeout, Watchdog};
 use crate::slot::Words;
 
 /// Names one goal for the life of a connection. Updates of a followed target keep the name of the
@@ -100,25 +100,6 @@ impl Default for Tolerance {
             rotation: 1e-3,
         }
     }
-}
-
-/// Gives up a goal whose targets stop coming.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Watchdog {
-    /// The longest time without a target, by the robot's clock in whole milliseconds.
-    pub silence: Duration,
-    /// What the arm does after that. The motion ends once it rests, unless its session goes from goal to
-    /// goal.
-    pub on_timeout: OnTimeout,
-}
-
-/// What the arm does when its targets have stopped coming.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OnTimeout {
-    /// Goes on to the last target and holds it.
-    Hold,
-    /// Brakes at once, and holds where it comes to rest.
-    Brake,
 }
 
 /// One goal, complete: a newer one replaces all of it.

@@ -7,7 +7,8 @@ use nalgebra::{Isometry3, Matrix6, Vector3};
 use super::active::Measured;
 use super::goal::Free;
 use super::guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
-use crate::law::hybrid::Reference;
+use crate::law::Gains;
+use crate::session::reference::Reference;
 
 /// Cycles over which the spring of the goal before is let go.
 const LET_GO: u32 = 300;
@@ -15,6 +16,22 @@ const LET_GO: u32 = 300;
 /// Square of the damping in the inverse of the Jacobian. It bounds the offset of a joint near a
 /// singular posture to some fifty times that of the end effector.
 const SQUARED_DAMPING: f64 = 1e-4;
+
+impl Gains {
+    /// For hand guiding: springs at the end effector as by [`Self::cartesian`] on the axes that are
+    /// not free, and a light damping of the joints.
+    pub fn guiding(free: Free) -> Self {
+        let preset = Self::cartesian();
+        let locked =
+            |gains: [f64; 6]| core::array::from_fn(|i| if free.axes[i] { 0.0 } else { gains[i] });
+        Self {
+            cartesian_stiffness: locked(preset.cartesian_stiffness),
+            cartesian_damping: locked(preset.cartesian_damping),
+            joint_damping: [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5],
+            ..preset
+        }
+    }
+}
 
 /// Brings the reference to rest, then lets it go.
 #[derive(Debug)]

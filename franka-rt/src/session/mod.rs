@@ -21,7 +21,6 @@ mod budget;
 pub(crate) mod check;
 mod chunk;
 mod course;
-mod deadman;
 mod effort;
 mod goal;
 mod guard;
@@ -29,7 +28,9 @@ mod guide;
 mod kinematics;
 mod landing;
 mod pose;
+mod reference;
 mod route;
+mod setpoint_stream;
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -39,7 +40,6 @@ use franka_proto::{RobotState, Version};
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
 use crate::control::{MotionCommand, Torques};
-use crate::driver::Record;
 use crate::slot::{Read, SlotReader};
 use crate::together::StartFault;
 
@@ -50,18 +50,21 @@ pub use chunk::{
     BLEND, CHUNKS_MAX, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, OFFSET_MAX,
     POINTS_MAX, Returned, chunk_ring,
 };
-pub use deadman::{Deadman, DeadmanMonitor};
-pub use goal::{Free, Goal, GoalId, OnArrival, OnTimeout, Target, Tolerance, Watchdog};
+pub use goal::{Free, Goal, GoalId, OnArrival, Target, Tolerance};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
+pub use guard::deadman::{Deadman, DeadmanMonitor};
 pub use guard::deviation::{JOINT_DEVIATION, ROTATION_DEVIATION, TRANSLATION_DEVIATION};
 pub use guard::force_cap::{DEFAULT_FORCE_CAP, FORCE_CAP, ForceCap};
 pub use guard::lead::{LEAD_FRESH_MS, Lead};
 pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
+pub use guard::torque_clamp::TORQUE_CLAMP;
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
+pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT};
 
 use active::Active;
+use reference::Reference;
 
 /// Time for which something may hold the course back: an obstacle by the leash, or the joints'
 /// bounds. A goal that is to finish and has not got on by then is braked, and lands where it is.
@@ -148,9 +151,18 @@ impl core::fmt::Display for Lapse {
 #[derive(Debug)]
 pub(crate) struct Step {
     pub(crate) answer: Answer,
+    pub(crate) trace: Trace,
     /// The last command: the motion ends once the robot has taken it.
     pub(crate) finished: bool,
     pub(crate) event: Option<SessionEvent>,
+}
+
+/// What is told of a cycle in its record; all zero where no goal is followed.
+#[derive(Debug, Default)]
+pub(crate) struct Trace {
+    pub(crate) goal: GoalId,
+    pub(crate) reference: Reference,
+    pub(crate) bindings: Bindings,
 }
 
 /// The command, whole or but for what goes beside torques.
@@ -261,10 +273,10 @@ impl TargetSession {
     }
 
     /// Answers one state. Bounded work, no allocation.
-    pub(crate) fn step(&mut self, state: &RobotState, record: &mut Record) -> Step {
+    pub(crate) fn step(&mut self, state: &RobotState) -> Step {
         let held = self.held.take();
         let newer = self.read().or(held);
-        self.follow(newer, state, record)
+        self.follow(newer, state)
     }
 
     /// Whether the goal that waits for its common start has been taken back, or another one has
@@ -278,24 +290,19 @@ impl TargetSession {
     }
 
     /// Answers one state by holding the arm where it is, with the gains of the goal that waits.
-    pub(crate) fn hold(&mut self, state: &RobotState, record: &mut Record) -> Step {
+    pub(crate) fn hold(&mut self, state: &RobotState) -> Step {
         let nothing = self.active.is_none();
         let rest = self.held.filter(|_| nothing).map(|held| Goal {
             id: GoalId::default(), // no goal's
             watchdog: None,        // Who waits for others may be silent.
             ..held.at_rest(OnArrival::Hold)
         });
-        self.follow(rest, state, record)
+        self.follow(rest, state)
     }
 
     /// Answers one state of a goal whose common start has failed: lands where the arm is held,
     /// unless another goal comes.
-    pub(crate) fn give_up(
-        &mut self,
-        fault: StartFault,
-        state: &RobotState,
-        record: &mut Record,
-    ) -> Step {
+    pub(crate) fn give_up(&mut self, fault: StartFault, state: &RobotState) -> Step {
         let held = self.held.take();
         let newer = self.read().or(held).map(|goal| {
             let (unstarted, _) = *self.unstarted.get_or_insert((goal.id, fault));
@@ -304,7 +311,7 @@ impl TargetSession {
             }
             goal.at_rest(OnArrival::ReportAndFinish)
         });
-        self.follow(newer, state, record)
+        self.follow(newer, state)
     }
 
     fn read(&mut self) -> Option<Goal> {
@@ -317,7 +324,7 @@ impl TargetSession {
     }
 
     /// Takes up a newer goal, if there is one, and answers one state.
-    fn follow(&mut self, newer: Option<Goal>, state: &RobotState, record: &mut Record) -> Step {
+    fn follow(&mut self, newer: Option<Goal>, state: &RobotState) -> Step {
         let active = match (&mut self.active, newer) {
             (Some(active), newer) => {
                 if let Some(goal) = newer {
@@ -347,6 +354,7 @@ impl TargetSession {
                         let event = Some(SessionEvent::BadTool);
                         return Step {
                             answer: self.backend.holding(state),
+                            trace: Trace::default(),
                             finished: true,
                             event,
                         };
@@ -357,6 +365,7 @@ impl TargetSession {
             (None, None) => {
                 return Step {
                     answer: self.backend.holding(state),
+                    trace: Trace::default(),
                     finished: false,
                     event: None,
                 };
@@ -364,7 +373,7 @@ impl TargetSession {
         };
         let alive = |monitor: &mut DeadmanMonitor| monitor.is_alive(state.message_id);
         let alive = self.deadman.as_mut().is_none_or(alive);
-        let mut step = active.step(&self.model, alive, self.chunks.as_mut(), state, record);
+        let mut step = active.step(&self.model, alive, self.chunks.as_mut(), state);
         if let Some(SessionEvent::Settled {
             goal, settlement, ..
         }) = &mut step.event

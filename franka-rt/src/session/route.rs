@@ -3,11 +3,11 @@
 use franka_model::{EndEffector, JointVector, Model};
 use franka_otg::AxisLimits;
 
-use crate::law::hybrid::Reference;
 use crate::session::active::Measured;
 use crate::session::chunk::{ChunkCourse, ChunkStart};
 use crate::session::course::{self, Course};
 use crate::session::guard::clearance::{Ahead, Clearance};
+use crate::session::reference::Reference;
 use crate::session::{Budget, Chunk, Goal, Target};
 
 /// Share of its velocity that a goal keeps where something is near.

@@ -9,20 +9,21 @@ use franka_proto::{RobotState, Version};
 use nalgebra::Isometry3;
 
 use crate::control::Torques;
-use crate::driver::Record;
-use crate::law::hybrid::Reference;
+use crate::session::reference::Reference;
 
-use super::backend::{Backend, Stream};
+use super::backend::Backend;
 use super::chunk::{ChunkCourse, ChunkReader};
 use super::course::{self, Course};
 use super::effort::Effort;
-use super::goal::{Goal, OnArrival, OnTimeout, Target};
+use super::goal::{Goal, OnArrival, Target};
 use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Deviation;
+use super::guard::watchdog::OnTimeout;
 use super::guard::{Bindings, Guard, leash};
 use super::landing;
 use super::route::Route;
-use super::{Answer, Lapse, Step, end_effector_of, load_of, rigid};
+use super::setpoint_stream::SetpointStream;
+use super::{Answer, Lapse, Step, Trace, end_effector_of, load_of, rigid};
 use stages::Stage;
 
 /// What exists once the first state has been seen.
@@ -71,7 +72,7 @@ pub(super) struct Active {
 )]
 enum Drive {
     Torques(Effort),
-    Setpoints(Stream),
+    Setpoints(SetpointStream),
 }
 
 /// The arm as it was measured.
@@ -99,7 +100,7 @@ impl Active {
         let (q, drive) = match backend {
             Backend::Torques => (state.q, Drive::Torques(Effort::new(&goal))),
             Backend::RobotController(setpoints) => {
-                let stream = Stream::new(setpoints, version, model.joint_limits());
+                let stream = SetpointStream::new(setpoints, version, model.joint_limits());
                 (state.q_d, Drive::Setpoints(stream))
             }
         };
@@ -232,7 +233,6 @@ impl Active {
         alive: bool,
         chunks: Option<&mut ChunkReader>,
         state: &RobotState,
-        record: &mut Record,
     ) -> Step {
         let q = JointVector::from(state.q);
         let dq = JointVector::from(state.dq);
@@ -321,13 +321,13 @@ impl Active {
 
         let failed = failed || leash.is_err() || self.route.take_failure();
         bindings.set(Guard::PlanFailure, failed);
-        record.goal = self.goal.id.0;
-        record.q_ref = self.reference.q.into();
-        record.dq_ref = self.reference.dq.into();
-        record.ddq_ref = self.reference.ddq.into();
-        record.bindings = bindings;
         Step {
             answer,
+            trace: Trace {
+                goal: self.goal.id,
+                reference: self.reference,
+                bindings,
+            },
             finished: matches!(self.stage, Stage::Finished),
             event,
         }

@@ -3,8 +3,8 @@
 use franka_model::{Frame, Model};
 
 use super::{Active, Drive, Measured};
-use crate::law::hybrid::Reference;
 use crate::session::landing::{Landing, Release, Verdict};
+use crate::session::reference::Reference;
 use crate::session::{
     Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, rigid,
 };

@@ -11,16 +11,13 @@ use super::quintic::Phase;
 use super::ring::{ChunkReader, Fate};
 use super::servo;
 use super::value::{Chunk, Points};
-use crate::law::hybrid::Reference;
 use crate::session::course::{Step, limits_of_joint};
+use crate::session::guard::joint_bounds::{BRAKING, BoundsReached};
 use crate::session::guard::leash;
-use crate::session::kinematics::{self, Drift, Held};
+use crate::session::kinematics::{self, Drift};
 use crate::session::pose::PoseState;
+use crate::session::reference::Reference;
 use crate::session::{Budget, GoalId, Target, approach, rigid};
-
-/// Deceleration, `[rad/s^2]`, with which a joint can stop before the end of its range: as for
-/// poses, well below what the robot's velocity envelope reckons with.
-const BRAKING: f64 = 1.2;
 
 /// Follows the chunk in force, within a budget.
 #[derive(Debug)]
@@ -149,7 +146,7 @@ impl ChunkCourse {
         match &mut self.play {
             Play::Joints { player, limits } => Step {
                 reference: follow_joints(model.joint_limits(), limits, reference, &player.at(now)),
-                bounds: Held::default(),
+                bounds: BoundsReached::default(),
                 held: false,
                 leashed: false,
                 failed: false,

@@ -80,7 +80,7 @@ impl<M: Motion> Curve<M> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::hybrid::Reference;
+    use crate::session::reference::Reference;
     use franka_model::JointVector;
 
     #[test]

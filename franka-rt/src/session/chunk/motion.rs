@@ -7,8 +7,8 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 use super::curve::Curve;
 use super::quintic::{self, Phase};
 use super::value::Points;
-use crate::law::hybrid::Reference;
 use crate::session::pose::PoseState;
+use crate::session::reference::Reference;
 
 /// A state with its first two derivatives that chunks can be made of.
 pub(super) trait Motion: Copy {

@@ -5,9 +5,7 @@ use core::time::Duration;
 use super::curve::Curve;
 use super::motion::Motion;
 use super::value::{Chunk, Origin, milliseconds};
-
-/// One cycle, `[s]`.
-const CYCLE: f64 = 1e-3;
+use crate::shaping::CYCLE;
 
 /// Time, `[s]`, in which the motion before is let go on the way to a first point that lies later
 /// than this: the motion would go on until half of the way there is over.
@@ -136,8 +134,8 @@ fn lead<M: Motion>(from: &M, to: &M, duration: f64, t: f64) -> M {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::hybrid::Reference;
     use crate::session::chunk::value::Points;
+    use crate::session::reference::Reference;
     use franka_model::JointVector;
 
     fn moving(q: f64, dq: f64, ddq: f64) -> Reference {

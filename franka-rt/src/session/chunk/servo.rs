@@ -26,9 +26,7 @@ use franka_otg::AxisLimits;
 use nalgebra::SVector;
 
 use super::quintic::Phase;
-
-/// One cycle, `[s]`.
-const CYCLE: f64 = 1e-3;
+use crate::shaping::CYCLE;
 
 /// Largest rate, `[1/s]`, at which a missing velocity is made up for.
 const RATE_MAX: f64 = 100.0;

@@ -12,10 +12,9 @@ use proptest::prelude::*;
 use super::course::{ChunkCourse, ChunkStart};
 use super::motion::stacked;
 use super::{Chunk, ChunkReader, ChunkWriter, Fate, chunk_ring};
-use crate::driver::Record;
-use crate::law::hybrid::Reference;
 use crate::session::kinematics::Drift;
 use crate::session::pose::PoseState;
+use crate::session::reference::Reference;
 use crate::session::{
     Budget, Goal, GoalId, OnArrival, SessionEvent, Settlement, Target, TargetSession, rigid,
 };
@@ -383,10 +382,9 @@ impl Session {
         let mut event = None;
         for _ in 0..cycles {
             self.state.message_id += 1;
-            let mut record = Record::default();
-            let step = self.session.step(&self.state, &mut record);
-            self.state.q = record.q_ref;
-            self.state.dq = record.dq_ref;
+            let step = self.session.step(&self.state);
+            self.state.q = step.trace.reference.q.into();
+            self.state.dq = step.trace.reference.dq.into();
             event = step.event.or(event);
         }
         event

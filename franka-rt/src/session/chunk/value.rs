@@ -10,8 +10,8 @@ use super::curve::Curve;
 use super::derivatives;
 use super::error::ChunkError;
 use super::motion::stacked;
-use crate::law::hybrid::Reference;
 use crate::session::pose::PoseState;
+use crate::session::reference::Reference;
 use crate::session::{GoalError, Target, check};
 
 /// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.

@@ -119,8 +119,8 @@ fn within(force: &Vector3<f64>, most: f64) -> Vector3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::gain_fade::BlendedGains;
     use crate::law::interaction::Interaction;
-    use crate::law::tuning::Tuning;
     use crate::law::{Gains, Law, task_space};
     use franka_model::{Dynamics, EndEffector, GRAVITY_EARTH, Load, MassMatrix, Model, READY};
     use proptest::prelude::*;
@@ -152,7 +152,7 @@ mod tests {
         q: &JointVector,
         dq: &JointVector,
     ) -> (JointVector, JointVector) {
-        let tuning = Tuning::new(gains, None);
+        let tuning = BlendedGains::new(gains, None);
         let (jacobian, space) = (&dynamics.jacobian, TaskSpace::of(dynamics));
         let springs = Interaction::springs(&tuning, jacobian, Some(&space));
         let dampers = Interaction::dampers(&tuning, jacobian, Some(&space));

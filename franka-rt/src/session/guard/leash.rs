@@ -5,9 +5,9 @@ use franka_model::{JointVector, rotation};
 use franka_otg::{PlanError, State};
 use nalgebra::{Isometry3, Translation3};
 
-use crate::law::hybrid::Reference;
 use crate::session::course::Course;
 use crate::session::pose::PoseGenerator;
+use crate::session::reference::Reference;
 
 /// Longest distance from the measured end effector to its reference, `[m]`.
 pub const TRANSLATION_LEASH: f64 = 0.025;

@@ -1,11 +1,34 @@
-//! Guards: what holds a command back, one file each.
+//! Guards: what holds a command back, each in a file of its own.
+//!
+//! | guard | file |
+//! |---|---|
+//! | leash | `leash` |
+//! | deviation | `deviation` |
+//! | lead | `lead` |
+//! | clearance | `clearance` |
+//! | bounds of joints that follow a pose: velocity, position, acceleration | `joint_bounds` |
+//! | force cap | `force_cap` |
+//! | velocity barrier | `velocity_barrier` |
+//! | torque clamp | `torque_clamp` |
+//! | torque-rate limit | `torque_rate` |
+//! | watchdog | `watchdog` |
+//! | deadman | `deadman` |
+//! | backstop: the limiter of setpoints | `backstop` |
+//!
+//! `binding` names them, for the record of each cycle.
 
+pub(super) mod backstop;
 mod binding;
 pub(super) mod clearance;
+pub(super) mod deadman;
 pub(super) mod deviation;
 pub(super) mod force_cap;
+pub(super) mod joint_bounds;
 pub(super) mod lead;
 pub(super) mod leash;
+pub(super) mod torque_clamp;
+pub(super) mod torque_rate;
 pub(super) mod velocity_barrier;
+pub(super) mod watchdog;
 
 pub use binding::{Bindings, Guard};

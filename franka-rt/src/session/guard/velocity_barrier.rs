@@ -49,7 +49,9 @@ pub(crate) fn brake(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::shaping::{self, TORQUE_CLAMP};
+    use crate::session::effort::low_pass;
+    use crate::session::guard::torque_clamp::TORQUE_CLAMP;
+    use crate::session::guard::torque_rate::limit_rate;
     use franka_model::Model;
     use proptest::prelude::*;
 
@@ -111,8 +113,8 @@ mod tests {
             let mut fastest = JointVector::zeros();
             for _ in 0..5000 {
                 let (tau, _) = brake(&(driving * side), &dq, &limits.velocity, &most);
-                let filtered = shaping::low_pass(&tau, &last);
-                let (tau, _) = shaping::limit_rate(&filtered, &last, &limits.torque_rate);
+                let filtered = low_pass(&tau, &last);
+                let (tau, _) = limit_rate(&filtered, &last, &limits.torque_rate);
                 for i in 0..7 {
                     dq[i] += last[i] / inertia[i] * STEP;
                     fastest[i] = fastest[i].max(dq[i].abs());

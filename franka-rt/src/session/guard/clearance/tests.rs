@@ -1,5 +1,5 @@
 use super::*;
-use crate::law::hybrid::Reference;
+use crate::session::reference::Reference;
 use franka_model::collision::Body;
 use franka_model::{Model, READY};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};

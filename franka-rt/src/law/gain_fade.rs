@@ -9,7 +9,7 @@ const CROSS_FADE: u32 = 300;
 /// Gains and force cap in numbers: a choice is a weight between 0 and 1, so that all of it may
 /// stand between two goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Tuning {
+pub(crate) struct BlendedGains {
     pub(crate) cartesian_stiffness: [f64; 6],
     pub(crate) cartesian_damping: [f64; 6],
     pub(crate) joint_stiffness: [f64; 7],
@@ -25,7 +25,7 @@ pub(crate) struct Tuning {
     pub(crate) inverse_force_cap: f64,
 }
 
-impl Tuning {
+impl BlendedGains {
     pub(crate) fn new(gains: &Gains, force_cap: Option<f64>) -> Self {
         let operational = gains.law == Law::OperationalSpace;
         let filtered = gains.feedforward_cutoff < MAX_CUTOFF_FREQUENCY;
@@ -78,26 +78,26 @@ impl Tuning {
     }
 }
 
-/// A tuning on its way from one goal's to the next.
+/// The cross-fade from the gains of one goal to those of the next.
 #[derive(Debug)]
-pub(crate) struct Fade {
-    from: Tuning,
-    to: Tuning,
+pub(crate) struct GainFade {
+    from: BlendedGains,
+    to: BlendedGains,
     cycle: u32,
 }
 
-impl Fade {
+impl GainFade {
     /// At its end from the start.
-    pub(crate) fn at(tuning: Tuning) -> Self {
+    pub(crate) fn at(gains: BlendedGains) -> Self {
         Self {
-            from: tuning,
-            to: tuning,
+            from: gains,
+            to: gains,
             cycle: CROSS_FADE,
         }
     }
 
     /// Heads for `to` from where it stands.
-    pub(crate) fn towards(&mut self, to: Tuning) {
+    pub(crate) fn towards(&mut self, to: BlendedGains) {
         if to != self.to {
             *self = Self {
                 from: self.now(),
@@ -108,12 +108,12 @@ impl Fade {
     }
 
     /// Goes one cycle on.
-    pub(crate) fn step(&mut self) -> Tuning {
+    pub(crate) fn step(&mut self) -> BlendedGains {
         self.cycle = self.cycle.saturating_add(1);
         self.now()
     }
 
-    fn now(&self) -> Tuning {
+    fn now(&self) -> BlendedGains {
         if self.cycle >= CROSS_FADE {
             self.to
         } else {
@@ -127,22 +127,22 @@ impl Fade {
 mod tests {
     use super::*;
 
-    fn soft() -> Tuning {
-        Tuning::new(&Gains::cartesian(), None)
+    fn soft() -> BlendedGains {
+        BlendedGains::new(&Gains::cartesian(), None)
     }
 
-    fn other() -> Tuning {
+    fn other() -> BlendedGains {
         let gains = Gains {
             law: Law::OperationalSpace,
             feedforward_cutoff: 20.0,
             ..Gains::droid()
         };
-        Tuning::new(&gains, Some(10.0))
+        BlendedGains::new(&gains, Some(10.0))
     }
 
     #[test]
     fn every_number_goes_evenly_from_one_goal_to_the_next() {
-        let mut fade = Fade::at(soft());
+        let mut fade = GainFade::at(soft());
         assert_eq!(fade.step(), soft());
         fade.towards(other());
         let mut last = soft();
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn a_fade_that_is_turned_round_goes_on_from_where_it_stands() {
-        let mut fade = Fade::at(soft());
+        let mut fade = GainFade::at(soft());
         fade.towards(other());
         let half = (0..CROSS_FADE / 2).map(|_| fade.step()).last().unwrap();
         assert_eq!(half.projection, 0.5);

@@ -73,7 +73,7 @@ impl DeadmanMonitor {
 
     /// Whether the token lives at the robot's time `now`, `[ms]`. Its silence counts from the first
     /// call on.
-    pub(super) fn is_alive(&mut self, now: u64) -> bool {
+    pub(crate) fn is_alive(&mut self, now: u64) -> bool {
         let beats = self.beats.load(Ordering::Relaxed);
         let since = match self.seen {
             Some((seen, since)) if seen == beats => since,

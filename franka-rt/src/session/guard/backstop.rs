@@ -1,0 +1,23 @@
+//! The backstop: the limiter between the reference and the robot's own controller.
+
+use franka_proto::Version;
+
+use crate::shaping::Bounds;
+
+/// Share of the robot's acceleration and jerk that the backstop lets pass: the echo that it limits
+/// against is rounded to `f32` by a Franka Research 3, by up to 0.25 rad/s^2 of what it makes of
+/// two positions.
+pub(crate) const BACKSTOP: f64 = 0.95;
+
+/// The bounds of the limiter behind the stream.
+pub(crate) fn bounds(version: Version) -> Bounds {
+    let bounds = match version {
+        Version::V5 => Bounds::fer(),
+        Version::V10 => Bounds::fr3(),
+    };
+    Bounds {
+        joint_acceleration: bounds.joint_acceleration.map(|most| most * BACKSTOP),
+        joint_jerk: bounds.joint_jerk.map(|most| most * BACKSTOP),
+        ..bounds
+    }
+}

@@ -1,0 +1,51 @@
+//! The torque-rate limit: the commanded torque changes no faster than the robot accepts.
+
+use franka_model::JointVector;
+use franka_model::limits::CLIENT_MARGIN;
+
+use crate::shaping::limiter;
+
+/// Keeps the change from the torques that the robot last took inside its rate limit, and tells
+/// whether that bound.
+///
+/// The usual margin is kept from `rate`, the robot's limit `[N m/s]`, and what an echo rounded to
+/// `f32` may hide of the last torques.
+pub(crate) fn limit_rate(
+    tau: &JointVector,
+    last: &JointVector,
+    rate: &JointVector,
+) -> (JointVector, bool) {
+    let mut bound = false;
+    let limited = tau.zip_zip_map(last, rate, |tau, last, rate| {
+        let rate = limiter::within_echo(rate - CLIENT_MARGIN, last);
+        let (limited, slowed) = limiter::limit_rate(tau, last, rate);
+        bound |= slowed;
+        limited
+    });
+    (limited, bound)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shaping::CYCLE;
+
+    #[test]
+    fn the_rate_stays_inside_the_limit_of_the_unrounded_torque() {
+        for sent in [86.0_f64, 63.999_999_7, -77.123_456_789, 1e-3, 0.0] {
+            let echo = JointVector::repeat(f64::from(sent as f32));
+            for wish in [200.0, -200.0] {
+                let limit = 1000.0;
+                let (next, bound) = limit_rate(
+                    &JointVector::repeat(wish),
+                    &echo,
+                    &JointVector::repeat(limit),
+                );
+                assert!(bound);
+                let rate = (next[0] - sent).abs() / CYCLE;
+                assert!(rate <= limit, "{rate} N m/s from {sent}");
+                assert!(rate > limit - 0.02);
+            }
+        }
+    }
+}
