@@ -145,7 +145,7 @@ impl Robot {
         let limits = self.model().joint_limits();
         if let Some(factor) = speed {
             let budget = tuning.budget.unwrap_or_else(|| Budget::of(limits));
-            tuning.budget = Some(budget.scaled(factor));
+            tuning.budget = Some(budget.at_speed(factor, self.model())?);
         }
         let goal = Goal::new(self.next_goal(), Target::Rest, OnArrival::Hold, limits);
         let goal = tuning.apply(goal);

@@ -284,6 +284,7 @@ impl Bridge {
                         program,
                         request,
                     } => self.lifecycle.control(id, program, *request, now),
+                    Work::Refused { error, .. } => Err(error.into()),
                 };
                 match begun {
                     Ok(()) => {

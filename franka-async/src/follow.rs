@@ -10,7 +10,7 @@ use franka_model::limits::JointLimits;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, MotionReport, Tuning};
 use franka_rt::session::{
-    Budget, ForceCap, Goal, Lead, OnArrival, OnTimeout, Target, Tolerance, Watchdog,
+    Budget, ForceCap, Goal, GoalError, Lead, OnArrival, OnTimeout, Target, Tolerance, Watchdog,
 };
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
@@ -33,6 +33,8 @@ pub struct Follow {
     goal: Goal,
     tuning: Tuning,
     stiffness: Option<[f64; 6]>,
+    /// Why its speed is not accepted.
+    refused: Option<GoalError>,
     targets: Targets,
     ticket: Option<StartTicket>,
 }
@@ -46,6 +48,7 @@ impl Follow {
             goal: tuning.apply(goal),
             tuning,
             stiffness: None,
+            refused: None,
             robot,
             arm,
             targets,
@@ -64,13 +67,17 @@ impl Follow {
 
     /// See [`Motion::speed`](crate::Motion::speed).
     pub fn speed(mut self, factor: f64) -> Self {
-        self.goal.budget = self.goal.budget.scaled(factor);
+        match self.goal.budget.at_speed(factor, self.robot.model()) {
+            Ok(budget) => self.goal.budget = budget,
+            Err(error) => self.refused = Some(error),
+        }
         self
     }
 
     /// See [`Motion::limits`](crate::Motion::limits).
     pub fn limits(mut self, budget: Budget) -> Self {
         self.goal.budget = budget;
+        self.refused = None;
         self
     }
 
@@ -141,9 +148,13 @@ impl Follow {
             goal,
             tuning,
             stiffness,
+            refused,
             mut targets,
             ticket,
         } = self;
+        if let Some(error) = refused {
+            return Err(error.into());
+        }
         let first = tokio::select! {
             biased;
             ended = end_of(arm.as_ref()) => return Err(ended),

@@ -9,7 +9,7 @@ use franka_rt::control::Callback;
 use franka_rt::driver::Program;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport};
-use franka_rt::session::{Budget, ForceCap, Goal, GoalId, Tolerance};
+use franka_rt::session::{Budget, ForceCap, Goal, GoalError, GoalId, Tolerance};
 use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
@@ -40,6 +40,8 @@ pub(crate) enum Work {
         program: Program,
         request: Box<MoveRequest>,
     },
+    /// Was given options that are not accepted.
+    Refused { id: GoalId, error: GoalError },
 }
 
 impl Work {
@@ -47,7 +49,7 @@ impl Work {
     pub(crate) fn id(&self) -> GoalId {
         match self {
             Self::Goal { goal, .. } | Self::Engage { goal, .. } => goal.id,
-            Self::Control { id, .. } | Self::Program { id, .. } => *id,
+            Self::Control { id, .. } | Self::Program { id, .. } | Self::Refused { id, .. } => *id,
         }
     }
 
@@ -79,6 +81,8 @@ pub struct Motion {
     robot: Robot,
     arm: Option<Arm>,
     goal: Goal,
+    /// Why its speed is not accepted.
+    refused: Option<GoalError>,
     ticket: Held,
 }
 
@@ -92,6 +96,7 @@ impl Clone for Motion {
             robot: self.robot.clone(),
             arm: self.arm.clone(),
             goal,
+            refused: self.refused,
             ticket: self.ticket.clone(),
         }
     }
@@ -104,21 +109,26 @@ impl Motion {
             robot,
             arm,
             goal,
+            refused: None,
             ticket,
         }
     }
 
     /// Walks the same path `factor` times as fast as by default: velocities scale with it,
-    /// accelerations with its square, jerks with its cube. Limits beyond the robot's are refused
-    /// when the motion begins.
+    /// accelerations with its square, jerks with its cube. A factor that is not positive, or takes
+    /// a limit beyond the robot's, is refused as [`GoalError::Speed`] when the motion begins.
     pub fn speed(mut self, factor: f64) -> Self {
-        self.goal.budget = self.goal.budget.scaled(factor);
+        match self.goal.budget.at_speed(factor, self.robot.model()) {
+            Ok(budget) => self.goal.budget = budget,
+            Err(error) => self.refused = Some(error),
+        }
         self
     }
 
     /// Replaces the limits of the motion; by default those of [`Budget::of`].
     pub fn limits(mut self, budget: Budget) -> Self {
         self.goal.budget = budget;
+        self.refused = None;
         self
     }
 
@@ -178,8 +188,20 @@ impl Motion {
     /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the
     /// log. It is no handle: the last handle of its session or robot, dropped, still brakes it.
     pub fn detach(self) {
-        let work = Work::goal(self.goal, self.ticket.0, self.arm.as_ref());
-        self.robot.begin(work);
+        let robot = self.robot.clone();
+        robot.begin(self.work().0);
+    }
+
+    /// What is asked of the bridge, and the session that it keeps.
+    fn work(self) -> (Work, Option<Arm>) {
+        let work = match self.refused {
+            Some(error) => Work::Refused {
+                id: self.goal.id,
+                error,
+            },
+            None => Work::goal(self.goal, self.ticket.0, self.arm.as_ref()),
+        };
+        (work, self.arm)
     }
 
     /// A way to brake the motion from elsewhere.
@@ -193,8 +215,9 @@ impl IntoFuture for Motion {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        let work = Work::goal(self.goal, self.ticket.0, self.arm.as_ref());
-        Moving::new(self.robot, self.arm, work)
+        let robot = self.robot.clone();
+        let (work, arm) = self.work();
+        Moving::new(robot, arm, work)
     }
 }
 

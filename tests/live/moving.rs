@@ -3,7 +3,9 @@
 use std::future::IntoFuture;
 use std::time::Duration;
 
-use franka_async::{CollisionBehavior, CommandError, Load, MotionError, Pose, PoseError};
+use franka_async::{
+    CollisionBehavior, CommandError, Engage, GoalError, Load, MotionError, Pose, PoseError,
+};
 use franka_proto::{SetterStatus, Status};
 use tokio::sync::watch;
 
@@ -54,6 +56,34 @@ async fn a_dropped_motion_brakes_and_a_new_one_takes_over() {
     under_way(&robot).await;
     robot.move_to(start).await.unwrap();
     assert_eq!(first.await.unwrap(), Err(MotionError::Superseded));
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_speed_that_no_motion_can_have_is_refused_as_a_speed() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let start = robot.pose();
+    let (_targets, poses) = watch::channel(start);
+    for factor in [0.0, 7.0] {
+        let refused = MotionError::Goal(GoalError::Speed {
+            got: factor,
+            most: 1.709,
+        });
+        let moved = robot.move_to(start).speed(factor).await;
+        assert_eq!(moved, Err(refused.clone()));
+        let followed = robot.follow(poses.clone()).speed(factor).await;
+        assert_eq!(followed, Err(refused.clone()));
+        let engaged = robot.engage(Engage::default().speed(factor)).await;
+        assert_eq!(engaged.map(drop), Err(refused));
+    }
+    let text = robot.move_to(start).speed(7.0).await.unwrap_err();
+    assert!(
+        text.to_string()
+            .contains("speed 7, expected between 0.0001 and 1.709"),
+        "{text}"
+    );
+    robot.move_to(start).speed(1.5).await.unwrap();
     robot.shutdown().await;
 }
 

@@ -1,10 +1,12 @@
 //! How fast a goal may be approached: limits per joint, and limits for the norm of translation and
 //! rotation.
 
-use franka_model::Twist;
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
+use franka_model::{Model, Twist};
 use franka_otg::AxisLimits;
 use nalgebra::Vector3;
+
+use crate::session::GoalError;
 
 /// Limits of the reference: how fast the goal is approached.
 ///
@@ -62,6 +64,48 @@ impl Budget {
             translation: scale(self.translation),
             rotation: scale(self.rotation),
         }
+    }
+
+    /// Least factor that [`Self::at_speed`] takes.
+    pub const SPEED_MIN: f64 = 1e-4;
+
+    /// The same as [`Self::scaled`], where that keeps the limits of the robot.
+    ///
+    /// # Errors
+    /// [`GoalError::Speed`] with the greatest factor that does, unless `factor` is between
+    /// [`Self::SPEED_MIN`] and that.
+    pub fn at_speed(self, factor: f64, model: &Model) -> Result<Self, GoalError> {
+        let most = self.fastest(model);
+        if (Self::SPEED_MIN..=most).contains(&factor) {
+            return Ok(self.scaled(factor));
+        }
+        Err(GoalError::Speed {
+            got: factor,
+            most: (most * 1e3).floor() / 1e3,
+        })
+    }
+
+    /// The greatest factor by which all limits can be scaled and stay inside those of the robot.
+    fn fastest(&self, model: &Model) -> f64 {
+        let (robot, cartesian) = (model.joint_limits(), model.cartesian_limits());
+        let joints = self.joints.iter().enumerate().map(|(i, own)| {
+            let most = [robot.velocity[i], robot.acceleration[i], robot.jerk[i]];
+            (*own, most)
+        });
+        let of = |limits: &MotionLimits| [limits.velocity, limits.acceleration, limits.jerk];
+        let ends = [
+            (self.translation, of(&cartesian.translation)),
+            (self.rotation, of(&cartesian.rotation)),
+        ];
+        let fastest = joints
+            .chain(ends)
+            .map(|(own, [velocity, acceleration, jerk])| {
+                let velocity = velocity / own.velocity;
+                let acceleration = (acceleration / own.acceleration).sqrt();
+                velocity.min(acceleration).min((jerk / own.jerk).cbrt())
+            });
+        // Less what rounding may add to a limit.
+        fastest.fold(f64::INFINITY, f64::min) * (1.0 - 1e-12)
     }
 
     /// The budget with the accelerations and jerks of translation and rotation raised as
@@ -191,13 +235,35 @@ impl Leg {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_model::{Model, RobotKind};
+    use franka_model::RobotKind;
 
     fn leg(way: [f64; 3], velocity: [f64; 3]) -> Leg {
         Leg {
             way: way.into(),
             velocity: velocity.into(),
             acceleration: Vector3::zeros(),
+        }
+    }
+
+    #[test]
+    fn a_speed_that_no_motion_can_have_is_told_with_the_range_of_those_that_can() {
+        for model in [Model::fr3(), Model::fer()] {
+            let budget = Budget::of(model.joint_limits());
+            // The default is a fifth of the joints' jerks, and those grow with the cube.
+            let most = 5.0_f64.cbrt();
+            for factor in [Budget::SPEED_MIN, 0.5, 1.0, most - 1e-9] {
+                assert_eq!(budget.at_speed(factor, model), Ok(budget.scaled(factor)));
+            }
+            for (factor, got) in [
+                (0.0, "speed 0,"),
+                (-1.0, "speed -1,"),
+                (7.0, "speed 7,"),
+                (f64::NAN, "speed NaN,"),
+            ] {
+                let error = budget.at_speed(factor, model).unwrap_err().to_string();
+                let expected = "expected between 0.0001 and 1.709 times the limits of the motion";
+                assert_eq!(error, format!("{got} {expected}"));
+            }
         }
     }
 

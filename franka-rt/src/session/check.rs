@@ -54,6 +54,17 @@ pub enum GoalError {
         /// What the robot accepts.
         most: f64,
     },
+    /// A speed is not positive, or takes a limit beyond the robot's.
+    #[error(
+        "speed {got}, expected between {least} and {most:.3} times the limits of the motion",
+        least = Budget::SPEED_MIN
+    )]
+    Speed {
+        /// The factor given.
+        got: f64,
+        /// The greatest factor with which all limits stay inside the robot's.
+        most: f64,
+    },
     /// A stiffness or damping is out of bounds.
     #[error(transparent)]
     Gains(#[from] GainError),
