@@ -1,8 +1,11 @@
-//! The fuzz targets: builds them with a pinned cargo-fuzz and runs each for a number of executions.
+//! The fuzz targets: builds them as cargo-fuzz does and runs each for a number of executions.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 use std::time::Instant;
 
 use anyhow::{Context as _, bail, ensure};
@@ -24,14 +27,24 @@ pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     run_all(workspace, runs)
 }
 
-/// One target after the other. A finding ends its target and not the others.
+/// As many targets at a time as there are processors. A finding ends its target and not the others.
 fn run_all(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     let fuzz = Fuzz::build(workspace)?;
-    let reports = fuzz
-        .targets()?
-        .iter()
-        .map(|target| fuzz.run(target, runs))
-        .collect::<anyhow::Result<Vec<_>>>()?;
+    let targets = fuzz.targets()?;
+    let (next, reports) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some(target) = targets.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let report = fuzz.run(target, runs);
+                    reports.lock().expect("no panic").push(report);
+                }
+            });
+        }
+    });
+    let reports = reports.into_inner().expect("no panic");
+    let mut reports = reports.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
+    reports.sort_by(|a, b| a.target.cmp(&b.target));
     println!();
     for report in &reports {
         println!("{}", report.line());
@@ -47,7 +60,7 @@ fn run_all(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
 /// platforms.
 fn supported() -> Result<(), String> {
     if !cfg!(any(target_os = "linux", target_os = "macos")) {
-        return Err("cargo-fuzz works on Linux and macOS only".to_owned());
+        return Err("the address sanitizer is there on Linux and macOS only".to_owned());
     }
     let compiler = std::env::var("CXX").unwrap_or_else(|_| "c++".to_owned());
     let mut probe = Command::new(&compiler);
@@ -75,18 +88,21 @@ struct Fuzz {
 impl Fuzz {
     /// Builds the targets, in a directory of their own: they are compiled with a sanitizer.
     fn build(workspace: &Workspace) -> anyhow::Result<Self> {
-        let cargo_fuzz = install(workspace)?;
         let package = workspace.root().join("fuzz");
         let output = workspace.target().join("fuzz");
-        // cargo-fuzz has no `--locked`: this fails where the lock file is not up to date.
-        let mut fetch = workspace.cargo();
-        fetch.args(["fetch", "--locked", "--manifest-path"]);
-        workspace.run(fetch.arg(package.join("Cargo.toml")))?;
-
         let triple = host()?;
-        let mut build = workspace.program(cargo_fuzz);
-        build.args(["fuzz", "build", "--target", &triple, "--target-dir"]);
-        build.arg(output.join("build")).current_dir(&package);
+        let mut build = workspace.cargo();
+        build.args([
+            "build",
+            "--locked",
+            "--release",
+            "--bins",
+            "--target",
+            &triple,
+        ]);
+        build.arg("--manifest-path").arg(package.join("Cargo.toml"));
+        build.arg("--target-dir").arg(output.join("build"));
+        build.env("RUSTFLAGS", FLAGS.join(" "));
         // The sanitizer's options are for nightly compilers, and a stable one takes them with this.
         build.env("RUSTC_BOOTSTRAP", "1");
         workspace.run(&mut build)?;
@@ -135,6 +151,10 @@ impl Fuzz {
             .output()
             .with_context(|| format!("cannot run {target}"))?;
         let log = String::from_utf8_lossy(&output.stderr);
+        ensure!(
+            log.contains("inline 8-bit counters"),
+            "{target} was built without counters of its coverage:\n{log}"
+        );
         let finding = (!output.status.success()).then(|| {
             eprintln!("{log}");
             findings
@@ -183,36 +203,8 @@ fn executions(log: &str) -> Option<u64> {
     line.trim().parse().ok()
 }
 
-/// cargo-fuzz, installed below the build directory unless it is there in the right version.
-fn install(workspace: &Workspace) -> anyhow::Result<PathBuf> {
-    let root = workspace.target().join("tools");
-    let program = root.join("bin").join("cargo-fuzz");
-    if version(&program).as_deref() == Some(VERSION) {
-        return Ok(program);
-    }
-    // It starts a compiler and nothing more: without optimisation it is there sooner.
-    let mut install = workspace.cargo();
-    install.args(["install", "--quiet", "--locked", "--debug", "--force"]);
-    install
-        .args(["--version", VERSION, "--root"])
-        .arg(&root)
-        .arg("--target-dir")
-        .arg(root.join("build"));
-    workspace.run(install.arg("cargo-fuzz"))?;
-    // It is not built twice.
-    fs::remove_dir_all(root.join("build"))?;
-    Ok(program)
-}
-
-/// Version of an installed cargo-fuzz.
-fn version(program: &Path) -> Option<String> {
-    let output = Command::new(program).arg("--version").output().ok()?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    Some(text.trim().strip_prefix("cargo-fuzz ")?.to_owned())
-}
-
-/// The platform that the compiler builds for by itself. cargo-fuzz would guess that of its own
-/// build.
+/// The platform that the compiler builds for by itself. Named, it keeps build scripts and macros free
+/// of the sanitizer.
 fn host() -> anyhow::Result<String> {
     let output = Command::new("rustc").arg("-vV").output()?;
     let text = String::from_utf8_lossy(&output.stdout);
@@ -220,8 +212,18 @@ fn host() -> anyhow::Result<String> {
     Ok(host.context("rustc names no host")?.to_owned())
 }
 
-/// The cargo-fuzz that the targets are built with.
-const VERSION: &str = "0.13.2";
+/// The flags of cargo-fuzz 0.13: what libFuzzer needs to see of a program, and the sanitizer.
+const FLAGS: &[&str] = &[
+    "--cfg=fuzzing",
+    "-Cpasses=sancov-module",
+    "-Cllvm-args=-sanitizer-coverage-level=4",
+    "-Cllvm-args=-sanitizer-coverage-inline-8bit-counters",
+    "-Cllvm-args=-sanitizer-coverage-pc-table",
+    "-Cllvm-args=-sanitizer-coverage-trace-compares",
+    "-Zsanitizer=address",
+    "-Clink-dead-code",
+    "-Ccodegen-units=1",
+];
 
 /// Executions of each target in `cargo xtask test`: five seconds or so for the slowest.
 const RUNS_OF_A_CHECK: u64 = 200_000;
@@ -256,10 +258,5 @@ mod tests {
             line.ends_with("A FINDING, in target/fuzz/findings/stream"),
             "{line}"
         );
-    }
-
-    #[test]
-    fn a_program_that_is_not_there_has_no_version() {
-        assert_eq!(version(Path::new("no-such-program")), None);
     }
 }

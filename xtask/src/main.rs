@@ -7,9 +7,10 @@
 //! | [`circles`] | the step that finds imports in a circle between modules |
 //! | [`fuzz`] | the fuzz targets, for a moment as a step or for as long as one likes |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
-//! | [`mujoco`] | the native library of the simulator's MuJoCo plant, and the step that tests that plant |
+//! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | virtual environments, for these two |
+//! | [`realtime`] | the right to real-time scheduling |
 //! | [`step`] | steps with headers, times and a summary |
 //! | [`tidy`] | the width of comments |
 //! | [`workspace`] | where things are, and running a program |
@@ -21,6 +22,7 @@ mod live;
 mod mujoco;
 mod peers;
 mod python;
+mod realtime;
 mod step;
 mod tidy;
 mod workspace;

@@ -21,7 +21,6 @@ use std::process::{Command, Stdio};
 use anyhow::{Context as _, bail};
 
 use crate::python::{NEWEST, Python, Version};
-use crate::step::Outcome;
 use crate::workspace::Workspace;
 
 /// Makes the library available, and says where from.
@@ -42,28 +41,6 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String
         ))),
         _ => fetch(workspace),
     }
-}
-
-/// Makes the library available, then checks and tests the simulator with it: the step of
-/// `cargo xtask test`.
-pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    if let Err(why) = prepare(workspace)? {
-        return Outcome::without(why);
-    }
-    let package = ["--package", "franka-sim", "--features", "mujoco"];
-    let mut clippy = workspace.cargo();
-    clippy.arg("clippy").args(package);
-    workspace.run(clippy.args(["--all-targets", "--", "-Dwarnings"]))?;
-    let mut doc = workspace.cargo();
-    doc.arg("doc").args(package).arg("--no-deps");
-    workspace.run(doc.env("RUSTDOCFLAGS", "-Dwarnings"))?;
-    let mut test = workspace.cargo();
-    // What drives the binary from outside does not depend on the plant, and is tested without.
-    workspace.run(test.arg("test").args(package).args(["--lib", "--bins"]))?;
-    let mut schedules = workspace.cargo();
-    schedules.args(["test", "--package", "franka-tests", "--features", "mujoco"]);
-    workspace.run(schedules.args(["--test", "lockstep", "mujoco"]))?;
-    Ok(Outcome::Passed)
 }
 
 /// Does nothing if the user names a library of their own or the right one is there. The inner error

@@ -12,7 +12,9 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 
+use crate::checks;
 use crate::python::{Python, Version};
+use crate::realtime;
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
@@ -28,10 +30,6 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
         }
     };
     let peers = directory(workspace);
-    let mut build = workspace.cargo();
-    build.args(["build", "--workspace", "--bin", "franka-sim"]);
-    workspace.run(&mut build)?;
-
     let address = loopback_address(std::process::id());
     for (name, arguments) in SCRIPTS {
         let mut simulator = real_time(&workspace.target().join("debug").join("franka-sim"));
@@ -56,8 +54,8 @@ fn summary(name: &'static str, script: Command) -> Summary {
     (name, steps, start.elapsed(), result)
 }
 
-/// Builds franka-rs, in a workspace of its own, and holds our target control against its own on the
-/// same robots.
+/// Builds our programs, and franka-rs in a workspace of its own, and holds our target control
+/// against its own on the same robots.
 fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Summary> {
     let target = workspace.target().join("peers");
     let mut build = workspace.cargo();
@@ -65,9 +63,10 @@ fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Summary> {
     build.arg(directory(workspace).join("franka_rs").join("Cargo.toml"));
     build.arg("--target-dir").arg(&target);
     workspace.run(&mut build)?;
+    // As the tests are built, so that what they have built is used again: with it come the programs.
     let mut build = workspace.cargo();
-    build.args(["build", "--package", "franka-tests", "--bin", BESIDE]);
-    workspace.run(&mut build)?;
+    build.args(["test", "--no-run", "--quiet", "--workspace", "--features"]);
+    workspace.run(build.arg(checks::features(workspace)?))?;
 
     let mut beside = workspace.program(workspace.target().join("debug").join(BESIDE));
     beside.arg(target.join("debug").join("franka-rs-peer"));
@@ -197,18 +196,17 @@ fn loopback_address(process: u32) -> String {
 /// robot sends a state every millisecond whatever else happens; a simulator on a busy machine does
 /// only if the kernel prefers it.
 fn real_time(program: &Path) -> Command {
-    let chrt = |program: &Path| {
-        let mut command = Command::new("chrt");
-        command.args(["--fifo", "10"]).arg(program);
-        command
-    };
-    let mut probe = chrt(Path::new("true"));
-    probe.stdout(Stdio::null()).stderr(Stdio::null());
-    if probe.status().is_ok_and(|status| status.success()) {
-        return chrt(program);
+    match realtime::obtain() {
+        Ok(()) => {
+            let mut command = Command::new("chrt");
+            command.args(["--fifo", "10"]).arg(program);
+            command
+        }
+        Err(why) => {
+            println!("{why}; commands may come late on a busy machine");
+            Command::new(program)
+        }
     }
-    println!("real-time scheduling is not granted: commands may come late on a busy machine");
-    Command::new(program)
 }
 
 /// A simulator that is ready to serve; it ends with this value.

@@ -10,6 +10,8 @@ use anyhow::{Context as _, bail};
 pub(crate) enum Outcome {
     /// All of it ran and succeeded.
     Passed,
+    /// What ran succeeded, and this is what could not be checked.
+    Partly(String),
     /// Nothing was checked, for this reason.
     Skipped(String),
 }
@@ -17,11 +19,16 @@ pub(crate) enum Outcome {
 impl Outcome {
     /// What a step comes to for which something is missing: skipped, and with `CI=true` failed.
     pub(crate) fn without(why: String) -> anyhow::Result<Self> {
-        if env::var("CI").is_ok_and(|value| value == "true" || value == "1") {
+        if is_ci() {
             bail!("{why}; with CI=true this step has to run");
         }
         Ok(Self::Skipped(why))
     }
+}
+
+/// Whether nothing that can be checked may be left out: the variable `CI`, as services set it.
+pub(crate) fn is_ci() -> bool {
+    env::var("CI").is_ok_and(|value| value == "true" || value == "1")
 }
 
 /// The steps taken so far.
@@ -51,6 +58,9 @@ impl Steps {
         })?;
         match &outcome {
             Outcome::Passed => println!("=== {name}: passed in {seconds:.1} s"),
+            Outcome::Partly(what) => {
+                println!("=== {name}: passed in {seconds:.1} s; NOT CHECKED: {what}");
+            }
             Outcome::Skipped(why) => println!("=== {name}: SKIPPED, NOTHING WAS CHECKED: {why}"),
         }
         self.taken.push((name, outcome, time));
@@ -65,6 +75,9 @@ impl Steps {
             .iter()
             .map(|(name, outcome, time)| match outcome {
                 Outcome::Passed => format!("{name} {:.1} s", time.as_secs_f64()),
+                Outcome::Partly(what) => {
+                    format!("{name} {:.1} s (NOT CHECKED: {what})", time.as_secs_f64())
+                }
                 Outcome::Skipped(why) => format!("{name} SKIPPED ({why})"),
             });
         format!(
@@ -77,7 +90,7 @@ impl Steps {
     }
 
     fn count_passed(&self) -> usize {
-        let passed = |outcome: &Outcome| *outcome == Outcome::Passed;
+        let passed = |outcome: &Outcome| !matches!(outcome, Outcome::Skipped(_));
         self.taken.iter().filter(|(_, o, _)| passed(o)).count()
     }
 }
@@ -94,12 +107,15 @@ mod tests {
         steps.take("a", "", || Ok(Outcome::Passed)).unwrap();
         let skipped = || Ok(Outcome::Skipped("no tool".to_owned()));
         steps.take("b", "", skipped).unwrap();
+        let partly = || Ok(Outcome::Partly("no right".to_owned()));
+        steps.take("c", "", partly).unwrap();
         let summary = steps.summary();
         assert!(
-            summary.starts_with("1 steps passed, 1 skipped, 0 failed"),
+            summary.starts_with("2 steps passed, 1 skipped, 0 failed"),
             "{summary}"
         );
-        assert!(summary.ends_with("b SKIPPED (no tool)"), "{summary}");
+        assert!(summary.contains("b SKIPPED (no tool), c "), "{summary}");
+        assert!(summary.ends_with("(NOT CHECKED: no right)"), "{summary}");
     }
 
     #[test]

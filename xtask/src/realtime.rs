@@ -1,0 +1,44 @@
+//! The right to real-time scheduling, which some tests check more with.
+
+use std::process::{self, Command, Stdio};
+
+/// Whether what this process starts may ask for `SCHED_FIFO`. Where it may not, the limit is raised
+/// if this user may do that: with `CI=true` also by way of sudo without a password. The error says
+/// that the right cannot be had.
+pub(crate) fn obtain() -> Result<(), String> {
+    let limit = |program: &[&str]| {
+        let process = process::id().to_string();
+        let limit = ["prlimit", "--rtprio=99:99", "--pid", &process];
+        succeeds(&[program, &limit].concat())
+    };
+    let granted = || succeeds(&["chrt", "--fifo", "1", "true"]);
+    if granted()
+        || limit(&[]) && granted()
+        || crate::step::is_ci() && limit(&["sudo", "--non-interactive"]) && granted()
+    {
+        return Ok(());
+    }
+    Err("SCHED_FIFO is not granted here and cannot be: threads had no priority".to_owned())
+}
+
+/// Set for the tests where the right is there: the control thread then has to have its priority.
+pub(crate) const GRANTED: &str = "FRANKA_REALTIME_GRANTED";
+
+fn succeeds(line: &[&str]) -> bool {
+    let mut command = Command::new(line[0]);
+    command.args(&line[1..]).stdin(Stdio::null());
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_that_fails_or_is_not_there_does_not_succeed() {
+        assert!(succeeds(&["true"]));
+        assert!(!succeeds(&["false"]));
+        assert!(!succeeds(&["no-such-program"]));
+    }
+}
