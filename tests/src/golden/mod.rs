@@ -103,6 +103,10 @@ pub const SUITES: &[Suite] = &[
         check: otg::target_velocity,
     },
     Suite {
+        file: "otg/single_axis_unavoidable_excess.json",
+        check: otg::target_velocity,
+    },
+    Suite {
         file: "rate_limiting_vectors.json",
         check: shaping::limiters,
     },

@@ -206,6 +206,19 @@ impl<const N: usize> Problem<N> {
         }
     }
 
+    /// The largest velocity and acceleration that a motion from the start has to have: those of the
+    /// limits, or more if the start is outside them or cannot stay inside.
+    fn unavoidable(&self, axis: usize) -> [f64; 2] {
+        let (start, jerk) = (self.start.axis(axis), self.jerk[axis]);
+        let rise = 0.5 * start.acceleration * start.acceleration.abs() / jerk;
+        // The velocity that is left when the acceleration is ramped to zero under the jerk limit.
+        let peak = start.velocity.abs().max((start.velocity + rise).abs());
+        [
+            self.velocity[axis].max(peak),
+            self.acceleration[axis].max(start.acceleration.abs()),
+        ]
+    }
+
     fn check_limits(&self, case: &mut Case<'_>, plan: &Generator<N>) {
         // To rest, which for a target in motion is behind it.
         let dt = plan.duration() / f64::from(SAMPLES);
@@ -217,9 +230,10 @@ impl<const N: usize> Problem<N> {
                 let jerk = (now.acceleration[i] - before.acceleration[i]) / dt;
                 // What the last bit of an acceleration at its limit looks like as a jerk.
                 let rounding = 4.0 * f64::EPSILON * self.acceleration[i] / dt;
+                let [velocity, acceleration] = self.unavoidable(i);
                 let parts = [
-                    now.velocity[i].abs() / self.velocity[i],
-                    now.acceleration[i].abs() / self.acceleration[i],
+                    now.velocity[i].abs() / velocity,
+                    now.acceleration[i].abs() / acceleration,
                     (jerk.abs() - rounding) / self.jerk[i],
                 ];
                 for (excess, part) in excess.iter_mut().zip(parts) {
