@@ -31,14 +31,6 @@ pub enum PlanError {
         /// Axis, counted from zero; 0 for a straight line, which is planned as one.
         axis: usize,
     },
-    /// The norm groups do not cover the axes exactly once.
-    #[error("norm groups cover {got} axes of {axes}")]
-    Groups {
-        /// Sum of the groups' sizes.
-        got: usize,
-        /// Axes there are.
-        axes: usize,
-    },
     /// Distance or velocity and the limits lie so far apart that `f64` cannot hold the powers that
     /// the solution is made of: more than 100 decades in units of `A^3/J^2` or `A^2/J`.
     #[error("state, target and limits of axis {axis} lie too many orders of magnitude apart")]

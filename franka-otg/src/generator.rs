@@ -4,7 +4,6 @@ use crate::axis::can_stop;
 use crate::error::{PlanError, Quantity};
 use crate::limits::Limits;
 use crate::plan::{Plan, Start, Synchronisation};
-use crate::segment::Segment;
 use crate::state::{State, check_finite};
 
 /// One nominal cycle of the robot, in seconds (FCI documentation: 1 kHz).
@@ -17,11 +16,9 @@ pub const CYCLE: f64 = 1e-3;
 /// and jerk.
 ///
 /// - Input: [`set_target`](Self::set_target), [`set_moving_target`](Self::set_moving_target),
-///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state),
-///   [`set_position`](Self::set_position). Each plans anew from the present state, unless nothing
-///   changes.
-/// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) and
-///   [`segments`](Self::segments) to look ahead.
+///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state).
+///   Each plans anew from the present state, unless nothing changes.
+/// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) to look ahead.
 /// - Getters: [`state`](Self::state), [`target`](Self::target),
 ///   [`time_to_target`](Self::time_to_target), [`remaining`](Self::remaining),
 ///   [`is_done`](Self::is_done).
@@ -176,7 +173,7 @@ impl<const N: usize> Generator<N> {
     ///
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the
-    /// limits do not allow the target's motion, which without norms is if
+    /// limits do not allow the target's motion, which is if
     /// `|velocity| + acceleration^2 / (2 jerk limit)` exceeds the velocity limit, or the
     /// acceleration its own. The motion in progress goes on.
     pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
@@ -236,23 +233,9 @@ impl<const N: usize> Generator<N> {
     /// to.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`], [`PlanError::OutOfRange`] or, with norms,
-    /// [`PlanError::TargetMotion`] if the state leaves a straight line along which the target moves
-    /// faster than its axes may on their own; the motion in progress goes on.
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         self.begin(state, self.limits, self.goal)
-    }
-
-    /// Re-anchors the position and keeps velocity and acceleration: [`set_state`](Self::set_state)
-    /// for a motion that something else has held back or moved on.
-    ///
-    /// # Errors
-    /// As [`set_state`](Self::set_state); the motion in progress goes on.
-    pub fn set_position(&mut self, position: [f64; N]) -> Result<(), PlanError> {
-        self.set_state(State {
-            position,
-            ..self.state
-        })
     }
 
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
@@ -274,22 +257,6 @@ impl<const N: usize> Generator<N> {
         } else {
             self.state
         }
-    }
-
-    /// The motion in progress of one axis, as its pieces of constant jerk in order, from where it
-    /// was planned to rest.
-    ///
-    /// Pieces may end up to a rounding apart. There are none for an axis that has not been told to
-    /// move; behind the last one an axis rests.
-    ///
-    /// # Panics
-    /// If there is no such axis.
-    pub fn segments(&self, axis: usize) -> impl Iterator<Item = Segment> + '_ {
-        let elapsed = self.elapsed();
-        self.plan.segments(axis).map(move |segment| Segment {
-            start: segment.start - elapsed,
-            ..segment
-        })
     }
 
     /// The present state.

@@ -43,8 +43,7 @@
 //!   overshot because another axis takes longer. The one exception keeps the second promise: an
 //!   axis whose stop ends exactly at its target cannot be late there without overshooting, and
 //!   waits (`late_push`).
-//! - From rest, and while new targets stay on the line, the path is straight (`line`). Budgets that
-//!   bind a norm are used in full there, and kept while turning off (`turn`, [`Limits::norms`]).
+//! - From rest, and while new targets stay on the line, the path is straight (`line`).
 //! - No allocation, no panic, for all finite inputs; what `f64` cannot compute is an error at the
 //!   door.
 //!
@@ -106,13 +105,11 @@ mod possible;
 mod profile;
 mod root;
 mod scalar;
-mod segment;
 mod state;
 mod steps;
 mod task;
 mod times;
 mod transfer;
-mod turn;
 mod velocity_change;
 
 pub use axis::rest_of;
@@ -120,7 +117,6 @@ pub use error::{PlanError, Quantity};
 pub use generator::{CYCLE, Generator};
 pub use limits::{AxisLimits, Limits};
 pub use plan::Synchronisation;
-pub use segment::Segment;
 pub use state::{AxisState, State};
 
 #[cfg(test)]

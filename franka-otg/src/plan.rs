@@ -6,9 +6,7 @@ use crate::limits::Limits;
 use crate::line::Line;
 use crate::possible::CANDIDATES;
 use crate::profile::Profile;
-use crate::segment::Segment;
 use crate::state::{AxisState, State};
-use crate::turn::lay_out_lead;
 
 /// How the axes of a motion to a target move together. All arrive at the same instant in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -42,8 +40,6 @@ enum Course<const N: usize> {
     Axes,
     /// On a straight line.
     Line(Line<N>),
-    /// On a straight line up to a time in seconds, then each axis on its own.
-    Turn(Line<N>, f64),
 }
 
 /// What a plan starts from.
@@ -92,16 +88,9 @@ impl<const N: usize> Plan<N> {
                 return self.follow_line(line, along, to, target, start.limits);
             }
         }
-        match &start.line {
-            Some((line, along)) if start.limits.has_norms() => {
-                self.turn_off(line, *along, target, start.limits)
-            }
-            _ => {
-                self.move_axes(&start.state, target, start.limits, 0.0)?;
-                self.course = Course::Axes;
-                Ok(())
-            }
-        }
+        self.move_axes(&start.state, target, start.limits)?;
+        self.course = Course::Axes;
+        Ok(())
     }
 
     fn follow_line(
@@ -128,35 +117,13 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    fn turn_off(
-        &mut self,
-        line: &Line<N>,
-        along: AxisState,
-        target: &State<N>,
-        limits: &Limits<N>,
-    ) -> Result<(), PlanError> {
-        let (full, shares) = (
-            limits.along(line.direction()),
-            limits.shares_along(line.direction()),
-        );
-        let mut lead = Profile::at_rest(0.0);
-        lay_out_lead(along, full, shares, &mut lead);
-        let until = lead.duration();
-        let state = line.state(lead.front());
-        self.move_axes(&state, target, limits, until)?;
-        self.along = lead;
-        self.course = Course::Turn(*line, until);
-        Ok(())
-    }
-
-    /// Lays out the axes so that all arrive when the slowest does, or as soon after as each of them
-    /// can, `until` seconds after the plan's start or later.
+    /// Lays out the axes so that all arrive when the slowest does, or as soon after as all of them
+    /// can.
     fn move_axes(
         &mut self,
         state: &State<N>,
         target: &State<N>,
         limits: &Limits<N>,
-        until: f64,
     ) -> Result<(), PlanError> {
         let mut axes: [_; N] =
             core::array::from_fn(|i| Axis::new(state.axis(i), target.axis(i), limits.axis(i)));
@@ -180,12 +147,12 @@ impl<const N: usize> Plan<N> {
         for (axis, profile) in axes.iter().flatten().zip(&mut self.axes) {
             axis.lay_out(duration, profile);
         }
-        self.arrival = until + duration;
+        self.arrival = duration;
         self.duration = self.arrival;
         self.end = target.position;
         if moves {
             for (i, profile) in self.axes.iter().enumerate() {
-                self.duration = self.duration.max(until + profile.duration());
+                self.duration = self.duration.max(profile.duration());
                 self.end[i] = profile.end();
             }
         }
@@ -241,8 +208,6 @@ impl<const N: usize> Plan<N> {
         match &self.course {
             Course::Axes => self.sample_axes(t),
             Course::Line(line) => line.state(self.along.sample(t)),
-            Course::Turn(line, until) if t < *until => line.state(self.along.sample(t)),
-            Course::Turn(_, until) => self.sample_axes(t - until),
         }
     }
 
@@ -254,41 +219,10 @@ impl<const N: usize> Plan<N> {
         state
     }
 
-    /// The segments of one axis, from the plan's start on: those on a line first, then those of its
-    /// own.
-    pub(crate) fn segments(&self, axis: usize) -> impl Iterator<Item = Segment> + '_ {
-        let (line, own) = match &self.course {
-            Course::Axes => (None, Some(0.0)),
-            Course::Line(line) => (Some(line), None),
-            Course::Turn(line, until) => (Some(line), Some(*until)),
-        };
-        let on_line = line.into_iter().flat_map(move |line| {
-            self.along.segments().map(move |segment| Segment {
-                state: line.state(segment.state).axis(axis),
-                jerk: segment.jerk * line.direction()[axis],
-                ..segment
-            })
-        });
-        let on_its_own = own.into_iter().flat_map(move |until| {
-            self.axes[axis].segments().map(move |segment| Segment {
-                start: until + segment.start,
-                ..segment
-            })
-        });
-        on_line.chain(on_its_own)
-    }
-
     /// The straight line that the motion is on at `t`, and the state along it; `None` at rest.
     pub(crate) fn line_at(&self, t: f64) -> Option<(Line<N>, AxisState)> {
-        let until = match &self.course {
-            Course::Axes => return None,
-            Course::Line(_) => self.duration - SLACK,
-            Course::Turn(_, until) => *until,
-        };
         match &self.course {
-            Course::Line(line) | Course::Turn(line, _) if t < until => {
-                Some((*line, self.along.sample(t)))
-            }
+            Course::Line(line) if t < self.duration - SLACK => Some((*line, self.along.sample(t))),
             _ => None,
         }
     }

@@ -1,7 +1,6 @@
 //! One axis over time: segments of constant jerk.
 
 use crate::brake::Pieces;
-use crate::segment;
 use crate::state::AxisState;
 
 /// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
@@ -148,22 +147,6 @@ impl Profile {
             j += usize::from(ends[1] <= next);
         }
         self.lead_to(target, 0.0, 0.0, [0.0; 3]);
-    }
-
-    /// Its segments, from its start on.
-    pub(crate) fn segments(&self) -> impl Iterator<Item = segment::Segment> + '_ {
-        self.segments[..self.len]
-            .iter()
-            .enumerate()
-            .map(|(i, segment)| segment::Segment {
-                start: segment.start,
-                duration: self.end_of(i) - segment.start,
-                state: AxisState {
-                    position: self.origin + segment.state.position,
-                    ..segment.state
-                },
-                jerk: segment.jerk,
-            })
     }
 
     /// When a segment ends.

@@ -43,7 +43,6 @@ fn a_hundred_thousand_plans_and_cycles_allocate_and_free_nothing() {
             }
             planned += 1;
             black_box(generator.sample(0.1));
-            black_box(generator.segments(k % 7).count());
             for _ in 0..k % 40 {
                 black_box(generator.step());
             }

@@ -1,10 +1,10 @@
-//! Straight lines, and norms.
+//! Straight lines.
 
 use proptest::prelude::*;
 
 use super::random::{arm_limits, cases, many};
 use super::walk::check_step;
-use crate::{AxisLimits, CYCLE, Generator, Limits, State, Synchronisation};
+use crate::{CYCLE, Generator, Limits, State, Synchronisation};
 
 /// Largest distance of a position from the line through `from` and `to`, which are apart.
 fn distance_from_line<const N: usize>(from: &[f64; N], to: &[f64; N], position: &[f64; N]) -> f64 {
@@ -19,12 +19,6 @@ fn distance_from_line<const N: usize>(from: &[f64; N], to: &[f64; N], position: 
 fn norm<const N: usize>(vector: &[f64; N]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
-
-const BUDGET: AxisLimits = AxisLimits {
-    velocity: 0.6,
-    acceleration: 4.0,
-    jerk: 1000.0,
-};
 
 fn point() -> impl Strategy<Value = [f64; 3]> {
     [-0.6..0.6, -0.6..0.6, -0.6..0.6]
@@ -80,44 +74,6 @@ proptest! {
         prop_assert!((line - time).abs() <= 1e-13, "{line} {time}");
     }
 
-    #[test]
-    fn norms_keep_their_budget_whatever_the_targets(
-        targets in proptest::collection::vec((0_usize..400, point()), 1..8), brake_after in 0_usize..400,
-    ) {
-        let limits = Limits::<3>::norms(&[(3, BUDGET)]).unwrap();
-        let mut generator = Generator::new(State::at_rest([0.0; 3]), limits).unwrap();
-        let check = |generator: &mut Generator<3>| -> Result<(), TestCaseError> {
-            let before = *generator.state();
-            let after = *generator.step();
-            let jerk = core::array::from_fn(|i| (after.acceleration[i] - before.acceleration[i]) / CYCLE);
-            prop_assert!(norm::<3>(&after.velocity) <= BUDGET.velocity * (1.0 + 1e-9));
-            prop_assert!(norm::<3>(&after.acceleration) <= BUDGET.acceleration * (1.0 + 1e-9));
-            prop_assert!(norm::<3>(&jerk) <= BUDGET.jerk * (1.0 + 1e-9));
-            Ok(())
-        };
-        for (cycles, target) in &targets {
-            generator.set_target(target).unwrap();
-            for _ in 0..*cycles {
-                check(&mut generator)?;
-            }
-        }
-        for _ in 0..brake_after {
-            check(&mut generator)?;
-        }
-        generator.brake();
-        while !generator.is_done() {
-            check(&mut generator)?;
-        }
-    }
-}
-
-#[test]
-fn a_line_along_one_axis_uses_the_whole_norm() {
-    let limits = Limits::<3>::norms(&[(3, BUDGET)]).unwrap();
-    let mut generator = Generator::new(State::at_rest([0.0; 3]), limits).unwrap();
-    generator.set_target(&[0.0, 1.0, 0.0]).unwrap();
-    let fastest = generator.sample(0.5 * generator.duration()).velocity;
-    assert_eq!(fastest, [0.0, BUDGET.velocity, 0.0]);
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! What can be read of a motion, and what can be changed in the middle of one.
 
-use std::vec::Vec;
-
-use crate::{AxisLimits, CYCLE, Generator, Limits, PlanError, Quantity, State, Synchronisation};
+use crate::{CYCLE, Generator, Limits, PlanError, Quantity, State, Synchronisation};
 
 fn limits() -> Limits<3> {
     Limits::from_arrays([1.0, 0.8, 0.5], [5.0, 4.0, 6.0], [900.0, 800.0, 700.0]).unwrap()
@@ -17,58 +15,6 @@ fn moving(limits: Limits<3>, synchronisation: Synchronisation) -> Generator<3> {
         generator.step();
     }
     generator
-}
-
-/// The segments of each axis give the state at every instant from now on.
-fn check_segments(generator: &Generator<3>) {
-    for axis in 0..3 {
-        let segments: Vec<_> = generator.segments(axis).collect();
-        for k in 0..200 {
-            let t = f64::from(k) / 200.0 * generator.remaining();
-            let sample = generator.sample(t).axis(axis);
-            let segment = segments
-                .iter()
-                .rfind(|s| s.start <= t && t <= s.start + s.duration);
-            let Some(segment) = segment else { continue };
-            let got = segment.state.after(segment.jerk, t - segment.start);
-            assert!(
-                (got.position - sample.position).abs() < 1e-12,
-                "{axis} at {t}"
-            );
-            assert!(
-                (got.velocity - sample.velocity).abs() < 1e-11,
-                "{axis} at {t}"
-            );
-        }
-        let end = segments.last().map(|s| s.start + s.duration).unwrap();
-        assert!(
-            end <= generator.remaining() + 1e-9,
-            "axis {axis} ends at {end}"
-        );
-    }
-}
-
-#[test]
-fn segments_are_the_motion_on_a_line_off_it_and_behind_a_moving_target() {
-    check_segments(&moving(limits(), Synchronisation::Straight));
-    let mut generator = moving(limits(), Synchronisation::Time);
-    check_segments(&generator);
-    let target = State {
-        position: [0.4, 0.4, 0.4],
-        velocity: [0.2, 0.0, -0.1],
-        acceleration: [0.0; 3],
-    };
-    generator.set_moving_target(&target).unwrap();
-    check_segments(&generator);
-    let budget = AxisLimits {
-        velocity: 0.6,
-        acceleration: 4.0,
-        jerk: 1000.0,
-    };
-    let norms = Limits::norms(&[(3, budget)]).unwrap();
-    let mut generator = moving(norms, Synchronisation::Straight);
-    generator.set_target(&[-0.3, 0.4, 0.1]).unwrap();
-    check_segments(&generator);
 }
 
 #[test]
@@ -98,20 +44,6 @@ fn a_target_in_motion_is_met_when_it_was_said_to_be() {
         generator.end()[0] > 0.4 && generator.end()[2] < 0.4,
         "behind it"
     );
-}
-
-#[test]
-fn a_new_position_keeps_the_motion() {
-    let mut generator = moving(limits(), Synchronisation::Time);
-    let before = *generator.state();
-    generator.set_position([0.1, -0.1, 0.05]).unwrap();
-    assert_eq!(generator.state().position, [0.1, -0.1, 0.05]);
-    assert_eq!(generator.state().velocity, before.velocity);
-    assert_eq!(generator.state().acceleration, before.acceleration);
-    while !generator.is_done() {
-        generator.step();
-    }
-    assert_eq!(generator.state(), &State::at_rest([0.3, -0.2, 0.1]));
 }
 
 #[test]

@@ -28,7 +28,13 @@ pub fn all() -> Vec<Benchmark> {
         acceleration: joints.acceleration[axis],
         jerk: joints.jerk[axis],
     };
-    let translation = Budget::of(joints).translation.per_axis_for_norm(3);
+    // Equal shares: then no direction exceeds the budget.
+    let (budget, share) = (Budget::of(joints).translation, 1.0 / 3_f64.sqrt());
+    let translation = AxisLimits {
+        velocity: budget.velocity * share,
+        acceleration: budget.acceleration * share,
+        jerk: budget.jerk * share,
+    };
     let cartesian = move |_: usize, _: &mut SmallRng| translation;
     let random = |_: usize, random: &mut SmallRng| {
         let mut decades = |low: f64, high: f64| 10_f64.powf(random.random_range(low..high));

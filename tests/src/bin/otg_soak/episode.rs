@@ -252,9 +252,11 @@ impl<'a, const N: usize> Loop<'a, N> {
 
     /// The position is moved by something else.
     fn nudge(&mut self, random: &mut SmallRng) -> Result<(), PlanError> {
-        let now = self.generator.state().position;
-        let position = now.map(|p| p + random.random_range(-1e-3..1e-3));
-        self.generator.set_position(position)?;
+        let mut state = *self.generator.state();
+        for position in &mut state.position {
+            *position += random.random_range(-1e-3..1e-3);
+        }
+        self.generator.set_state(state)?;
         self.planned(false);
         Ok(())
     }

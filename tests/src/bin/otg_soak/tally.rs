@@ -20,8 +20,6 @@ pub(crate) struct Tally {
     pub(crate) slower: Worst,
     /// Cycles behind the arrival that the last plan promised.
     pub(crate) late: Worst,
-    /// Seconds between the first and the last axis.
-    pub(crate) apart: Worst,
     /// Distance from the target where the motion ends, relative to the size of the motion.
     pub(crate) landing: Worst,
     /// Beyond a target that can be reached without overshooting, likewise.
@@ -76,7 +74,6 @@ impl fmt::Display for Tally {
             ("jerk over its limit, relative", self.jerk),
             ("duration over the optimum, relative", self.slower),
             ("arrival behind the promised one, cycles", self.late),
-            ("axes apart, seconds", self.apart),
             ("landing error, relative", self.landing),
             ("overshoot of a reachable target, relative", self.overshoot),
         ] {
