@@ -1,36 +1,82 @@
-//! Why the robot ended a motion: what was exceeded, by how much, since when, what led up to it and
-//! what to change.
+//! Why a Franka robot ended a motion: which limit was exceeded, by how much, since when, what led up
+//! to it and what to change.
 //!
 //! ```text
-//! errors, log, model ──> findings (one error each: commanded | measured | touch | link)
-//!                           └─> causes (step | link | touch | pose) ──> advice
+//! errors, log, model --> finding (one error: commanded | measured | contact | lost cycles)
+//!                          +-> causes (steps | contact | lost cycles | posture) --> advice
 //! ```
 //!
-//! Everything here is read off the last cycles of the motion, outside the real-time path, when the
-//! error is made. The robot names errors and nothing else: no joint, no number. Joint and number
-//! come from the same differences and limits that it checks by (FCI documentation), so far as they
-//! are published and as states of single precision show them. What the log does not show is not
-//! guessed: a [`Diagnosis`] then says that it is not visible.
+//! The robot names errors and nothing else: no joint, no number. Joint and number are computed here,
+//! from the log of the motion's last cycles, by the differences and limits that the robot checks by
+//! (FCI documentation), so far as these are published and as states of single precision show them.
+//! What the log does not show is not guessed: a [`Diagnosis`] then says that it is not visible.
 //!
-//! What a log cannot hold: thresholds of collisions (a threshold is told by the two values that it
-//! lies between), virtual walls, filters of the robot's own, and whatever happened before its first
-//! cycle.
+//! * [`Diagnose`]: the diagnosis of an error, where it was caught. [`Case`], [`Diagnosis::of`]: of a
+//!   log, saved or live.
+//! * [`Finding`]: the limit that was exceeded. [`Cause`]: what led up to it. [`Advice`]: what to
+//!   change.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `rules` | which error explains the others, which checks show it, which causes and advice follow |
+//! | `evidence` | the log, laid out for these checks |
+//! | `commanded`, `measured` | commands and sensor values against the limits of the model |
+//! | `command_steps`, `contact`, `lost_cycles`, `posture` | causes, one kind each |
+//! | `finding`, `cause`, `advice` | the parts of a diagnosis, and their text |
+//!
+//! A log that a program has saved is diagnosed offline (feature `serde`):
+//!
+//! ```
+//! use franka_diagnosis::{Case, Diagnosis};
+//! use franka_model::Model;
+//!
+//! # fn saved() -> String {
+//! #     let state = |message_id, dq| franka_proto::RobotState {
+//! #         message_id,
+//! #         dq: [0.0, 0.0, 0.0, dq, 0.0, 0.0, 0.0],
+//! #         controller_mode: franka_proto::ControllerMode::ExternalController,
+//! #         ..franka_proto::RobotState::default()
+//! #     };
+//! #     let command = franka_proto::RobotCommand::default();
+//! #     let entry = |id, dq| serde_json::json!({ "state": state(id, dq), "command": command });
+//! #     serde_json::json!({
+//! #         "commander": "Function",
+//! #         "errors": ["joint_velocity_violation"],
+//! #         "log": [entry(7, 0.0), entry(8, 3.0)],
+//! #         "statistics": null,
+//! #     })
+//! #     .to_string()
+//! # }
+//! // Written earlier: `serde_json::to_string(&Case::from(&control_error))`.
+//! let case: Case = serde_json::from_str(&saved())?;
+//! let diagnosis = Diagnosis::of(&case, Model::fer());
+//! assert!(diagnosis.to_string().starts_with("joint 4: measured velocity 3 rad/s"));
+//! # Ok::<_, serde_json::Error>(())
+//! ```
+//!
+//! # What it does not do
+//!
+//! It reads no clock, file or socket, and it is not for the control thread: it allocates. It sees
+//! only what a log holds. No state shows thresholds of collisions (a threshold is told by the two
+//! values that it lies between), virtual walls or filters of the robot's own, and the log does not
+//! show what happened before its first cycle.
 
 mod advice;
 mod cause;
+mod command_steps;
 mod commanded;
+mod contact;
 mod evidence;
 mod finding;
-mod judge;
-mod link;
+mod lost_cycles;
 mod measured;
-mod pose;
-mod step;
+mod posture;
+mod rules;
 #[cfg(test)]
 mod tests;
-mod touch;
 
 use core::fmt;
+use std::sync::Arc;
 
 use evidence::Evidence;
 use franka_model::Model;
@@ -47,21 +93,15 @@ pub use franka_rt::driver::Commander;
 pub trait Diagnose {
     /// Why the robot stopped itself, as far as the log shows; `None` for any other end of a motion.
     ///
-    /// Computed at each call, which allocates and takes up to a few milliseconds.
+    /// Computed at each call, in the caller's thread: this allocates and takes up to a few
+    /// milliseconds.
     fn diagnose(&self) -> Option<Diagnosis>;
 }
 
 impl Diagnose for ControlError {
     fn diagnose(&self) -> Option<Diagnosis> {
-        self.is_reflex().then(|| {
-            Diagnosis::of(&Case {
-                commander: self.commander,
-                errors: self.failure.reflex_reason,
-                log: &self.log,
-                model: &self.model,
-                statistics: Some(&self.statistics),
-            })
-        })
+        self.is_reflex()
+            .then(|| Diagnosis::of(&Case::from(self), &self.model))
     }
 }
 
@@ -78,13 +118,13 @@ impl Diagnose for MotionError {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Diagnosis {
-    /// Who commanded the motion.
+    /// What commanded the motion.
     pub commander: Commander,
     /// The errors that the robot named.
     pub errors: Errors,
     /// Of them, the one that explains the others; `None` if it named none.
     pub error: Option<RobotError>,
-    /// The limit behind it, if the log shows that.
+    /// The limit that was exceeded, if the log shows it.
     pub finding: Option<Finding>,
     /// What led up to it, the most likely first. Empty if the log shows nothing.
     pub causes: Vec<Cause>,
@@ -93,48 +133,63 @@ pub struct Diagnosis {
     pub advice: Vec<Advice>,
     /// The state that shows the end of the motion, by its `message_id`; `None` without a log.
     pub end: Option<u64>,
-    /// Cycles that the log holds.
+    /// Cycles of the log that were read.
     pub cycles: usize,
 }
 
-/// What a diagnosis is made of.
-#[derive(Clone, Copy, Debug)]
-pub struct Case<'a> {
-    /// Who commanded the motion.
+/// What a diagnosis is made of, beside the model of the robot. To be saved and diagnosed later.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Case {
+    /// What commanded the motion.
     pub commander: Commander,
     /// `reflex_reason` of the state that ended the motion.
     pub errors: Errors,
     /// The last cycles of the motion.
-    pub log: &'a ControlLog,
-    /// The robot's, with its limits.
-    pub model: &'a Model,
+    pub log: Arc<ControlLog>,
     /// Counts over the motion, for commands that left too late; `None` if they were not kept.
-    pub statistics: Option<&'a MotionStatistics>,
+    pub statistics: Option<MotionStatistics>,
+}
+
+impl From<&ControlError> for Case {
+    /// Shares the log of the error.
+    fn from(error: &ControlError) -> Self {
+        Self {
+            commander: error.commander,
+            errors: error.failure.reflex_reason,
+            log: error.log.clone(),
+            statistics: Some(error.statistics),
+        }
+    }
 }
 
 impl Diagnosis {
-    /// Reads a case. This allocates, and takes up to a few milliseconds for fifty cycles of a
-    /// Cartesian motion: not for the control thread.
-    pub fn of(case: &Case<'_>) -> Self {
+    /// Most cycles of a log that are read, the newest. Limits are checked in every cycle, a link
+    /// counts as broken after 20 lost ones, and the success rate is an average over 100.
+    pub const CYCLES_MAX: usize = 200;
+
+    /// Returns the diagnosis of a case with a robot of this model.
+    pub fn of(case: &Case, model: &Model) -> Self {
+        let older = case.log.len().saturating_sub(Self::CYCLES_MAX);
         let evidence = Evidence {
             commander: case.commander,
-            entries: case.log.iter().collect(),
-            model: case.model,
-            statistics: case.statistics,
+            entries: case.log.iter().skip(older).collect(),
+            model,
+            statistics: case.statistics.as_ref(),
         };
         Self::of_evidence(case.errors, &evidence)
     }
 
     fn of_evidence(errors: Errors, evidence: &Evidence<'_>) -> Self {
-        let (error, finding) = judge::explaining(evidence, errors);
+        let (error, finding) = rules::explaining(evidence, errors);
         let causes = error.map_or_else(Vec::new, |error| {
-            judge::causes(evidence, error, finding.as_ref())
+            rules::causes(evidence, error, finding.as_ref())
         });
         Self {
             commander: evidence.commander,
             errors,
             error,
-            advice: error.map_or_else(Vec::new, |error| judge::advice(error, &causes)),
+            advice: error.map_or_else(Vec::new, |error| rules::advice(error, &causes)),
             finding,
             causes,
             end: evidence.last().map(|state| state.message_id),

@@ -49,10 +49,7 @@ impl Story {
             control_command_success_rate: 1.0,
             ..RobotState::default()
         };
-        let entry = LogEntry {
-            state,
-            command: RobotCommand::default(),
-        };
+        let entry = LogEntry::new(state, RobotCommand::default());
         Self {
             commander: Commander::Function,
             model,
@@ -107,7 +104,7 @@ impl Story {
             _ => {}
         }
         then(&mut state);
-        self.entries.push(LogEntry { state, command });
+        self.entries.push(LogEntry::new(state, command));
     }
 
     /// A last cycle, in which the robot stops for these errors.

@@ -11,11 +11,19 @@ use franka_proto::{General, RobotCommand, RobotState, SuccessRate};
 /// has a command of zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct LogEntry {
     /// The state.
     pub state: RobotState,
     /// The newest command before it, as sent; zeros before the first.
     pub command: RobotCommand,
+}
+
+impl LogEntry {
+    /// `state`, after the newest command before it.
+    pub fn new(state: RobotState, command: RobotCommand) -> Self {
+        Self { state, command }
+    }
 }
 
 /// The last cycles of one motion, oldest first, up to a capacity.

@@ -5,14 +5,14 @@ use franka_proto::{Errors, RobotError as E};
 use super::advice::Advice;
 use super::cause::Cause;
 use super::commanded::{self, Which};
+use super::contact::Sense;
 use super::evidence::{Evidence, Reading, newest, worst};
 use super::finding::{Finding, Quantity};
-use super::touch::Sense;
-use super::{link, measured, pose, step, touch};
+use super::{command_steps, contact, lost_cycles, measured, posture};
 
 /// What kind of thing an error is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Matter {
+enum Category {
     /// Commands that stay away.
     Link,
     /// The first command.
@@ -32,107 +32,110 @@ enum Matter {
 /// Every error, the more explaining ones first: a missing command before the leap that it leads to,
 /// a command before what the arm makes of it, acceleration before jerk before velocity, a contact
 /// before the motion that it causes.
-const ORDER: [(E, Matter); 41] = [
-    (E::CommunicationConstraintsViolation, Matter::Link),
+const ORDER: [(E, Category); 41] = [
+    (E::CommunicationConstraintsViolation, Category::Link),
     (
         E::JointPositionMotionGeneratorStartPoseInvalid,
-        Matter::Start,
+        Category::Start,
     ),
     (
         E::CartesianPositionMotionGeneratorStartPoseInvalid,
-        Matter::Start,
+        Category::Start,
     ),
-    (E::CartesianMotionGeneratorStartElbowInvalid, Matter::Start),
-    (E::StartElbowSignInconsistent, Matter::Start),
+    (
+        E::CartesianMotionGeneratorStartElbowInvalid,
+        Category::Start,
+    ),
+    (E::StartElbowSignInconsistent, Category::Start),
     (
         E::CartesianPositionMotionGeneratorInvalidFrameFlag,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::CartesianMotionGeneratorElbowSignInconsistent,
-        Matter::Command,
+        Category::Command,
     ),
-    (E::ControllerTorqueDiscontinuity, Matter::Command),
+    (E::ControllerTorqueDiscontinuity, Category::Command),
     (
         E::CartesianMotionGeneratorVelocityDiscontinuity,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::CartesianMotionGeneratorAccelerationDiscontinuity,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::CartesianMotionGeneratorVelocityLimitsViolation,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::CartesianMotionGeneratorElbowLimitViolation,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::JointMotionGeneratorVelocityDiscontinuity,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::JointMotionGeneratorAccelerationDiscontinuity,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::JointMotionGeneratorPositionLimitsViolation,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::JointMotionGeneratorVelocityLimitsViolation,
-        Matter::Command,
+        Category::Command,
     ),
     (
         E::CartesianMotionGeneratorJointVelocityDiscontinuity,
-        Matter::Inverse,
+        Category::Inverse,
     ),
     (
         E::CartesianMotionGeneratorJointAccelerationDiscontinuity,
-        Matter::Inverse,
+        Category::Inverse,
     ),
     (
         E::CartesianMotionGeneratorJointPositionLimitsViolation,
-        Matter::Inverse,
+        Category::Inverse,
     ),
     (
         E::CartesianMotionGeneratorJointVelocityLimitsViolation,
-        Matter::Inverse,
+        Category::Inverse,
     ),
-    (E::JointReflex, Matter::Contact),
-    (E::CartesianReflex, Matter::Contact),
-    (E::SelfCollisionAvoidanceViolation, Matter::Arm),
-    (E::JointPositionLimitsViolation, Matter::Arm),
-    (E::InstabilityDetected, Matter::Arm),
-    (E::TauJRangeViolation, Matter::Arm),
-    (E::JointVelocityViolation, Matter::Arm),
-    (E::CartesianVelocityViolation, Matter::Arm),
-    (E::PowerLimitViolation, Matter::Arm),
-    (E::MaxPathPoseDeviationViolation, Matter::Arm),
-    (E::MaxGoalPoseDeviationViolation, Matter::Arm),
-    (E::CartesianPositionLimitsViolation, Matter::Desk),
-    (E::CartesianVelocityProfileSafetyViolation, Matter::Desk),
-    (E::ForceControlSafetyViolation, Matter::Desk),
+    (E::JointReflex, Category::Contact),
+    (E::CartesianReflex, Category::Contact),
+    (E::SelfCollisionAvoidanceViolation, Category::Arm),
+    (E::JointPositionLimitsViolation, Category::Arm),
+    (E::InstabilityDetected, Category::Arm),
+    (E::TauJRangeViolation, Category::Arm),
+    (E::JointVelocityViolation, Category::Arm),
+    (E::CartesianVelocityViolation, Category::Arm),
+    (E::PowerLimitViolation, Category::Arm),
+    (E::MaxPathPoseDeviationViolation, Category::Arm),
+    (E::MaxGoalPoseDeviationViolation, Category::Arm),
+    (E::CartesianPositionLimitsViolation, Category::Desk),
+    (E::CartesianVelocityProfileSafetyViolation, Category::Desk),
+    (E::ForceControlSafetyViolation, Category::Desk),
     (
         E::ForceControllerDesiredForceToleranceViolation,
-        Matter::Desk,
+        Category::Desk,
     ),
-    (E::JointMoveInWrongDirection, Matter::Desk),
-    (E::JointP2pInsufficientTorqueForPlanning, Matter::Desk),
-    (E::CartesianSplineMotionGeneratorViolation, Matter::Desk),
+    (E::JointMoveInWrongDirection, Category::Desk),
+    (E::JointP2pInsufficientTorqueForPlanning, Category::Desk),
+    (E::CartesianSplineMotionGeneratorViolation, Category::Desk),
     (
         E::JointViaMotionGeneratorPlanningJointLimitViolation,
-        Matter::Desk,
+        Category::Desk,
     ),
-    (E::BaseAccelerationInitializationTimeout, Matter::Desk),
-    (E::BaseAccelerationInvalidReading, Matter::Desk),
+    (E::BaseAccelerationInitializationTimeout, Category::Desk),
+    (E::BaseAccelerationInvalidReading, Category::Desk),
 ];
 
-fn matter(error: E) -> Matter {
+fn category(error: E) -> Category {
     let known = ORDER.iter().find(|(other, _)| *other == error);
-    known.map_or(Matter::Desk, |&(_, matter)| matter)
+    known.map_or(Category::Desk, |&(_, category)| category)
 }
 
 /// The error that explains the others, with what the log shows of it: the first one of which it
@@ -167,11 +170,11 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
     let cartesian = |which| move || commanded::cartesian_readings(evidence, which);
     use Which::{Acceleration, Jerk, Velocity};
     match error {
-        E::CommunicationConstraintsViolation => link::starvation(evidence),
+        E::CommunicationConstraintsViolation => lost_cycles::starvation(evidence),
         E::JointPositionMotionGeneratorStartPoseInvalid
         | E::CartesianPositionMotionGeneratorStartPoseInvalid
         | E::CartesianMotionGeneratorStartElbowInvalid
-        | E::StartElbowSignInconsistent => step::start_offset(evidence, error),
+        | E::StartElbowSignInconsistent => command_steps::start_offset(evidence, error),
         E::ControllerTorqueDiscontinuity => first_of(&[&|| commanded::torque_readings(evidence)]),
         // Which of the two an error means depends on what is commanded: of a velocity, the
         // acceleration is the first difference.
@@ -199,8 +202,8 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
         E::CartesianMotionGeneratorJointVelocityLimitsViolation => {
             first_of(&[&resulting(Velocity)])
         }
-        E::JointReflex => touch::collision(evidence, error, Sense::Joints),
-        E::CartesianReflex => touch::collision(evidence, error, Sense::Axes),
+        E::JointReflex => contact::collision(evidence, error, Sense::Joints),
+        E::CartesianReflex => contact::collision(evidence, error, Sense::Axes),
         E::SelfCollisionAvoidanceViolation => measured::nearest_bodies(evidence),
         // Newer systems of the FR3 say this of commands, too.
         E::JointPositionLimitsViolation => {
@@ -234,48 +237,49 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         };
         finding
             .filter(bounded)
-            .and_then(|finding| pose::limit(evidence, finding))
+            .and_then(|finding| posture::limit(evidence, finding))
     };
-    match matter(error) {
-        Matter::Link => {
-            let late = link::late_commands(evidence);
-            let lost = link::lost_packets(evidence, true);
+    match category(error) {
+        Category::Link => {
+            let late = lost_cycles::late_commands(evidence);
+            let lost = lost_cycles::lost_packets(evidence, true);
             // Commands that left too late have not reached the robot in time, either.
             let all_came = matches!(lost, Some(Cause::LostPackets { states: 0, .. }));
             causes.extend(late.filter(|_| all_came));
             causes.extend(lost);
             causes.extend(late.filter(|_| !all_came));
         }
-        Matter::Start | Matter::Command | Matter::Inverse => {
-            let lost = link::lost_packets(evidence, false);
+        Category::Start | Category::Command | Category::Inverse => {
+            let lost = lost_cycles::lost_packets(evidence, false);
             causes.extend(lost);
             if lost.is_some() {
-                causes.extend(link::late_commands(evidence));
+                causes.extend(lost_cycles::late_commands(evidence));
             }
             causes.extend(finding.and_then(|finding| {
-                step::finished_moving(evidence, finding).or_else(|| step::leap(evidence, finding))
+                command_steps::finished_moving(evidence, finding)
+                    .or_else(|| command_steps::leap(evidence, finding))
             }));
-            causes.extend(pose::singularity(evidence));
+            causes.extend(posture::singularity(evidence));
             causes.extend(limit());
         }
-        Matter::Contact => {
-            let contact = touch::contact(evidence, subject);
+        Category::Contact => {
+            let contact = contact::contact(evidence, subject);
             // What the commands do about a contact did not lead up to it.
             let since = match contact {
                 Some(Cause::Contact { since, .. }) => since,
                 _ => u64::MAX,
             };
             causes.extend(contact);
-            causes.extend(step::torque_step(evidence, since));
+            causes.extend(command_steps::torque_step(evidence, since));
         }
-        Matter::Arm => {
-            causes.extend(touch::contact(evidence, None));
+        Category::Arm => {
+            causes.extend(contact::contact(evidence, None));
             let since = finding.map_or(u64::MAX, |finding| finding.since);
-            causes.extend(step::torque_step(evidence, since));
-            causes.extend(pose::singularity(evidence));
+            causes.extend(command_steps::torque_step(evidence, since));
+            causes.extend(posture::singularity(evidence));
             causes.extend(limit());
         }
-        Matter::Desk => causes.extend(touch::contact(evidence, None)),
+        Category::Desk => causes.extend(contact::contact(evidence, None)),
     }
     causes
 }
@@ -295,7 +299,7 @@ pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
         Cause::Singularity { .. } => Advice::AvoidSingularity,
         Cause::Limit { .. } => Advice::StayInRange,
     });
-    let of_arm = matter(error) == Matter::Arm;
+    let of_arm = category(error) == Category::Arm;
     let first = (of_arm || causes.is_empty()).then(|| by_error(error));
     let mut advice: Vec<Advice> = Vec::new();
     for next in first.into_iter().chain(by_cause) {
@@ -316,13 +320,13 @@ fn by_error(error: E) -> Advice {
         E::SelfCollisionAvoidanceViolation => Advice::StayClearOfItself,
         E::InstabilityDetected => Advice::SofterGains,
         E::TauJRangeViolation | E::PowerLimitViolation => Advice::LessEffort,
-        _ => match matter(error) {
-            Matter::Link => Advice::Network,
-            Matter::Start => Advice::StartWhereItIs,
-            Matter::Command => Advice::Smooth,
-            Matter::Contact => Advice::Thresholds,
-            Matter::Desk => Advice::Desk,
-            Matter::Inverse | Matter::Arm => Advice::SlowDown,
+        _ => match category(error) {
+            Category::Link => Advice::Network,
+            Category::Start => Advice::StartWhereItIs,
+            Category::Command => Advice::Smooth,
+            Category::Contact => Advice::Thresholds,
+            Category::Desk => Advice::Desk,
+            Category::Inverse | Category::Arm => Advice::SlowDown,
         },
     }
 }
