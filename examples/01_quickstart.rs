@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use anyhow::ensure;
 use clap::Parser;
-use franka_async::{Motion, MotionReport, Pose, PoseError, Robot};
+use franka_async::error::PoseError;
+use franka_async::{Motion, MotionReport, Pose, Robot};
 use franka_examples::Arguments;
 use indicatif::{ProgressBar, ProgressStyle};
 

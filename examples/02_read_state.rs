@@ -16,8 +16,7 @@ async fn main() -> anyhow::Result<()> {
     for _ in 0..30 {
         clock.tick().await;
         // Waits for a state that came after the last look, so a link that has died is noticed here.
-        tokio::time::timeout(Duration::from_secs(1), states.changed()).await??;
-        let state = *states.borrow_and_update();
+        let state = tokio::time::timeout(Duration::from_secs(1), states.changed()).await??;
         println!(
             "{:>8} ms  {}  q {:.4?} rad  tau_ext {:.2?} N m  errors {}",
             state.message_id, state.robot_mode, state.q, state.tau_ext_hat_filtered, state.errors

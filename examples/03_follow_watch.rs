@@ -6,7 +6,8 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use clap::Parser;
-use franka_async::{Pose, PoseError};
+use franka_async::Pose;
+use franka_async::error::PoseError;
 use franka_examples::Arguments;
 use tokio::sync::watch;
 

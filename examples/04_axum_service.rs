@@ -16,7 +16,6 @@ use clap::Parser;
 use franka_async::{MotionError, Pose, Robot, RobotState};
 use franka_examples::Connection;
 use serde_json::{Value, json};
-use tokio_stream::wrappers::WatchStream;
 use tokio_stream::{Stream, StreamExt};
 
 #[derive(Parser)]
@@ -60,7 +59,7 @@ async fn move_to(robot: State<Robot>, Json([x, y, z]): Json<[f64; 3]>) -> Result
 }
 
 async fn events(robot: State<Robot>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
-    let newest = WatchStream::new(robot.states()).throttle(Duration::from_millis(50));
+    let newest = robot.states().throttle(Duration::from_millis(50));
     Sse::new(newest.map(|state| Ok(Event::default().data(view(state).to_string()))))
 }
 

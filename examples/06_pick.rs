@@ -4,7 +4,8 @@
 
 use anyhow::ensure;
 use clap::Parser;
-use franka_async::{Grasp, Pose};
+use franka_async::Pose;
+use franka_async::gripper::Grasp;
 use franka_examples::Arguments;
 
 /// Width of the block, `[m]`.

@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use clap::Parser;
-use franka_async::{CartesianPose, Finish, Torques};
+use franka_async::control::{CartesianPose, Finish, Torques};
 use franka_examples::{Arguments, Ease, Summary, dynamics};
 use franka_model::JointVector;
 

@@ -6,9 +6,9 @@
 //! likewise `active`
 
 use clap::{Parser, ValueEnum};
-use franka_async::{
-    Finish, Model, MotionError, MotionReport, Pose, Robot, RobotState, Torques, Version,
-};
+use franka_async::control::{Finish, Torques};
+use franka_async::model::Model;
+use franka_async::{MotionError, MotionReport, Pose, Robot, RobotState, Version};
 use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
 use franka_model::{JointVector, Twist, Wrench, rotation, transform};
 use franka_rt::sched::Scheduling;

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use anyhow::ensure;
 use clap::Parser;
-use franka_async::{CartesianPose, Finish};
+use franka_async::control::{CartesianPose, Finish};
 use franka_examples::{Connection, Ease, Summary};
 
 #[derive(Parser)]

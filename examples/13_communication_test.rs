@@ -14,7 +14,8 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use franka_async::{Activity, Finish, Record, Torques};
+use franka_async::control::{Finish, Torques};
+use franka_async::record::{Activity, Record};
 use franka_examples::{Connection, Summary};
 use franka_rt::stats::Histogram;
 use tokio::sync::broadcast;

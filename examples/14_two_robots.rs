@@ -4,7 +4,8 @@
 //! `cargo run --release --example two_robots -- [ADDRESS OTHER]`
 
 use clap::Parser;
-use franka_async::{Control, Finish, JointPositions, Robot, StartBarrier};
+use franka_async::control::{Finish, JointPositions};
+use franka_async::{Control, Robot, StartBarrier};
 use franka_examples::{Connection, Ease, Summary, make_ready};
 
 #[derive(Parser)]

@@ -7,7 +7,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 use clap::Parser;
-use franka_async::{Diagnose, Finish, JointVelocities, MotionError, RobotMode};
+use franka_async::control::{Finish, JointVelocities};
+use franka_async::{Diagnose, MotionError, RobotMode};
 use franka_examples::{Connection, Ease, Summary};
 
 #[derive(Parser)]

@@ -6,10 +6,9 @@
 use std::time::Duration;
 
 use clap::Parser;
-use franka_async::{
-    Chunk, Deadman, Diagnose, Engage, Free, Gains, MotionError, OnTimeout, Pose, PoseError, Robot,
-    RobotState, Tuning,
-};
+use franka_async::error::PoseError;
+use franka_async::goal::{Chunk, Deadman, Free, Gains, OnTimeout, Tuning};
+use franka_async::{Diagnose, Engage, MotionError, Pose, Robot, RobotState};
 use franka_examples::Arguments;
 use tokio::sync::watch;
 

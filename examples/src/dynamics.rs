@@ -1,6 +1,7 @@
 //! What a torque law needs of the model.
 
-use franka_async::{Model, RobotState, Version};
+use franka_async::model::Model;
+use franka_async::{RobotState, Version};
 use franka_model::{Dynamics, EndEffector, Load};
 
 /// The model at a state: pose, Jacobian, mass, Coriolis and gravity torques, with the end effector

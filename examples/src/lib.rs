@@ -14,7 +14,8 @@ use std::time::Duration;
 
 use anyhow::{Context, ensure};
 use clap::{Args, Parser, ValueEnum};
-use franka_async::{CollisionBehavior, Gripper, MotionReport, Robot};
+use franka_async::settings::CollisionBehavior;
+use franka_async::{Gripper, MotionReport, Robot};
 use franka_model::{READY, Wrench};
 use franka_rt::sched::Scheduling;
 use franka_sim::{Fingers, Running, Sim, Tool};

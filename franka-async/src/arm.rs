@@ -2,70 +2,41 @@
 
 use std::fmt;
 use std::future::Future;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 use franka_rt::driver::{Observer, Record};
-use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, Tuning};
-use franka_rt::session::{
-    Backend, Budget, Chunk, DeadmanMonitor, ForceCap, Free, Goal, GoalId, OnArrival, Target,
-};
+use franka_rt::session::{Backend, Chunk, DeadmanMonitor, Free, Goal, OnArrival, Target};
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
-use crate::input::{Done, Input, Outcome, Waiting};
-use crate::motion::Work;
-use crate::{Follow, Motion, Pose, Robot};
+use crate::follow::{Follow, Targets, watched};
+use crate::input::{EndReply, Input, NewMotion, Replies};
+use crate::motion::Motion;
+use crate::options::{GoalOptions, goal_options};
+use crate::robot::{Pose, Robot};
+use crate::session::Session;
 
 /// Options of a session of target control; see [`Robot::engage`]. The default holds with the gains
 /// of each kind of goal and the default budget.
 #[derive(Debug, Default)]
 #[must_use = "options do nothing until `Robot::engage` takes them"]
 pub struct Engage {
-    tuning: Tuning,
-    speed: Option<f64>,
+    options: GoalOptions,
     engagement: Engagement,
 }
 
 impl Engage {
-    /// Limits of every goal of the session; by default those of [`Budget::of`].
-    pub fn limits(mut self, budget: Budget) -> Self {
-        self.tuning.budget = Some(budget);
-        self
-    }
-
-    /// The pace of every goal, as by [`Motion::speed`]; of the default limits or of those given.
-    pub fn speed(mut self, factor: f64) -> Self {
-        self.speed = Some(factor);
-        self
-    }
-
-    /// Gains of every goal; by default those of its kind, see [`Motion::gains`].
-    pub fn gains(mut self, gains: Gains) -> Self {
-        self.tuning.gains = Some(gains);
-        self
-    }
-
-    /// Force cap of every goal, `[N]`; see [`Motion::force_cap`].
-    pub fn force_cap(mut self, newtons: f64) -> Self {
-        self.tuning.force_cap = Some(ForceCap::Newtons(newtons));
-        self
-    }
-
-    /// Takes the force cap away from every goal; see [`Motion::without_force_cap`].
-    pub fn without_force_cap(mut self) -> Self {
-        self.tuning.force_cap = Some(ForceCap::Off);
-        self
-    }
+    goal_options!();
 
     /// Keeps the arm out of these regions, base frame, none by default. The reference slows down on
-    /// the way to one and stops [`KEEP_OUT_STOP`](crate::KEEP_OUT_STOP) before it, and a goal that
-    /// this blocks is given up as [`Lapse::Blocked`](crate::Lapse::Blocked); an arm that stands in
+    /// the way to one and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it, and a goal that
+    /// this blocks is given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked); an arm that stands in
     /// a region may leave it. Links and the Franka Hand are kept out, no other tool.
-    /// [`GoalError::KeepOut`](crate::GoalError::KeepOut) refuses more than
-    /// [`KEEP_OUT_MAX`](crate::KEEP_OUT_MAX) regions, numbers that are not finite and negative
+    /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) refuses more than
+    /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, numbers that are not finite and negative
     /// sides.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.engagement.keep_out = Some(regions.into_iter().collect());
@@ -74,7 +45,7 @@ impl Engage {
 
     /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes
     /// and holds, and every goal resolves as [`MotionError::Held`]. Its silence has to be 10 ms or
-    /// more. See [`Deadman::new`](crate::Deadman::new).
+    /// more. See [`Deadman::new`](crate::goal::Deadman::new).
     pub fn deadman(mut self, monitor: DeadmanMonitor) -> Self {
         self.engagement.deadman = Some(monitor);
         self
@@ -112,19 +83,6 @@ pub struct Arm {
     session: Arc<Session>,
 }
 
-struct Session {
-    robot: Robot,
-    id: GoalId,
-    tuning: Mutex<Tuning>,
-    ended: watch::Receiver<Option<Outcome>>,
-}
-
-impl Drop for Session {
-    fn drop(&mut self) {
-        self.robot.cancel(self.id);
-    }
-}
-
 impl Robot {
     /// Begins a session that holds the arm where it is and then goes from goal to goal; resolves
     /// when it has begun. After a motion or a session that was dropped it begins when that has let
@@ -138,35 +96,26 @@ impl Robot {
     /// Dropping the future ends the session, in the background.
     pub async fn engage(&self, engage: Engage) -> Result<Arm, MotionError> {
         let Engage {
-            mut tuning,
-            speed,
+            options,
             engagement,
         } = engage;
         let limits = self.model().joint_limits();
-        if let Some(factor) = speed {
-            let budget = tuning.budget.unwrap_or_else(|| Budget::of(limits));
-            tuning.budget = Some(budget.at_speed(factor, self.model())?);
-        }
+        let tuning = options.session_tuning(self.model())?;
         let goal = Goal::new(self.next_goal(), Target::Rest, OnArrival::Hold, limits);
         let goal = tuning.apply(goal);
         let (begin, began) = oneshot::channel();
-        let (done, ended) = watch::channel(None);
+        let (end, ended) = watch::channel(None);
         let arm = Arm {
-            session: Arc::new(Session {
-                robot: self.clone(),
-                id: goal.id,
-                tuning: Mutex::new(tuning),
-                ended,
-            }),
+            session: Arc::new(Session::new(self.clone(), goal.id, tuning, ended)),
         };
         self.send(Input::Begin {
-            work: Work::Engage {
+            motion: NewMotion::Session {
                 goal: Box::new(goal),
                 engagement,
             },
-            waiting: Waiting {
+            replies: Replies {
                 began: Some(begin),
-                done: Done::All(done),
+                ended: EndReply::All(end),
             },
         });
         match began.await {
@@ -179,23 +128,23 @@ impl Robot {
 impl Arm {
     /// The robot that it belongs to.
     pub fn robot(&self) -> &Robot {
-        &self.session.robot
+        self.session.robot()
     }
 
     /// A motion of the end effector to `pose`; see [`Robot::move_to`]. It resolves when the arm has
     /// arrived and rests, which is then held. Dropping it brakes the arm and holds it.
     pub fn move_to(&self, pose: Pose) -> Motion {
-        self.motion(Target::Pose(pose), OnArrival::ReportAndHold)
+        Motion::within(&self.session, Target::Pose(pose))
     }
 
     /// A motion of the joints to `q`, `[rad]`; otherwise like [`Self::move_to`].
     pub fn move_joints(&self, q: [f64; 7]) -> Motion {
-        self.motion(Target::Joints(q), OnArrival::ReportAndHold)
+        Motion::within(&self.session, Target::Joints(q))
     }
 
     /// Brakes, whatever the arm is doing, and resolves when it rests; it is then held there.
     pub fn hold(&self) -> Motion {
-        self.motion(Target::Rest, OnArrival::ReportAndHold)
+        Motion::within(&self.session, Target::Rest)
     }
 
     /// Heads for `pose` from now on, in the place of whatever came before, and holds it. Returns as
@@ -229,23 +178,24 @@ impl Arm {
     /// unless another chunk or goal comes.
     ///
     /// # Errors
-    /// As [`Self::set`]; [`GoalError::Late`](crate::GoalError::Late) if all points have passed, and
-    /// [`GoalError::Chunks`](crate::GoalError::Chunks) if chunks come faster than the control
+    /// As [`Self::set`]; [`GoalError::Late`](crate::error::GoalError::Late) if all points have passed, and
+    /// [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster than the control
     /// thread takes them up.
     ///
     /// # Cancel safety
     /// As [`Self::set`].
     pub async fn chunk(&self, chunk: Chunk) -> Result<(), MotionError> {
-        let id = self.session.id;
-        let goal = Box::new(self.goal(chunk.target(), OnArrival::Hold));
+        let id = self.session.id();
+        let goal = Box::new(self.goal(chunk.target()));
         let chunk = Box::new(chunk);
-        self.ask(|taken| Input::Chunk {
-            id,
-            goal,
-            chunk,
-            taken,
-        })
-        .await
+        self.session
+            .ask(|taken| Input::Chunk {
+                id,
+                goal,
+                chunk,
+                taken,
+            })
+            .await
     }
 
     /// Lets a hand guide the arm, from when it rests: along the axes that are `free` there is no
@@ -268,18 +218,21 @@ impl Arm {
         &self,
         targets: watch::Receiver<T>,
     ) -> Follow {
-        Follow::watch(self.robot().clone(), Some(self.clone()), targets)
+        self.follow_targets(watched(targets))
     }
 
     /// Follows the newest of the targets that a stream yields, poses or joint positions, until it
     /// ends, and then comes to rest at the last one. Targets that came while another one was taken
-    /// are skipped.
+    /// are skipped, up to 256 at once: a stream that is always ready is followed, too.
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
     ) -> Follow {
-        let targets = Box::pin(targets.map(Into::into).fuse());
-        Follow::new(self.robot().clone(), Some(self.clone()), targets)
+        self.follow_targets(Box::pin(targets.map(Into::into).fuse()))
+    }
+
+    fn follow_targets(&self, targets: Targets) -> Follow {
+        Follow::new(self.robot().clone(), Some(self.session.clone()), targets)
     }
 
     /// Changes gains, limits and force cap, of the goal under way and of those to come. Gains fade
@@ -292,15 +245,16 @@ impl Arm {
     /// # Cancel safety
     /// Once polled it is done all the same for the goal under way.
     pub async fn tune(&self, tuning: Tuning) -> Result<(), MotionError> {
-        let id = self.session.id;
+        let id = self.session.id();
         let change = Box::new(tuning);
-        self.ask(|taken| Input::Tune {
-            id,
-            tuning: change,
-            taken,
-        })
-        .await?;
-        let mut kept = self.tuning();
+        self.session
+            .ask(|taken| Input::Tune {
+                id,
+                tuning: change,
+                taken,
+            })
+            .await?;
+        let mut kept = self.session.tuning();
         kept.gains = tuning.gains.or(kept.gains);
         kept.budget = tuning.budget.or(kept.budget);
         kept.force_cap = tuning.force_cap.or(kept.force_cap);
@@ -317,7 +271,7 @@ impl Arm {
     /// # Cancel safety
     /// Once polled the session ends all the same.
     pub async fn disengage(self) -> Result<MotionReport, MotionError> {
-        let id = self.session.id;
+        let id = self.session.id();
         self.robot().send(Input::Disengage { id });
         self.ended().await
     }
@@ -332,61 +286,23 @@ impl Arm {
     pub fn ended(
         &self,
     ) -> impl Future<Output = Result<MotionReport, MotionError>> + Send + 'static {
-        let (mut ended, robot) = (self.session.ended.clone(), self.robot().clone());
-        async move {
-            match ended.wait_for(Option::is_some).await {
-                Ok(outcome) => outcome.clone().unwrap_or_else(|| robot.closed()),
-                Err(_) => robot.closed(),
-            }
-        }
+        self.session.ended()
     }
 
-    pub(crate) fn id(&self) -> GoalId {
-        self.session.id
-    }
-
-    pub(crate) fn tuning(&self) -> std::sync::MutexGuard<'_, Tuning> {
-        // Nothing can panic while it is held.
-        let tuning = self.session.tuning.lock();
-        tuning.unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn goal(&self, target: Target, on_arrival: OnArrival) -> Goal {
+    /// A goal that is set and then held.
+    fn goal(&self, target: Target) -> Goal {
         let robot = self.robot();
         let limits = robot.model().joint_limits();
-        let goal = Goal::new(robot.next_goal(), target, on_arrival, limits);
-        self.tuning().apply(goal)
-    }
-
-    fn motion(&self, target: Target, on_arrival: OnArrival) -> Motion {
-        let goal = self.goal(target, on_arrival);
-        Motion::new(self.robot().clone(), Some(self.clone()), goal)
+        let goal = Goal::new(robot.next_goal(), target, OnArrival::Hold, limits);
+        self.session.tuning().apply(goal)
     }
 
     async fn take(&self, target: Target) -> Result<(), MotionError> {
-        let id = self.session.id;
-        let goal = Box::new(self.goal(target, OnArrival::Hold));
-        self.ask(|taken| Input::Set { id, goal, taken }).await
-    }
-
-    async fn ask(
-        &self,
-        input: impl FnOnce(oneshot::Sender<Result<(), MotionError>>) -> Input,
-    ) -> Result<(), MotionError> {
-        let (taken, answer) = oneshot::channel();
-        self.robot().send(input(taken));
-        let closed = || self.robot().closed().map(drop);
-        let answer = answer.await.unwrap_or_else(|_| closed());
-        answer.map_err(|error| self.explain(error))
-    }
-
-    /// What ended the session, in the place of an error that says no more than that it has: the
-    /// lifecycle knows how the last session ended, and of an older one only that it did.
-    pub(crate) fn explain(&self, error: MotionError) -> MotionError {
-        match (&*self.session.ended.borrow(), error) {
-            (Some(Err(ended)), MotionError::Disengaged) => ended.clone(),
-            (_, error) => error,
-        }
+        let id = self.session.id();
+        let goal = Box::new(self.goal(target));
+        self.session
+            .ask(|taken| Input::Set { id, goal, taken })
+            .await
     }
 }
 

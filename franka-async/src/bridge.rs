@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order, Program};
-use franka_rt::lifecycle::{Lifecycle, Output};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, Output};
 use franka_rt::session::GoalId;
 use franka_rt::thread::{Handle, Notice, Thread};
 use franka_rt::wake::Wake;
@@ -20,9 +20,8 @@ use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
-use crate::channel::{CLOSED_BY_US, Channel, Connection, Report};
-use crate::input::{Done, Input, Inputs, Outcome, Waiting};
-use crate::motion::Work;
+use crate::command_channel::{Channel, Connection, Report};
+use crate::input::{BridgeHandle, EndReply, Input, NewMotion, Outcome, Replies};
 use crate::publish::Publisher;
 use crate::telemetry::{self, Telemetry};
 
@@ -61,7 +60,7 @@ pub(crate) struct Bridge {
     thread: Option<Thread<Driver>>,
     channel: Channel,
     connection: Option<Connection>,
-    waiting: HashMap<GoalId, Waiting>,
+    replies: HashMap<GoalId, Replies>,
     started: Instant,
     /// Whether robot or thread is out of reach, for good.
     lost: bool,
@@ -92,7 +91,7 @@ impl Bridge {
             thread: Some(handle.thread),
             channel,
             connection: Some(connection),
-            waiting: HashMap::new(),
+            replies: HashMap::new(),
             started: Instant::now(),
             lost: false,
         }
@@ -104,14 +103,14 @@ impl Bridge {
         self,
         reports: mpsc::UnboundedReceiver<Report>,
         cancellation: CancellationToken,
-    ) -> Inputs {
-        let (queue, inbox) = mpsc::unbounded_channel();
-        let inputs = Inputs {
-            queue,
+    ) -> BridgeHandle {
+        let (sender, inbox) = mpsc::unbounded_channel();
+        let handle = BridgeHandle {
+            inbox: sender,
             subscriptions: self.publisher.subscriptions(),
         };
         tokio::spawn(self.run(inbox, reports, cancellation));
-        inputs
+        handle
     }
 
     async fn run(
@@ -135,7 +134,8 @@ impl Bridge {
             tokio::select! {
                 heard = hear(&self.bell) => {
                     if let Err(error) = heard {
-                        self.lose(&format!("the control thread cannot be heard: {error}"));
+                        let text = format!("its eventfd cannot be read: {error}");
+                        self.lose(CloseReason::ThreadEnded { text });
                     }
                     self.listen();
                 }
@@ -143,7 +143,7 @@ impl Bridge {
                     closing = Some(self.begin_closing());
                 }
                 input = inbox.recv(), if closing.is_none() => match input {
-                    Some(Input::Shutdown { done: reply }) => {
+                    Some(Input::Shutdown { ended: reply }) => {
                         done.push(reply);
                         closing = Some(self.begin_closing());
                     }
@@ -177,21 +177,22 @@ impl Bridge {
             match output {
                 Output::Order(order) => {
                     if self.orders.push(order).is_err() {
-                        self.lose("the control thread takes no orders");
+                        let text = "its queue of orders is full".into();
+                        self.lose(CloseReason::ThreadEnded { text });
                     }
                 }
                 Output::Send { motion, request } => self.channel.send(motion, request),
                 Output::Began { id } => {
-                    let waiting = self.waiting.get_mut(&id);
-                    if let Some(began) = waiting.and_then(|waiting| waiting.began.take()) {
-                        // Whoever began it may have gone.
+                    let replies = self.replies.get_mut(&id);
+                    if let Some(began) = replies.and_then(|replies| replies.began.take()) {
+                        // The future that began it may have been dropped.
                         let _ = began.send(());
                     }
                 }
                 Output::Resolve { goal, result } => {
                     log(goal, &result);
-                    if let Some(waiting) = self.waiting.remove(&goal) {
-                        waiting.done.tell(result);
+                    if let Some(replies) = self.replies.remove(&goal) {
+                        replies.ended.send(result);
                     }
                 }
             }
@@ -223,15 +224,16 @@ impl Bridge {
             }
         }
         if self.thread.as_ref().is_some_and(Thread::has_ended) {
-            self.lose("the control thread has ended");
+            let text = "it has ended".into();
+            self.lose(CloseReason::ThreadEnded { text });
         }
     }
 
     /// Takes note that robot or thread is out of reach. Everything else ends with it: a thread
     /// without a connection would go on towards a goal that nobody can take back, while one that
     /// has ended lets the robot stop the arm.
-    fn lose(&mut self, reason: &str) {
-        self.channel.note_end(reason);
+    fn lose(&mut self, reason: CloseReason) {
+        let reason = self.channel.closing().note(reason);
         self.lifecycle.on_connection_closed(reason);
         self.lost = true;
     }
@@ -241,10 +243,10 @@ impl Bridge {
         // Without an audience, what was published last is not the newest.
         self.publisher.refresh();
         match input {
-            Input::Begin { work, waiting } => {
-                let id = work.id();
-                let begun = match work {
-                    Work::Goal {
+            Input::Begin { motion, replies } => {
+                let id = motion.id();
+                let begun = match motion {
+                    NewMotion::Goal {
                         goal,
                         ticket,
                         within,
@@ -259,11 +261,11 @@ impl Bridge {
                             (None, None) => lifecycle.submit(*goal, state, now),
                         }
                     }
-                    Work::Engage { goal, engagement } => {
+                    NewMotion::Session { goal, engagement } => {
                         let state = &self.publisher.state();
                         self.lifecycle.engage(*goal, engagement, state, now)
                     }
-                    Work::Control {
+                    NewMotion::Function {
                         id,
                         callback,
                         request,
@@ -271,7 +273,7 @@ impl Bridge {
                     } => self
                         .lifecycle
                         .control_together(id, callback, *request, ticket, now),
-                    Work::Control {
+                    NewMotion::Function {
                         id,
                         callback,
                         request,
@@ -279,21 +281,21 @@ impl Bridge {
                     } => self
                         .lifecycle
                         .control(id, Program::Callback(callback), *request, now),
-                    Work::Program {
+                    NewMotion::Program {
                         id,
                         program,
                         request,
                     } => self.lifecycle.control(id, program, *request, now),
-                    Work::Refused { error, .. } => Err(error.into()),
+                    NewMotion::Refused { error, .. } => Err(error.into()),
                 };
                 match begun {
                     Ok(()) => {
-                        self.waiting.insert(id, waiting);
+                        self.replies.insert(id, replies);
                     }
                     Err(error) => {
                         let refused = Err(error);
                         log(id, &refused);
-                        waiting.done.tell(refused);
+                        replies.ended.send(refused);
                     }
                 }
             }
@@ -325,13 +327,12 @@ impl Bridge {
             Input::Disengage { id } => self.lifecycle.disengage(id, now),
             Input::Close { goal } => self.lifecycle.close(goal),
             Input::Cancel { goal } => self.lifecycle.cancel(goal, now),
-            Input::Stop { goal, done } => {
+            Input::Stop { goal, ended } => {
                 if self.lifecycle.stop(goal, now) {
-                    let done = Done::One(done);
-                    let waiting = Waiting { began: None, done };
-                    self.waiting.insert(goal, waiting);
+                    let ended = EndReply::One(ended);
+                    self.replies.insert(goal, Replies { began: None, ended });
                 }
-                // Otherwise nothing moves, and dropping `done` says so.
+                // Otherwise nothing moves, and dropping `ended` says so.
             }
             Input::Shutdown { .. } => unreachable!("taken where the loop decides to close"),
         }
@@ -344,7 +345,7 @@ impl Bridge {
             Report::MoveViolation { motion, violation } => {
                 self.lifecycle.on_move_violation(motion, violation, now);
             }
-            Report::Closed { reason } => self.lose(&reason),
+            Report::Closed { reason } => self.lose(reason),
         }
     }
 
@@ -362,13 +363,13 @@ impl Bridge {
         mut inbox: mpsc::UnboundedReceiver<Input>,
         done: &mut Vec<oneshot::Sender<()>>,
     ) {
-        self.channel.note_end(CLOSED_BY_US);
+        let reason = self.channel.closing().note(CloseReason::ClosedByUs);
         inbox.close();
-        self.lifecycle.on_connection_closed(CLOSED_BY_US);
+        self.lifecycle.on_connection_closed(reason);
         self.carry_out();
         while let Some(input) = inbox.recv().await {
             // All others hear of the end by their answers being dropped.
-            if let Input::Shutdown { done: reply } = input {
+            if let Input::Shutdown { ended: reply } = input {
                 done.push(reply);
             }
         }

@@ -7,12 +7,13 @@ use franka_rt::driver::ControlLog;
 use franka_rt::sched::{Realtime, Scheduling};
 use tokio_util::sync::CancellationToken;
 
-use crate::connect;
+use crate::dial::TCP_TIMEOUT;
 use crate::endpoint::Endpoint;
-use crate::{ConnectError, Robot};
+use crate::robot::Robot;
 
 /// Which protocol versions to accept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum VersionPolicy {
     /// Announce the newest version; if the robot refuses and names an older one that is known,
     /// announce that.
@@ -36,13 +37,20 @@ pub struct Builder {
     pub(crate) cancellation: CancellationToken,
 }
 
+impl Robot {
+    /// Options of a connection to the robot at `endpoint`.
+    pub fn builder(endpoint: impl Into<Endpoint>) -> Builder {
+        Builder::new(endpoint.into())
+    }
+}
+
 impl Builder {
-    pub(crate) fn new(endpoint: Endpoint) -> Self {
+    fn new(endpoint: Endpoint) -> Self {
         Self {
             endpoint,
             versions: VersionPolicy::default(),
             scheduling: Scheduling::default(),
-            connect_timeout: connect::TCP_TIMEOUT,
+            connect_timeout: TCP_TIMEOUT,
             link_timeout: franka_rt::driver::LINK_TIMEOUT,
             nominal_model: false,
             log_size: ControlLog::DEFAULT_CAPACITY,
@@ -97,7 +105,7 @@ impl Builder {
 
     /// Stack of the control thread that gets its pages before the first cycle, in bytes: 512 KiB by
     /// default, 64 MiB at most. The thread's stack is larger by a reserve. For control functions
-    /// that use more; see [`ConnectError::Realtime`] for what is out of range.
+    /// that use more; see [`ConnectError::Realtime`](crate::error::ConnectError::Realtime) for what is out of range.
     pub fn prefault_stack(mut self, bytes: usize) -> Self {
         self.scheduling.prefault_stack = bytes;
         self
@@ -113,7 +121,7 @@ impl Builder {
     }
 
     /// Silence of the robot after which a running motion fails with `LinkLost`: 20 ms to 1 s, 1 s
-    /// by default. Anything else is refused as [`ConnectError::LinkTimeout`]. It is noticed late by
+    /// by default. Anything else is refused as [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). It is noticed late by
     /// a quarter of it at most.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
@@ -130,7 +138,7 @@ impl Builder {
     }
 
     /// How many of its last cycles an error carries when the robot ends a motion: see
-    /// [`ControlError::log`](crate::ControlError::log). 50 by default; 0 for none, and then without
+    /// [`ControlError::log`](crate::error::ControlError::log). 50 by default; 0 for none, and then without
     /// the success rate in its text.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
@@ -143,17 +151,5 @@ impl Builder {
     pub fn cancellation(mut self, token: CancellationToken) -> Self {
         self.cancellation = token;
         self
-    }
-
-    /// Connects: real-time check, TCP, handshake, first state, description. Must be called on a
-    /// Tokio runtime with I/O and time enabled, which then runs the two tasks of the connection.
-    ///
-    /// # Errors
-    /// [`ConnectError`]; nothing is left behind.
-    ///
-    /// # Cancel safety
-    /// Dropping the future closes whatever was opened.
-    pub async fn connect(self) -> Result<Robot, ConnectError> {
-        connect::connect(self).await
     }
 }

@@ -1,11 +1,13 @@
 //! Messages on the command stream.
 
+use std::io;
 use std::time::Duration;
 
 use bytes::{Bytes, BytesMut};
 use franka_proto::Outgoing;
 use franka_proto::framing::{self, FrameError, Header, Message};
 use franka_proto::gripper;
+use franka_rt::lifecycle::CloseReason;
 use futures::SinkExt;
 use tokio::net::TcpStream;
 use tokio_util::codec::{Decoder, Encoder, Framed};
@@ -51,14 +53,20 @@ impl Frame {
 pub(crate) async fn send(
     stream: &mut Framed<TcpStream, MessageCodec>,
     request: Outgoing,
-) -> Result<(), String> {
+) -> Result<(), CloseReason> {
     match tokio::time::timeout(SEND_TIMEOUT, stream.send(request)).await {
         Ok(Ok(())) => Ok(()),
-        Ok(Err(StreamError::Io(error))) => {
-            Err(format!("libfranka: TCP send bytes: {}", reason(&error)))
-        }
-        Ok(Err(StreamError::Frame(error))) => Err(error.to_string()),
-        Err(_) => Err("libfranka: TCP send bytes: Timeout".to_owned()),
+        Ok(Err(StreamError::Io(error))) => Err(failed("TCP send bytes", &error)),
+        Ok(Err(StreamError::Frame(error))) => Err(StreamError::from(error).into()),
+        Err(_) => Err(failed("TCP send bytes", &io::ErrorKind::TimedOut.into())),
+    }
+}
+
+/// Why a connection ends on whose sockets `what` failed.
+pub(crate) fn failed(what: &str, error: &io::Error) -> CloseReason {
+    CloseReason::Io {
+        kind: error.kind(),
+        text: format!("libfranka: {what}: {}", reason(error)),
     }
 }
 
@@ -68,7 +76,18 @@ pub(crate) enum StreamError {
     #[error(transparent)]
     Frame(#[from] FrameError),
     #[error("libfranka: TCP receive: {}", reason(.0))]
-    Io(#[from] std::io::Error),
+    Io(#[from] io::Error),
+}
+
+impl From<StreamError> for CloseReason {
+    fn from(error: StreamError) -> Self {
+        match error {
+            StreamError::Frame(error) => Self::Protocol {
+                text: error.to_string(),
+            },
+            StreamError::Io(error) => failed("TCP receive", &error),
+        }
+    }
 }
 
 impl Decoder for MessageCodec {
@@ -106,8 +125,8 @@ impl Encoder<Outgoing> for MessageCodec {
 }
 
 /// The name by which the reference client's socket library calls the class of a failure.
-pub(crate) fn reason(error: &std::io::Error) -> String {
-    use std::io::ErrorKind;
+pub(crate) fn reason(error: &io::Error) -> String {
+    use io::ErrorKind;
     match error.kind() {
         ErrorKind::TimedOut | ErrorKind::WouldBlock => "Timeout".into(),
         ErrorKind::ConnectionRefused => "Connection refused".into(),

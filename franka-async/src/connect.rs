@@ -1,19 +1,16 @@
 //! From an address to a running connection.
 
-use std::net::{IpAddr, SocketAddr, SocketAddrV6};
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
-use std::time::Duration;
 
-use franka_proto::client::{Event, Session};
-use franka_proto::{Protocol, RobotState, Version};
+use franka_proto::client::Session;
+use franka_proto::{RobotState, Version};
 use franka_rt::driver::{Driver, LinkTimeout};
 use franka_rt::exchange;
 use franka_rt::lifecycle::Lifecycle;
 use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
 use franka_rt::wake::Wake;
-use futures::{SinkExt, StreamExt};
-use socket2::{SockRef, TcpKeepalive};
 use tokio::io::unix::AsyncFd;
 use tokio::net::TcpStream;
 use tokio::sync::watch;
@@ -22,28 +19,50 @@ use tokio_util::codec::Framed;
 
 use crate::bridge::{self, Bridge};
 use crate::builder::{Builder, VersionPolicy};
-use crate::channel::{CLOSED_BY_PEER, Channel};
-use crate::codec::{MessageCodec, StreamError, reason};
-use crate::endpoint::{Endpoint, EndpointError, Host};
-use crate::error::Attempt;
-use crate::model;
-use crate::newest::Newest;
-use crate::robot::Shared;
-use crate::{ConnectError, Robot};
+use crate::codec::MessageCodec;
+use crate::command_channel::Channel;
+use crate::connected_model;
+use crate::dial::{dial, dial_one, resolve};
+use crate::endpoint::Endpoint;
+use crate::error::ConnectError;
+use crate::handshake::shake_hands;
+use crate::newest_state::Newest;
+use crate::robot::{Robot, Shared};
 
-/// Time for the TCP connection. Source: libfranka 0.21, `network.h`.
-pub(crate) const TCP_TIMEOUT: Duration = Duration::from_secs(1);
+impl Robot {
+    /// Connects with the options that [`Robot::builder`] begins with.
+    ///
+    /// # Errors
+    /// [`ConnectError`]. Without a real-time kernel this is [`ConnectError::Realtime`]: see
+    /// [`Builder::realtime`].
+    ///
+    /// # Cancel safety
+    /// Dropping the future closes whatever was opened.
+    pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError> {
+        Self::builder(endpoint).connect().await
+    }
+}
 
-/// Keepalive of the command connection: idle time, interval, count. Source: libfranka 0.21,
-/// `network.cpp`.
-const KEEPALIVE: (Duration, Duration, u32) = (Duration::from_secs(1), Duration::from_secs(1), 3);
+impl Builder {
+    /// Connects: real-time check, TCP, handshake, first state, description. Must be called on a
+    /// Tokio runtime with I/O and time enabled, which then runs the two tasks of the connection.
+    ///
+    /// # Errors
+    /// [`ConnectError`]; nothing is left behind.
+    ///
+    /// # Cancel safety
+    /// Dropping the future closes whatever was opened.
+    pub async fn connect(self) -> Result<Robot, ConnectError> {
+        connect(self).await
+    }
+}
 
-pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
+async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     LinkTimeout::new(builder.link_timeout)?;
     // Refused before anything is sent, as the reference client does; the thread asks again for
     // itself.
     let scheduling = builder.scheduling.clone();
-    scheduling.probe()?;
+    off_worker(move || scheduling.probe()).await??;
 
     let limit = builder.connect_timeout;
     let addresses = timeout(limit, resolve(&builder.endpoint, Version::TCP_PORT))
@@ -59,7 +78,7 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let stats = opened.handle.stats.clone();
     let granted = opened.handle.granted.clone();
     let lender = opened.handle.lender.clone();
-    let model = Arc::new(model::of(opened.version, &channel, &builder).await?);
+    let model = Arc::new(connected_model::of(opened.version, &channel, &builder).await?);
     let lifecycle = Lifecycle::new(model.clone(), opened.version).with_log_size(builder.log_size);
     let bridge = Bridge::new(
         lifecycle,
@@ -68,12 +87,12 @@ pub(crate) async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         (channel.clone(), connection),
         states,
     );
-    let inputs = bridge.start(reports, builder.cancellation);
+    let bridge = bridge.start(reports, builder.cancellation);
     Ok(Robot::new(Shared {
         model,
         version: opened.version,
         address,
-        inputs,
+        bridge,
         channel,
         newest,
         stats,
@@ -142,7 +161,8 @@ async fn open_with(
     };
     let link_timeout = LinkTimeout::new(builder.link_timeout)?;
     let driver = Driver::new(version).with_link_timeout(link_timeout);
-    let mut handle = thread::spawn(config, driver, udp, address.ip(), version)?;
+    let start = move || thread::spawn(config, driver, udp, address.ip(), version);
+    let mut handle = off_worker(start).await??;
     let bell = bridge::attach(handle.wake.clone())?;
     let first = timeout(builder.connect_timeout, first_state(&mut handle, &bell))
         .await
@@ -157,142 +177,13 @@ async fn open_with(
     })
 }
 
-/// Finds the addresses of the host, each once, in the order in which to try them; `port` is that of
-/// the device, for an endpoint without one.
-pub(crate) async fn resolve<P: Protocol>(
-    endpoint: &Endpoint,
-    port: u16,
-) -> Result<Vec<SocketAddr>, ConnectError<P>> {
-    let port = endpoint.port().unwrap_or(port);
-    let (name, interface) = match endpoint.host()? {
-        Host::Address(IpAddr::V6(address), scope) => {
-            return Ok(vec![SocketAddrV6::new(*address, port, 0, *scope).into()]);
-        }
-        Host::Address(address, _) => return Ok(vec![SocketAddr::new(*address, port)]),
-        // The system knows its interfaces, and how such addresses are written.
-        Host::Scoped(address, interface) => (format!("{address}%{interface}"), Some(interface)),
-        Host::Name(name) => (name.clone(), None),
-    };
-    let Ok(found) = tokio::net::lookup_host((name, port)).await else {
-        return Err(match interface.cloned() {
-            Some(interface) => EndpointError::Interface { interface }.into(),
-            None => network("Host not found"),
-        });
-    };
-    let mut addresses: Vec<SocketAddr> = Vec::new();
-    for address in found {
-        if !addresses.contains(&address) {
-            addresses.push(address);
-        }
-    }
-    // The reference client knows nothing but IPv4: this is how a robot is reached, and an IPv6
-    // address a special case.
-    addresses.sort_by_key(SocketAddr::is_ipv6);
-    if addresses.is_empty() {
-        return Err(network("No address found"));
-    }
-    Ok(addresses)
-}
-
-fn network<P: Protocol>(reason: &str) -> ConnectError<P> {
-    ConnectError::Network {
-        reason: reason.into(),
-    }
-}
-
-/// Connects to the first of `addresses` that takes a connection, and says which it is. `limit`
-/// holds for each.
-pub(crate) async fn dial<P: Protocol>(
-    addresses: &[SocketAddr],
-    limit: Duration,
-) -> Result<(TcpStream, SocketAddr), ConnectError<P>> {
-    let mut attempts = Vec::new();
-    for &address in addresses {
-        match dial_one(address, limit).await {
-            Ok(stream) => return Ok((stream, address)),
-            Err(error) => {
-                if addresses.len() > 1 {
-                    tracing::debug!(%address, %error, "no connection");
-                }
-                attempts.push(Attempt { address, error });
-            }
-        }
-    }
-    Err(match attempts.pop() {
-        Some(only) if attempts.is_empty() => only.error,
-        Some(last) => {
-            attempts.push(last);
-            ConnectError::NoAddress { attempts }
-        }
-        None => network("No address found"),
-    })
-}
-
-async fn dial_one<P: Protocol>(
-    address: SocketAddr,
-    limit: Duration,
-) -> Result<TcpStream, ConnectError<P>> {
-    let stream = match timeout(limit, TcpStream::connect(address)).await {
-        Ok(Ok(stream)) => stream,
-        Ok(Err(error)) => {
-            return Err(match error.kind() {
-                std::io::ErrorKind::ConnectionRefused => ConnectError::Refused,
-                std::io::ErrorKind::TimedOut => ConnectError::Timeout,
-                _ => ConnectError::Network {
-                    reason: reason(&error),
-                },
-            });
-        }
-        Err(_) => return Err(ConnectError::Timeout),
-    };
-    if let Err(error) = stream.set_nodelay(true) {
-        tracing::debug!(%error, "small requests may be delayed");
-    }
-    let (idle, interval, count) = KEEPALIVE;
-    let keepalive = TcpKeepalive::new()
-        .with_time(idle)
-        .with_interval(interval)
-        .with_retries(count);
-    if let Err(error) = SockRef::from(&stream).set_tcp_keepalive(&keepalive) {
-        tracing::debug!(%error, "no keepalive on the command connection");
-    }
-    Ok(stream)
-}
-
-pub(crate) async fn shake_hands<P: Protocol>(
-    stream: &mut Framed<TcpStream, MessageCodec>,
-    session: &mut Session<P>,
-    udp_port: u16,
-) -> Result<(), ConnectError<P>> {
-    stream
-        .send(session.connect(udp_port))
-        .await
-        .map_err(broken)?;
-    loop {
-        let frame = match stream.next().await {
-            Some(frame) => frame.map_err(broken)?,
-            None => {
-                return Err(ConnectError::Link {
-                    reason: CLOSED_BY_PEER.into(),
-                });
-            }
-        };
-        match session.on_message(frame.message())? {
-            Event::Connected { .. } => return Ok(()),
-            Event::Incompatible(refusal) => return Err(refusal.into()),
-            // Not for us; the answer may still come, until the time is up.
-            _ => {}
-        }
-    }
-}
-
-fn broken<P: Protocol>(error: StreamError) -> ConnectError<P> {
-    match error {
-        StreamError::Frame(error) => error.into(),
-        StreamError::Io(_) => ConnectError::Link {
-            reason: error.to_string(),
-        },
-    }
+/// Runs what blocks for milliseconds (threads that are started and joined, memory that is locked and
+/// touched) where no other task waits for it. Dropping the future drops the result.
+async fn off_worker<T: Send + 'static>(
+    blocking: impl FnOnce() -> T + Send + 'static,
+) -> std::io::Result<T> {
+    let done = tokio::task::spawn_blocking(blocking).await;
+    done.map_err(std::io::Error::other)
 }
 
 /// Waits for the first state: without one there is nothing to control.
@@ -315,88 +206,32 @@ async fn first_state(
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicUsize;
+    use std::sync::atomic::Ordering::Relaxed;
+
+    use franka_rt::sched::Realtime;
     use tokio::net::TcpListener;
 
     use super::*;
-    use crate::error::Party;
 
-    const LIMIT: Duration = Duration::from_secs(5);
-
-    /// An address of this host that nobody listens on.
-    async fn silent(ip: &str) -> SocketAddr {
-        let ip: IpAddr = ip.parse().expect("an address");
-        let listener = TcpListener::bind((ip, 0)).await.expect("a free port");
-        listener.local_addr().expect("bound")
-    }
-
-    #[tokio::test]
-    async fn the_addresses_of_a_host_are_tried_in_turn() {
-        let listener = TcpListener::bind("[::1]:0").await.expect("a free port");
-        let there = listener.local_addr().expect("bound");
-        let gone = silent("127.0.0.1").await;
-        let (stream, address) = dial::<Version>(&[gone, there], LIMIT)
-            .await
-            .expect("one listens");
-        assert_eq!(
-            (address, stream.peer_addr().expect("connected")),
-            (there, there)
-        );
-    }
-
-    #[tokio::test]
-    async fn the_error_names_every_address_that_failed() {
-        let gone = [silent("127.0.0.1").await, silent("::1").await];
-        let error = dial::<Version>(&gone, LIMIT)
-            .await
-            .expect_err("nobody listens");
-        let ConnectError::NoAddress { attempts } = &error else {
-            panic!("{error}")
-        };
-        let tried: Vec<SocketAddr> = attempts.iter().map(|attempt| attempt.address).collect();
-        assert_eq!(tried, gone);
-        let text = error.to_string();
-        for address in gone {
-            let says = format!("{address}: libfranka: Connection to FCI refused.");
-            assert!(text.contains(&says), "{text}");
-        }
-        assert_eq!(error.party(), Party::Robot);
-        let error = dial::<Version>(&gone[..1], LIMIT)
-            .await
-            .expect_err("nobody listens");
-        assert!(
-            matches!(error, ConnectError::Refused),
-            "one address alone: {error}"
-        );
-    }
-
-    #[tokio::test]
-    async fn texts_and_addresses_become_socket_addresses() {
-        let found = async |endpoint: &str| {
-            let addresses = resolve::<Version>(&endpoint.into(), 1337).await;
-            addresses.map(|found| found.iter().map(ToString::to_string).collect::<Vec<_>>())
-        };
-        for (endpoint, address) in [
-            ("172.16.0.2", "172.16.0.2:1337"),
-            ("[fd00::2]:99", "[fd00::2]:99"),
-            ("fe80::2%1", "[fe80::2%1]:1337"),
-            // Every Linux has the interface, with the index 1.
-            ("fe80::2%lo", "[fe80::2%1]:1337"),
-        ] {
-            assert_eq!(found(endpoint).await.expect("an address"), [address]);
-        }
-        let named = found("localhost:99")
-            .await
-            .expect("every host has that name");
-        assert_eq!(named[0], "127.0.0.1:99", "IPv4 comes first");
-        let error = found("fe80::2%nowhere0")
-            .await
-            .expect_err("no such interface");
-        assert_eq!(
-            error.to_string(),
-            "there is no network interface `nowhere0`"
-        );
-        let error = found("robot:none").await.expect_err("no port");
-        assert!(matches!(error, ConnectError::Endpoint(_)), "{error}");
-        assert_eq!(error.party(), Party::Caller);
+    #[test]
+    fn real_time_rights_are_tried_out_on_a_thread_that_may_block() {
+        let started = Arc::new(AtomicUsize::new(0));
+        let counted = started.clone();
+        // Such a runtime starts a thread for what blocks, and for nothing else.
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .on_thread_start(move || _ = counted.fetch_add(1, Relaxed))
+            .build()
+            .expect("a runtime");
+        runtime.block_on(async {
+            let listener = TcpListener::bind("127.0.0.1:0").await.expect("a free port");
+            let address = listener.local_addr().expect("bound");
+            drop(listener);
+            let builder = Robot::builder(address).realtime(Realtime::Ignore);
+            let error = builder.connect().await.expect_err("nothing listens");
+            assert!(matches!(error, ConnectError::Refused), "{error}");
+        });
+        assert_eq!(started.load(Relaxed), 1);
     }
 }

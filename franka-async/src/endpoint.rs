@@ -16,11 +16,12 @@ use std::str::FromStr;
 /// | `robot.lan`, `robot.lan:40123` | a host name; its addresses are tried in turn, IPv4 before IPv6 |
 ///
 /// Other text makes an endpoint too, which connecting refuses as
-/// [`ConnectError::Endpoint`](crate::ConnectError::Endpoint) before anything is sent. To know at
+/// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. To know at
 /// once, `parse` it.
 ///
 /// ```
-/// use franka_async::{Endpoint, EndpointError};
+/// use franka_async::error::EndpointError;
+/// use franka_async::Endpoint;
 ///
 /// let endpoint: Endpoint = "[fe80::2%eth0]:40123".parse()?;
 /// let refused: Result<Endpoint, _> = "robot.lan:http".parse();

@@ -3,121 +3,80 @@
 use std::fmt;
 use std::future::{Future, IntoFuture};
 use std::pin::Pin;
+use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Duration;
 
-use franka_model::limits::JointLimits;
-use franka_rt::law::Gains;
-use franka_rt::lifecycle::{MotionError, MotionReport, Tuning};
-use franka_rt::session::{
-    Budget, ForceCap, Goal, GoalError, Lead, OnArrival, OnTimeout, Target, Tolerance, Watchdog,
-};
+use franka_rt::lifecycle::{MotionError, MotionReport};
+use franka_rt::session::{Goal, Lead, OnArrival, OnTimeout, Target, Watchdog};
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::wrappers::WatchStream;
 use tokio_stream::{Stream, StreamExt};
 
-use crate::input::Input;
-use crate::motion::{Moving, Work};
-use crate::{Arm, Robot};
+use crate::cancel::Canceller;
+use crate::input::{Input, NewMotion};
+use crate::motion::Moving;
+use crate::options::{GoalOptions, goal_options};
+use crate::robot::Robot;
+use crate::session::Session;
 
-type Targets = Pin<Box<dyn Stream<Item = Target> + Send>>;
+/// Targets as they come; fused.
+pub(crate) type Targets = Pin<Box<dyn Stream<Item = Target> + Send>>;
 
 /// A motion that follows the newest of a stream of targets; see [`Robot::follow`] and
-/// [`Arm::follow`]. Nothing moves before it is awaited.
+/// [`Arm::follow`](crate::Arm::follow). Nothing moves before it is awaited.
 #[must_use = "a motion does nothing until it is awaited"]
 pub struct Follow {
     robot: Robot,
-    arm: Option<Arm>,
-    /// But for its target, of whose kind the defaults are that are not tuned.
-    goal: Goal,
-    tuning: Tuning,
-    stiffness: Option<[f64; 6]>,
-    /// Why its speed is not accepted.
-    refused: Option<GoalError>,
+    session: Option<Arc<Session>>,
+    options: GoalOptions,
+    lead: Option<Lead>,
+    watchdog: Option<Watchdog>,
     targets: Targets,
     ticket: Option<StartTicket>,
 }
 
+impl Robot {
+    /// Follows the newest of the targets that `targets` shows, poses or joint positions `[rad]`,
+    /// until the sender is dropped, and then comes to rest at the last one. The sender sets its own
+    /// pace, and may step as far as it likes: the arm moves within its budget.
+    pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
+        &self,
+        targets: watch::Receiver<T>,
+    ) -> Follow {
+        Follow::new(self.clone(), None, watched(targets))
+    }
+}
+
+/// The targets of a watch channel, beginning with the one that it holds.
+pub(crate) fn watched<T: Into<Target> + Clone + Send + Sync + 'static>(
+    targets: watch::Receiver<T>,
+) -> Targets {
+    Box::pin(WatchStream::new(targets).map(Into::into).fuse())
+}
+
 impl Follow {
-    pub(crate) fn new(robot: Robot, arm: Option<Arm>, targets: Targets) -> Self {
-        let tuning = arm.as_ref().map(|arm| *arm.tuning()).unwrap_or_default();
-        let limits = robot.model().joint_limits();
-        let goal = Goal::new(robot.next_goal(), Target::Rest, OnArrival::Hold, limits);
+    pub(crate) fn new(robot: Robot, session: Option<Arc<Session>>, targets: Targets) -> Self {
+        let tuning = session.as_deref().map(|session| *session.tuning());
         Self {
-            goal: tuning.apply(goal),
-            tuning,
-            stiffness: None,
-            refused: None,
             robot,
-            arm,
+            options: GoalOptions::of_session(tuning.unwrap_or_default()),
+            session,
+            lead: None,
+            watchdog: None,
             targets,
             ticket: None,
         }
     }
 
-    pub(crate) fn watch<T: Into<Target> + Clone + Send + Sync + 'static>(
-        robot: Robot,
-        arm: Option<Arm>,
-        targets: watch::Receiver<T>,
-    ) -> Self {
-        let targets = WatchStream::new(targets).map(Into::into).fuse();
-        Self::new(robot, arm, Box::pin(targets))
-    }
-
-    /// See [`Motion::speed`](crate::Motion::speed).
-    pub fn speed(mut self, factor: f64) -> Self {
-        match self.goal.budget.at_speed(factor, self.robot.model()) {
-            Ok(budget) => self.goal.budget = budget,
-            Err(error) => self.refused = Some(error),
-        }
-        self
-    }
-
-    /// See [`Motion::limits`](crate::Motion::limits).
-    pub fn limits(mut self, budget: Budget) -> Self {
-        self.goal.budget = budget;
-        self.refused = None;
-        self
-    }
-
-    /// See [`Motion::stiffness`](crate::Motion::stiffness).
-    pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
-        self.stiffness = Some(stiffness);
-        self
-    }
-
-    /// See [`Motion::gains`](crate::Motion::gains). Without it, the kind of the first target
-    /// decides.
-    pub fn gains(mut self, gains: Gains) -> Self {
-        self.tuning.gains = Some(gains);
-        self.stiffness = None;
-        self
-    }
-
-    /// See [`Motion::force_cap`](crate::Motion::force_cap).
-    pub fn force_cap(mut self, newtons: f64) -> Self {
-        self.tuning.force_cap = Some(ForceCap::Newtons(newtons));
-        self
-    }
-
-    /// See [`Motion::without_force_cap`](crate::Motion::without_force_cap).
-    pub fn without_force_cap(mut self) -> Self {
-        self.tuning.force_cap = Some(ForceCap::Off);
-        self
-    }
+    goal_options!(target);
 
     /// Bounds how far ahead of the arm a target may be, metres and radians above zero; by default
     /// nothing does. One that is further ahead is drawn nearer, in every cycle anew while targets
     /// come, so a wild one cannot send the arm far once the stream stops.
     pub fn lead(mut self, lead: Lead) -> Self {
-        self.goal.lead = Some(lead);
-        self
-    }
-
-    /// How near to the last target counts as arrived.
-    pub fn tolerance(mut self, tolerance: Tolerance) -> Self {
-        self.goal.tolerance = tolerance;
+        self.lead = Some(lead);
         self
     }
 
@@ -127,7 +86,7 @@ impl Follow {
     /// come again before that. A target counts even if it equals the one before. The control thread
     /// watches this by itself. Without it, the last target is held for ever.
     pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
-        self.goal.watchdog = Some(Watchdog {
+        self.watchdog = Some(Watchdog {
             silence,
             on_timeout,
         });
@@ -144,35 +103,40 @@ impl Follow {
     async fn run(self) -> Result<MotionReport, MotionError> {
         let Self {
             robot,
-            arm,
-            goal,
-            tuning,
-            stiffness,
-            refused,
+            session,
+            options,
+            lead,
+            watchdog,
             mut targets,
             ticket,
         } = self;
-        if let Some(error) = refused {
-            return Err(error.into());
-        }
+        let (id, model) = (robot.next_goal(), robot.model());
+        let towards = |target| {
+            let goal = Goal::new(id, target, OnArrival::Hold, model.joint_limits());
+            let goal = options.apply(goal, model)?;
+            Ok::<_, MotionError>(Goal {
+                lead,
+                watchdog,
+                ..goal
+            })
+        };
+        // Options that are not accepted are refused before a target is awaited.
+        towards(Target::Rest)?;
         let first = tokio::select! {
             biased;
-            ended = end_of(arm.as_ref()) => return Err(ended),
+            ended = end_of(session.as_deref()) => return Err(ended),
             first = newest(&mut targets) => first,
         };
         let Some(first) = first else {
             // Nothing to follow: the arm goes on with what it does.
             return Err(MotionError::Stopped);
         };
-        let goal = towards(
-            first,
-            &goal,
-            &tuning,
-            stiffness,
-            robot.model().joint_limits(),
-        );
-        let work = Work::goal(goal, ticket, arm.as_ref());
-        let mut moving = Moving::new(robot.clone(), arm, work);
+        let motion = NewMotion::Goal {
+            goal: Box::new(towards(first)?),
+            ticket,
+            within: session.as_deref().map(Session::id),
+        };
+        let mut moving = Moving::new(Canceller::new(robot.clone(), id), session, motion);
         loop {
             let next = tokio::select! {
                 biased;
@@ -203,45 +167,36 @@ impl Follow {
     }
 }
 
-/// Why the session of `arm` takes no goals any more, once it has ended.
-async fn end_of(arm: Option<&Arm>) -> MotionError {
-    match arm {
-        Some(arm) => arm.ended().await.err().unwrap_or(MotionError::Disengaged),
+/// Waits for the end of the session, and returns why it takes no goals.
+async fn end_of(session: Option<&Session>) -> MotionError {
+    match session {
+        Some(session) => session
+            .ended()
+            .await
+            .err()
+            .unwrap_or(MotionError::Disengaged),
         None => std::future::pending().await,
     }
 }
 
-/// The goal `common` with the first of its targets, whose kind decides what is not tuned.
-fn towards(
-    first: Target,
-    common: &Goal,
-    tuning: &Tuning,
-    stiffness: Option<[f64; 6]>,
-    limits: &JointLimits,
-) -> Goal {
-    let of_kind = Goal::new(common.id, first, common.on_arrival, limits);
-    let Goal {
-        gains, force_cap, ..
-    } = tuning.apply(of_kind);
-    let softened = |stiffness| gains.with_cartesian_stiffness(stiffness);
-    Goal {
-        target: first,
-        gains: stiffness.map_or(gains, softened),
-        force_cap,
-        ..*common
-    }
-}
-
-/// The newest of the targets that are there, once there is one; `None` at the end.
+/// The newest of the targets that are there, once there is one; `None` at the end. Of a stream that
+/// is always ready, the last of [`AT_ONCE`]: the caller then gets to wait for something else.
 async fn newest(targets: &mut Targets) -> Option<Target> {
     let mut newest = targets.next().await?;
-    while let Poll::Ready(Some(newer)) = poll_once(targets) {
+    for _ in 1..AT_ONCE {
+        let Poll::Ready(Some(newer)) = poll_once(targets) else {
+            break;
+        };
         newest = newer;
     }
     Some(newest)
 }
 
-/// What a stream has at once. Whoever waits for more polls it again.
+/// Targets taken from a stream before the newest of them is passed on. A stream that yields one per
+/// millisecond, read by a task that was held up for a quarter of a second, has as many waiting.
+const AT_ONCE: usize = 256;
+
+/// What a stream has at once. Its next poll registers a waker again.
 fn poll_once(targets: &mut Targets) -> Poll<Option<Target>> {
     let mut context = Context::from_waker(std::task::Waker::noop());
     targets.as_mut().poll_next(&mut context)
@@ -267,7 +222,7 @@ impl fmt::Debug for Follow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Follow")
             .field("robot", &self.robot)
-            .field("goal", &self.goal)
+            .field("options", &self.options)
             .finish_non_exhaustive()
     }
 }
@@ -275,26 +230,26 @@ impl fmt::Debug for Follow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_rt::session::{DEFAULT_FORCE_CAP, GoalId};
+    #[test]
+    fn a_stream_that_is_always_ready_does_not_keep_the_worker() {
+        let mut polls = 0;
+        let target = Target::Joints(franka_model::READY.into());
+        let endless = futures::stream::poll_fn(move |_| {
+            polls += 1;
+            assert!(polls <= 10_000, "polled without end");
+            Poll::Ready(Some(target))
+        });
+        let mut targets: Targets = Box::pin(endless);
+        let taken = futures::FutureExt::now_or_never(newest(&mut targets));
+        assert_eq!(taken, Some(Some(target)));
+    }
 
     #[test]
-    fn what_is_tuned_holds_for_a_stream_and_its_kind_decides_the_rest() {
-        let limits = franka_model::Model::fr3().joint_limits();
-        let common = Goal::new(GoalId(7), Target::Rest, OnArrival::Hold, limits);
-        let joints = Target::Joints(franka_model::READY.into());
-        let goal = |tuning, stiffness| towards(joints, &common, &tuning, stiffness, limits);
-        let plain = goal(Tuning::default(), None);
-        assert_eq!(plain, Goal::new(common.id, joints, OnArrival::Hold, limits));
-        let tuning = Tuning {
-            gains: Some(Gains::droid()),
-            force_cap: Some(ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP)),
-            ..Tuning::default()
-        };
-        let tuned = goal(tuning, None);
-        assert_eq!(tuned.gains, Gains::droid());
-        assert_eq!(tuned.force_cap, ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP));
-        let stiffness = [200.0, 200.0, 200.0, 10.0, 10.0, 10.0];
-        let soft = goal(tuning, Some(stiffness)).gains;
-        assert_eq!(soft, Gains::droid().with_cartesian_stiffness(stiffness));
+    fn of_the_targets_that_wait_the_newest_is_taken() {
+        let target = |x: f64| Target::Joints([x; 7]);
+        let mut targets: Targets =
+            Box::pin(futures::stream::iter((0..5).map(f64::from)).map(target));
+        let taken = futures::FutureExt::now_or_never(newest(&mut targets));
+        assert_eq!(taken, Some(Some(target(4.0))));
     }
 }

@@ -9,23 +9,25 @@
 //! ```
 //!
 //! * [`Robot`]: a cheap, cloneable handle, fit for the state of a web service. [`Builder`] connects
-//!   it.
+//!   it. [`Robot::closed`]: why the connection has ended.
 //! * [`Motion`]: `move_to`, `move_joints`: built, then awaited. [`Follow`]: targets from a `watch`
 //!   at their own rate.
-//! * [`Robot::engage`], [`Arm`]: one session, many goals of any kind; [`Chunk`], [`Deadman`],
-//!   [`Tuning`] for it.
+//! * [`Robot::engage`], [`Arm`]: one session, many goals of any kind. [`goal`]: targets, limits,
+//!   gains, chunks, deadman, guards.
 //! * [`Diagnosis`]: why the robot ended a motion, and what to change. [`Robot::records`],
-//!   [`Engage::observer`]: every cycle.
+//!   [`Engage::observer`] and [`record`]: every cycle.
 //! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`Active`]:
 //!   the same from a thread of the user's, which reads states and writes commands.
-//!   [`AsynchronousControl`]: sparse joint targets between which the robot plans.
+//!   [`AsynchronousControl`]: sparse joint targets between which the robot plans. [`control`]: their
+//!   commands.
 //! * [`StartBarrier`]: motions of several robots that begin within the same millisecond.
-//! * [`Robot::read`], [`StateStream`]: every state, whatever moves. [`Robot::stats`]: how punctual
-//!   control is.
+//! * [`Robot::states`]: the newest state as it changes. [`Robot::read`], [`StateStream`]: every
+//!   state. Both whatever moves. [`Robot::stats`], [`stats`]: how punctual control is.
+//! * [`Robot::set_load`] and its siblings, [`settings`]; [`Robot::recover`].
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
-//! * [`Robot::model`]: the model of the connected arm, from its own description (feature `urdf`, on
-//!   by default). `Robot::model_library` (feature `model-library`, off by default): the code that a
-//!   Franka Emika Robot hands out.
+//! * [`Robot::model`], [`model`]: the model of the connected arm, from its own description (feature
+//!   `urdf`, on by default). `Robot::model_library` (feature `model-library`, off by default): the
+//!   code that a Franka Emika Robot hands out.
 //! * [`error`]: what can go wrong, grouped by who can act on it.
 //!
 //! ```no_run
@@ -54,89 +56,121 @@
 //! a blocked worker delays new goals and nothing else. It does not reconnect by itself. It has not
 //! been run against a real arm yet.
 
-mod active;
+mod active_control;
 mod arm;
-mod asynchronous;
+mod asynchronous_control;
 mod bridge;
 mod builder;
-mod channel;
+mod cancel;
+mod close;
 mod codec;
+mod command_channel;
 mod connect;
-mod control;
-mod end_effector;
+mod connected_model;
+mod control_function;
+mod device_connection;
+mod dial;
 mod endpoint;
 pub mod error;
 mod follow;
-mod gripper;
+mod franka_hand;
+mod handshake;
 mod input;
-mod model;
 mod motion;
-mod newest;
+mod newest_state;
+mod options;
 mod parameters;
+mod program;
 mod publish;
-mod reading;
 mod robot;
+mod session;
+mod state_stream;
+mod states;
 mod telemetry;
-mod vacuum;
+mod vacuum_gripper;
 
-pub use active::{Active, ActiveError};
+pub use active_control::Active;
 pub use arm::{Arm, Engage};
-pub use asynchronous::{AsynchronousControl, AsynchronousOptions};
+pub use asynchronous_control::{AsynchronousControl, AsynchronousOptions};
 pub use builder::{Builder, VersionPolicy};
-pub use control::Control;
-pub use endpoint::{Endpoint, EndpointError};
-pub use error::{
-    ActionError, Attempt, CommandError, ConnectError, ControlError, Error, MotionError, Party,
-};
+pub use cancel::Canceller;
+pub use control_function::Control;
+pub use endpoint::Endpoint;
+pub use error::{Error, MotionError};
 pub use follow::Follow;
-pub use gripper::{Gripper, GripperError};
-#[cfg(feature = "urdf")]
-pub use model::ModelError;
-#[cfg(all(feature = "model-library", target_os = "linux"))]
-pub use model::ModelLibraryError;
-pub use motion::{Canceller, Motion, Moving};
-pub use reading::{ReadError, Reading, StateStream};
-pub use robot::Robot;
-pub use vacuum::{VacuumGripper, VacuumGripperError};
+pub use franka_hand::Gripper;
+pub use motion::{Motion, Moving};
+pub use robot::{Pose, Robot};
+pub use state_stream::{Reading, StateStream};
+pub use states::States;
+pub use vacuum_gripper::VacuumGripper;
 
 pub use franka_diagnosis::{self as diagnosis, Diagnose, Diagnosis};
-pub use franka_model::collision::Obstacle;
-#[cfg(all(feature = "model-library", target_os = "linux"))]
-pub use franka_model::model_library::{LibraryError, ModelLibrary};
-#[cfg(feature = "urdf")]
-pub use franka_model::urdf::UrdfError;
-pub use franka_model::{JointVector, Model};
-pub use franka_otg::AxisLimits;
-pub use franka_proto::gripper::{Grasp, State as GripperState};
-pub use franka_proto::vacuum::{Profile, State as VacuumGripperState, Vacuum};
-pub use franka_proto::{
-    Architecture, CollisionBehavior, Errors, Filters, Load, MoveControllerMode, RobotError,
-    RobotMode, RobotState, System, Version, VirtualWall,
-};
-pub use franka_rt::control::{
-    AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next,
-    TargetStatus, Torques,
-};
-pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
-pub use franka_rt::law::{GainError, Gains, Law};
-pub use franka_rt::lifecycle::{MotionReport, Stage, Tuning};
-pub use franka_rt::sched::{Granted, Realtime, SchedError};
-pub use franka_rt::session::{
-    BLEND, Backend, Bindings, Budget, CHUNKS_MAX, Chunk, ChunkError, DEFAULT_FORCE_CAP, Deadman,
-    DeadmanMonitor, FORCE_CAP, ForceCap, Free, GoalError, Guard, JOINT_DEVIATION, JOINT_LEASH,
-    KEEP_OUT_MAX, KEEP_OUT_STOP, LEAD_FRESH_MS, Lapse, Lead, OFFSET_MAX, OnTimeout, POINTS_MAX,
-    PoseError, ROTATION_DEVIATION, ROTATION_LEASH, SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints,
-    TRANSLATION_DEVIATION, TRANSLATION_LEASH, Target, Tolerance, TooManyChunks,
-    VELOCITY_BARRIER_ONSET,
-};
-pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
-pub use franka_rt::together::{StartBarrier, StartFault, StartTicket};
-
+pub use franka_proto::{Errors, RobotError, RobotMode, RobotState, Version};
+pub use franka_rt::lifecycle::MotionReport;
+pub use franka_rt::sched::{Granted, Realtime};
+pub use franka_rt::together::{StartBarrier, StartTicket};
+/// The library that [`Pose`] and [`model::JointVector`] come from.
+pub use nalgebra;
 pub use tokio_util::sync::CancellationToken;
 
-/// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame,
-/// `O_T_EE`.
-pub type Pose = nalgebra::Isometry3<f64>;
+/// Goals of target control: targets, limits, gains, guards.
+pub mod goal {
+    pub use franka_model::collision::Obstacle;
+    pub use franka_otg::AxisLimits;
+    pub use franka_rt::law::{Gains, Law};
+    pub use franka_rt::lifecycle::Tuning;
+    pub use franka_rt::session::{
+        BLEND, Backend, Budget, CHUNKS_MAX, Chunk, DEFAULT_FORCE_CAP, Deadman, DeadmanMonitor,
+        FORCE_CAP, ForceCap, Free, JOINT_DEVIATION, JOINT_LEASH, KEEP_OUT_MAX, KEEP_OUT_STOP,
+        LEAD_FRESH_MS, Lead, OFFSET_MAX, OnTimeout, POINTS_MAX, ROTATION_DEVIATION, ROTATION_LEASH,
+        SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints, TRANSLATION_DEVIATION, TRANSLATION_LEASH,
+        Target, Tolerance, VELOCITY_BARRIER_ONSET,
+    };
+}
+
+/// Commands at 1 kHz: what control functions return and [`Active`] writes.
+pub mod control {
+    pub use franka_proto::MoveControllerMode;
+    pub use franka_rt::control::{
+        AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities,
+        Next, TargetStatus, Torques,
+    };
+}
+
+/// Settings of the robot: see [`Robot::set_load`] and its siblings.
+pub mod settings {
+    pub use franka_proto::{CollisionBehavior, Filters, Load, VirtualWall};
+}
+
+/// The model of an arm.
+pub mod model {
+    #[cfg(all(feature = "model-library", target_os = "linux"))]
+    pub use franka_model::model_library::ModelLibrary;
+    pub use franka_model::{JointVector, Model};
+    pub use franka_proto::{Architecture, System};
+}
+
+/// What every cycle saw and did, and the log that an error carries.
+pub mod record {
+    pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
+    pub use franka_rt::session::{Bindings, Guard};
+}
+
+/// How punctual control is.
+pub mod stats {
+    pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
+}
+
+/// The Franka Hand's grasps and states.
+pub mod gripper {
+    pub use franka_proto::gripper::{Grasp, State};
+}
+
+/// The vacuum gripper's requests and states.
+pub mod vacuum {
+    pub use franka_proto::vacuum::{Profile, State, Vacuum};
+}
 
 /// What programs build on: handles go anywhere, futures go to any worker.
 const _: () = {
@@ -150,9 +184,9 @@ const _: () = {
     shared::<Motion>();
     shared::<Arm>();
     spawned::<Follow>();
-    spawned::<Deadman>();
+    spawned::<goal::Deadman>();
     shared::<std::sync::Arc<AsynchronousControl>>();
-    spawned::<Active<Torques>>();
+    spawned::<Active<control::Torques>>();
     spawned::<Control>();
     spawned::<Moving>();
     spawned::<<Follow as IntoFuture>::IntoFuture>();
@@ -174,7 +208,7 @@ mod tests {
             sent(robot.recover());
             sent(robot.set_joint_impedance([0.0; 7]));
             sent(robot.urdf());
-            sent(robot.load_model_library(Architecture::X64, System::Linux));
+            sent(robot.load_model_library(model::Architecture::X64, model::System::Linux));
             sent(robot.shutdown());
         };
     }

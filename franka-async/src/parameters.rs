@@ -7,8 +7,9 @@ use std::time::Duration;
 use franka_model::transform;
 use franka_proto::{CollisionBehavior, Filters, Load, Request, VirtualWall};
 
-use crate::channel::{Answer, Channel};
-use crate::{CommandError, Pose, Robot};
+use crate::command_channel::{Channel, Response};
+use crate::error::CommandError;
+use crate::robot::{Pose, Robot};
 
 /// Time for an answer that the robot gives at once.
 const ANSWER: Duration = Duration::from_secs(5);
@@ -156,7 +157,7 @@ impl Robot {
     pub async fn virtual_wall(&self, id: i32) -> Result<VirtualWall, CommandError> {
         let request = Request::GetCartesianLimit { id };
         match self.channel().call(request, ANSWER).await? {
-            Answer::Wall(wall) => Ok(wall),
+            Response::Wall(wall) => Ok(wall),
             _ => unreachable!("the session matches replies to the commands they answer"),
         }
     }
@@ -169,7 +170,7 @@ impl Robot {
 /// The robot's description of itself, waited for as long as `deadline`.
 pub(crate) async fn urdf(channel: &Channel, deadline: Duration) -> Result<String, CommandError> {
     match channel.call(Request::GetRobotModel, deadline).await? {
-        Answer::Model(text) => Ok(String::from_utf8_lossy(&text).into_owned()),
+        Response::Model(text) => Ok(String::from_utf8_lossy(&text).into_owned()),
         _ => unreachable!("the session matches replies to the commands they answer"),
     }
 }

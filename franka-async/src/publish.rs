@@ -9,7 +9,7 @@ use franka_rt::driver::Record;
 use franka_rt::thread::{StateReader, StateSequence};
 use tokio::sync::{broadcast, watch};
 
-use crate::newest;
+use crate::newest_state;
 
 /// Records and states that a slow listener may lag behind before it misses some: two seconds and
 /// one.
@@ -126,7 +126,7 @@ impl Publisher {
     /// be some states old.
     pub(crate) fn refresh(&mut self) {
         if let Some(state) = self.newest.newest() {
-            newest::publish(&self.listeners.newest, state);
+            newest_state::publish(&self.listeners.newest, state);
         }
     }
 

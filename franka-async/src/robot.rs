@@ -6,22 +6,24 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use franka_model::{EndEffector, Frame, Model, transform};
-use franka_proto::{MoveRequest, RobotState, Version};
-use franka_rt::driver::{Program, Record};
+use franka_proto::{RobotState, Version};
+use franka_rt::driver::Record;
+use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::sched::Granted;
-use franka_rt::session::{Goal, GoalId, OnArrival, Target};
+use franka_rt::session::GoalId;
 use franka_rt::stats::Stats;
 use franka_rt::thread::Lender;
-use tokio::sync::{broadcast, oneshot, watch};
+use tokio::sync::{broadcast, oneshot};
 
-use crate::builder::Builder;
-use crate::channel::Channel;
-use crate::endpoint::Endpoint;
-use crate::input::{Done, Input, Inputs, Outcome, Waiting};
-use crate::motion::Work;
-use crate::newest::Newest;
+use crate::command_channel::Channel;
+use crate::input::{BridgeHandle, EndReply, Input, NewMotion, Outcome, Replies};
+use crate::newest_state::Newest;
 use crate::publish::Subscriptions;
-use crate::{ConnectError, Follow, Motion, MotionError, Pose};
+use crate::states::States;
+
+/// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame,
+/// `O_T_EE`.
+pub type Pose = nalgebra::Isometry3<f64>;
 
 /// A connected robot.
 ///
@@ -46,7 +48,7 @@ pub(crate) struct Shared {
     pub(crate) model: Arc<Model>,
     pub(crate) version: Version,
     pub(crate) address: SocketAddr,
-    pub(crate) inputs: Inputs,
+    pub(crate) bridge: BridgeHandle,
     pub(crate) channel: Channel,
     pub(crate) newest: Newest,
     pub(crate) stats: Arc<Stats>,
@@ -63,38 +65,19 @@ impl Robot {
         }
     }
 
-    /// Connects with the options that [`Robot::builder`] begins with.
-    ///
-    /// # Errors
-    /// [`ConnectError`]. Without a real-time kernel this is [`ConnectError::Realtime`]: see
-    /// [`Builder::realtime`].
-    ///
-    /// # Cancel safety
-    /// Dropping the future closes whatever was opened.
-    pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError> {
-        Self::builder(endpoint).connect().await
-    }
-
-    /// Options of a connection to the robot at `endpoint`.
-    pub fn builder(endpoint: impl Into<Endpoint>) -> Builder {
-        Builder::new(endpoint.into())
-    }
-
     /// The newest state.
     pub fn state(&self) -> RobotState {
         self.shared.newest.state()
     }
 
-    /// The newest state as it changes, in motion or not. Closes when the connection does. For every
+    /// The newest state as it changes, in motion or not. Ends when the connection does. For every
     /// state, see [`Self::state_stream`] and [`Self::read`].
     ///
-    /// It begins with the newest state of now, which is no change. As long as anybody has one of
-    /// these, a task is woken for every state; drop it when it is not needed.
-    ///
-    /// Do not hold its borrow for long: the task that publishes states waits for it. Control does
-    /// not. Nor call this while holding one: it waits too, for the same reason.
-    pub fn states(&self) -> watch::Receiver<RobotState> {
-        self.shared.newest.changes()
+    /// It begins with the newest state of now, which is no change. As long as one of these exists,
+    /// a task is woken for every state; drop it when it is no longer needed.
+    pub fn states(&self) -> States {
+        let closing = self.shared.channel.closing().clone();
+        States::new(self.shared.newest.changes(), closing)
     }
 
     /// What every cycle of the control thread saw and did, one record per state; the first ones may
@@ -153,52 +136,24 @@ impl Robot {
         &self.shared.granted
     }
 
-    /// A motion of the end effector to `pose` in the base frame: a straight line and a rotation
-    /// about one axis if it begins at rest. The arm is compliant on the way, see
-    /// [`Motion::stiffness`].
-    pub fn move_to(&self, pose: Pose) -> Motion {
-        self.motion(Target::Pose(pose))
-    }
-
-    /// A motion of the joints to `q`, `[rad]`; all joints arrive together.
-    pub fn move_joints(&self, q: [f64; 7]) -> Motion {
-        self.motion(Target::Joints(q))
-    }
-
-    fn motion(&self, target: Target) -> Motion {
-        let limits = self.model().joint_limits();
-        let goal = Goal::new(self.next_goal(), target, OnArrival::ReportAndFinish, limits);
-        Motion::new(self.clone(), None, goal)
-    }
-
-    /// Follows the newest of the targets that `targets` shows, poses or joint positions `[rad]`,
-    /// until the sender is dropped, and then comes to rest at the last one. The sender sets its own
-    /// pace, and may step as far as it likes: the arm moves within its budget.
-    pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
-        &self,
-        targets: watch::Receiver<T>,
-    ) -> Follow {
-        Follow::watch(self.clone(), None, targets)
-    }
-
     /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if
     /// nothing moves. The motion itself resolves as [`MotionError::Stopped`].
     ///
     /// # Errors
     /// [`MotionError`] if the motion ended otherwise, for instance by a reflex;
     /// [`MotionError::Superseded`] by a goal that came after the stop;
-    /// [`MotionError::ConnectionClosed`] if there is no connection, so that nobody can say whether
+    /// [`MotionError::ConnectionClosed`] if there is no connection, so that it is unknown whether
     /// the arm rests.
     ///
     /// # Cancel safety
     /// Once polled, the arm is braked even if the future is dropped.
     pub async fn stop(&self) -> Result<(), MotionError> {
-        let (done, outcome) = oneshot::channel();
+        let (ended, outcome) = oneshot::channel();
         let goal = self.next_goal();
-        self.send(Input::Stop { goal, done });
+        self.send(Input::Stop { goal, ended });
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
-            Err(_) if self.shared.inputs.queue.is_closed() => self.closed().map(|_| ()),
+            Err(_) if self.shared.bridge.inbox.is_closed() => self.closed_outcome().map(|_| ()),
             // Nothing moved.
             Err(_) => Ok(()),
         }
@@ -210,14 +165,24 @@ impl Robot {
     /// # Cancel safety
     /// Once polled, it goes on in the background.
     pub async fn shutdown(&self) {
-        let (done, ended) = oneshot::channel();
-        self.send(Input::Shutdown { done });
+        let (reply, ended) = oneshot::channel();
+        self.send(Input::Shutdown { ended: reply });
         // An error means that the bridge has ended already.
         let _ = ended.await;
     }
 
+    /// Waits until the connection has ended, and returns why. Every motion has resolved by then or
+    /// is about to.
+    ///
+    /// # Cancel safety
+    /// Nothing happens if the future is dropped.
+    pub async fn closed(&self) -> CloseReason {
+        self.shared.bridge.inbox.closed().await;
+        self.shared.channel.closing().reason()
+    }
+
     pub(crate) fn subscriptions(&self) -> &Subscriptions {
-        &self.shared.inputs.subscriptions
+        &self.shared.bridge.subscriptions
     }
 
     pub(crate) fn channel(&self) -> &Channel {
@@ -233,68 +198,33 @@ impl Robot {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
     }
 
-    /// Has the bridge begin something. Whoever waits for the answer hears nothing if the bridge has
-    /// ended.
-    pub(crate) fn begin(&self, work: Work) -> oneshot::Receiver<Outcome> {
-        let (done, outcome) = oneshot::channel();
-        let waiting = Waiting {
+    /// Has the bridge begin a motion. Returns the receiver of its outcome, which is closed if the
+    /// bridge has ended.
+    pub(crate) fn begin(&self, motion: NewMotion) -> oneshot::Receiver<Outcome> {
+        let (ended, outcome) = oneshot::channel();
+        let replies = Replies {
             began: None,
-            done: Done::One(done),
+            ended: EndReply::One(ended),
         };
-        self.send(Input::Begin { work, waiting });
+        self.send(Input::Begin { motion, replies });
         outcome
     }
 
-    /// Has the bridge begin a program, and waits until it runs. Returns where its end will be
-    /// heard. Dropping the future has the robot stop.
-    ///
-    /// # Errors
-    /// What ended the motion before it ran.
-    pub(crate) async fn run(
-        &self,
-        id: GoalId,
-        program: Program,
-        request: MoveRequest,
-    ) -> Result<oneshot::Receiver<Outcome>, MotionError> {
-        let (begin, began) = oneshot::channel();
-        let (done, outcome) = oneshot::channel();
-        let request = Box::new(request);
-        let work = Work::Program {
-            id,
-            program,
-            request,
-        };
-        let waiting = Waiting {
-            began: Some(begin),
-            done: Done::One(done),
-        };
-        self.send(Input::Begin { work, waiting });
-        let mut stop = StopOnDrop(Some((self, id)));
-        if began.await.is_err() {
-            // It never will: the end has the reason.
-            let ended = outcome.await.unwrap_or_else(|_| self.closed());
-            stop.0 = None;
-            return Err(ended.err().unwrap_or(MotionError::Stopped));
-        }
-        stop.0 = None;
-        Ok(outcome)
-    }
-
-    /// Takes back what was begun under this name.
+    /// Cancels what was begun under this name.
     pub(crate) fn cancel(&self, goal: GoalId) {
         self.send(Input::Cancel { goal });
     }
 
     /// Sends to the bridge. One that has ended drops the input, and with it the sender of its
-    /// answer, which is how whoever waits hears of it.
+    /// reply: the receiver sees that.
     pub(crate) fn send(&self, input: Input) {
-        let _ = self.shared.inputs.queue.send(input);
+        let _ = self.shared.bridge.inbox.send(input);
     }
 
-    /// How a motion ends that nobody took, or whose end nobody saw.
-    pub(crate) fn closed(&self) -> Outcome {
+    /// The outcome of a motion that the bridge did not take, or whose end it did not report.
+    pub(crate) fn closed_outcome(&self) -> Outcome {
         Err(MotionError::ConnectionClosed {
-            reason: self.shared.channel.end_reason().to_owned(),
+            reason: self.shared.channel.closing().reason(),
         })
     }
 }
@@ -305,16 +235,5 @@ impl fmt::Debug for Robot {
             .field("address", &self.shared.address)
             .field("version", &self.shared.version)
             .finish_non_exhaustive()
-    }
-}
-
-/// Has the robot stop a program whose beginning nobody awaits any more.
-struct StopOnDrop<'a>(Option<(&'a Robot, GoalId)>);
-
-impl Drop for StopOnDrop<'_> {
-    fn drop(&mut self) {
-        if let Some((robot, id)) = self.0.take() {
-            robot.cancel(id);
-        }
     }
 }

@@ -77,6 +77,7 @@ impl Default for Scheduling {
 
 /// What the operating system granted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Granted {
     /// `SCHED_FIFO` priority of the thread; `None` if it runs under the normal scheduler.
     pub priority: Option<i32>,

@@ -34,26 +34,21 @@ fn a_report_and_the_words_around_it() {
     }))
     .unwrap();
     assert_eq!(worst.longest().0, Phase::Arrival);
-    let report = MotionReport {
-        duration: Duration::from_millis(1234),
-        final_error: Some(PoseError {
-            translation: 1.0 / 3.0,
-            rotation: 1e-300,
-        }),
-        lost_states: u64::MAX,
-        skipped_states: 2,
-        success_rate_min: 0.97,
-        success_rate_avg: 0.99,
-        worst_turnaround: Duration::from_nanos(81_234),
-        slack_min: Some(worst.slack),
-        overruns: 1,
-        worst_cycle: Some(worst),
-        interval: None,
-        turnaround: Some(Quantiles {
-            p50: Duration::from_micros(30),
-            ..Quantiles::default()
-        }),
-    };
+    let report: MotionReport = serde_json::from_value(json!({
+        "duration": Duration::from_millis(1234),
+        "final_error": PoseError { translation: 1.0 / 3.0, rotation: 1e-300 },
+        "lost_states": u64::MAX,
+        "skipped_states": 2,
+        "success_rate_min": 0.97,
+        "success_rate_avg": 0.99,
+        "worst_turnaround": Duration::from_nanos(81_234),
+        "slack_min": worst.slack,
+        "overruns": 1,
+        "worst_cycle": worst,
+        "interval": null,
+        "turnaround": Quantiles { p50: Duration::from_micros(30), ..Quantiles::default() },
+    }))
+    .unwrap();
     let json = round_trip(&report);
     assert_eq!(json["duration"], json!({ "secs": 1, "nanos": 234_000_000 }));
     assert_eq!(json["slack_min"], json!(-12_500));
@@ -61,10 +56,8 @@ fn a_report_and_the_words_around_it() {
         json["worst_cycle"]["phases"]["program"]["nanos"],
         json!(80_000)
     );
-    let without = MotionReport {
-        final_error: None,
-        ..report
-    };
+    let mut without = report;
+    without.final_error = None;
     assert_eq!(round_trip(&without)["final_error"], Value::Null);
     assert_eq!(round_trip(&Party::Robot), json!("Robot"));
     assert_eq!(
@@ -76,15 +69,13 @@ fn a_report_and_the_words_around_it() {
 #[test]
 fn a_record_names_its_errors_and_guards() {
     let bindings: Bindings = serde_json::from_value(json!(["Leash", "TorqueRate"])).unwrap();
-    let record = Record {
-        time: 7,
-        activity: Activity::Running,
-        robot_mode: RobotMode::Move,
-        errors: RobotError::JointReflex.into(),
-        q: [0.1; 7],
-        bindings,
-        ..Record::default()
-    };
+    let mut record = Record::default();
+    record.time = 7;
+    record.activity = Activity::Running;
+    record.robot_mode = RobotMode::Move;
+    record.errors = RobotError::JointReflex.into();
+    record.q = [0.1; 7];
+    record.bindings = bindings;
     let json = round_trip(&record);
     assert_eq!(json["bindings"], json!(["Leash", "TorqueRate"]));
     assert_eq!(json["errors"], json!(["joint_reflex"]));

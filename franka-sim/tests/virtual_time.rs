@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use franka_async::{Grasp, Gripper, Next, Realtime, Robot, Torques};
+use franka_async::control::{Next, Torques};
+use franka_async::gripper::Grasp;
+use franka_async::{Gripper, Realtime, Robot};
 use franka_proto::RobotError;
 use franka_sim::{Fingers, Running, Sim, Tool};
 

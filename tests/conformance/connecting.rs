@@ -2,7 +2,8 @@
 
 use std::net::{Ipv4Addr, TcpListener};
 
-use franka_async::{ConnectError, Realtime, Robot};
+use franka_async::error::ConnectError;
+use franka_async::{Realtime, Robot};
 use franka_proto::framing::next_message;
 use franka_proto::{Version, client, server};
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest};
 use franka_rt::control::{ActiveControl, Callback, Command, JointVelocities, Torques, WriteError};
 use franka_rt::driver::Program;
-use franka_rt::lifecycle::MotionError;
+use franka_rt::lifecycle::{CloseReason, MotionError};
 
 use crate::for_each_version;
 use crate::pair::Pair;
@@ -72,7 +72,7 @@ fn scenario_2_a_closed_connection_ends_the_motion_and_refuses_torques() {
             pair.write(Command::torques(version, TORQUES), false)
                 .is_ok()
         );
-        pair.client.close(closed);
+        pair.client.close(CloseReason::ClosedByPeer);
         let error = pair.error(motion.work);
         assert!(matches!(error, MotionError::ConnectionClosed { .. }));
         assert_eq!(error.to_string(), closed);
@@ -97,7 +97,7 @@ fn scenario_2_a_closed_connection_silences_a_control_function() {
         let request = callback.request(version, MoveControllerMode::JointImpedance);
         let motion = pair.begin(Program::Callback(Box::new(callback)), request);
         assert!(motion.first.is_some());
-        pair.client.close("libfranka: server closed connection");
+        pair.client.close(CloseReason::ClosedByPeer);
         for _ in 0..3 {
             assert_eq!(pair.step(), None);
         }

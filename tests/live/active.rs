@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use franka_async::{
-    Active, ActiveError, Finish, JointVelocities, MotionError, Pose, Robot, RobotMode, Torques,
-};
+use franka_async::control::{Finish, JointVelocities, Torques};
+use franka_async::error::ActiveError;
+use franka_async::{Active, MotionError, Pose, Robot, RobotMode};
 use franka_proto::{MoveControllerMode, RobotError};
 
 use crate::control::each;

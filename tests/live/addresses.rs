@@ -3,7 +3,8 @@
 use std::net::{Ipv6Addr, SocketAddr, SocketAddrV6};
 use std::time::Duration;
 
-use franka_async::{ConnectError, Endpoint, Gripper, Party, Pose, Realtime, Robot};
+use franka_async::error::{ConnectError, Party};
+use franka_async::{Endpoint, Gripper, Pose, Realtime, Robot};
 use franka_sim::{Fingers, Sim, Tool};
 
 use crate::alone;

@@ -6,7 +6,8 @@ use std::pin::{Pin, pin};
 use std::task::Poll;
 use std::time::Duration;
 
-use franka_async::{Arm, Chunk, Engage, Free, MotionError, Pose, Robot, Tuning};
+use franka_async::goal::{Chunk, Free, Tuning};
+use franka_async::{Arm, Engage, MotionError, Pose, Robot};
 use tokio::sync::watch;
 
 use crate::{SOON, alone, simulated};

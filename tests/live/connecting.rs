@@ -3,7 +3,8 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-use franka_async::{ConnectError, Realtime, Robot};
+use franka_async::error::ConnectError;
+use franka_async::{Realtime, Robot};
 use franka_proto::Version;
 use franka_proto::framing::next_message;
 use franka_proto::server::{Event, Session};

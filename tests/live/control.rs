@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use franka_async::{
-    AbortReason, AsynchronousOptions, CartesianPose, CartesianVelocities, Finish, JointPositions,
-    JointVelocities, MotionError, Next, Pose, Robot, RobotMode, RobotState, TargetStatus, Torques,
+use franka_async::control::{
+    AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next,
+    TargetStatus, Torques,
 };
+use franka_async::{AsynchronousOptions, MotionError, Pose, Robot, RobotMode, RobotState};
 use franka_proto::{MoveControllerMode, RequestError, RobotError};
 use franka_sim::{Running, Sim, Tool};
 

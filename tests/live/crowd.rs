@@ -17,7 +17,8 @@
 use std::future::IntoFuture;
 use std::time::{Duration, Instant};
 
-use franka_async::{Load, MotionError, MotionReport, Pose, Robot, RobotError, RobotState, Version};
+use franka_async::settings::Load;
+use franka_async::{MotionError, MotionReport, Pose, Robot, RobotError, RobotState, Version};
 use franka_model::READY;
 use franka_sim::{Running, Sim, Tool};
 use tokio::task::{JoinHandle, JoinSet};

@@ -4,7 +4,8 @@ use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
-use franka_async::{CollisionBehavior, MotionError, Pose};
+use franka_async::settings::CollisionBehavior;
+use franka_async::{MotionError, Pose};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use tokio::sync::watch;

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use franka_async::error::{CloseReason, Party};
 use franka_async::{CancellationToken, MotionError, Pose, Realtime, Robot, RobotMode, Version};
 use franka_proto::framing::next_message;
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, Request, client};
@@ -124,9 +125,25 @@ async fn a_cancelled_token_brakes_ends_and_closes() {
     let state = sim.state().await.unwrap();
     assert_eq!(state.robot_mode, RobotMode::Idle, "{}", state.reflex_reason);
     let error = robot.stop().await.unwrap_err();
-    assert_eq!(error.to_string(), "the robot's handles were closed");
+    assert_eq!(error.to_string(), "this program has closed the connection");
     robot.shutdown().await;
     assert_eq!(control_threads(), 0);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_end_of_a_connection_can_be_awaited_with_its_reason() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let other = robot.clone();
+    let closed = tokio::spawn(async move { other.closed().await });
+    sim.stop().await;
+    let reason = timeout(SOON, closed).await.expect("no hang").unwrap();
+    assert_eq!(reason, CloseReason::ClosedByPeer);
+    assert_eq!(reason.party(), Party::Link);
+
+    let (robot, _sim) = simulated().await;
+    robot.shutdown().await;
+    assert_eq!(robot.closed().await, CloseReason::ClosedByUs);
 }
 
 #[tokio::test]

@@ -3,10 +3,10 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use franka_async::{
-    Activity, Chunk, Deadman, Engage, Free, GoalError, Lapse, MotionError, OnTimeout, Pose,
-    PoseError, Record, Tuning,
-};
+use franka_async::error::{GoalError, Lapse, PoseError};
+use franka_async::goal::{Chunk, Deadman, Free, OnTimeout, Tuning};
+use franka_async::record::{Activity, Record};
+use franka_async::{Engage, MotionError, Pose};
 use franka_sim::{Sim, Tool};
 use tokio::sync::watch;
 
@@ -49,7 +49,7 @@ async fn goals_of_every_kind_are_reached_within_one_session() {
     assert_eq!(robot.move_to(start).await, Err(MotionError::Busy));
     assert_eq!(robot.state().motion_generator_mode, motion, "one motion");
     let gains = arm.tune(Tuning {
-        budget: Some(franka_async::Budget::of(robot.model().joint_limits()).scaled(100.0)),
+        budget: Some(franka_async::goal::Budget::of(robot.model().joint_limits()).scaled(100.0)),
         ..Tuning::default()
     });
     let refused = gains.await;

@@ -3,7 +3,8 @@
 use std::net::UdpSocket;
 use std::time::Duration;
 
-use franka_async::{CommandError, MotionError, RobotState, Version};
+use franka_async::error::CommandError;
+use franka_async::{MotionError, RobotState, Version};
 use franka_proto::framing::Header;
 use franka_proto::{Command, Violation};
 use tokio::time::{sleep, timeout};

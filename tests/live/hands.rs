@@ -4,9 +4,10 @@ use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
-use franka_async::{
-    ActionError, ConnectError, Grasp, Gripper, GripperState, Pose, Profile, Vacuum, VacuumGripper,
-};
+use franka_async::error::{ActionError, ConnectError};
+use franka_async::gripper::{Grasp, State as GripperState};
+use franka_async::vacuum::{Profile, Vacuum};
+use franka_async::{Gripper, Pose, VacuumGripper};
 use franka_proto::{gripper, server, vacuum};
 use franka_sim::{Fingers, Running, Sim, Suction};
 use tokio::time::{sleep, timeout};
@@ -58,8 +59,7 @@ async fn width_at_rest(gripper: &Gripper) -> f64 {
     let rest = async {
         let mut still = 0;
         while still < 5 {
-            states.changed().await.expect("a connection");
-            let width = states.borrow_and_update().width;
+            let width = states.changed().await.expect("a connection").width;
             still = if width == last { still + 1 } else { 0 };
             last = width;
         }

@@ -5,7 +5,9 @@ use std::net::UdpSocket;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use franka_async::{CommandError, Load, MotionError, Pose};
+use franka_async::error::CommandError;
+use franka_async::settings::Load;
+use franka_async::{MotionError, Pose};
 use franka_proto::Command;
 use franka_proto::framing::Header;
 use tokio::task::JoinSet;

@@ -3,9 +3,10 @@
 use std::future::IntoFuture;
 use std::time::Duration;
 
-use franka_async::{
-    CollisionBehavior, CommandError, Engage, GoalError, Load, MotionError, Pose, PoseError,
-};
+use franka_async::control::{Finish, Torques};
+use franka_async::error::{CommandError, GoalError, PoseError};
+use franka_async::settings::{CollisionBehavior, Load};
+use franka_async::{Engage, MotionError, Pose};
 use franka_proto::{SetterStatus, Status};
 use tokio::sync::watch;
 
@@ -101,6 +102,19 @@ async fn nothing_moves_before_the_first_poll_and_a_canceller_brakes() {
     assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
     // Stopping what rests is no error.
     robot.stop().await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_is_cancelled_before_the_first_poll_never_begins() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let motion = robot.move_to(Pose::translation(0.0, 0.0, 0.02) * robot.pose());
+    motion.canceller().cancel();
+    assert_eq!(motion.await, Err(MotionError::Stopped));
+    let control = robot.control_torques(|_, _| Torques([0.0; 7]).finish());
+    control.canceller().cancel();
+    assert_eq!(control.await, Err(MotionError::Stopped));
     robot.shutdown().await;
 }
 

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use franka_async::{Pose, Realtime, Robot, SchedError};
+use franka_async::error::SchedError;
+use franka_async::{Pose, Realtime, Robot};
 use franka_sim::Sim;
 
 use crate::alone;

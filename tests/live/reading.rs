@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use franka_async::{Finish, MotionError, Pose, ReadError, Reading, Robot, Torques};
+use franka_async::control::{Finish, Torques};
+use franka_async::error::ReadError;
+use franka_async::{MotionError, Pose, Reading, Robot};
 use franka_proto::RobotError;
 use franka_sim::{Running, Sim, Tool};
 use futures::StreamExt;
@@ -140,10 +142,9 @@ async fn a_watch_begins_with_the_newest_state_and_changes_to_newer_ones() {
         sleep(Duration::from_millis(pause)).await;
         let now = robot.state().message_id;
         let mut states = robot.states();
-        let first = states.borrow().message_id;
+        let first = states.newest().message_id;
         assert!(first >= now, "{first} after {now}");
-        states.changed().await.expect("states come");
-        let second = states.borrow().message_id;
+        let second = states.changed().await.expect("states come").message_id;
         assert!(second > first, "{second} after {first}");
     }
     robot.shutdown().await;

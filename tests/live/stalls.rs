@@ -10,7 +10,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use franka_async::{Finish as _, Torques};
+use franka_async::control::{Finish as _, Torques};
 use franka_sim::{Network, Sim};
 use franka_tests::tally::Tally;
 

@@ -11,7 +11,10 @@ use std::sync::{Arc, mpsc};
 use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
-use franka_async::{Engage, Guard, Lapse, MotionError, MotionReport, OnTimeout, Pose, Robot};
+use franka_async::error::Lapse;
+use franka_async::goal::OnTimeout;
+use franka_async::record::Guard;
+use franka_async::{Engage, MotionError, MotionReport, Pose, Robot};
 use franka_sim::{Running, Sim, Tool};
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::watch;

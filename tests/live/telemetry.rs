@@ -5,7 +5,9 @@ use std::fmt::Debug;
 use std::sync::{Mutex, Once, PoisonError};
 use std::time::Duration;
 
-use franka_async::{Finish, MotionReport, Phase, Pose, Robot, Torques};
+use franka_async::control::{Finish, Torques};
+use franka_async::stats::Phase;
+use franka_async::{MotionReport, Pose, Robot};
 use franka_sim::{Sim, Tool};
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};

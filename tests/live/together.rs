@@ -5,10 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use franka_async::{
-    Control, Finish, JointVelocities, MotionError, Pose, Robot, RobotState, StartBarrier,
-    StartFault,
-};
+use franka_async::control::{Finish, JointVelocities};
+use franka_async::error::StartFault;
+use franka_async::{Control, MotionError, Pose, Robot, RobotState, StartBarrier};
 use franka_sim::{Running, Sim};
 use tokio::sync::watch;
 

@@ -8,7 +8,7 @@ use franka_proto::{
 };
 use franka_rt::control::{Callback, Torques};
 use franka_rt::driver::{LINK_TIMEOUT, Program};
-use franka_rt::lifecycle::MotionError;
+use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::session::{GoalError, Guard, OnArrival, Target};
 use franka_tests::lockstep::{Link, Lockstep, for_each_robot};
 use nalgebra::Translation3;
@@ -170,7 +170,7 @@ fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
 #[test]
 fn a_lost_connection_resolves_everything_and_takes_nothing_more() {
     let (mut lockstep, goal) = moving(&Lockstep::ready);
-    lockstep.client.close("libfranka: server closed connection");
+    lockstep.client.close(CloseReason::ClosedByPeer);
     lockstep.tick();
     let error = lockstep
         .client

@@ -3,7 +3,7 @@
 use franka_model::READY;
 use franka_proto::{RobotError, RobotMode};
 use franka_rt::driver::{Activity, LINK_TIMEOUT};
-use franka_rt::lifecycle::{MotionError, START_TIMEOUT};
+use franka_rt::lifecycle::{CloseReason, MotionError, START_TIMEOUT};
 use franka_rt::session::{GoalId, OnArrival, PoseError, Target};
 use franka_tests::lockstep::Lockstep;
 use nalgebra::Translation3;
@@ -59,7 +59,10 @@ fn an_arm_whose_motion_is_given_up_brakes() {
         lockstep.run(500);
         let here = lockstep.true_pose();
         if how == 0 {
-            lockstep.client.lifecycle.on_connection_closed("gone");
+            lockstep
+                .client
+                .lifecycle
+                .on_connection_closed(CloseReason::ClosedByPeer);
         } else {
             lockstep.client.violate();
         }

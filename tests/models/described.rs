@@ -2,10 +2,9 @@
 
 use std::time::Duration;
 
-use franka_async::{
-    ConnectError, Finish, GoalError, JointVelocities, ModelError, MotionError, Realtime, Robot,
-    UrdfError,
-};
+use franka_async::control::{Finish, JointVelocities};
+use franka_async::error::{ConnectError, GoalError, ModelError, UrdfError};
+use franka_async::{MotionError, Realtime, Robot};
 use franka_model::{Model, READY, RobotKind};
 use franka_sim::{Config, Sim};
 

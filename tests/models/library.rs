@@ -4,9 +4,8 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::{env, fs, process};
 
-use franka_async::{
-    Architecture, CommandError, LibraryError, ModelLibrary, ModelLibraryError, System,
-};
+use franka_async::error::{CommandError, LibraryError, ModelLibraryError};
+use franka_async::model::{Architecture, ModelLibrary, System};
 use franka_model::{EndEffector, Frame, JointVector, Load};
 use franka_proto::RequestError;
 use franka_sim::Sim;

@@ -7,10 +7,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use franka_async::control::{
+    CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next, Torques,
+};
+use franka_async::error::Lapse;
+use franka_async::goal::{Backend, Chunk, Deadman, Free, Gains, OnTimeout, Setpoints, Tuning};
 use franka_async::{
-    Active, Arm, AsynchronousOptions, Backend, CartesianPose, CartesianVelocities, Chunk, Control,
-    Deadman, Engage, Finish, Free, Gains, JointPositions, JointVelocities, Lapse, MotionError,
-    Next, OnTimeout, Pose, Realtime, Robot, RobotState, Setpoints, Torques, Tuning,
+    Active, Arm, AsynchronousOptions, Control, Engage, MotionError, Pose, Realtime, Robot,
+    RobotState,
 };
 use franka_proto::{MoveControllerMode, RobotError};
 use franka_sim::{Running, Sim, Tool};

@@ -10,6 +10,7 @@ use crate::stats::Slack;
 /// One cycle of the driver. All joint quantities are in joint order, SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Record {
     /// `message_id` of the state, `[ms]` of the robot's clock.
     pub time: u64,
@@ -55,6 +56,7 @@ pub struct Record {
 /// What the driver was doing in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Activity {
     /// No motion.
     #[default]

@@ -19,6 +19,7 @@
 //! fixed moment.
 
 mod active;
+mod close_reason;
 mod engagement;
 mod goals;
 mod outcome;
@@ -38,6 +39,7 @@ use crate::session::{GoalId, KeepOut};
 use crate::together::StartTicket;
 
 use active::{Active, CommandSide, NEVER_SHOWN, Next, ThreadSide, Work};
+pub use close_reason::CloseReason;
 pub use engagement::{Engagement, Tuning};
 use outcome::Counted;
 pub use outcome::{ControlError, MotionError, MotionReport, Party, Stage};
@@ -98,7 +100,7 @@ enum Phase {
     Idle,
     Active(Box<Active>),
     /// The connection is gone, for this reason; nothing starts any more.
-    Closed(String),
+    Closed(CloseReason),
 }
 
 impl Lifecycle {
@@ -217,11 +219,9 @@ impl Lifecycle {
     /// The command connection is gone: every goal resolves, an arm that moves is braked (by the
     /// robot itself, if a program of the user's moves it: it gets no more commands), nothing starts
     /// any more.
-    pub fn on_connection_closed(&mut self, reason: &str) {
-        let phase = core::mem::replace(&mut self.phase, Phase::Closed(reason.to_owned()));
-        let error = MotionError::ConnectionClosed {
-            reason: reason.to_owned(),
-        };
+    pub fn on_connection_closed(&mut self, reason: CloseReason) {
+        let phase = core::mem::replace(&mut self.phase, Phase::Closed(reason.clone()));
+        let error = MotionError::ConnectionClosed { reason };
         if let Phase::Active(mut active) = phase {
             let order = active.abandon();
             self.outputs.extend(order.map(Output::Order));

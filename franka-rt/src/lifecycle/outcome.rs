@@ -6,6 +6,7 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
 
+use super::CloseReason;
 use crate::driver::{Commander, ControlLog, Ended, MotionStatistics, MotionTimes};
 use crate::session::{GoalError, Lapse, PoseError};
 use crate::shaping::InvalidCommand;
@@ -15,6 +16,7 @@ use crate::together::StartFault;
 /// A motion that came to its end as asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct MotionReport {
     /// From the first state that the goal answered to the arrival, in the robot's time; of a
     /// control function, to the end of the motion.
@@ -148,11 +150,11 @@ pub enum MotionError {
         /// The silence when it was given up.
         silence: Duration,
     },
-    /// Link: the command connection is gone.
+    /// The command connection has ended. Who can act on that depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// What ended it, in the words of the reference client where it has any.
-        reason: String,
+        /// What ended it.
+        reason: CloseReason,
     },
     /// Peer: a reply of its cannot be read.
     #[error(transparent)]
@@ -210,7 +212,8 @@ impl MotionError {
             | Self::Invalid(_)
             | Self::Panicked { .. } => Party::Caller,
             Self::Rejected(_) | Self::Control(_) | Self::TargetNotReached(_) => Party::Robot,
-            Self::LinkLost { .. } | Self::ConnectionClosed { .. } => Party::Link,
+            Self::LinkLost { .. } => Party::Link,
+            Self::ConnectionClosed { reason } => reason.party(),
             Self::Violation(_) | Self::Protocol { .. } => Party::Peer,
         }
     }
@@ -237,6 +240,7 @@ pub enum Party {
 /// How far a motion had come when the robot ended it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Stage {
     /// None of its states had been answered.
     Starting,

@@ -22,6 +22,7 @@ use crate::session::{Answer, ForceCap, Goal, GoalError, Guard, Target};
 /// [`Self::has`] tells the same of each [`Guard`]. Beside them the robot has its own limits,
 /// reflexes and collision thresholds, whatever the backend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Backend {
     /// The law of the session, on this host.
     #[default]
@@ -38,6 +39,7 @@ pub enum Backend {
 
 /// What the robot's controller gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Setpoints {
     /// Joint positions, for its joint impedance controller. Every goal but hand guiding.
     Joints,

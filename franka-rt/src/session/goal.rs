@@ -18,6 +18,7 @@ pub struct GoalId(pub u64);
 
 /// Where to go.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Target {
     /// To rest, over the joints, in about a quarter of a second and under the robot's jerk limit,
     /// however gentle the goal's budget is.

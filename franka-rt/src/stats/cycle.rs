@@ -8,6 +8,7 @@ use crate::slot::Words;
 /// One cycle that sent a command: how long it took, and in what.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct CycleTimes {
     /// `message_id` of the state that the command answers, `[ms]` of the robot's clock.
     pub time: u64,

@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, sleep};
 use std::time::Duration;
 
-use franka_async::{CartesianPose, Finish as _, JointPositions, MotionError, Realtime, Robot};
+use franka_async::control::{CartesianPose, Finish as _, JointPositions};
+use franka_async::{MotionError, Realtime, Robot};
 use tokio::runtime::Builder;
 
 use crate::alone;

@@ -3,7 +3,7 @@
 use franka_proto::framing::Header;
 use franka_proto::{MoveStatus, RobotError};
 use franka_rt::driver::{Activity, LINK_TIMEOUT};
-use franka_rt::lifecycle::{END_TIMEOUT, MotionError, START_TIMEOUT};
+use franka_rt::lifecycle::{CloseReason, END_TIMEOUT, MotionError, START_TIMEOUT};
 use franka_tests::lockstep::Outcome;
 
 use crate::faults::expect::Expect;
@@ -56,7 +56,7 @@ fn a_robot_that_closes_the_connection_ends_everything() {
                 let mut trial = Trial::begin(variant, Deed::Faultless);
                 trial.until(moment);
                 trial.lockstep.robot.disconnect();
-                trial.lockstep.client.close(REASON);
+                trial.lockstep.client.close(CloseReason::ClosedByPeer);
                 starts_over(trial, &closed(REASON));
             });
             // The robot takes requests and commands, and sends states, until the client has closed
@@ -64,7 +64,7 @@ fn a_robot_that_closes_the_connection_ends_everything() {
             matrix.case(format_args!("{variant}/{moment:?}/half"), || {
                 let mut trial = Trial::begin(variant, Deed::Faultless);
                 trial.until(moment);
-                trial.lockstep.client.close(REASON);
+                trial.lockstep.client.close(CloseReason::ClosedByPeer);
                 for _ in 0..5 {
                     trial.lockstep.tick();
                     let activity = trial.lockstep.client.record.activity;

@@ -9,7 +9,7 @@ use franka_proto::client::{Event, Session};
 use franka_proto::framing::next_message;
 use franka_proto::{CommandId, MoveRequest, Reply, Request, RobotState, Version, Violation};
 use franka_rt::driver::{Driver, MotionId, Program, Record};
-use franka_rt::lifecycle::{Lifecycle, MotionError, Output};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, Output};
 use franka_rt::session::GoalId;
 use franka_rt::stats::{Arrival, CycleTimes};
 
@@ -121,7 +121,7 @@ impl Client {
             let message = match next_message(rest) {
                 Ok(Some(message)) => message,
                 Ok(None) => break,
-                Err(error) => return self.close(&error.to_string()),
+                Err(error) => return self.close(violated(&error)),
             };
             rest = &rest[message.header.size as usize..];
             match self.session.on_message(message) {
@@ -135,7 +135,7 @@ impl Client {
                 }
                 Ok(_) => {}
                 Err(violation) if violation.is_fatal() => {
-                    return self.close(&violation.to_string());
+                    return self.close(violated(&violation));
                 }
                 Err(violation) => self.on_violation(violation),
             }
@@ -258,8 +258,8 @@ impl Client {
         self.carry_out();
     }
 
-    /// The command connection has ended, in the words of its reader.
-    pub fn close(&mut self, reason: &str) {
+    /// The command connection has ended.
+    pub fn close(&mut self, reason: CloseReason) {
         self.closed = true;
         self.lifecycle.on_connection_closed(reason);
         self.carry_out();
@@ -312,5 +312,12 @@ impl Client {
             }
         }
         any
+    }
+}
+
+/// A peer that has left the protocol for good.
+fn violated(violation: &impl ToString) -> CloseReason {
+    CloseReason::Protocol {
+        text: violation.to_string(),
     }
 }

@@ -126,6 +126,7 @@ impl Guarded {
                 MoveControllerMode::CartesianImpedance,
                 MoveGeneratorMode::CartesianPosition,
             ),
+            other => unreachable!("no request is known for {other:?}"),
         };
         let request = MoveRequest::new(controller, generator);
         lockstep
@@ -265,7 +266,7 @@ impl Guarded {
         let goal = Goal {
             force_cap: match self.backend {
                 Backend::Torques => ForceCap::Newtons(FORCE_CAP),
-                Backend::RobotController(_) => ForceCap::Default,
+                _ => ForceCap::Default,
             },
             lead: Some(LEAD),
             watchdog: Some(Watchdog {

@@ -14,6 +14,7 @@ pub struct Watchdog {
 
 /// What the arm does when its targets have stopped coming.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum OnTimeout {
     /// Goes on to the last target and holds it.
     Hold,

@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use anyhow::Context as _;
-use franka_async::{Arm, CollisionBehavior, Engage, Pose, Realtime, Robot};
+use franka_async::settings::CollisionBehavior;
+use franka_async::{Arm, Engage, Pose, Realtime, Robot};
 use nalgebra::Translation3;
 
 use crate::Stepped;

@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
-use franka_async::{Finish as _, Pose, Realtime, Robot, Torques};
+use franka_async::control::{Finish as _, Torques};
+use franka_async::{Pose, Realtime, Robot};
 use tokio::sync::watch;
 
 /// Controls by a function that returns no torques: all of a cycle but the user's own work.

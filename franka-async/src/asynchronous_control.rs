@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use franka_proto::{RequestError, RobotState};
 use franka_rt::control::{AbortReason, AsynchronousPositions, AsynchronousTarget, TargetStatus};
 use franka_rt::driver::Program;
+use franka_rt::lifecycle::MotionError;
 use franka_rt::session::GoalId;
 use franka_rt::shaping::check;
 use franka_rt::slot::SlotWriter;
@@ -12,7 +13,7 @@ use futures::FutureExt;
 use futures::future::{BoxFuture, Shared};
 
 use crate::input::Outcome;
-use crate::{MotionError, Robot};
+use crate::robot::Robot;
 
 /// Options of [`Robot::asynchronous_joint_positions`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,11 +59,10 @@ impl Robot {
         let (program, targets) = AsynchronousPositions::new();
         let request = AsynchronousPositions::request(options.maximum_joint_velocities);
         let id = self.next_goal();
-        let outcome = self
-            .run(id, Program::Asynchronous(program), request)
-            .await?;
+        let program = Program::Asynchronous(program);
+        let outcome = self.begin_program(id, program, request).await?;
         let robot = self.clone();
-        let end = outcome.map(move |outcome| outcome.unwrap_or_else(|_| robot.closed()));
+        let end = outcome.map(move |outcome| outcome.unwrap_or_else(|_| robot.closed_outcome()));
         Ok(AsynchronousControl {
             robot: self.clone(),
             id,
@@ -180,7 +180,7 @@ impl Drop for AsynchronousControl {
     }
 }
 
-/// What the end of a motion means to somebody who wanted more of it.
+/// The error for a caller whose request the end of the motion forestalls.
 fn end_of(outcome: Outcome) -> MotionError {
     outcome.err().unwrap_or(MotionError::Stopped)
 }

@@ -2,16 +2,11 @@
 
 use std::net::SocketAddr;
 
-use franka_proto::gripper::{Command, Grasp, Move, Request, State, Version};
-use tokio::sync::watch;
-
-use crate::ConnectError;
-use crate::end_effector::Link;
+use crate::device_connection::Link;
 use crate::endpoint::Endpoint;
-use crate::error::ActionError;
-
-/// Why an action of the Hand has no result.
-pub type GripperError = ActionError<Command>;
+use crate::error::{ConnectError, GripperError};
+use crate::states::States;
+use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 
 /// A connected Franka Hand. It has a server of its own beside the robot's, and neither waits for
 /// the other.
@@ -52,11 +47,11 @@ impl Gripper {
 
     /// The newest state.
     pub fn state(&self) -> State {
-        *self.link.states().borrow()
+        self.link.state()
     }
 
-    /// The newest state as it changes. Closes when the connection does.
-    pub fn states(&self) -> watch::Receiver<State> {
+    /// The newest state as it changes. Ends when the connection does.
+    pub fn states(&self) -> States<State> {
         self.link.states()
     }
 

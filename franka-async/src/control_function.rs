@@ -8,12 +8,13 @@ use franka_rt::control::{
     Callback, CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions,
     JointVelocities, Next, Torques,
 };
-use franka_rt::session::GoalId;
 use franka_rt::shaping::{DEFAULT_CUTOFF_FREQUENCY, Shaper};
 use franka_rt::together::StartTicket;
 
-use crate::motion::Work;
-use crate::{Canceller, Moving, Robot};
+use crate::cancel::Canceller;
+use crate::input::NewMotion;
+use crate::motion::Moving;
+use crate::robot::Robot;
 
 impl Robot {
     /// Control by torques alone: `function` gets every state, and the robot's time since the state
@@ -84,8 +85,7 @@ impl Robot {
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Control {
-    robot: Robot,
-    id: GoalId,
+    canceller: Canceller,
     callback: Callback,
     controller: MoveControllerMode,
     limit_rate: bool,
@@ -96,13 +96,12 @@ pub struct Control {
 impl Control {
     fn new(robot: Robot, callback: Callback) -> Self {
         Self {
-            id: robot.next_goal(),
             callback,
             controller: MoveControllerMode::JointImpedance,
             limit_rate: Shaper::limits_by_default(robot.version()),
             cutoff_frequency: DEFAULT_CUTOFF_FREQUENCY,
             ticket: None,
-            robot,
+            canceller: Canceller::new(robot.clone(), robot.next_goal()),
         }
     }
 
@@ -150,25 +149,25 @@ impl Control {
         self
     }
 
-    /// Begins the motion and lets it run without anybody who waits for it. How it ends is in the
-    /// log.
+    /// Begins the motion without a future: it runs on, and its outcome is only logged.
     pub fn detach(self) {
-        let robot = self.robot.clone();
-        robot.begin(self.work());
+        let canceller = self.canceller.clone();
+        canceller.begin(self.begin());
     }
 
-    /// A way to stop the motion from elsewhere.
+    /// Returns a handle that stops the motion from elsewhere.
     pub fn canceller(&self) -> Canceller {
-        Canceller::new(self.robot.clone(), self.id)
+        self.canceller.clone()
     }
 
-    fn work(self) -> Work {
-        let version = self.robot.version();
+    fn begin(self) -> NewMotion {
+        let robot = self.canceller.robot();
+        let version = robot.version();
         let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency)
-            .with_limits_of(self.robot.model().joint_limits());
+            .with_limits_of(robot.model().joint_limits());
         let request = self.callback.request(version, self.controller);
-        Work::Control {
-            id: self.id,
+        NewMotion::Function {
+            id: self.canceller.id(),
             callback: Box::new(self.callback.with_shaper(shaper)),
             request: Box::new(request),
             ticket: self.ticket,
@@ -181,6 +180,6 @@ impl IntoFuture for Control {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        Moving::new(self.robot.clone(), None, self.work())
+        Moving::new(self.canceller.clone(), None, self.begin())
     }
 }

@@ -3,16 +3,11 @@
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use franka_proto::vacuum::{Command, Request, State, Vacuum, Version};
-use tokio::sync::watch;
-
-use crate::ConnectError;
-use crate::end_effector::Link;
+use crate::device_connection::Link;
 use crate::endpoint::Endpoint;
-use crate::error::ActionError;
-
-/// Why an action of the vacuum gripper has no result.
-pub type VacuumGripperError = ActionError<Command>;
+use crate::error::{ConnectError, VacuumGripperError};
+use crate::states::States;
+use franka_proto::vacuum::{Request, State, Vacuum, Version};
 
 /// A connected vacuum gripper. What [`Gripper`](crate::Gripper) says of handles, actions and their
 /// ends holds for it as well.
@@ -42,11 +37,11 @@ impl VacuumGripper {
 
     /// The newest state.
     pub fn state(&self) -> State {
-        *self.link.states().borrow()
+        self.link.state()
     }
 
-    /// The newest state as it changes. Closes when the connection does.
-    pub fn states(&self) -> watch::Receiver<State> {
+    /// The newest state as it changes. Ends when the connection does.
+    pub fn states(&self) -> States<State> {
         self.link.states()
     }
 

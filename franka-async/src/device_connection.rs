@@ -8,27 +8,25 @@
 use std::collections::HashMap;
 use std::fmt;
 use std::net::{IpAddr, SocketAddr};
-use std::sync::{Arc, OnceLock};
 
 use franka_proto::client::{Event, Session};
 use franka_proto::gripper::Reply;
 use franka_proto::{CommandId, DecodeError, Protocol, Violation, gripper, vacuum};
 use franka_rt::exchange;
+use franka_rt::lifecycle::CloseReason;
 use futures::StreamExt;
 use tokio::net::{TcpStream, UdpSocket};
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::timeout;
 use tokio_util::codec::Framed;
 
-use crate::ConnectError;
-use crate::channel::{CLOSED_BY_PEER, RUNTIME_ENDED};
-use crate::codec::{self, Frame, MessageCodec, reason};
-use crate::connect::{TCP_TIMEOUT, dial, resolve, shake_hands};
+use crate::close::Closing;
+use crate::codec::{self, Frame, MessageCodec};
+use crate::dial::{TCP_TIMEOUT, dial, resolve};
 use crate::endpoint::Endpoint;
-use crate::error::ActionError;
-
-/// What callers hear after the connection was closed from this side.
-const CLOSED_BY_US: &str = "the end effector's handles were closed";
+use crate::error::{ActionError, ConnectError};
+use crate::handshake::shake_hands;
+use crate::states::States;
 
 /// States read ahead of an answer, at most.
 const DATAGRAMS: usize = 64;
@@ -97,7 +95,7 @@ pub(crate) struct Link<D: Device> {
     /// session has no place.
     calls: mpsc::UnboundedSender<Call<D>>,
     states: watch::Receiver<D::State>,
-    ended: Arc<OnceLock<String>>,
+    closing: Closing,
 }
 
 impl<D: Device> Clone for Link<D> {
@@ -106,7 +104,7 @@ impl<D: Device> Clone for Link<D> {
             address: self.address,
             calls: self.calls.clone(),
             states: self.states.clone(),
-            ended: self.ended.clone(),
+            closing: self.closing.clone(),
         }
     }
 }
@@ -144,7 +142,7 @@ where
 
         let (states, published) = watch::channel(first);
         let (calls, queue) = mpsc::unbounded_channel();
-        let ended = Arc::new(OnceLock::new());
+        let closing = Closing::default();
         let task = Task {
             stream,
             session,
@@ -154,12 +152,12 @@ where
             running: None,
             waiting: HashMap::new(),
         };
-        tokio::spawn(task.run(queue, ended.clone()));
+        tokio::spawn(task.run(queue, closing.clone()));
         Ok(Self {
             address,
             calls,
             states: published,
-            ended,
+            closing,
         })
     }
 
@@ -167,8 +165,12 @@ where
         self.address
     }
 
-    pub(crate) fn states(&self) -> watch::Receiver<D::State> {
-        self.states.clone()
+    pub(crate) fn state(&self) -> D::State {
+        *self.states.borrow()
+    }
+
+    pub(crate) fn states(&self) -> States<D::State> {
+        States::new(self.states.clone(), self.closing.clone())
     }
 
     /// Sends a request and waits for the end of its action.
@@ -184,9 +186,8 @@ where
     }
 
     fn closed(&self) -> ActionError<D::Command> {
-        let reason = self.ended.get().map_or(RUNTIME_ENDED, String::as_str);
         ActionError::ConnectionClosed {
-            reason: reason.to_owned(),
+            reason: self.closing.reason(),
         }
     }
 }
@@ -219,32 +220,31 @@ struct Task<D: Device> {
 }
 
 impl<D: Device> Task<D> {
-    async fn run(
-        mut self,
-        mut calls: mpsc::UnboundedReceiver<Call<D>>,
-        ended: Arc<OnceLock<String>>,
-    ) {
+    async fn run(mut self, mut calls: mpsc::UnboundedReceiver<Call<D>>, closing: Closing) {
         let Err(reason) = self.serve(&mut calls).await;
-        // Told before the answers are dropped, so that nobody finds them dropped without a reason.
-        ended.get_or_init(|| reason);
+        // Noted before the answers are dropped: a caller that finds them dropped finds the reason.
+        closing.note(reason);
     }
 
     /// Serves until the connection ends; the error says why it did.
     async fn serve(
         &mut self,
         calls: &mut mpsc::UnboundedReceiver<Call<D>>,
-    ) -> Result<std::convert::Infallible, String> {
+    ) -> Result<std::convert::Infallible, CloseReason> {
         let mut buffer = [0; DATAGRAM_SIZE];
         loop {
             tokio::select! {
                 received = self.socket.recv_from(&mut buffer) => match received {
                     Ok((length, source)) => self.on_datagram(&buffer[..length], source),
-                    Err(error) => return Err(format!("libfranka: UDP receive: {}", reason(&error))),
+                    Err(error) => return Err(codec::failed("UDP receive", &error)),
                 },
                 frame = self.stream.next() => match frame {
-                    Some(Ok(frame)) => self.on_frame(&frame).map_err(|error| error.to_string())?,
-                    Some(Err(error)) => return Err(error.to_string()),
-                    None => return Err(CLOSED_BY_PEER.to_owned()),
+                    Some(Ok(frame)) => self.on_frame(&frame).map_err(|violation| {
+                        let text = violation.to_string();
+                        CloseReason::Protocol { text }
+                    })?,
+                    Some(Err(error)) => return Err(error.into()),
+                    None => return Err(CloseReason::ClosedByPeer),
                 },
                 () = abandoned::<D>(&mut self.running) => self.stop().await?,
                 call = calls.recv() => match call {
@@ -253,14 +253,14 @@ impl<D: Device> Task<D> {
                         if self.running.is_some() {
                             self.stop().await?;
                         }
-                        return Err(CLOSED_BY_US.to_owned());
+                        return Err(CloseReason::ClosedByUs);
                     }
                 },
             }
         }
     }
 
-    async fn on_call(&mut self, Call { request, answer }: Call<D>) -> Result<(), String> {
+    async fn on_call(&mut self, Call { request, answer }: Call<D>) -> Result<(), CloseReason> {
         // Nobody waits for it any more; a stop counts all the same.
         if answer.is_closed() && request != D::STOP {
             return Ok(());
@@ -288,7 +288,7 @@ impl<D: Device> Task<D> {
     }
 
     /// Stops the action that nobody waits for.
-    async fn stop(&mut self) -> Result<(), String> {
+    async fn stop(&mut self) -> Result<(), CloseReason> {
         if let Some((id, _)) = self.running.take() {
             self.session.abandon(id);
         }
@@ -298,7 +298,10 @@ impl<D: Device> Task<D> {
                 codec::send(&mut self.stream, stop).await
             }
             // An action that nobody can stop: without the connection, the device stops by itself.
-            Err(error) => Err(error.to_string()),
+            Err(error) => {
+                tracing::warn!(%error, "no room for a stop; closing the connection instead");
+                Err(CloseReason::ClosedByUs)
+            }
         }
     }
 

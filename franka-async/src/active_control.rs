@@ -10,13 +10,15 @@ use franka_rt::control::{
     JointVelocities, Next, Torques,
 };
 use franka_rt::driver::Program;
+use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::GoalId;
-use franka_rt::thread::{BorrowError, Lease, WriteFault};
+use franka_rt::thread::{BorrowError, Lease};
 use futures::FutureExt;
 use tokio::sync::oneshot;
 
+use crate::error::ActiveError;
 use crate::input::Outcome;
-use crate::{MotionError, MotionReport, Party, Robot};
+use crate::robot::Robot;
 
 impl Robot {
     /// Begins control by torques from a thread of the caller's, and resolves when the motion runs.
@@ -127,40 +129,11 @@ pub struct Active<C> {
     commands: PhantomData<fn(C)>,
 }
 
-/// Why a state could not be read or a command not written.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ActiveError {
-    /// The motion has ended, and how.
-    #[error(transparent)]
-    Motion(#[from] MotionError),
-    /// The motion has ended as asked: its last command was written before.
-    #[error("writeOnce must not be called after the motion has finished.")]
-    Finished,
-    /// The command was not sent; the motion goes on.
-    #[error(transparent)]
-    Write(#[from] WriteFault),
-    /// The cycle cannot be had.
-    #[error(transparent)]
-    Borrow(#[from] BorrowError),
-}
-
-impl ActiveError {
-    /// Who can act on it.
-    pub fn party(&self) -> Party {
-        match self {
-            Self::Motion(error) => error.party(),
-            Self::Write(WriteFault::Link(_)) => Party::Link,
-            Self::Finished | Self::Write(_) | Self::Borrow(_) => Party::Caller,
-        }
-    }
-}
-
 impl<C> Active<C> {
     async fn begin(robot: &Robot, request: MoveRequest) -> Result<Self, MotionError> {
         let id = robot.next_goal();
         let program = Program::Active(ActiveControl);
-        let outcome = robot.run(id, program, request).await?;
+        let outcome = robot.begin_program(id, program, request).await?;
         Ok(Self {
             robot: robot.clone(),
             id,
@@ -229,7 +202,7 @@ impl<C> Active<C> {
         match self.outcome.take() {
             Some(outcome) => outcome
                 .blocking_recv()
-                .unwrap_or_else(|_| self.robot.closed()),
+                .unwrap_or_else(|_| self.robot.closed_outcome()),
             None => Err(MotionError::Stopped),
         }
     }

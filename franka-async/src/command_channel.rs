@@ -7,7 +7,6 @@
 //! and so is everybody who comes later.
 
 use std::collections::HashMap;
-use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use franka_proto::client::{Event, Session};
@@ -15,6 +14,7 @@ use franka_proto::{
     Command, CommandId, MoveStatus, Refusal, Reply, Request, Violation, VirtualWall,
 };
 use franka_rt::driver::MotionId;
+use franka_rt::lifecycle::CloseReason;
 use futures::StreamExt;
 use tokio::net::TcpStream;
 use tokio::sync::{mpsc, oneshot};
@@ -23,9 +23,10 @@ use tokio::time::Instant;
 use tokio_util::codec::Framed;
 use tokio_util::sync::CancellationToken;
 
+use crate::close::Closing;
 use crate::codec::{self, Frame, MessageCodec};
 use crate::error::CommandError;
-use crate::newest::Newest;
+use crate::newest_state::Newest;
 
 /// Requests that may wait for the task. A caller beyond that waits for room.
 const CAPACITY: usize = 32;
@@ -34,29 +35,20 @@ const CAPACITY: usize = 32;
 /// and its `StopMove`.
 const CALLS: usize = <Session>::PENDING_LIMIT - 2;
 
-/// What libfranka says when it finds the connection closed.
-pub(crate) const CLOSED_BY_PEER: &str = "libfranka: server closed connection";
-
-/// What callers hear after the connection was closed from this side.
-pub(crate) const CLOSED_BY_US: &str = "the robot's handles were closed";
-
-/// What callers hear when nobody was left to say why the connection ended.
-pub(crate) const RUNTIME_ENDED: &str = "the runtime that served the connection has ended";
-
 /// The way to the task. Clones share it.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel {
     calls: mpsc::Sender<Call>,
     /// Unbounded, and yet bounded: two requests per motion, and motions follow one another.
     motions: mpsc::UnboundedSender<Call>,
-    ended: Arc<OnceLock<String>>,
+    closing: Closing,
 }
 
 /// The task itself, owned by the bridge.
 #[derive(Debug)]
 pub(crate) struct Connection {
     task: JoinHandle<()>,
-    closing: CancellationToken,
+    close: CancellationToken,
 }
 
 impl Connection {
@@ -65,7 +57,7 @@ impl Connection {
     /// # Cancel safety
     /// Once polled, the connection closes.
     pub(crate) async fn close(self) {
-        self.closing.cancel();
+        self.close.cancel();
         if let Err(error) = self.task.await {
             tracing::error!(%error, "command channel");
         }
@@ -86,12 +78,12 @@ pub(crate) enum Report {
         violation: Violation,
     },
     /// The connection is gone.
-    Closed { reason: String },
+    Closed { reason: CloseReason },
 }
 
 /// What a request that is not a motion is answered with, if it is not refused.
 #[derive(Debug)]
-pub(crate) enum Answer {
+pub(crate) enum Response {
     Done,
     /// The robot's description, URDF.
     Model(Vec<u8>),
@@ -113,7 +105,7 @@ enum Waiter {
     /// Nobody: the lifecycle sends `StopMove` and watches the states instead.
     Nobody,
     Caller {
-        answer: oneshot::Sender<Result<Answer, CommandError>>,
+        answer: oneshot::Sender<Result<Response, CommandError>>,
         deadline: Duration,
     },
 }
@@ -129,7 +121,7 @@ impl Channel {
         let (motions, first) = mpsc::unbounded_channel();
         // Unbounded, and yet bounded: two replies per motion, and motions follow one another.
         let (reports, inbox) = mpsc::unbounded_channel();
-        let ended = Arc::new(OnceLock::new());
+        let closing = Closing::default();
         let task = Task {
             stream,
             session,
@@ -137,14 +129,14 @@ impl Channel {
             reports,
             waiting: HashMap::new(),
         };
-        let closing = CancellationToken::new();
-        let task = tokio::spawn(task.run((first, queue), ended.clone(), closing.clone()));
+        let close = CancellationToken::new();
+        let task = tokio::spawn(task.run((first, queue), closing.clone(), close.clone()));
         let channel = Self {
             calls,
             motions,
-            ended,
+            closing,
         };
-        (channel, Connection { task, closing }, inbox)
+        (channel, Connection { task, close }, inbox)
     }
 
     /// Sends a request and waits for its answer.
@@ -155,7 +147,7 @@ impl Channel {
         &self,
         request: Request,
         deadline: Duration,
-    ) -> Result<Answer, CommandError> {
+    ) -> Result<Response, CommandError> {
         let (answer, answered) = oneshot::channel();
         let call = Call {
             request,
@@ -179,20 +171,14 @@ impl Channel {
         }
     }
 
-    /// Decides what everybody hears about the end of the connection, unless that is decided
-    /// already.
-    pub(crate) fn note_end(&self, reason: &str) {
-        self.ended.get_or_init(|| reason.to_owned());
-    }
-
-    /// Why the connection has ended, if it has.
-    pub(crate) fn end_reason(&self) -> &str {
-        self.ended.get().map_or(RUNTIME_ENDED, String::as_str)
+    /// Why the connection has ended, once it has.
+    pub(crate) fn closing(&self) -> &Closing {
+        &self.closing
     }
 
     fn closed(&self) -> CommandError {
         CommandError::ConnectionClosed {
-            reason: self.end_reason().to_owned(),
+            reason: self.closing.reason(),
         }
     }
 }
@@ -215,18 +201,13 @@ struct Waiting {
 }
 
 impl Task {
-    async fn run(
-        mut self,
-        mut queues: Queues,
-        ended: Arc<OnceLock<String>>,
-        closing: CancellationToken,
-    ) {
+    async fn run(mut self, mut queues: Queues, closing: Closing, close: CancellationToken) {
         let reason = tokio::select! {
             reason = self.serve(&mut queues) => reason,
-            () = closing.cancelled() => CLOSED_BY_US.to_owned(),
+            () = close.cancelled() => CloseReason::ClosedByUs,
         };
-        // Told before the queues close, so that nobody finds them closed without a reason.
-        let reason = ended.get_or_init(|| reason).clone();
+        // Noted before the queues close: a caller that finds them closed finds the reason, too.
+        let reason = closing.note(reason);
         drop(queues);
         for (_, waiting) in self.waiting.drain() {
             if let Waiter::Caller { answer, .. } = waiting.waiter {
@@ -240,7 +221,7 @@ impl Task {
     }
 
     /// Serves until the connection ends and returns why it did.
-    async fn serve(&mut self, (motions, calls): &mut Queues) -> String {
+    async fn serve(&mut self, (motions, calls): &mut Queues) -> CloseReason {
         loop {
             let until = self
                 .waiting
@@ -257,11 +238,12 @@ impl Task {
                 frame = self.stream.next() => match frame {
                     Some(Ok(frame)) => {
                         if let Err(violation) = self.on_frame(&frame) {
-                            return violation.to_string();
+                            let text = violation.to_string();
+                            return CloseReason::Protocol { text };
                         }
                     }
-                    Some(Err(error)) => return error.to_string(),
-                    None => return CLOSED_BY_PEER.to_owned(),
+                    Some(Err(error)) => return error.into(),
+                    None => return CloseReason::ClosedByPeer,
                 },
                 Some(call) = motions.recv() => {
                     if let Err(reason) = self.on_call(call).await {
@@ -275,14 +257,14 @@ impl Task {
                             return reason;
                         }
                     }
-                    None => return CLOSED_BY_US.to_owned(),
+                    None => return CloseReason::ClosedByUs,
                 },
                 () = deadline => self.on_deadline(Instant::now()),
             }
         }
     }
 
-    async fn on_call(&mut self, Call { request, waiter }: Call) -> Result<(), String> {
+    async fn on_call(&mut self, Call { request, waiter }: Call) -> Result<(), CloseReason> {
         if matches!(waiter, Waiter::Motion(_)) {
             self.forget_motions();
         }
@@ -375,10 +357,10 @@ impl Task {
         let mode = self.newest.state().robot_mode;
         let outcome = match (Refusal::from_reply(command, reply, mode), reply) {
             (Some(refusal), _) => Err(refusal.into()),
-            (None, Reply::Model { text, .. }) => Ok(Answer::Model(text.to_vec())),
-            (None, Reply::ModelLibrary { library, .. }) => Ok(Answer::Library(library.to_vec())),
-            (None, Reply::CartesianLimit { wall, .. }) => Ok(Answer::Wall(*wall)),
-            (None, _) => Ok(Answer::Done),
+            (None, Reply::Model { text, .. }) => Ok(Response::Model(text.to_vec())),
+            (None, Reply::ModelLibrary { library, .. }) => Ok(Response::Library(library.to_vec())),
+            (None, Reply::CartesianLimit { wall, .. }) => Ok(Response::Wall(*wall)),
+            (None, _) => Ok(Response::Done),
         };
         let _ = answer.send(outcome);
     }

@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
-use std::time::Duration;
 
 use franka_proto::RobotState;
 use futures::{Stream, StreamExt};
@@ -11,11 +10,13 @@ use tokio::sync::broadcast::error::RecvError;
 use tokio_stream::wrappers::BroadcastStream;
 use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
 
+use crate::error::ReadError;
 use crate::publish::Update;
-use crate::{Party, Robot};
+use crate::robot::Robot;
 
 /// A state, and how many are missing before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Reading {
     /// The state.
     pub state: RobotState,
@@ -34,39 +35,12 @@ pub struct StateStream {
     newest: u64,
 }
 
-/// Why reading has ended.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReadError {
-    /// Link: the robot fell silent. The text begins as that of the reference client.
-    #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
-    LinkLost {
-        /// The silence so far.
-        silence: Duration,
-    },
-    /// Link: the connection is gone.
-    #[error("{reason}")]
-    ConnectionClosed {
-        /// What ended it.
-        reason: String,
-    },
-}
-
-impl ReadError {
-    /// Who can act on it.
-    pub fn party(&self) -> Party {
-        match self {
-            Self::LinkLost { .. } | Self::ConnectionClosed { .. } => Party::Link,
-        }
-    }
-}
-
 impl Robot {
     /// Calls `each` with every state that comes, until it breaks; returns what it breaks with.
     /// Whatever moves meanwhile.
     ///
     /// ```no_run
-    /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::ReadError> {
+    /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::error::ReadError> {
     /// use std::ops::ControlFlow;
     ///
     /// let touched = |state: &franka_async::RobotState| match state.tau_ext_hat_filtered[1] {
@@ -110,7 +84,7 @@ impl Robot {
                 Ok(Update::Silence(silence)) => return Err(ReadError::LinkLost { silence }),
                 Err(RecvError::Lagged(_)) => {}
                 Err(RecvError::Closed) => {
-                    let reason = self.channel().end_reason().to_owned();
+                    let reason = self.channel().closing().reason();
                     return Err(ReadError::ConnectionClosed { reason });
                 }
             }

@@ -7,20 +7,19 @@ use franka_model::{Model, RobotKind};
 use franka_proto::Command;
 use franka_proto::{Architecture, Request, System, Version};
 
+use crate::builder::Builder;
+use crate::command_channel::{Channel, Response};
+use crate::error::CommandError;
 #[cfg(not(feature = "urdf"))]
-use crate::ConnectError;
-use crate::channel::{Answer, Channel};
+use crate::error::ConnectError;
+#[cfg(feature = "urdf")]
+use crate::error::ModelError;
 #[cfg(feature = "urdf")]
 use crate::parameters;
-use crate::{Builder, CommandError, Robot};
+use crate::robot::Robot;
 
 /// Time for a library to come over the network.
 const DOWNLOAD: Duration = Duration::from_secs(30);
-
-#[cfg(feature = "urdf")]
-pub use described::ModelError;
-#[cfg(all(feature = "model-library", target_os = "linux"))]
-pub use library::ModelLibraryError;
 
 /// The model of the arm: from its description if it has one and that is wanted, the constants of
 /// its kind otherwise.
@@ -72,56 +71,8 @@ impl Robot {
             system,
         };
         match self.channel().call(request, DOWNLOAD).await? {
-            Answer::Library(bytes) => Ok(bytes),
+            Response::Library(bytes) => Ok(bytes),
             _ => unreachable!("the session matches replies to the commands they answer"),
-        }
-    }
-}
-
-#[cfg(feature = "urdf")]
-mod described {
-    use franka_model::urdf::UrdfError;
-
-    use crate::CommandError;
-    use crate::error::Party;
-
-    /// Why there is no model of the connected arm.
-    /// [`Builder::nominal_model`](crate::Builder::nominal_model) does without its description.
-    #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-    #[non_exhaustive]
-    pub enum ModelError {
-        /// The robot was asked for its description and did not give it.
-        #[error(transparent)]
-        Command(#[from] CommandError),
-        /// Robot: its description is not that of an arm that this driver knows.
-        #[error(transparent)]
-        Urdf(#[from] UrdfError),
-    }
-
-    impl ModelError {
-        /// Who can act on it.
-        pub fn party(&self) -> Party {
-            match self {
-                Self::Command(error) => error.party(),
-                Self::Urdf(_) => Party::Peer,
-            }
-        }
-    }
-
-    #[cfg(test)]
-    mod tests {
-        use franka_model::Model;
-
-        use super::*;
-        use crate::error::{ConnectError, Error};
-
-        #[test]
-        fn a_description_that_cannot_be_read_is_nobodys_fault_here() {
-            let error = Model::from_urdf("<sdf/>").expect_err("no description");
-            let text = error.to_string();
-            let error: ConnectError = ModelError::from(error).into();
-            let error = Error::from(error);
-            assert_eq!((error.to_string(), error.party()), (text, Party::Peer));
         }
     }
 }
@@ -131,8 +82,8 @@ mod library {
     use franka_model::model_library::{LibraryError, ModelLibrary};
     use franka_proto::{Architecture, System};
 
-    use crate::error::Party;
-    use crate::{CommandError, Robot};
+    use crate::error::ModelLibraryError;
+    use crate::robot::Robot;
 
     impl Robot {
         /// Asks a Franka Emika Robot for its model library and loads it into this process. Needs
@@ -165,43 +116,5 @@ mod library {
             "aarch64" => Architecture::Arm64,
             _ => return None,
         })
-    }
-
-    /// Why the robot's model library cannot be used.
-    #[derive(Debug, thiserror::Error)]
-    #[non_exhaustive]
-    pub enum ModelLibraryError {
-        /// The robot was asked for it and did not give it.
-        #[error(transparent)]
-        Command(#[from] CommandError),
-        /// It cannot be loaded.
-        #[error(transparent)]
-        Library(#[from] LibraryError),
-    }
-
-    impl ModelLibraryError {
-        /// Who can act on it.
-        pub fn party(&self) -> Party {
-            match self {
-                Self::Command(error) => error.party(),
-                Self::Library(LibraryError::Load { .. } | LibraryError::Symbol { .. }) => {
-                    Party::Peer
-                }
-                Self::Library(_) => Party::Host,
-            }
-        }
-    }
-
-    #[cfg(test)]
-    mod tests {
-        use super::*;
-        use crate::error::Error;
-
-        #[test]
-        fn an_architecture_without_a_library_is_this_computers() {
-            let error = Error::from(ModelLibraryError::from(LibraryError::Architecture));
-            assert_eq!(error.to_string(), "libfranka: Unsupported architecture!");
-            assert_eq!(error.party(), Party::Host);
-        }
     }
 }

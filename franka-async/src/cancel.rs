@@ -1,0 +1,81 @@
+//! Taking motions back: what cancelling one, or dropping its future, does to an arm that moves.
+//!
+//! A motion towards goals is braked within the robot's limits, a session likewise before it ends,
+//! and a control function or program has the robot stop. All of it is one input to the bridge,
+//! which carries it out after `cancel` or `drop` has returned.
+
+use franka_rt::session::GoalId;
+use tokio::sync::oneshot;
+use tokio_util::sync::CancellationToken;
+
+use crate::input::{NewMotion, Outcome};
+use crate::robot::Robot;
+
+/// Brakes a motion. Clones brake the same one.
+#[derive(Clone, Debug)]
+pub struct Canceller {
+    robot: Robot,
+    id: GoalId,
+    cancelled: CancellationToken,
+}
+
+impl Canceller {
+    pub(crate) fn new(robot: Robot, id: GoalId) -> Self {
+        Self {
+            robot,
+            id,
+            cancelled: CancellationToken::new(),
+        }
+    }
+
+    /// Brakes the motion, which resolves as [`MotionError::Stopped`](crate::MotionError::Stopped).
+    /// A motion that has not begun never begins, and resolves likewise when it is awaited. Without
+    /// effect after the motion has ended or was superseded.
+    pub fn cancel(&self) {
+        self.cancelled.cancel();
+        self.robot.cancel(self.id);
+    }
+
+    pub(crate) fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    pub(crate) fn id(&self) -> GoalId {
+        self.id
+    }
+
+    /// Begins `motion`, unless it is cancelled already. Returns the receiver of its outcome.
+    pub(crate) fn begin(&self, motion: NewMotion) -> Option<oneshot::Receiver<Outcome>> {
+        if self.cancelled.is_cancelled() {
+            return None;
+        }
+        let outcome = self.robot.begin(motion);
+        // `cancel` sets the token before it sends: if its input came before the motion, and so had
+        // no effect, the token is set here.
+        if self.cancelled.is_cancelled() {
+            self.robot.cancel(self.id);
+        }
+        Some(outcome)
+    }
+}
+
+/// Cancels a motion when dropped, unless it was defused.
+pub(crate) struct CancelOnDrop<'a>(Option<(&'a Robot, GoalId)>);
+
+impl<'a> CancelOnDrop<'a> {
+    pub(crate) fn new(robot: &'a Robot, id: GoalId) -> Self {
+        Self(Some((robot, id)))
+    }
+
+    pub(crate) fn defuse(mut self) {
+        self.0 = None;
+    }
+}
+
+impl Drop for CancelOnDrop<'_> {
+    fn drop(&mut self) {
+        if let Some((robot, id)) = self.0 {
+            robot.cancel(id);
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Why a call on a connection has no result.
+
+use std::time::Duration;
+
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+use franka_model::model_library::LibraryError;
+use franka_proto::gripper::Failure;
+use franka_proto::{Command, Refusal, RequestError, ServiceCommand, Violation};
+use franka_rt::lifecycle::{CloseReason, MotionError, Party};
+use franka_rt::thread::{BorrowError, WriteFault};
+
+/// Why a command other than a motion was not carried out.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CommandError {
+    /// Robot: it refused, or gave up.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// Caller: the protocol version has no such command. Nothing was sent.
+    #[error(transparent)]
+    Request(#[from] RequestError),
+    /// Robot or link: no answer in time. The robot may carry the command out all the same.
+    #[error("no answer to {command} within {} ms", .deadline.as_millis())]
+    Timeout {
+        /// What was asked for.
+        command: Command,
+        /// How long the answer was awaited.
+        deadline: Duration,
+    },
+    /// Peer: its answer cannot be read.
+    #[error(transparent)]
+    Violation(#[from] Violation),
+    /// The connection has ended. Who can act on that depends on the reason.
+    #[error("{reason}")]
+    ConnectionClosed {
+        /// What ended it.
+        reason: CloseReason,
+    },
+}
+
+impl CommandError {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Refused(_) => Party::Robot,
+            Self::Request(_) => Party::Caller,
+            Self::Timeout { .. } => Party::Link,
+            Self::ConnectionClosed { reason } => reason.party(),
+            Self::Violation(_) => Party::Peer,
+        }
+    }
+}
+
+/// Why an action of an end effector has no result; `C` is what can be asked of it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ActionError<C: ServiceCommand> {
+    /// Device: it could not do it, or something ended it: a stop, or a newer action.
+    #[error(transparent)]
+    Failure(#[from] Failure<C>),
+    /// Caller: too many requests wait for their answers. Nothing was sent.
+    #[error(transparent)]
+    Request(#[from] RequestError),
+    /// Peer: its answer cannot be read.
+    #[error(transparent)]
+    Violation(#[from] Violation<C>),
+    /// The connection has ended. Who can act on that depends on the reason.
+    #[error("{reason}")]
+    ConnectionClosed {
+        /// What ended it.
+        reason: CloseReason,
+    },
+}
+
+impl<C: ServiceCommand> ActionError<C> {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Failure(_) => Party::Robot,
+            Self::Request(_) => Party::Caller,
+            Self::Violation(_) => Party::Peer,
+            Self::ConnectionClosed { reason } => reason.party(),
+        }
+    }
+}
+
+/// Why states could not be read any further.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// Link: the robot fell silent. The text begins as that of the reference client.
+    #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
+    LinkLost {
+        /// The silence so far.
+        silence: Duration,
+    },
+    /// The connection has ended. Who can act on that depends on the reason.
+    #[error("{reason}")]
+    ConnectionClosed {
+        /// What ended it.
+        reason: CloseReason,
+    },
+}
+
+impl ReadError {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::LinkLost { .. } => Party::Link,
+            Self::ConnectionClosed { reason } => reason.party(),
+        }
+    }
+}
+
+/// Why a state could not be read or a command not written.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ActiveError {
+    /// The motion has ended, and how.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// The motion has ended as asked: its last command was written before.
+    #[error("writeOnce must not be called after the motion has finished.")]
+    Finished,
+    /// The command was not sent; the motion goes on.
+    #[error(transparent)]
+    Write(#[from] WriteFault),
+    /// The cycle cannot be had.
+    #[error(transparent)]
+    Borrow(#[from] BorrowError),
+}
+
+impl ActiveError {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Motion(error) => error.party(),
+            Self::Write(WriteFault::Link(_)) => Party::Link,
+            Self::Finished | Self::Write(_) | Self::Borrow(_) => Party::Caller,
+        }
+    }
+}
+
+/// Why the robot's model library cannot be used.
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelLibraryError {
+    /// The robot was asked for it and did not give it.
+    #[error(transparent)]
+    Command(#[from] CommandError),
+    /// It cannot be loaded.
+    #[error(transparent)]
+    Library(#[from] LibraryError),
+}
+
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+impl ModelLibraryError {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Command(error) => error.party(),
+            Self::Library(LibraryError::Load { .. } | LibraryError::Symbol { .. }) => Party::Peer,
+            Self::Library(_) => Party::Host,
+        }
+    }
+}
+
+#[cfg(all(test, feature = "model-library", target_os = "linux"))]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+
+    #[test]
+    fn an_architecture_without_a_library_is_this_computers() {
+        let error = Error::from(ModelLibraryError::from(LibraryError::Architecture));
+        assert_eq!(error.to_string(), "libfranka: Unsupported architecture!");
+        assert_eq!(error.party(), Party::Host);
+    }
+}

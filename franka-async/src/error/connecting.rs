@@ -1,0 +1,194 @@
+//! Why there is no connection.
+
+use std::io;
+use std::net::SocketAddr;
+
+#[cfg(feature = "urdf")]
+use franka_model::urdf::UrdfError;
+use franka_proto::framing::FrameError;
+use franka_proto::{IncompatibleVersion, Protocol, Version, Violation};
+use franka_rt::driver::LinkTimeoutError;
+use franka_rt::lifecycle::{CloseReason, Party};
+use franka_rt::sched::SchedError;
+use franka_rt::thread::{LinkFault, StartError};
+
+#[cfg(feature = "urdf")]
+use super::CommandError;
+use crate::endpoint::EndpointError;
+
+/// Why there is no connection: to a robot, unless `P` says otherwise. Nothing is left behind;
+/// connecting again is always possible.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConnectError<P: Protocol = Version> {
+    /// Host: it does not grant what real-time control needs, see
+    /// [`Builder::realtime`](crate::Builder::realtime).
+    #[error(transparent)]
+    Realtime(#[from] SchedError),
+    /// Caller: the text that was given as the place of the device names none. Nothing was sent.
+    #[error(transparent)]
+    Endpoint(#[from] EndpointError),
+    /// Caller: the silence after which the link counts as lost is out of range, see
+    /// [`Builder::link_timeout`](crate::Builder::link_timeout).
+    #[error(transparent)]
+    LinkTimeout(#[from] LinkTimeoutError),
+    /// Host: no thread, socket or descriptor.
+    #[error("the connection cannot be set up: {0}")]
+    System(#[from] io::Error),
+    /// Robot: nobody listens there. FCI is off, or it is another machine.
+    #[error(
+        "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk."
+    )]
+    Refused,
+    /// Link: no answer.
+    #[error("libfranka: Connection timeout. Please check your network connection or settings.")]
+    Timeout,
+    /// Link: any other failure to connect.
+    #[error("libfranka: Connection error: {reason}")]
+    Network {
+        /// The class of the failure.
+        reason: String,
+    },
+    /// Robot or link: the host name has several addresses, and there is no connection to any of
+    /// them.
+    #[error("{}", list(.attempts))]
+    NoAddress {
+        /// What came of each, in the order tried.
+        attempts: Vec<Attempt<P>>,
+    },
+    /// Peer: it speaks another protocol version.
+    #[error(transparent)]
+    IncompatibleVersion(#[from] IncompatibleVersion<P>),
+    /// The connection ended during the handshake. Who can act on that depends on the reason.
+    #[error("{reason}")]
+    ConnectionClosed {
+        /// What ended it.
+        reason: CloseReason,
+    },
+    /// Link: a datagram of the robot could not be read.
+    #[error("{fault}")]
+    Datagram {
+        /// What was wrong with it.
+        fault: LinkFault,
+    },
+    /// Peer: it left the protocol.
+    #[error(transparent)]
+    Violation(#[from] Violation<P::Command>),
+    /// Peer: its stream cannot be cut into messages.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// Link: the handshake was not answered in time.
+    #[error("libfranka: TCP receive: Timeout")]
+    HandshakeTimeout,
+    /// Link: the handshake succeeded and no state came. A firewall in the way of UDP is the usual
+    /// cause.
+    #[error("libfranka: UDP receive: Timeout")]
+    NoState,
+    /// Robot, link or peer: there is no model of the arm. See
+    /// [`Builder::nominal_model`](crate::Builder::nominal_model).
+    #[cfg(feature = "urdf")]
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+impl<P: Protocol> ConnectError<P> {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Endpoint(_) | Self::LinkTimeout(_) => Party::Caller,
+            // One that refuses is there, the others need not be.
+            Self::NoAddress { attempts } => attempts
+                .iter()
+                .map(|attempt| attempt.error.party())
+                .find(|party| *party == Party::Robot)
+                .unwrap_or(Party::Link),
+            Self::Realtime(error) if error.is_misuse() => Party::Caller,
+            Self::Realtime(_) | Self::System(_) => Party::Host,
+            Self::Refused => Party::Robot,
+            Self::Timeout
+            | Self::Network { .. }
+            | Self::Datagram { .. }
+            | Self::HandshakeTimeout
+            | Self::NoState => Party::Link,
+            Self::ConnectionClosed { reason } => reason.party(),
+            Self::IncompatibleVersion(_) | Self::Violation(_) | Self::Frame(_) => Party::Peer,
+            #[cfg(feature = "urdf")]
+            Self::Model(error) => error.party(),
+        }
+    }
+}
+
+/// One of a host's addresses, and why there is no connection to it.
+#[derive(Debug)]
+pub struct Attempt<P: Protocol = Version> {
+    /// The address.
+    pub address: SocketAddr,
+    /// What went wrong.
+    pub error: ConnectError<P>,
+}
+
+fn list<P: Protocol>(attempts: &[Attempt<P>]) -> String {
+    let lines = attempts
+        .iter()
+        .map(|Attempt { address, error }| format!("{address}: {error}"));
+    lines.collect::<Vec<_>>().join("; ")
+}
+
+impl From<StartError> for ConnectError {
+    fn from(error: StartError) -> Self {
+        match error {
+            StartError::Scheduling(error) => Self::Realtime(error),
+            StartError::System(error) => Self::System(error),
+            // The enum is open; whatever else keeps the thread from starting is the host's doing.
+            other => Self::System(io::Error::other(other)),
+        }
+    }
+}
+
+impl From<LinkFault> for ConnectError {
+    fn from(fault: LinkFault) -> Self {
+        Self::Datagram { fault }
+    }
+}
+
+/// Why there is no model of the connected arm.
+/// [`Builder::nominal_model`](crate::Builder::nominal_model) does without its description.
+#[cfg(feature = "urdf")]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// The robot was asked for its description and did not give it.
+    #[error(transparent)]
+    Command(#[from] CommandError),
+    /// Robot: its description is not that of an arm that this driver knows.
+    #[error(transparent)]
+    Urdf(#[from] UrdfError),
+}
+
+#[cfg(feature = "urdf")]
+impl ModelError {
+    /// Who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Command(error) => error.party(),
+            Self::Urdf(_) => Party::Peer,
+        }
+    }
+}
+
+#[cfg(all(test, feature = "urdf"))]
+mod tests {
+    use franka_model::Model;
+
+    use super::*;
+    use crate::error::Error;
+
+    #[test]
+    fn a_description_that_cannot_be_read_is_nobodys_fault_here() {
+        let error = Model::from_urdf("<sdf/>").expect_err("no description");
+        let text = error.to_string();
+        let error: ConnectError = ModelError::from(error).into();
+        let error = Error::from(error);
+        assert_eq!((error.to_string(), error.party()), (text, Party::Peer));
+    }
+}

@@ -1,0 +1,49 @@
+//! The handshake on a new command connection.
+
+use franka_proto::Protocol;
+use franka_proto::client::{Event, Session};
+use franka_rt::lifecycle::CloseReason;
+use futures::{SinkExt, StreamExt};
+use tokio::net::TcpStream;
+use tokio_util::codec::Framed;
+
+use crate::codec::{MessageCodec, StreamError};
+use crate::error::ConnectError;
+
+/// Asks the peer for its states at `udp_port` and waits for its answer: the connection is open, or
+/// the peer speaks another version.
+pub(crate) async fn shake_hands<P: Protocol>(
+    stream: &mut Framed<TcpStream, MessageCodec>,
+    session: &mut Session<P>,
+    udp_port: u16,
+) -> Result<(), ConnectError<P>> {
+    stream
+        .send(session.connect(udp_port))
+        .await
+        .map_err(broken)?;
+    loop {
+        let frame = match stream.next().await {
+            Some(frame) => frame.map_err(broken)?,
+            None => {
+                return Err(ConnectError::ConnectionClosed {
+                    reason: CloseReason::ClosedByPeer,
+                });
+            }
+        };
+        match session.on_message(frame.message())? {
+            Event::Connected { .. } => return Ok(()),
+            Event::Incompatible(refusal) => return Err(refusal.into()),
+            // Not for us; the answer may still come, until the time is up.
+            _ => {}
+        }
+    }
+}
+
+fn broken<P: Protocol>(error: StreamError) -> ConnectError<P> {
+    match error {
+        StreamError::Frame(error) => error.into(),
+        error @ StreamError::Io(_) => ConnectError::ConnectionClosed {
+            reason: error.into(),
+        },
+    }
+}

@@ -1,0 +1,179 @@
+//! The options that motions, streams and sessions have in common: each written once.
+
+use franka_model::Model;
+use franka_rt::lifecycle::Tuning;
+use franka_rt::session::{Budget, Goal, GoalError, Tolerance};
+
+/// Options of one goal or of many. What is `None` is left to the goal, whose kind decides.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct GoalOptions {
+    pub(crate) tuning: Tuning,
+    pub(crate) speed: Option<f64>,
+    pub(crate) stiffness: Option<[f64; 6]>,
+    pub(crate) tolerance: Option<Tolerance>,
+}
+
+impl GoalOptions {
+    /// Begins with the tuning of a session.
+    pub(crate) fn of_session(tuning: Tuning) -> Self {
+        Self {
+            tuning,
+            ..Self::default()
+        }
+    }
+
+    /// Returns the goal with these options, for a robot of this model.
+    ///
+    /// # Errors
+    /// [`GoalError::Speed`].
+    pub(crate) fn apply(&self, goal: Goal, model: &Model) -> Result<Goal, GoalError> {
+        let goal = self.tuning.apply(goal);
+        let softened = |stiffness| goal.gains.with_cartesian_stiffness(stiffness);
+        Ok(Goal {
+            gains: self.stiffness.map_or(goal.gains, softened),
+            budget: self.at_speed(goal.budget, model)?,
+            tolerance: self.tolerance.unwrap_or(goal.tolerance),
+            ..goal
+        })
+    }
+
+    /// Returns the tuning that a session keeps: the speed becomes part of its budget.
+    ///
+    /// # Errors
+    /// [`GoalError::Speed`].
+    pub(crate) fn session_tuning(&self, model: &Model) -> Result<Tuning, GoalError> {
+        let mut tuning = self.tuning;
+        if self.speed.is_some() {
+            let budget = tuning
+                .budget
+                .unwrap_or_else(|| Budget::of(model.joint_limits()));
+            tuning.budget = Some(self.at_speed(budget, model)?);
+        }
+        Ok(tuning)
+    }
+
+    fn at_speed(&self, budget: Budget, model: &Model) -> Result<Budget, GoalError> {
+        match self.speed {
+            Some(factor) => budget.at_speed(factor, model),
+            None => Ok(budget),
+        }
+    }
+}
+
+/// Setters for a type with the field `options: GoalOptions`: those of every type, and with `target`
+/// those of a type that has one target or one stream of them.
+macro_rules! goal_options {
+    () => {
+        /// Walks the same paths `factor` times as fast as the limits allow: velocities scale with
+        /// it, accelerations with its square, jerks with its cube. A factor that is not positive,
+        /// or takes a limit beyond the robot's, is refused as
+        /// [`GoalError::Speed`](crate::error::GoalError::Speed) when the motion begins.
+        pub fn speed(mut self, factor: f64) -> Self {
+            self.options.speed = Some(factor);
+            self
+        }
+
+        /// Replaces the limits, which [`Self::speed`] then scales; by default those of
+        /// [`Budget::of`](crate::goal::Budget::of), or of the session.
+        pub fn limits(mut self, budget: crate::goal::Budget) -> Self {
+            self.options.tuning.budget = Some(budget);
+            self
+        }
+
+        /// Replaces the law and all gains; by default those of the session, or
+        /// [`Gains::cartesian`](crate::goal::Gains::cartesian) for poses and
+        /// [`Gains::joint`](crate::goal::Gains::joint) for joint positions. The kind of the first
+        /// target of a stream decides. The law is [`Gains::law`](crate::goal::Gains::law):
+        /// [`Law::OperationalSpace`](crate::goal::Law::OperationalSpace) moves the arm by the
+        /// springs at the end effector, and gains without any are refused under it.
+        pub fn gains(mut self, gains: crate::goal::Gains) -> Self {
+            self.options.tuning.gains = Some(gains);
+            self.options.stiffness = None;
+            self
+        }
+
+        /// Bounds the force with which springs and dampers press at the end effector, `[N]`,
+        /// between 5 and 200; by default that of the session, or
+        /// [`DEFAULT_FORCE_CAP`](crate::goal::DEFAULT_FORCE_CAP). An undeclared load counts: the
+        /// arm sinks under more weight than the cap, and the motion does not arrive. Refused under
+        /// [`Backend::RobotController`](crate::goal::Backend::RobotController), which cannot keep
+        /// it.
+        pub fn force_cap(mut self, newtons: f64) -> Self {
+            self.options.tuning.force_cap = Some(crate::goal::ForceCap::Newtons(newtons));
+            self
+        }
+
+        /// Removes the force cap. The reach of the springs still bounds their force.
+        pub fn without_force_cap(mut self) -> Self {
+            self.options.tuning.force_cap = Some(crate::goal::ForceCap::Off);
+            self
+        }
+    };
+    (target) => {
+        goal_options!();
+
+        /// Sets the stiffness at the end effector, x y z `[N/m]` and about x y z `[N m/rad]`, base
+        /// axes; dampings keep their ratio.
+        pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
+            self.options.stiffness = Some(stiffness);
+            self
+        }
+
+        /// Sets how near to the target counts as arrived, of a stream: to its last one.
+        pub fn tolerance(mut self, tolerance: crate::goal::Tolerance) -> Self {
+            self.options.tolerance = Some(tolerance);
+            self
+        }
+    };
+}
+
+pub(crate) use goal_options;
+
+#[cfg(test)]
+mod tests {
+    use franka_rt::law::Gains;
+    use franka_rt::session::{DEFAULT_FORCE_CAP, ForceCap, GoalId, OnArrival, Target};
+
+    use super::*;
+
+    #[test]
+    fn the_kind_of_a_target_decides_what_is_not_set() {
+        let model = Model::fr3();
+        let limits = model.joint_limits();
+        let joints = Target::Joints(franka_model::READY.into());
+        let plain = Goal::new(GoalId(7), joints, OnArrival::Hold, limits);
+        assert_eq!(GoalOptions::default().apply(plain, model), Ok(plain));
+        let mut options = GoalOptions::of_session(Tuning {
+            gains: Some(Gains::droid()),
+            force_cap: Some(ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP)),
+            ..Tuning::default()
+        });
+        let tuned = options.apply(plain, model).unwrap();
+        assert_eq!(tuned.gains, Gains::droid());
+        assert_eq!(tuned.force_cap, ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP));
+        assert_eq!(tuned.budget, plain.budget);
+        let stiffness = [200.0, 200.0, 200.0, 10.0, 10.0, 10.0];
+        options.stiffness = Some(stiffness);
+        let soft = options.apply(plain, model).unwrap().gains;
+        assert_eq!(soft, Gains::droid().with_cartesian_stiffness(stiffness));
+    }
+
+    #[test]
+    fn speed_scales_the_limits_whichever_was_set_first() {
+        let model = Model::fr3();
+        let limits = model.joint_limits();
+        let budget = Budget::of(limits).scaled(0.5);
+        let options = GoalOptions {
+            speed: Some(0.4),
+            ..GoalOptions::of_session(Tuning {
+                budget: Some(budget),
+                ..Tuning::default()
+            })
+        };
+        let goal = Goal::new(GoalId(7), Target::Rest, OnArrival::Hold, limits);
+        let goal = options.apply(goal, model).unwrap();
+        assert_eq!(goal.budget, budget.scaled(0.4));
+        let kept = options.session_tuning(model).unwrap();
+        assert_eq!(kept.budget, Some(budget.scaled(0.4)));
+    }
+}

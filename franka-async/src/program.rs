@@ -1,0 +1,48 @@
+//! Programs: motions whose commands are written from outside the control thread.
+
+use franka_proto::MoveRequest;
+use franka_rt::driver::Program;
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::GoalId;
+use tokio::sync::oneshot;
+
+use crate::cancel::CancelOnDrop;
+use crate::input::{EndReply, Input, NewMotion, Outcome, Replies};
+use crate::robot::Robot;
+
+impl Robot {
+    /// Begins a program and waits until it runs. Returns the receiver of its outcome. Dropping the
+    /// future has the robot stop.
+    ///
+    /// # Errors
+    /// What ended the motion before it ran.
+    pub(crate) async fn begin_program(
+        &self,
+        id: GoalId,
+        program: Program,
+        request: MoveRequest,
+    ) -> Result<oneshot::Receiver<Outcome>, MotionError> {
+        let (began, begun) = oneshot::channel();
+        let (ended, outcome) = oneshot::channel();
+        self.send(Input::Begin {
+            motion: NewMotion::Program {
+                id,
+                program,
+                request: Box::new(request),
+            },
+            replies: Replies {
+                began: Some(began),
+                ended: EndReply::One(ended),
+            },
+        });
+        let stop = CancelOnDrop::new(self, id);
+        if begun.await.is_ok() {
+            stop.defuse();
+            return Ok(outcome);
+        }
+        // It never will run: the outcome has the reason.
+        let outcome = outcome.await.unwrap_or_else(|_| self.closed_outcome());
+        stop.defuse();
+        Err(outcome.err().unwrap_or(MotionError::Stopped))
+    }
+}

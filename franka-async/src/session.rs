@@ -1,0 +1,89 @@
+//! What all handles of a session share.
+
+use std::future::Future;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::session::GoalId;
+use tokio::sync::{oneshot, watch};
+
+use crate::input::{Input, Outcome};
+use crate::robot::Robot;
+
+/// A session of target control. Dropping it brakes the arm and ends the session.
+#[derive(Debug)]
+pub(crate) struct Session {
+    robot: Robot,
+    id: GoalId,
+    tuning: Mutex<Tuning>,
+    ended: watch::Receiver<Option<Outcome>>,
+}
+
+impl Session {
+    /// The session `id`, whose outcome `ended` receives.
+    pub(crate) fn new(
+        robot: Robot,
+        id: GoalId,
+        tuning: Tuning,
+        ended: watch::Receiver<Option<Outcome>>,
+    ) -> Self {
+        Self {
+            robot,
+            id,
+            tuning: Mutex::new(tuning),
+            ended,
+        }
+    }
+
+    pub(crate) fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    pub(crate) fn id(&self) -> GoalId {
+        self.id
+    }
+
+    /// Gains, limits and force cap of the goals to come.
+    pub(crate) fn tuning(&self) -> MutexGuard<'_, Tuning> {
+        // Nothing can panic while it is held.
+        self.tuning.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for the end of the session and returns its outcome.
+    pub(crate) fn ended(&self) -> impl Future<Output = Outcome> + Send + 'static {
+        let (mut ended, robot) = (self.ended.clone(), self.robot.clone());
+        async move {
+            match ended.wait_for(Option::is_some).await {
+                Ok(outcome) => outcome.clone().unwrap_or_else(|| robot.closed_outcome()),
+                Err(_) => robot.closed_outcome(),
+            }
+        }
+    }
+
+    /// Sends to the bridge and waits for the reply.
+    pub(crate) async fn ask(
+        &self,
+        input: impl FnOnce(oneshot::Sender<Result<(), MotionError>>) -> Input,
+    ) -> Result<(), MotionError> {
+        let (taken, reply) = oneshot::channel();
+        self.robot.send(input(taken));
+        let closed = || self.robot.closed_outcome().map(drop);
+        let reply = reply.await.unwrap_or_else(|_| closed());
+        reply.map_err(|error| self.explain(error))
+    }
+
+    /// Replaces [`MotionError::Disengaged`] by what ended the session: the lifecycle knows that of
+    /// the last session only.
+    pub(crate) fn explain(&self, error: MotionError) -> MotionError {
+        match (&*self.ended.borrow(), error) {
+            (Some(Err(ended)), MotionError::Disengaged) => ended.clone(),
+            (_, error) => error,
+        }
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.robot.cancel(self.id);
+    }
+}

@@ -1,0 +1,142 @@
+//! The newest state as it changes, in copies.
+
+use std::pin::Pin;
+use std::task::{Context, Poll};
+
+use franka_proto::RobotState;
+use futures::{Stream, StreamExt};
+use tokio::sync::watch;
+use tokio_stream::wrappers::WatchStream;
+
+use crate::close::Closing;
+use crate::error::ReadError;
+
+/// The newest state of a robot or an end effector as it changes: see
+/// [`Robot::states`](crate::Robot::states).
+///
+/// As a [`Stream`] it yields each change, or the newest of those that came meanwhile, and ends when
+/// the connection does. A clone begins with the newest state of its own making.
+///
+/// States are handed out as copies. A borrow would lock out the task that publishes states and
+/// serves `stop`: one that is held across an await would keep both waiting for each other.
+#[derive(Debug)]
+pub struct States<S = RobotState> {
+    published: watch::Receiver<S>,
+    changes: WatchStream<S>,
+    closing: Closing,
+}
+
+impl<S: Copy + Send + Sync + 'static> States<S> {
+    /// Yields what `published` changes to from now on; `closing` says why it ends.
+    pub(crate) fn new(mut published: watch::Receiver<S>, closing: Closing) -> Self {
+        published.mark_unchanged();
+        Self {
+            changes: WatchStream::from_changes(published.clone()),
+            published,
+            closing,
+        }
+    }
+
+    /// Returns the newest state that was published.
+    pub fn newest(&self) -> S {
+        *self.published.borrow()
+    }
+
+    /// Waits for a state that was not returned before, and returns the newest one.
+    ///
+    /// # Errors
+    /// [`ReadError::ConnectionClosed`].
+    ///
+    /// # Cancel safety
+    /// Dropping the future loses nothing: the next call returns the state.
+    pub async fn changed(&mut self) -> Result<S, ReadError> {
+        let state = self.changes.next().await;
+        state.ok_or_else(|| ReadError::ConnectionClosed {
+            reason: self.closing.reason(),
+        })
+    }
+
+    /// Waits for a state that satisfies `condition`, the newest of now included, and returns it.
+    /// States that are replaced by a newer one before this task looks are not tested; for every
+    /// state, see [`Robot::read`](crate::Robot::read).
+    ///
+    /// # Errors
+    /// [`ReadError::ConnectionClosed`].
+    ///
+    /// # Cancel safety
+    /// States tested before the future is dropped are not tested again, except the newest.
+    pub async fn wait_for(
+        &mut self,
+        mut condition: impl FnMut(&S) -> bool,
+    ) -> Result<S, ReadError> {
+        let mut state = self.newest();
+        while !condition(&state) {
+            state = self.changed().await?;
+        }
+        Ok(state)
+    }
+}
+
+impl<S: Copy + Send + Sync + 'static> Clone for States<S> {
+    fn clone(&self) -> Self {
+        Self::new(self.published.clone(), self.closing.clone())
+    }
+}
+
+impl<S: Copy + Send + Sync + 'static> Stream for States<S> {
+    type Item = S;
+
+    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<S>> {
+        self.changes.poll_next_unpin(context)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use franka_rt::lifecycle::CloseReason;
+    use futures::FutureExt;
+
+    use super::*;
+
+    fn state(message_id: u64) -> RobotState {
+        RobotState {
+            message_id,
+            ..RobotState::default()
+        }
+    }
+
+    #[test]
+    fn changes_come_once_each_and_end_with_the_reason() {
+        let (publisher, published) = watch::channel(state(1));
+        let closing = Closing::default();
+        let mut states = States::new(published, closing.clone());
+        assert_eq!(states.newest().message_id, 1);
+        assert_eq!(states.changed().now_or_never(), None);
+        publisher.send_replace(state(2));
+        publisher.send_replace(state(3));
+        assert_eq!(states.changed().now_or_never(), Some(Ok(state(3))));
+        assert_eq!(states.changed().now_or_never(), None);
+        let mut clone = states.clone();
+        assert_eq!(clone.changed().now_or_never(), None);
+        closing.note(CloseReason::ClosedByPeer);
+        drop(publisher);
+        let reason = CloseReason::ClosedByPeer;
+        assert_eq!(
+            clone.changed().now_or_never(),
+            Some(Err(ReadError::ConnectionClosed { reason }))
+        );
+        assert_eq!(states.next().now_or_never(), Some(None));
+    }
+
+    #[test]
+    fn a_state_in_hand_does_not_keep_the_publisher_waiting() {
+        let (publisher, published) = watch::channel(state(1));
+        let mut states = States::new(published, Closing::default());
+        let held = states.newest();
+        // A held borrow of the watch channel would block this thread here for ever.
+        publisher.send_replace(state(2));
+        assert_eq!(held.message_id, 1);
+        let waited = states.wait_for(|state| state.message_id == 2);
+        assert_eq!(waited.now_or_never(), Some(Ok(state(2))));
+    }
+}

@@ -1,0 +1,53 @@
+//! Why a connection has ended.
+
+use std::io;
+
+use super::Party;
+
+/// Why a connection to a robot or an end effector has ended. `Display` is the text of the reference
+/// client where it has one.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CloseReason {
+    /// Caller: this program closed it: `shutdown`, a cancelled token, or the last handle dropped.
+    #[error("this program has closed the connection")]
+    ClosedByUs,
+    /// Link: the other side closed it.
+    #[error("libfranka: server closed connection")]
+    ClosedByPeer,
+    /// Link: sending or receiving failed.
+    #[error("{text}")]
+    Io {
+        /// The class of the failure.
+        kind: io::ErrorKind,
+        /// What failed, in the words of the reference client.
+        text: String,
+    },
+    /// Peer: it left the protocol in a way that no later message can mend.
+    #[error("{text}")]
+    Protocol {
+        /// What was expected and what came.
+        text: String,
+    },
+    /// Host: the control thread has ended or does not respond.
+    #[error("the control thread is gone: {text}")]
+    ThreadEnded {
+        /// What showed that.
+        text: String,
+    },
+    /// Caller: the runtime that served the connection was shut down.
+    #[error("the runtime that served the connection has ended")]
+    RuntimeEnded,
+}
+
+impl CloseReason {
+    /// Returns who can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::ClosedByUs | Self::RuntimeEnded => Party::Caller,
+            Self::ClosedByPeer | Self::Io { .. } => Party::Link,
+            Self::Protocol { .. } => Party::Peer,
+            Self::ThreadEnded { .. } => Party::Host,
+        }
+    }
+}
