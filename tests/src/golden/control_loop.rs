@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
+use anyhow::{Context as _, bail};
 use franka_proto::{MoveControllerMode, RobotCommand, RobotMode, RobotState, Version};
 use franka_rt::control::{
     Callback, CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions,
@@ -16,48 +17,124 @@ use franka_rt::control::{
 };
 use franka_rt::driver::{ControlLog, Driver, Modes, MotionId, Order, Program};
 use franka_rt::shaping::Shaper;
+use serde::Deserialize;
 
-use super::{Case, Malformed, Node, Report};
+use super::{Case, Report, Versions};
 
 /// Of every number of a command, in its SI unit. The vectors allow 1e-12, and 1e-11 for poses,
 /// which go through quaternions.
 const TOLERANCE: f64 = 5e-15;
 
+/// What the reference did with a control loop.
+#[derive(Deserialize)]
+struct Trace {
+    /// Kinds of the functions, for example `torque+joint_position`.
+    variant: String,
+    limit_rate: bool,
+    cutoff_frequency: f64,
+    states: Vec<State>,
+    events: Vec<Event>,
+}
+
+/// A state with the fields that are given; the others are zero.
+#[derive(Deserialize)]
+#[serde(default)]
+#[allow(non_snake_case)]
+#[derive(Default)]
+struct State {
+    time_ms: u64,
+    q_d: [f64; 7],
+    dq_d: [f64; 7],
+    ddq_d: [f64; 7],
+    tau_J_d: [f64; 7],
+    O_T_EE_c: [f64; 16],
+    O_dP_EE_c: [f64; 6],
+    O_ddP_EE_c: [f64; 6],
+    elbow_c: [f64; 2],
+    delbow_c: [f64; 2],
+    ddelbow_c: [f64; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+enum Event {
+    /// Modes of the `Move`, in the numbering of requests.
+    Start {
+        controller_mode: u64,
+        motion_generator_mode: u64,
+    },
+    MotionCallback(Call),
+    TorqueCallback(Call),
+    Update(Sent),
+    Finish(Sent),
+}
+
+/// A call of a function, and what it returned.
+#[derive(Deserialize)]
+struct Call {
+    /// Index of the state.
+    state: usize,
+    time_step_ms: u64,
+    returns: Vec<f64>,
+    /// Two zeros stand for no elbow.
+    elbow: Option<[f64; 2]>,
+    finished: u8,
+}
+
+/// What was handed to the robot. The finishing flag is not set yet there.
+#[derive(Deserialize)]
+struct Sent {
+    motion: Option<SentMotion>,
+    control: Option<SentControl>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+#[allow(non_snake_case)]
+struct SentMotion {
+    q_c: Option<[f64; 7]>,
+    dq_c: Option<[f64; 7]>,
+    O_T_EE_c: Option<[f64; 16]>,
+    O_dP_EE_c: Option<[f64; 6]>,
+    elbow_c: [f64; 2],
+    valid_elbow: u8,
+}
+
+#[derive(Deserialize)]
+#[allow(non_snake_case)]
+struct SentControl {
+    tau_J_d: [f64; 7],
+}
+
 /// Checks `control_loop_vectors.json`.
-pub(super) fn traces(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn traces(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    for version in Version::ALL {
-        for node in root.get(&format!("v{version}"))?.list()? {
-            let name = format!("{} ({})", node.path(), node.get("variant")?.text()?);
-            let (callback, calls) = functions(version, &node)?;
-            let states = node.get("states")?.list()?;
-            let states: Vec<_> = states.iter().map(state).collect::<Result<_, _>>()?;
-            let trace = Trace::read(&node)?;
+    let file: Versions<Vec<Trace>> = serde_json::from_slice(text)?;
+    for (version, traces) in file.each() {
+        for (index, trace) in traces.iter().enumerate() {
+            let (callback, calls) = trace.functions(version)?;
+            let expected = trace.cycles()?;
+            let name = format!("v{version}[{index}] ({})", trace.variant);
             report.case(name, |case| {
-                trace.compare(case, version, callback, &calls, &states);
+                trace.compare(case, version, callback, &calls, &expected);
             });
         }
     }
     Ok(report)
 }
 
-/// A call of a function: its event, `message_id` of the state, and the time step.
-type Call = (&'static str, u64, Duration);
+/// A call as a function notes it: which one, `message_id` of the state, and the time step.
+type Noted = (Function, u64, Duration);
 
-const MOTION: &str = "motion_callback";
-const TORQUE: &str = "torque_callback";
-
-/// What the reference did.
-struct Trace {
-    /// Controller and motion generator of the `Move`, in the numbering of requests.
-    started: (u64, u64),
-    cycles: Vec<Cycle>,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Function {
+    Motion,
+    Torque,
 }
 
-/// What it did with one state.
+/// What the reference did with one state.
 struct Cycle {
-    /// Name, state and step `[ms]` of each call.
-    calls: Vec<(String, u64, u64)>,
+    calls: Vec<Noted>,
     /// What was sent then.
     command: RobotCommand,
     /// Whether that was the last command.
@@ -65,37 +142,34 @@ struct Cycle {
 }
 
 impl Trace {
-    fn read(node: &Node<'_>) -> Result<Self, Malformed> {
-        let events = node.get("events")?.list()?;
-        let (start, events) = match &events[..] {
-            [start, first, events @ ..] if name(start)? == "start" && name(first)? == "update" => {
-                (start, events)
-            }
-            _ => return Err(node.malformed("a start and an update without commands first")),
-        };
-        let integer = |node: &Node<'_>, member| node.get(member)?.integer();
-        let mut cycles = Vec::new();
-        let mut calls = Vec::new();
-        for event in events {
-            let name = name(event)?;
-            if name == "update" || name == "finish" {
-                cycles.push(Cycle {
+    /// The events by state. The first two are the start and an update without commands.
+    fn cycles(&self) -> anyhow::Result<Vec<Cycle>> {
+        let (mut cycles, mut calls) = (Vec::new(), Vec::new());
+        for event in self.events.iter().skip(2) {
+            match event {
+                Event::Start { .. } => bail!("a second start"),
+                Event::MotionCallback(call) => calls.push(self.noted(Function::Motion, call)?),
+                Event::TorqueCallback(call) => calls.push(self.noted(Function::Torque, call)?),
+                Event::Update(sent) | Event::Finish(sent) => cycles.push(Cycle {
                     calls: std::mem::take(&mut calls),
-                    command: command(event)?,
-                    finished: name == "finish",
-                });
-            } else {
-                let (state, step) = (integer(event, "state")?, integer(event, "time_step_ms")?);
-                calls.push((name.to_owned(), state, step));
+                    command: sent.command(),
+                    finished: matches!(event, Event::Finish(_)),
+                }),
             }
         }
-        Ok(Self {
-            started: (
-                integer(start, "controller_mode")?,
-                integer(start, "motion_generator_mode")?,
-            ),
-            cycles,
-        })
+        Ok(cycles)
+    }
+
+    fn noted(&self, function: Function, call: &Call) -> anyhow::Result<Noted> {
+        let state = self
+            .states
+            .get(call.state)
+            .context("a call with an unknown state")?;
+        Ok((
+            function,
+            state.time_ms,
+            Duration::from_millis(call.time_step_ms),
+        ))
     }
 
     fn compare(
@@ -103,17 +177,25 @@ impl Trace {
         case: &mut Case<'_>,
         version: Version,
         callback: Callback,
-        calls: &Receiver<Call>,
-        states: &[RobotState],
+        calls: &Receiver<Noted>,
+        cycles: &[Cycle],
     ) {
+        let Some(&Event::Start {
+            controller_mode,
+            motion_generator_mode,
+        }) = self.events.first()
+        else {
+            return case.fail("the first event is not the start");
+        };
         // An argument of the loop, where torques leave the choice.
-        let controller = match self.started.0 {
+        let controller = match controller_mode {
             1 => MoveControllerMode::CartesianImpedance,
             _ => MoveControllerMode::JointImpedance,
         };
         let request = callback.request(version, controller);
         let started = (request.controller as u64, request.generator as u64);
-        case.equal("modes of the Move", started, self.started);
+        let expected = (controller_mode, motion_generator_mode);
+        case.equal("modes of the Move", started, expected);
         let modes = Modes::of(&request);
         let mut driver = Driver::new(version);
         driver.on_order(Order::Arm {
@@ -125,32 +207,156 @@ impl Trace {
             times: Arc::default(),
             observer: None,
         });
-        case.equal("cycles", states.len(), self.cycles.len());
-        for (state, cycle) in states.iter().zip(&self.cycles) {
+        case.equal("cycles", self.states.len(), cycles.len());
+        for (state, cycle) in self.states.iter().map(State::robot_state).zip(cycles) {
             let sent = driver.on_state(&RobotState {
                 motion_generator_mode: modes.generator,
                 controller_mode: modes.controller,
                 robot_mode: RobotMode::Move,
-                ..*state
+                ..state
             });
             let called: Vec<_> = calls.try_iter().collect();
-            let expected = cycle.calls.iter().map(|(name, state, step)| {
-                let state = states.get(*state as usize).map(|state| state.message_id);
-                (name.as_str(), state, Duration::from_millis(*step))
-            });
-            let called = called
-                .iter()
-                .map(|(name, state, step)| (*name, Some(*state), *step));
-            case.equal(
-                "calls",
-                called.collect::<Vec<_>>(),
-                expected.collect::<Vec<_>>(),
-            );
+            case.equal("calls", &called, &cycle.calls);
             match sent {
                 Some(sent) => cycle.compare_command(case, &sent, state.message_id),
                 None => case.fail("no command"),
             }
         }
+    }
+
+    /// The functions, which return what the callbacks of the trace did, and where their calls are
+    /// noted.
+    fn functions(&self, version: Version) -> anyhow::Result<(Callback, Receiver<Noted>)> {
+        let (sender, calls) = channel();
+        let torques = player(Function::Torque, &self.events, &sender, |call| {
+            Ok(Torques(call.array()?))
+        })?;
+        let (with_torques, motion) = match self.variant.strip_prefix("torque") {
+            Some("") => (true, None),
+            Some(rest) => (true, rest.strip_prefix('+')),
+            None => (false, Some(self.variant.as_str())),
+        };
+        let callback = match motion {
+            None => Callback::torques(version, torques),
+            Some(motion) => {
+                let callback = match motion {
+                    "joint_position" => {
+                        self.motion(version, &sender, |call| Ok(JointPositions(call.array()?)))?
+                    }
+                    "joint_velocity" => {
+                        self.motion(version, &sender, |call| Ok(JointVelocities(call.array()?)))?
+                    }
+                    "cartesian_pose" => self.motion(version, &sender, |call| {
+                        Ok(CartesianPose {
+                            O_T_EE: call.array()?,
+                            elbow: call.elbow(),
+                        })
+                    })?,
+                    "cartesian_velocity" => self.motion(version, &sender, |call| {
+                        Ok(CartesianVelocities {
+                            O_dP_EE: call.array()?,
+                            elbow: call.elbow(),
+                        })
+                    })?,
+                    _ => bail!("{motion}: expected a variant of the control loops"),
+                };
+                if with_torques {
+                    callback.with_torques(torques)
+                } else {
+                    callback
+                }
+            }
+        };
+        let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency);
+        Ok((callback.with_shaper(shaper.trusting_the_echo()), calls))
+    }
+
+    fn motion<C: GeneratorCommand>(
+        &self,
+        version: Version,
+        calls: &Sender<Noted>,
+        read: impl Fn(&Call) -> anyhow::Result<C>,
+    ) -> anyhow::Result<Callback> {
+        let function = player(Function::Motion, &self.events, calls, read)?;
+        Ok(Callback::motion::<C, _>(version, function))
+    }
+}
+
+/// A control function.
+type Player<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
+
+/// A function that returns, call by call, what the callback of the trace did, and panics beyond.
+fn player<T: Send + 'static>(
+    function: Function,
+    events: &[Event],
+    calls: &Sender<Noted>,
+    read: impl Fn(&Call) -> anyhow::Result<T>,
+) -> anyhow::Result<Player<T>> {
+    let mut returns = VecDeque::new();
+    for event in events {
+        let call = match (event, function) {
+            (Event::MotionCallback(call), Function::Motion) => call,
+            (Event::TorqueCallback(call), Function::Torque) => call,
+            _ => continue,
+        };
+        let returned = read(call)?;
+        returns.push_back(match call.finished {
+            0 => Next::Continue(returned),
+            _ => Next::Finish(returned),
+        });
+    }
+    let calls = calls.clone();
+    Ok(Box::new(move |state: &RobotState, step: Duration| {
+        let heard = calls.send((function, state.message_id, step));
+        heard.expect("the calls are compared after the last one");
+        returns.pop_front().expect("no more calls than there were")
+    }))
+}
+
+impl Call {
+    fn array<const N: usize>(&self) -> anyhow::Result<[f64; N]> {
+        let array = self.returns.as_slice().try_into();
+        array.with_context(|| format!("{} numbers, expected {N}", self.returns.len()))
+    }
+
+    fn elbow(&self) -> Option<[f64; 2]> {
+        self.elbow.filter(|elbow| *elbow != [0.0, 0.0])
+    }
+}
+
+impl State {
+    fn robot_state(&self) -> RobotState {
+        RobotState {
+            message_id: self.time_ms,
+            q_d: self.q_d,
+            dq_d: self.dq_d,
+            ddq_d: self.ddq_d,
+            tau_J_d: self.tau_J_d,
+            O_T_EE_c: self.O_T_EE_c,
+            O_dP_EE_c: self.O_dP_EE_c,
+            O_ddP_EE_c: self.O_ddP_EE_c,
+            elbow_c: self.elbow_c,
+            delbow_c: self.delbow_c,
+            ddelbow_c: self.ddelbow_c,
+            ..RobotState::default()
+        }
+    }
+}
+
+impl Sent {
+    fn command(&self) -> RobotCommand {
+        let mut command = RobotCommand::default();
+        if let Some(motion) = &self.motion {
+            command.q_c = motion.q_c.unwrap_or_default();
+            command.dq_c = motion.dq_c.unwrap_or_default();
+            command.O_T_EE_c = motion.O_T_EE_c.unwrap_or_default();
+            command.O_dP_EE_c = motion.O_dP_EE_c.unwrap_or_default();
+            command.elbow_c = (motion.valid_elbow != 0).then_some(motion.elbow_c);
+        }
+        if let Some(control) = &self.control {
+            command.tau_J_d = control.tau_J_d;
+        }
+        command
     }
 }
 
@@ -170,151 +376,4 @@ impl Cycle {
         let (elbow, expected) = (elbow.unwrap_or_default(), expected.unwrap_or_default());
         case.near("elbow_c", &elbow, &expected, TOLERANCE);
     }
-}
-
-/// The functions of a trace, which return what its callbacks did, and where their calls are noted.
-fn functions(version: Version, node: &Node<'_>) -> Result<(Callback, Receiver<Call>), Malformed> {
-    let variant = node.get("variant")?.text()?;
-    let events = node.get("events")?.list()?;
-    let (sender, calls) = channel();
-    let torques = player(TORQUE, &events, &sender, |node| {
-        Ok(Torques(node.get("returns")?.numbers()?))
-    })?;
-    let (with_torques, motion) = match variant.strip_prefix("torque") {
-        Some("") => (true, None),
-        Some(rest) => (true, rest.strip_prefix('+')),
-        None => (false, Some(variant)),
-    };
-    let callback = match motion {
-        None => Callback::torques(version, torques),
-        Some(motion) => {
-            let callback = match motion {
-                "joint_position" => motion_of(version, &events, &sender, |node| {
-                    Ok(JointPositions(node.get("returns")?.numbers()?))
-                })?,
-                "joint_velocity" => motion_of(version, &events, &sender, |node| {
-                    Ok(JointVelocities(node.get("returns")?.numbers()?))
-                })?,
-                "cartesian_pose" => motion_of(version, &events, &sender, |node| {
-                    Ok(CartesianPose {
-                        O_T_EE: node.get("returns")?.numbers()?,
-                        elbow: elbow(node)?,
-                    })
-                })?,
-                "cartesian_velocity" => motion_of(version, &events, &sender, |node| {
-                    Ok(CartesianVelocities {
-                        O_dP_EE: node.get("returns")?.numbers()?,
-                        elbow: elbow(node)?,
-                    })
-                })?,
-                _ => return Err(node.malformed("a variant of the control loops")),
-            };
-            if with_torques {
-                callback.with_torques(torques)
-            } else {
-                callback
-            }
-        }
-    };
-    let limit_rate = node.get("limit_rate")?.boolean()?;
-    let cutoff_frequency = node.get("cutoff_frequency")?.number()?;
-    let shaper = Shaper::new(version, limit_rate, cutoff_frequency).trusting_the_echo();
-    Ok((callback.with_shaper(shaper), calls))
-}
-
-fn motion_of<C: GeneratorCommand>(
-    version: Version,
-    events: &[Node<'_>],
-    calls: &Sender<Call>,
-    read: impl Fn(&Node<'_>) -> Result<C, Malformed>,
-) -> Result<Callback, Malformed> {
-    let function = player(MOTION, events, calls, read)?;
-    Ok(Callback::motion::<C, _>(version, function))
-}
-
-/// A function that returns, call by call, what the events of this name did, and panics beyond.
-fn player<T: Send + 'static>(
-    event: &'static str,
-    events: &[Node<'_>],
-    calls: &Sender<Call>,
-    read: impl Fn(&Node<'_>) -> Result<T, Malformed>,
-) -> Result<impl FnMut(&RobotState, Duration) -> Next<T> + Send + 'static, Malformed> {
-    let mut returns = VecDeque::new();
-    for node in events {
-        if name(node)? == event {
-            let finished = node.get("finished")?.boolean()?;
-            let returned = read(node)?;
-            returns.push_back(if finished {
-                Next::Finish(returned)
-            } else {
-                Next::Continue(returned)
-            });
-        }
-    }
-    let calls = calls.clone();
-    Ok(move |state: &RobotState, step: Duration| {
-        let heard = calls.send((event, state.message_id, step));
-        heard.expect("the calls are compared after the last one");
-        returns.pop_front().expect("no more calls than there were")
-    })
-}
-
-fn name<'a>(event: &Node<'a>) -> Result<&'a str, Malformed> {
-    event.get("event")?.text()
-}
-
-/// An elbow where there is one: two zeros are none.
-fn elbow(node: &Node<'_>) -> Result<Option<[f64; 2]>, Malformed> {
-    let elbow = node.get("elbow")?.numbers()?;
-    Ok((elbow != [0.0, 0.0]).then_some(elbow))
-}
-
-/// A state with the fields that are given; the others are zero.
-fn state(node: &Node<'_>) -> Result<RobotState, Malformed> {
-    fn numbers<const N: usize>(node: &Node<'_>, name: &str) -> Result<[f64; N], Malformed> {
-        node.find(name)
-            .map_or(Ok([0.0; N]), |numbers| numbers.numbers())
-    }
-    Ok(RobotState {
-        message_id: node.get("time_ms")?.integer()?,
-        q_d: numbers(node, "q_d")?,
-        dq_d: numbers(node, "dq_d")?,
-        ddq_d: numbers(node, "ddq_d")?,
-        tau_J_d: numbers(node, "tau_J_d")?,
-        O_T_EE_c: numbers(node, "O_T_EE_c")?,
-        O_dP_EE_c: numbers(node, "O_dP_EE_c")?,
-        O_ddP_EE_c: numbers(node, "O_ddP_EE_c")?,
-        elbow_c: numbers(node, "elbow_c")?,
-        delbow_c: numbers(node, "delbow_c")?,
-        ddelbow_c: numbers(node, "ddelbow_c")?,
-        ..RobotState::default()
-    })
-}
-
-/// What an event hands to the robot. The finishing flag is not set yet there.
-fn command(event: &Node<'_>) -> Result<RobotCommand, Malformed> {
-    let mut command = RobotCommand::default();
-    let present = |name| {
-        let node = event.get(name)?;
-        Ok((!node.value().is_null()).then_some(node))
-    };
-    if let Some(motion) = present("motion")? {
-        for (name, value) in motion.members()? {
-            match name {
-                "q_c" => command.q_c = value.numbers()?,
-                "dq_c" => command.dq_c = value.numbers()?,
-                "O_T_EE_c" => command.O_T_EE_c = value.numbers()?,
-                "O_dP_EE_c" => command.O_dP_EE_c = value.numbers()?,
-                "valid_elbow" if value.boolean()? => {
-                    command.elbow_c = Some(motion.get("elbow_c")?.numbers()?);
-                }
-                "valid_elbow" | "elbow_c" | "motion_generation_finished" => {}
-                _ => return Err(value.malformed("a field of a motion command")),
-            }
-        }
-    }
-    if let Some(control) = present("control")? {
-        command.tau_J_d = control.get("tau_J_d")?.numbers()?;
-    }
-    Ok(command)
 }

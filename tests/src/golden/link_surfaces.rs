@@ -3,50 +3,50 @@
 use franka_model::collision::{Body, Capsule, Shape};
 use franka_model::{EndEffector, Frame, JointVector, Model, READY, RobotKind, transform};
 use nalgebra::{Isometry3, Point3};
+use serde::Deserialize;
 
-use super::{Malformed, Node, Report};
+use super::Report;
 
 /// Unit of the file, `[m]`.
 const UNIT: f64 = 1e-5;
 
+/// Points in the frames of links 0 to 7, and of the Hand in the flange frame.
+#[derive(Deserialize)]
+struct File {
+    fr3: [Vec<[f64; 3]>; 8],
+    fer: [Vec<[f64; 3]>; 8],
+    hand: Vec<[f64; 3]>,
+}
+
 /// Checks `link_surfaces.json`: each point is inside a capsule of its own link. A case is a link.
-pub(super) fn covered(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn covered(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    for (kind, name) in [(RobotKind::Fr3, "fr3"), (RobotKind::Fer, "fer")] {
-        let links = root.get(name)?.list()?;
-        if links.len() != 8 {
-            return Err(root.malformed("links 0 to 7"));
+    let file: File = serde_json::from_slice(text)?;
+    for (kind, links) in [(RobotKind::Fr3, &file.fr3), (RobotKind::Fer, &file.fer)] {
+        let links = (0..).map(Body::Link).zip(links);
+        for (body, points) in links.chain([(Body::Tool, &file.hand)]) {
+            report.case(format!("{kind:?} {body:?}"), |case| {
+                let outermost = outermost(kind, body, points);
+                case.near("sticks out", &[outermost.max(0.0)], &[0.0], 0.0);
+            });
         }
-        for (link, node) in (0..).zip(&links) {
-            check(&mut report, node, kind, Body::Link(link))?;
-        }
-        check(&mut report, &root.get("hand")?, kind, Body::Tool)?;
     }
     Ok(report)
 }
 
-fn check(
-    report: &mut Report,
-    node: &Node<'_>,
-    kind: RobotKind,
-    body: Body,
-) -> Result<(), Malformed> {
+/// How far the outermost of the points is outside of the capsules of its body, `[m]`; negative
+/// inside.
+fn outermost(kind: RobotKind, body: Body, points: &[[f64; 3]]) -> f64 {
     let placed = Shape::covering(kind).with_hand().at(&READY);
-    let capsules: Vec<Capsule> = placed
-        .capsules()
-        .filter_map(|(of, capsule)| (of == body).then_some(capsule))
-        .collect();
+    let own = placed.capsules().filter(|(of, _)| *of == body);
+    let capsules: Vec<Capsule> = own.map(|(_, capsule)| capsule).collect();
     let frame = frame_of(body, kind, &READY);
-    let mut outermost = f64::NEG_INFINITY;
-    for point in node.list()? {
-        let point = frame * Point3::from(point.numbers::<3>()?.map(|x| x * UNIT));
+    let outside = points.iter().map(|point| {
+        let point = frame * Point3::from(point.map(|x| x * UNIT));
         let outside = capsules.iter().map(|capsule| outside(capsule, &point));
-        outermost = outermost.max(outside.fold(f64::INFINITY, f64::min));
-    }
-    report.case(format!("{kind:?} {body:?}"), |case| {
-        case.near("sticks out", &[outermost.max(0.0)], &[0.0], 0.0);
+        outside.fold(f64::INFINITY, f64::min)
     });
-    Ok(())
+    outside.fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The frame of a body in the base frame.

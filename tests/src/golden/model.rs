@@ -1,10 +1,12 @@
 //! The rigid-body models and the velocity envelope of the FR3 against the vendor's libraries.
 
+use anyhow::{Context as _, ensure};
 use franka_model::limits::CLIENT_MARGIN;
 use franka_model::{EndEffector, Frame, JointVector, Load, Model, RobotKind, joint_vector};
 use nalgebra::{Matrix3, Matrix4, Vector3};
+use serde::Deserialize;
 
-use super::{Case, Malformed, Node, Report};
+use super::{Case, Report};
 
 // What the numbers of the files may differ by: they went through other orders of summation. The
 // vendor's own two routes to the Coriolis torques differ by 2.5e-14.
@@ -12,64 +14,145 @@ const POSE: f64 = 1e-13;
 const JACOBIAN: f64 = 1e-13;
 const MASS: f64 = 1e-13;
 const TORQUE: f64 = 1e-12;
-/// How far the physically consistent FER may be from the vendor's without a load: what its description
-/// says, rounded up.
+/// How far the physically consistent FER may be from the vendor's without a load: what its
+/// description says, rounded up.
 const FIT_MASS: f64 = 0.02;
 const FIT_GRAVITY: f64 = 0.02;
 const FIT_CORIOLIS: f64 = 0.09;
 /// Totals of the loads, made of the same few operations.
 const TOTALS: f64 = 1e-15;
 
+#[derive(Deserialize)]
+struct File {
+    meta: Meta,
+    load_configs: Vec<Tool>,
+    samples: Vec<Sample>,
+}
+
+#[derive(Deserialize)]
+struct Meta {
+    gravity: [f64; 3],
+    gravity_alt: [f64; 3],
+}
+
+/// A configuration of frames and loads, and the totals that the vendor's client makes of it.
+#[derive(Deserialize)]
+#[allow(non_snake_case)]
+struct Tool {
+    F_T_EE: [f64; 16],
+    EE_T_K: [f64; 16],
+    /// The file of the FER gives totals only.
+    #[serde(flatten)]
+    parts: Option<Parts>,
+    m_total: f64,
+    F_x_Ctotal: [f64; 3],
+    I_total: [f64; 9],
+}
+
+#[derive(Deserialize)]
+#[allow(non_snake_case)]
+struct Parts {
+    m_ee: f64,
+    F_x_Cee: [f64; 3],
+    I_ee: [f64; 9],
+    m_load: f64,
+    F_x_Cload: [f64; 3],
+    I_load: [f64; 9],
+}
+
+#[derive(Deserialize)]
+struct Sample {
+    q: [f64; 7],
+    dq: [f64; 7],
+    #[serde(flatten)]
+    frames: Frames,
+    loads: Vec<Loaded>,
+}
+
+/// A configuration with one of the loads.
+#[derive(Deserialize)]
+struct Loaded {
+    load: usize,
+    #[serde(flatten)]
+    frames: Frames,
+    mass: Vec<f64>,
+    coriolis: [f64; 7],
+    gravity: [f64; 7],
+    gravity_alt: [f64; 7],
+}
+
+/// Poses and Jacobians of some frames: concatenated matrices, column-major.
+#[derive(Deserialize)]
+struct Frames {
+    pose: Vec<f64>,
+    zero_jacobian: Vec<f64>,
+    body_jacobian: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+struct Envelope {
+    vectors: Vec<VelocityLimits>,
+}
+
+#[derive(Deserialize)]
+struct VelocityLimits {
+    q: [f64; 7],
+    lower: [f64; 7],
+    upper: [f64; 7],
+}
+
 /// Checks `model_vectors_fr3.json`: libfranka 0.20.4 with the FR3 URDF.
-pub(super) fn fr3(root: &Node<'_>) -> Result<Report, Malformed> {
-    rigid_body(root, Model::fr3())
+pub(super) fn fr3(text: &[u8]) -> anyhow::Result<Report> {
+    rigid_body(text, Model::fr3())
 }
 
 /// Checks `model_vectors_fer.json`: the FER's own model library.
-pub(super) fn fer(root: &Node<'_>) -> Result<Report, Malformed> {
-    rigid_body(root, Model::fer())
+pub(super) fn fer(text: &[u8]) -> anyhow::Result<Report> {
+    rigid_body(text, Model::fer())
 }
 
-/// Checks in `model_vectors_fer.json` how far the physically consistent FER is from the vendor's library, at
-/// the configurations without a load.
-pub(super) fn fer_physically_consistent(root: &Node<'_>) -> Result<Report, Malformed> {
+/// Checks in `model_vectors_fer.json` how far the physically consistent FER is from the vendor's
+/// library, at the configurations without a load.
+pub(super) fn fer_physically_consistent(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    for sample in root.get("samples")?.list()? {
-        let state = State::read(root, &sample)?;
-        let bare = sample.get("loads")?.list()?.swap_remove(0);
-        let torques = Torques::read(&bare)?;
-        report.case(bare.path(), |case| {
-            torques.check_physically_consistent(case, &state)
+    let file: File = serde_json::from_slice(text)?;
+    let (model, none) = (Model::physically_consistent(RobotKind::Fer), &Load::NONE);
+    let gravity = file.meta.gravity.into();
+    for (index, sample) in file.samples.iter().enumerate() {
+        let (q, dq) = (joint_vector(sample.q), joint_vector(sample.dq));
+        let want = sample.loads.first().context("a sample without loads")?;
+        report.case(format!("samples[{index}]"), |case| {
+            let mass = model.mass(&q, none);
+            case.near("mass", mass.as_slice(), &want.mass, FIT_MASS);
+            let torques = model.gravity(&q, none, &gravity);
+            case.near("gravity", torques.as_slice(), &want.gravity, FIT_GRAVITY);
+            let torques = model.coriolis(&q, &dq, none);
+            case.near("Coriolis", torques.as_slice(), &want.coriolis, FIT_CORIOLIS);
         });
     }
     Ok(report)
 }
 
 /// A case is one configuration with one load; the frames that no load moves are checked with each.
-fn rigid_body(root: &Node<'_>, model: &Model) -> Result<Report, Malformed> {
+fn rigid_body(text: &[u8], model: &Model) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    let tools = root.get("load_configs")?.list()?;
-    let tools: Vec<Tool> = tools.iter().map(Tool::read).collect::<Result<_, _>>()?;
-
-    for (index, tool) in tools.iter().enumerate() {
-        report.case(format!("load_configs[{index}]"), |case| tool.check(case));
-    }
-    for sample in root.get("samples")?.list()? {
-        let state = State::read(root, &sample)?;
-        let common = Frames::read(&sample, &Frame::ALL[..8])?;
-        for node in sample.get("loads")?.list()? {
-            let index = node.get("load")?.integer()?;
-            let tool = usize::try_from(index)
-                .ok()
-                .and_then(|index| tools.get(index))
-                .ok_or_else(|| node.malformed("the index of a load"))?;
-            let moved = Frames::read(&node, &Frame::ALL[8..])?;
-            let torques = Torques::read(&node)?;
-            report.case(node.path(), |case| {
-                common.check(case, model, &state, &tool.ee);
-                moved.check(case, model, &state, &tool.ee);
-                torques.check(case, model, &state, tool);
-                torques.check_one_pass(case, model, &state, tool, &moved);
+    let file: File = serde_json::from_slice(text)?;
+    report.each("load_configs", &file.load_configs, |case, tool| {
+        tool.check(case)
+    });
+    let (common, per_load) = Frame::ALL.split_at(8);
+    for (index, sample) in file.samples.iter().enumerate() {
+        let (q, dq) = (joint_vector(sample.q), joint_vector(sample.dq));
+        sample.frames.check_length(common)?;
+        for (position, loaded) in sample.loads.iter().enumerate() {
+            let tool = file.load_configs.get(loaded.load);
+            let tool = tool.context("a load that is not in load_configs")?;
+            let ee = tool.end_effector();
+            loaded.frames.check_length(per_load)?;
+            report.case(format!("samples[{index}].loads[{position}]"), |case| {
+                sample.frames.check(case, common, model, &q, &ee);
+                loaded.frames.check(case, per_load, model, &q, &ee);
+                loaded.check(case, model, &file.meta, &q, &dq, &ee, &tool.load());
             });
         }
     }
@@ -77,231 +160,159 @@ fn rigid_body(root: &Node<'_>, model: &Model) -> Result<Report, Malformed> {
 }
 
 /// Checks `velocity_limit_vectors_fr3.json`, libfranka 0.21.3: equal to the last bit.
-pub(super) fn velocity_envelope(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn velocity_envelope(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    for vector in root.get("vectors")?.list()? {
-        let q = joint_vector(vector.get("q")?.numbers()?);
-        let (lower, upper) = (
-            vector.get("lower")?.vector()?,
-            vector.get("upper")?.vector()?,
-        );
-        report.case(vector.path(), |case| {
-            let limits = Model::fr3().joint_limits();
-            let (low, high) = limits.velocity_envelope(&q, CLIENT_MARGIN);
-            case.near("lower", low.as_slice(), &lower, 0.0);
-            case.near("upper", high.as_slice(), &upper, 0.0);
-        });
-    }
+    let file: Envelope = serde_json::from_slice(text)?;
+    report.each("vectors", &file.vectors, |case, v| {
+        let limits = Model::fr3().joint_limits();
+        let (lower, upper) = limits.velocity_envelope(&joint_vector(v.q), CLIENT_MARGIN);
+        case.near("lower", lower.as_slice(), &v.lower, 0.0);
+        case.near("upper", upper.as_slice(), &v.upper, 0.0);
+    });
     Ok(report)
 }
 
-struct State {
-    q: JointVector,
-    dq: JointVector,
-    gravity: Vector3<f64>,
-    gravity_alt: Vector3<f64>,
-}
-
-impl State {
-    fn read(root: &Node<'_>, sample: &Node<'_>) -> Result<Self, Malformed> {
-        let meta = root.get("meta")?;
-        Ok(Self {
-            q: joint_vector(sample.get("q")?.numbers()?),
-            dq: joint_vector(sample.get("dq")?.numbers()?),
-            gravity: Vector3::from(meta.get("gravity")?.numbers::<3>()?),
-            gravity_alt: Vector3::from(meta.get("gravity_alt")?.numbers::<3>()?),
-        })
-    }
-}
-
-/// A configuration of frames and loads, and the totals that the vendor's client makes of it.
-struct Tool {
-    ee: EndEffector,
-    load: Load,
-    total: Load,
-}
-
 impl Tool {
-    fn read(node: &Node<'_>) -> Result<Self, Malformed> {
-        let matrix = |name| -> Result<_, Malformed> {
-            Ok(Matrix4::from_column_slice(
-                &node.get(name)?.numbers::<16>()?,
-            ))
-        };
-        let load = |mass, com, inertia| -> Result<_, Malformed> {
-            Ok(Load {
-                mass: node.get(mass)?.number()?,
-                com: Vector3::from(node.get(com)?.numbers::<3>()?),
-                inertia: Matrix3::from_column_slice(&node.get(inertia)?.numbers::<9>()?),
-            })
-        };
-        let total = load("m_total", "F_x_Ctotal", "I_total")?;
-        // The file of the FER gives totals only.
-        let combined = if node.find("m_ee").is_some() {
-            let tool = load("m_ee", "F_x_Cee", "I_ee")?;
-            tool.combine(&load("m_load", "F_x_Cload", "I_load")?)
-        } else {
-            total
-        };
-        Ok(Self {
-            ee: EndEffector {
-                f_t_ee: matrix("F_T_EE")?,
-                ee_t_k: matrix("EE_T_K")?,
+    fn end_effector(&self) -> EndEffector {
+        EndEffector {
+            f_t_ee: Matrix4::from_column_slice(&self.F_T_EE),
+            ee_t_k: Matrix4::from_column_slice(&self.EE_T_K),
+        }
+    }
+
+    fn total(&self) -> Load {
+        load(self.m_total, &self.F_x_Ctotal, &self.I_total)
+    }
+
+    /// The load of both parts, combined by the model.
+    fn load(&self) -> Load {
+        self.parts.as_ref().map_or_else(
+            || self.total(),
+            |parts| {
+                let ee = load(parts.m_ee, &parts.F_x_Cee, &parts.I_ee);
+                ee.combine(&load(parts.m_load, &parts.F_x_Cload, &parts.I_load))
             },
-            load: combined,
-            total,
-        })
+        )
     }
 
     fn check(&self, case: &mut Case<'_>) {
-        let (got, want) = (&self.load, &self.total);
-        case.near("m_total", &[got.mass], &[want.mass], TOTALS);
-        case.near(
-            "F_x_Ctotal",
-            got.com.as_slice(),
-            want.com.as_slice(),
-            TOTALS,
-        );
-        case.near(
-            "I_total",
-            got.inertia.as_slice(),
-            want.inertia.as_slice(),
-            TOTALS,
-        );
+        let got = self.load();
+        case.near("m_total", &[got.mass], &[self.m_total], TOTALS);
+        case.near("F_x_Ctotal", got.com.as_slice(), &self.F_x_Ctotal, TOTALS);
+        case.near("I_total", got.inertia.as_slice(), &self.I_total, TOTALS);
     }
 }
 
-/// Poses and Jacobians of some frames.
-struct Frames(Vec<FrameNumbers>);
-
-struct FrameNumbers {
-    frame: Frame,
-    pose: Vec<f64>,
-    zero_jacobian: Vec<f64>,
-    body_jacobian: Vec<f64>,
+fn load(mass: f64, centre: &[f64; 3], inertia: &[f64; 9]) -> Load {
+    Load {
+        mass,
+        com: Vector3::from(*centre),
+        inertia: Matrix3::from_column_slice(inertia),
+    }
 }
 
 impl Frames {
-    /// Reads concatenated matrices, column-major, in the order of `frames`.
-    fn read(node: &Node<'_>, frames: &[Frame]) -> Result<Self, Malformed> {
-        let matrices = |name: &str, size: usize| -> Result<Vec<Vec<f64>>, Malformed> {
-            let (member, expected) = (node.get(name)?, size * frames.len());
-            let numbers = member.vector()?;
-            if numbers.len() != expected {
-                return Err(member.malformed(format!("{expected} numbers")));
-            }
-            Ok(numbers.chunks(size).map(<[f64]>::to_vec).collect())
-        };
-        let poses = matrices("pose", 16)?;
-        let zero = matrices("zero_jacobian", 42)?;
-        let body = matrices("body_jacobian", 42)?;
-        let parts = frames.iter().zip(poses).zip(zero).zip(body);
-        let numbers = parts.map(
-            |(((&frame, pose), zero_jacobian), body_jacobian)| FrameNumbers {
-                frame,
-                pose,
-                zero_jacobian,
-                body_jacobian,
-            },
-        );
-        Ok(Self(numbers.collect()))
+    fn check_length(&self, frames: &[Frame]) -> anyhow::Result<()> {
+        for (numbers, size) in [
+            (&self.pose, 16),
+            (&self.zero_jacobian, 42),
+            (&self.body_jacobian, 42),
+        ] {
+            let (got, expected) = (numbers.len(), size * frames.len());
+            ensure!(got == expected, "{got} numbers, expected {expected}");
+        }
+        Ok(())
     }
 
-    fn check(&self, case: &mut Case<'_>, model: &Model, state: &State, ee: &EndEffector) {
-        let q = &state.q;
-        for want in &self.0 {
-            let frame = want.frame;
-            let pose = model.pose(frame, q, ee);
-            let name = format!("pose of {frame:?}");
-            case.near(&name, pose.as_slice(), &want.pose, POSE);
-            let zero = model.zero_jacobian(frame, q, ee);
+    fn check(
+        &self,
+        case: &mut Case<'_>,
+        frames: &[Frame],
+        model: &Model,
+        q: &JointVector,
+        ee: &EndEffector,
+    ) {
+        let poses = self.pose.chunks(16).zip(frames);
+        let jacobians = self
+            .zero_jacobian
+            .chunks(42)
+            .zip(self.body_jacobian.chunks(42));
+        for ((pose, &frame), (zero, body)) in poses.zip(jacobians) {
+            let got = model.pose(frame, q, ee);
+            case.near(&format!("pose of {frame:?}"), got.as_slice(), pose, POSE);
+            let got = model.zero_jacobian(frame, q, ee);
             let name = format!("zero Jacobian of {frame:?}");
-            case.near(&name, zero.as_slice(), &want.zero_jacobian, JACOBIAN);
-            let body = model.body_jacobian(frame, q, ee);
+            case.near(&name, got.as_slice(), zero, JACOBIAN);
+            let got = model.body_jacobian(frame, q, ee);
             let name = format!("body Jacobian of {frame:?}");
-            case.near(&name, body.as_slice(), &want.body_jacobian, JACOBIAN);
+            case.near(&name, got.as_slice(), body, JACOBIAN);
         }
     }
 }
 
-/// The dynamics of one configuration with one load.
-struct Torques {
-    mass: Vec<f64>,
-    coriolis: Vec<f64>,
-    gravity: Vec<f64>,
-    gravity_alt: Vec<f64>,
-}
-
-impl Torques {
-    fn read(node: &Node<'_>) -> Result<Self, Malformed> {
-        let vector = |name| node.get(name)?.vector();
-        Ok(Self {
-            mass: vector("mass")?,
-            coriolis: vector("coriolis")?,
-            gravity: vector("gravity")?,
-            gravity_alt: vector("gravity_alt")?,
-        })
-    }
-
-    fn check(&self, case: &mut Case<'_>, model: &Model, state: &State, tool: &Tool) {
-        let load = &tool.load;
-        let State {
-            q,
-            dq,
-            gravity,
-            gravity_alt,
-        } = state;
-        case.near("mass", model.mass(q, load).as_slice(), &self.mass, MASS);
-        let coriolis = model.coriolis(q, dq, load);
-        case.near("Coriolis", coriolis.as_slice(), &self.coriolis, TORQUE);
-        let standard = model.gravity(q, load, gravity);
-        case.near("gravity", standard.as_slice(), &self.gravity, TORQUE);
-        let tilted = model.gravity(q, load, gravity_alt);
-        case.near(
-            "gravity, tilted",
-            tilted.as_slice(),
-            &self.gravity_alt,
-            TORQUE,
-        );
-    }
-
-    /// Without a load.
-    fn check_physically_consistent(&self, case: &mut Case<'_>, state: &State) {
-        let (model, none) = (Model::physically_consistent(RobotKind::Fer), &Load::NONE);
-        let State { q, dq, gravity, .. } = state;
-        let mass = model.mass(q, none);
-        case.near("mass", mass.as_slice(), &self.mass, FIT_MASS);
-        let torque = model.gravity(q, none, gravity);
-        case.near("gravity", torque.as_slice(), &self.gravity, FIT_GRAVITY);
-        let torque = model.coriolis(q, dq, none);
-        case.near("Coriolis", torque.as_slice(), &self.coriolis, FIT_CORIOLIS);
-    }
-
-    /// `moved` holds the end effector first.
-    fn check_one_pass(
+impl Loaded {
+    /// Each quantity on its own, and all of them from one pass; the end effector is the first of
+    /// the frames that a load moves.
+    #[allow(clippy::too_many_arguments)]
+    fn check(
         &self,
         case: &mut Case<'_>,
         model: &Model,
-        state: &State,
-        tool: &Tool,
-        moved: &Frames,
+        meta: &Meta,
+        q: &JointVector,
+        dq: &JointVector,
+        ee: &EndEffector,
+        load: &Load,
     ) {
-        let State { q, dq, gravity, .. } = state;
-        let all = model.dynamics(q, dq, &tool.ee, &tool.load, gravity);
-        let want = &moved.0[0];
+        let (gravity, tilted) = (meta.gravity.into(), meta.gravity_alt.into());
+        let all = model.dynamics(q, dq, ee, load, &gravity);
         for (name, got, want, tolerance) in [
-            ("pose", all.pose.as_slice(), &want.pose, POSE),
+            ("mass", model.mass(q, load).as_slice(), &self.mass[..], MASS),
             (
-                "Jacobian",
+                "Coriolis",
+                model.coriolis(q, dq, load).as_slice(),
+                &self.coriolis,
+                TORQUE,
+            ),
+            (
+                "gravity",
+                model.gravity(q, load, &gravity).as_slice(),
+                &self.gravity,
+                TORQUE,
+            ),
+            (
+                "gravity, tilted",
+                model.gravity(q, load, &tilted).as_slice(),
+                &self.gravity_alt,
+                TORQUE,
+            ),
+            (
+                "one pass: pose",
+                all.pose.as_slice(),
+                &self.frames.pose[..16],
+                POSE,
+            ),
+            (
+                "one pass: Jacobian",
                 all.jacobian.as_slice(),
-                &want.zero_jacobian,
+                &self.frames.zero_jacobian[..42],
                 JACOBIAN,
             ),
-            ("mass", all.mass.as_slice(), &self.mass, MASS),
-            ("Coriolis", all.coriolis.as_slice(), &self.coriolis, TORQUE),
-            ("gravity", all.gravity.as_slice(), &self.gravity, TORQUE),
+            ("one pass: mass", all.mass.as_slice(), &self.mass[..], MASS),
+            (
+                "one pass: Coriolis",
+                all.coriolis.as_slice(),
+                &self.coriolis,
+                TORQUE,
+            ),
+            (
+                "one pass: gravity",
+                all.gravity.as_slice(),
+                &self.gravity,
+                TORQUE,
+            ),
         ] {
-            case.near(&format!("one pass: {name}"), got, want, tolerance);
+            case.near(name, got, want, tolerance);
         }
     }
 }

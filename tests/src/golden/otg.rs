@@ -4,9 +4,11 @@
 //! not: of the axes that wait for the slowest one only the common duration is, and what they must
 //! keep is checked.
 
+use anyhow::bail;
 use franka_otg::{Generator, Limits, PlanError, State, Synchronisation};
+use serde::Deserialize;
 
-use super::{Case, Malformed, Node, Report};
+use super::{Case, Report};
 
 /// Of durations, relative. The files hold what independent solutions agree on to 4e-8 at worst,
 /// near stop points and in their own arithmetic; the two generators agree to 1e-11.
@@ -20,19 +22,59 @@ const SAMPLES: u32 = 200;
 /// Instants of the samples in the file, as parts of the duration.
 const INSTANTS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
+#[derive(Deserialize)]
+struct File<T> {
+    cases: Vec<T>,
+}
+
+/// A motion of one axis.
+#[derive(Deserialize)]
+struct SingleAxis {
+    kind: String,
+    p0: f64,
+    v0: f64,
+    a0: f64,
+    target: f64,
+    /// Zero where the file does not say.
+    #[serde(default)]
+    target_velocity: f64,
+    vmax: f64,
+    amax: f64,
+    jmax: f64,
+    duration: f64,
+    /// Position, velocity and acceleration at [`INSTANTS`].
+    samples: [[f64; 3]; INSTANTS.len()],
+    /// Durations that are impossible, from and to.
+    #[serde(default)]
+    blocked: Vec<[f64; 2]>,
+}
+
+/// A motion of several axes.
+#[derive(Deserialize)]
+struct MultiAxis {
+    p0: Vec<f64>,
+    v0: Vec<f64>,
+    a0: Vec<f64>,
+    target: Vec<f64>,
+    vmax: Vec<f64>,
+    amax: Vec<f64>,
+    jmax: Vec<f64>,
+    axis_duration: Vec<f64>,
+    duration: f64,
+}
+
 /// Checks `otg/single_axis.json`. Starts outside the limits are included: both generators brake by
 /// the same rule.
-pub(super) fn single_axis(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn single_axis(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    for node in root.get("cases")?.list()? {
-        let problem = Problem::of_one_axis(&node, 0.0)?;
-        let duration = node.get("duration")?.number()?;
-        let samples = samples(&node)?;
-        let name = format!("{} ({})", node.path(), node.get("kind")?.text()?);
-        report.case(name, |case| match problem.plan() {
+    let file: File<SingleAxis> = serde_json::from_slice(text)?;
+    for (index, vector) in file.cases.iter().enumerate() {
+        let problem = Problem::of_one_axis(vector);
+        let duration = vector.duration;
+        report.case(vector.name(index), |case| match problem.plan() {
             Ok(plan) => {
                 problem.check_duration(case, &plan, duration);
-                problem.check_samples(case, &plan, duration, &samples);
+                problem.check_samples(case, &plan, duration, &vector.samples);
                 problem.check_end(case, &plan);
             }
             Err(error) => case.fail(error.to_string()),
@@ -46,23 +88,17 @@ pub(super) fn single_axis(root: &Node<'_>) -> Result<Report, Malformed> {
 ///
 /// The mirror image in time ends with the acceleration that the case begins with. So it checks
 /// targets that accelerate, of which the file has none.
-pub(super) fn target_velocity(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn target_velocity(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    for node in root.get("cases")?.list()? {
-        let problem = Problem::of_one_axis(&node, node.get("target_velocity")?.number()?)?;
-        let duration = node.get("duration")?.number()?;
-        let samples = samples(&node)?;
-        let blocked = node.get("blocked")?.list()?;
-        let blocked: Vec<[f64; 2]> = blocked
-            .iter()
-            .map(Node::numbers)
-            .collect::<Result<_, _>>()?;
-        let name = format!("{} ({})", node.path(), node.get("kind")?.text()?);
-        report.case(name, |case| {
+    let file: File<SingleAxis> = serde_json::from_slice(text)?;
+    for (index, vector) in file.cases.iter().enumerate() {
+        let problem = Problem::of_one_axis(vector);
+        let duration = vector.duration;
+        report.case(vector.name(index), |case| {
             match problem.plan() {
                 Ok(plan) => {
                     problem.check_duration(case, &plan, duration);
-                    problem.check_samples(case, &plan, duration, &samples);
+                    problem.check_samples(case, &plan, duration, &vector.samples);
                     problem.check_end(case, &plan);
                     problem.check_limits(case, &plan);
                 }
@@ -79,7 +115,7 @@ pub(super) fn target_velocity(root: &Node<'_>) -> Result<Report, Malformed> {
                 }
                 Err(error) => case.fail(format!("mirrored in time: {error}")),
             }
-            if let Err(error) = problem.check_blocked(case, duration, &blocked) {
+            if let Err(error) = problem.check_blocked(case, duration, &vector.blocked) {
                 case.fail(error.to_string());
             }
         });
@@ -87,47 +123,46 @@ pub(super) fn target_velocity(root: &Node<'_>) -> Result<Report, Malformed> {
     Ok(report)
 }
 
-fn samples(node: &Node<'_>) -> Result<Vec<[f64; 3]>, Malformed> {
-    let samples = node.get("samples")?.list()?;
-    let samples: Vec<[f64; 3]> = samples
-        .iter()
-        .map(Node::numbers)
-        .collect::<Result<_, _>>()?;
-    if samples.len() != INSTANTS.len() {
-        return Err(node.malformed("five samples"));
+impl SingleAxis {
+    fn name(&self, index: usize) -> String {
+        format!("cases[{index}] ({})", self.kind)
     }
-    Ok(samples)
 }
 
 /// Checks `otg/multi_axis.json`.
-pub(super) fn multi_axis(root: &Node<'_>) -> Result<Report, Malformed> {
+pub(super) fn multi_axis(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    for node in root.get("cases")?.list()? {
-        match node.get("axes")?.integer()? {
-            3 => synchronised::<3>(&node, &mut report)?,
-            7 => synchronised::<7>(&node, &mut report)?,
-            _ => return Err(node.get("axes")?.malformed("3 or 7")),
+    let file: File<MultiAxis> = serde_json::from_slice(text)?;
+    for (index, vector) in file.cases.iter().enumerate() {
+        let name = format!("cases[{index}] ({} axes)", vector.p0.len());
+        match vector.p0.len() {
+            3 => synchronised::<3>(&mut report, &name, vector)?,
+            7 => synchronised::<7>(&mut report, &name, vector)?,
+            _ => bail!("{name}: expected 3 or 7"),
         }
     }
     Ok(report)
 }
 
-fn synchronised<const N: usize>(node: &Node<'_>, report: &mut Report) -> Result<(), Malformed> {
-    let numbers = |name: &str| node.get(name)?.numbers::<N>();
+fn synchronised<const N: usize>(
+    report: &mut Report,
+    name: &str,
+    vector: &MultiAxis,
+) -> anyhow::Result<()> {
+    let numbers = |list: &Vec<f64>| <[f64; N]>::try_from(list.as_slice());
     let problem = Problem {
         start: State {
-            position: numbers("p0")?,
-            velocity: numbers("v0")?,
-            acceleration: numbers("a0")?,
+            position: numbers(&vector.p0)?,
+            velocity: numbers(&vector.v0)?,
+            acceleration: numbers(&vector.a0)?,
         },
-        target: State::at_rest(numbers("target")?),
-        velocity: numbers("vmax")?,
-        acceleration: numbers("amax")?,
-        jerk: numbers("jmax")?,
+        target: State::at_rest(numbers(&vector.target)?),
+        velocity: numbers(&vector.vmax)?,
+        acceleration: numbers(&vector.amax)?,
+        jerk: numbers(&vector.jmax)?,
     };
-    let axis_durations = numbers("axis_duration")?;
-    let duration = node.get("duration")?.number()?;
-    report.case(format!("{} ({N} axes)", node.path()), |case| {
+    let axis_durations = numbers(&vector.axis_duration)?;
+    report.case(name, |case| {
         for (axis, &duration) in axis_durations.iter().enumerate() {
             let alone = problem.axis(axis);
             match alone.plan() {
@@ -137,7 +172,7 @@ fn synchronised<const N: usize>(node: &Node<'_>, report: &mut Report) -> Result<
         }
         match problem.plan() {
             Ok(plan) => {
-                problem.check_duration(case, &plan, duration);
+                problem.check_duration(case, &plan, vector.duration);
                 problem.check_limits(case, &plan);
                 problem.check_end(case, &plan);
             }
@@ -247,23 +282,22 @@ impl<const N: usize> Problem<N> {
 }
 
 impl Problem<1> {
-    fn of_one_axis(node: &Node<'_>, target_velocity: f64) -> Result<Self, Malformed> {
-        let number = |name: &str| node.get(name)?.number();
-        Ok(Self {
+    fn of_one_axis(vector: &SingleAxis) -> Self {
+        Self {
             start: State {
-                position: [number("p0")?],
-                velocity: [number("v0")?],
-                acceleration: [number("a0")?],
+                position: [vector.p0],
+                velocity: [vector.v0],
+                acceleration: [vector.a0],
             },
             target: State {
-                position: [number("target")?],
-                velocity: [target_velocity],
+                position: [vector.target],
+                velocity: [vector.target_velocity],
                 acceleration: [0.0],
             },
-            velocity: [number("vmax")?],
-            acceleration: [number("amax")?],
-            jerk: [number("jmax")?],
-        })
+            velocity: [vector.vmax],
+            acceleration: [vector.amax],
+            jerk: [vector.jmax],
+        }
     }
 
     /// The same motion backwards: positions and accelerations stay, velocities change their sign.

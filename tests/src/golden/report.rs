@@ -1,36 +1,16 @@
 //! What the check of one file found.
 
-use std::fmt::{Debug, Display};
+use std::fmt::{self, Debug, Display};
 
-/// Counts, the worst error and the first failures of one file.
+/// Counts, the first failures, and the comparison that came closest to its tolerance.
 #[derive(Debug, Default)]
 pub struct Report {
     cases: usize,
     passed: usize,
-    worst: Option<Worst>,
-    failures: Vec<Failure>,
-}
-
-/// The comparison that used up the largest share of its tolerance.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Worst {
-    /// What was compared.
-    pub quantity: String,
-    /// The case it belongs to.
-    pub case: String,
-    /// Largest absolute difference.
-    pub error: f64,
-    /// What it may be.
-    pub tolerance: f64,
-}
-
-/// One comparison that failed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Failure {
-    /// The case it belongs to.
-    pub case: String,
-    /// What was compared and what came out.
-    pub what: String,
+    /// Share of the tolerance, and text.
+    worst: Option<(f64, String)>,
+    /// The first failures: they tell what is wrong, a thousand more do not.
+    failures: Vec<String>,
 }
 
 /// One case while it is checked. It passes if every comparison made on it does, and at least one
@@ -40,26 +20,43 @@ pub struct Case<'a> {
     report: &'a mut Report,
     name: String,
     comparisons: usize,
-    failed: usize,
+    failure: Option<String>,
 }
 
 impl Report {
     /// Checks one case: `compare` makes its comparisons on the [`Case`] that it is given.
-    pub fn case<T>(&mut self, name: impl Display, compare: impl FnOnce(&mut Case<'_>) -> T) -> T {
+    pub fn case(&mut self, name: impl Display, compare: impl FnOnce(&mut Case<'_>)) {
         let mut case = Case {
             name: name.to_string(),
             comparisons: 0,
-            failed: 0,
+            failure: None,
             report: self,
         };
-        let result = compare(&mut case);
+        compare(&mut case);
         if case.comparisons == 0 {
             case.fail("nothing was compared");
         }
-        let passed = case.failed == 0;
+        let (name, failure) = (case.name, case.failure);
         self.cases += 1;
-        self.passed += usize::from(passed);
-        result
+        match failure {
+            None => self.passed += 1,
+            Some(failure) if self.failures.len() < FAILURES_MAX => {
+                self.failures.push(format!("{name}: {failure}"));
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// Checks each item of a list as a case with the name `list[index]`.
+    pub fn each<T>(
+        &mut self,
+        list: impl Display,
+        items: impl IntoIterator<Item = T>,
+        mut compare: impl FnMut(&mut Case<'_>, T),
+    ) {
+        for (index, item) in items.into_iter().enumerate() {
+            self.case(format!("{list}[{index}]"), |case| compare(case, item));
+        }
     }
 
     /// Cases checked.
@@ -71,16 +68,21 @@ impl Report {
     pub fn passed(&self) -> usize {
         self.passed
     }
+}
 
-    /// The comparison of numbers nearest to its tolerance, or furthest beyond; `None` if all
-    /// comparisons were exact.
-    pub fn worst(&self) -> Option<&Worst> {
-        self.worst.as_ref()
-    }
-
-    /// The first failures: they tell what is wrong, a thousand more do not.
-    pub fn failures(&self) -> &[Failure] {
-        &self.failures
+/// The counts on one line; the first failures follow on lines of their own.
+impl Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let worst = self.worst.as_ref();
+        let worst = worst.map_or("all comparisons exact", |(_, text)| text);
+        write!(f, "{}/{} passed, {worst}", self.passed, self.cases)?;
+        for failure in &self.failures {
+            write!(f, "\n      {failure}")?;
+        }
+        match self.cases - self.passed - self.failures.len() {
+            0 => Ok(()),
+            hidden => write!(f, "\n      and {hidden} more cases"),
+        }
     }
 }
 
@@ -93,21 +95,22 @@ impl Case<'_> {
             return self.fail(format!("{quantity}: {got} numbers, expected {want}"));
         }
         self.comparisons += 1;
-        let errors = got
-            .iter()
-            .zip(want)
-            .map(|(got, want)| if got == want { 0.0 } else { (got - want).abs() });
-        let error = errors.fold(0.0, |worst: f64, error| {
-            if error.is_nan() {
-                f64::INFINITY
-            } else {
-                worst.max(error)
-            }
-        });
-        self.note(quantity, error, tolerance);
+        let apart = |(&got, &want): (&f64, &f64)| match got - want {
+            _ if got == want => 0.0,
+            apart if apart.is_nan() => f64::INFINITY,
+            apart => apart.abs(),
+        };
+        let error = got.iter().zip(want).map(apart).fold(0.0, f64::max);
+        // A tolerance of zero is used up by any error and by none.
+        let share = if error == 0.0 { 0.0 } else { error / tolerance };
+        let worst = &mut self.report.worst;
+        if error > 0.0 && worst.as_ref().is_none_or(|(worst, _)| share > *worst) {
+            let name = &self.name;
+            let text = format!("worst {error:.1e} of {tolerance:.0e} ({quantity} of {name})");
+            *worst = Some((share, text));
+        }
         if error > tolerance {
-            self.failed += 1;
-            self.log(format!(
+            self.fail(format!(
                 "{quantity}: off by {error:.3e}, allowed {tolerance:.3e}"
             ));
         }
@@ -117,42 +120,27 @@ impl Case<'_> {
     pub fn equal<A: PartialEq<B> + Debug, B: Debug>(&mut self, quantity: &str, got: A, want: B) {
         self.comparisons += 1;
         if got != want {
-            self.failed += 1;
-            self.log(format!("{quantity}: {got:?}, expected {want:?}"));
+            self.fail(format!("{quantity}: {got:?}, expected {want:?}"));
+        }
+    }
+
+    /// Compares the numbers of a result; an error fails.
+    pub fn result<const N: usize>(
+        &mut self,
+        got: Result<[f64; N], impl Display>,
+        want: &[f64; N],
+        tolerance: f64,
+    ) {
+        match got {
+            Ok(got) => self.near("expected", &got, want, tolerance),
+            Err(error) => self.fail(error.to_string()),
         }
     }
 
     /// Fails the case for a reason of its own.
     pub fn fail(&mut self, what: impl Into<String>) {
         self.comparisons += 1;
-        self.failed += 1;
-        self.log(what.into());
-    }
-
-    fn note(&mut self, quantity: &str, error: f64, tolerance: f64) {
-        // A tolerance of zero is used up by any error and by none.
-        let share = |error: f64, tolerance: f64| {
-            if error == 0.0 { 0.0 } else { error / tolerance }
-        };
-        let worst = &mut self.report.worst;
-        if worst
-            .as_ref()
-            .is_none_or(|old| share(error, tolerance) > share(old.error, old.tolerance))
-        {
-            *worst = Some(Worst {
-                quantity: quantity.to_owned(),
-                case: self.name.clone(),
-                error,
-                tolerance,
-            });
-        }
-    }
-
-    fn log(&mut self, what: String) {
-        if self.report.failures.len() < FAILURES_MAX {
-            let case = self.name.clone();
-            self.report.failures.push(Failure { case, what });
-        }
+        self.failure.get_or_insert_with(|| what.into());
     }
 }
 
@@ -164,50 +152,46 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_worst_is_what_used_up_most_of_its_tolerance() {
-        let mut report = Report::default();
-        report.case("a", |case| {
-            case.near("mass", &[1.0, 2.0], &[1.0, 2.0 + 1e-6], 1e-3)
-        });
-        report.case("b", |case| case.near("pose", &[1.0], &[1.0 + 1e-12], 1e-11));
-        let worst = report.worst().unwrap();
-        assert_eq!(
-            (worst.quantity.as_str(), worst.case.as_str()),
-            ("pose", "b")
-        );
-        assert_eq!((report.cases(), report.passed()), (2, 2));
-    }
-
-    #[test]
-    fn a_case_fails_on_any_of_its_comparisons() {
-        let nan = f64::NAN;
+    fn a_case_fails_with_any_comparison_and_without_one() {
+        let nan = [f64::NAN];
         for (got, want) in [
-            (&[1.0, nan][..], &[1.0, 1.0][..]),
-            (&[1.0], &[nan]),
-            (&[1.0], &[1.1]),
-            (&[f64::INFINITY], &[1.0]),
+            (&[1.0][..], &[1.1][..]),
             (&[1.0], &[1.0, 1.0]),
+            (&nan, &[1.0]),
+            (&[1.0], &nan),
+            (&[f64::INFINITY], &[1.0]),
         ] {
             let mut report = Report::default();
             report.case("bad", |case| {
                 case.near("x", got, want, 1e-3);
-                case.near("y", &[0.0], &[0.0], 1e-3);
+                case.near("y", &[f64::INFINITY], &[f64::INFINITY], 0.0);
             });
             report.case("good", |case| case.equal("z", vec![1], [1]));
+            report.case("empty", |_| ());
             assert_eq!(
                 (report.cases(), report.passed()),
-                (2, 1),
+                (3, 1),
                 "{got:?} {want:?}"
             );
-            assert_eq!(report.failures().len(), 1);
-            assert_eq!(report.failures()[0].case, "bad");
+            let text = report.to_string();
+            assert!(
+                text.contains("bad: x: ") && text.contains("empty: nothing"),
+                "{text}"
+            );
         }
     }
 
     #[test]
-    fn a_case_without_a_comparison_does_not_pass() {
+    fn the_worst_comparison_used_up_most_of_its_tolerance() {
         let mut report = Report::default();
-        report.case("empty", |_| ());
-        assert_eq!((report.cases(), report.passed()), (1, 0));
+        report.each(
+            "list",
+            [(1e-3, 1e-1), (1e-5, 2e-5)],
+            |case, (error, tolerance)| {
+                case.near("x", &[error], &[0.0], tolerance);
+            },
+        );
+        let text = report.to_string();
+        assert_eq!(text, "2/2 passed, worst 1.0e-5 of 2e-5 (x of list[1])");
     }
 }

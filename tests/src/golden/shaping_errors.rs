@@ -2,39 +2,48 @@
 //!
 //! The vectors describe each input in words; the rest of it is at rest.
 
+use anyhow::{Context as _, bail};
 use franka_rt::shaping::limiter::{self, AxisBounds, JointBounds};
 use franka_rt::shaping::{Bounds, InvalidCommand, filter};
+use serde::Deserialize;
 
-use super::{Malformed, Node, Report};
+use super::Report;
 
 const IDENTITY: [f64; 16] = [
     1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.3, 0.2, 0.1, 1.0,
 ];
 
+/// What a function refuses, or in some cases of the filters does not.
+#[derive(Deserialize)]
+pub(super) struct Refused {
+    function: String,
+    case: String,
+    error: Option<String>,
+}
+
 /// Checks the `errors` of `rate_limiting_vectors.json`.
 pub(super) fn limiters(
     report: &mut Report,
+    part: &str,
     bounds: &Bounds,
-    errors: &Node<'_>,
-) -> Result<(), Malformed> {
+    errors: &[Refused],
+) -> anyhow::Result<()> {
     let joints = bounds.joints_at(&[0.0, 0.0, 0.0, -1.5, 0.0, 2.0, 0.0]);
-    for node in errors.list()? {
-        let (function, description) = (node.get("function")?, node.get("case")?);
-        let (name, words) = (function.text()?, description.text()?);
-        let unknown = || description.malformed("a case of the limiters");
+    for (index, refused) in errors.iter().enumerate() {
+        let (name, words) = (refused.function.as_str(), refused.case.as_str());
+        let unknown = || format!("{words}: expected a case of the limiters");
         let inputs: Vec<Input> = match words {
             "commanded non-finite" => [f64::NAN, f64::INFINITY, f64::NEG_INFINITY]
                 .map(|value| Input::Element(0, value))
                 .into(),
             "row-major matrix (translation in the bottom row)" => vec![Input::RowMajor],
             "first column norm 1.001" => vec![Input::Stretched(1.001)],
-            _ => vec![Input::element(words).ok_or_else(unknown)?],
+            _ => vec![Input::element(words).with_context(unknown)?],
         };
-        let expected = node.get("error")?.text()?;
-        report.case(format!("{}: {name}, {words}", node.path()), |case| {
+        report.case(format!("{part}.errors[{index}]: {name}, {words}"), |case| {
             for input in inputs {
                 match limit(name, &input, bounds, &joints) {
-                    Some(got) => case.equal("error", got, Some(expected.to_owned())),
+                    Some(got) => case.equal("error", got, refused.error.clone()),
                     None => case.fail(format!("no limiter of this name for {input:?}")),
                 }
             }
@@ -110,15 +119,14 @@ fn limit(
     Some(error.map(|error: InvalidCommand| error.to_string()))
 }
 
-/// Checks the `errors` of `lowpass_vectors.json`; some cases are none.
-pub(super) fn filters(report: &mut Report, errors: &Node<'_>) -> Result<(), Malformed> {
-    for node in errors.list()? {
-        let (function, description) = (node.get("function")?, node.get("case")?);
-        let (name, words) = (function.text()?, description.text()?);
-        let unknown = || description.malformed("an argument and its value");
+/// Checks the `errors` of `lowpass_vectors.json`; some cases are accepted.
+pub(super) fn filters(report: &mut Report, part: &str, errors: &[Refused]) -> anyhow::Result<()> {
+    for (index, refused) in errors.iter().enumerate() {
+        let (name, words) = (refused.function.as_str(), refused.case.as_str());
+        let unknown = || format!("{words}: expected an argument and its value");
         let split = words.split_once(" = ").or(words.split_once(" has "));
-        let (argument, value) = split.ok_or_else(unknown)?;
-        let value: f64 = value.parse().map_err(|_| unknown())?;
+        let (argument, value) = split.with_context(unknown)?;
+        let value: f64 = value.parse().with_context(unknown)?;
         let mut arguments = [
             ("sample_time", 1e-3),
             ("current", 0.5),
@@ -126,7 +134,7 @@ pub(super) fn filters(report: &mut Report, errors: &Node<'_>) -> Result<(), Malf
             ("cutoff_frequency", 100.0),
         ];
         let changed = arguments.iter_mut().find(|(name, _)| *name == argument);
-        changed.ok_or_else(unknown)?.1 = value;
+        changed.with_context(unknown)?.1 = value;
         let [time, current, last, cutoff] = arguments.map(|(_, value)| value);
         let pose = |element: f64| {
             let mut pose = IDENTITY;
@@ -138,15 +146,11 @@ pub(super) fn filters(report: &mut Report, errors: &Node<'_>) -> Result<(), Malf
             "cartesian_lowpass" => {
                 filter::low_pass_pose(time, &pose(current), &pose(last), cutoff).err()
             }
-            _ => return Err(function.malformed("a filter")),
+            _ => bail!("{name}: expected a filter"),
         };
-        let expected = node.get("error")?;
-        let expected = match expected.value().is_null() {
-            true => None,
-            false => Some(expected.text()?.to_owned()),
-        };
-        report.case(format!("{}: {name}, {words}", node.path()), |case| {
-            case.equal("error", error.map(|error| error.to_string()), expected);
+        report.case(format!("{part}.errors[{index}]: {name}, {words}"), |case| {
+            let got = error.map(|error| error.to_string());
+            case.equal("error", got, refused.error.clone());
         });
     }
     Ok(())

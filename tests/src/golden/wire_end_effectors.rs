@@ -2,29 +2,34 @@
 
 use std::fmt::Debug;
 
+use anyhow::{Context as _, bail};
 use franka_proto::framing::{FrameError, Message};
 use franka_proto::{
     CommandId, ConnectStatus, DecodeError, Outgoing, Protocol, ServiceCommand, client, gripper,
     server, vacuum,
 };
 
-use super::wire::narrow;
-use super::{Case, Malformed, Node, Report};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use super::wire::{File, Golden, Values};
+use super::wire_table::{DeclaredEnum, DeclaredStruct};
+use super::{Case, Report};
 
 /// Checks the messages of both devices in `wire_golden.json`.
-pub(super) fn messages(report: &mut Report, root: &Node<'_>) -> Result<(), Malformed> {
-    device_messages::<gripper::Version>(report, &root.get("gripper")?)?;
-    device_messages::<vacuum::Version>(report, &root.get("vacuum_gripper")?)
+pub(super) fn messages(report: &mut Report, file: &File) -> anyhow::Result<()> {
+    device_messages::<gripper::Version>(report, "gripper", &file.gripper)?;
+    device_messages::<vacuum::Version>(report, "vacuum_gripper", &file.vacuum_gripper)
 }
 
 /// Checks `wire_gripper.json`.
-pub(super) fn gripper_headers(root: &Node<'_>) -> Result<Report, Malformed> {
-    headers::<gripper::Version>(root)
+pub(super) fn gripper_headers(text: &[u8]) -> anyhow::Result<Report> {
+    headers::<gripper::Version>(text)
 }
 
 /// Checks `wire_vacuum_gripper.json`.
-pub(super) fn vacuum_headers(root: &Node<'_>) -> Result<Report, Malformed> {
-    headers::<vacuum::Version>(root)
+pub(super) fn vacuum_headers(text: &[u8]) -> anyhow::Result<Report> {
+    headers::<vacuum::Version>(text)
 }
 
 /// What the checks ask of a device.
@@ -34,11 +39,8 @@ trait Device: for<'a> Protocol<Reply<'a> = gripper::Reply> + Default {
     type State: Debug + PartialEq;
 
     /// The request for a command, with the parameters of the file or, without a file, with any.
-    fn request(
-        command: Self::Command,
-        values: Option<&Node<'_>>,
-    ) -> Result<Self::Request, Malformed>;
-    fn state(values: &Node<'_>) -> Result<Self::State, Malformed>;
+    fn request(command: Self::Command, values: Option<&Values>) -> anyhow::Result<Self::Request>;
+    fn state(values: &Values) -> anyhow::Result<Self::State>;
     fn decode(bytes: &[u8]) -> Result<Self::State, DecodeError>;
     fn encode(state: &Self::State) -> Vec<u8>;
 }
@@ -56,9 +58,9 @@ impl Device for gripper::Version {
 
     fn request(
         command: gripper::Command,
-        values: Option<&Node<'_>>,
-    ) -> Result<gripper::Request, Malformed> {
-        let number = |name| values.map_or(Ok(0.0), |values| values.get(name)?.number());
+        values: Option<&Values>,
+    ) -> anyhow::Result<gripper::Request> {
+        let number = |name| field(values, name);
         Ok(match command {
             gripper::Command::Connect => gripper::Request::Connect {
                 version: field(values, "version")?,
@@ -80,13 +82,13 @@ impl Device for gripper::Version {
         })
     }
 
-    fn state(values: &Node<'_>) -> Result<gripper::State, Malformed> {
+    fn state(values: &Values) -> anyhow::Result<gripper::State> {
         Ok(gripper::State {
-            message_id: narrow(&values.get("message_id")?)?,
-            width: values.get("width")?.number()?,
-            max_width: values.get("max_width")?.number()?,
-            is_grasped: values.get("is_grasped")?.boolean()?,
-            temperature: narrow(&values.get("temperature")?)?,
+            message_id: values.get("message_id")?,
+            width: values.get("width")?,
+            max_width: values.get("max_width")?,
+            is_grasped: values.flag("is_grasped")?,
+            temperature: values.get("temperature")?,
         })
     }
 
@@ -111,25 +113,18 @@ impl Device for vacuum::Version {
 
     fn request(
         command: vacuum::Command,
-        values: Option<&Node<'_>>,
-    ) -> Result<vacuum::Request, Malformed> {
+        values: Option<&Values>,
+    ) -> anyhow::Result<vacuum::Request> {
         Ok(match command {
             vacuum::Command::Connect => vacuum::Request::Connect {
                 version: field(values, "version")?,
                 udp_port: field(values, "udp_port")?,
             },
-            vacuum::Command::Vacuum => {
-                let profile = vacuum::Profile::from_byte(field(values, "profile")?);
-                let unknown = |values: &Node<'_>| values.malformed("a profile");
-                vacuum::Request::Vacuum(vacuum::Vacuum {
-                    vacuum: field(values, "vacuum")?,
-                    profile: match (profile, values) {
-                        (Err(_), Some(values)) => return Err(unknown(values)),
-                        (profile, _) => profile.unwrap_or_default(),
-                    },
-                    timeout: field(values, "timeout")?,
-                })
-            }
+            vacuum::Command::Vacuum => vacuum::Request::Vacuum(vacuum::Vacuum {
+                vacuum: field(values, "vacuum")?,
+                profile: vacuum::Profile::from_byte(field(values, "profile")?)?,
+                timeout: field(values, "timeout")?,
+            }),
             vacuum::Command::DropOff => vacuum::Request::DropOff {
                 timeout: field(values, "timeout")?,
             },
@@ -137,16 +132,15 @@ impl Device for vacuum::Version {
         })
     }
 
-    fn state(values: &Node<'_>) -> Result<vacuum::State, Malformed> {
-        let flag = |name| values.get(name)?.boolean();
+    fn state(values: &Values) -> anyhow::Result<vacuum::State> {
         Ok(vacuum::State {
-            message_id: narrow(&values.get("message_id")?)?,
-            in_control_range: flag("in_control_range")?,
-            part_detached: flag("part_detached")?,
-            part_present: flag("part_present")?,
-            device_status: vacuum::DeviceStatus::from_byte(narrow(&values.get("device_status")?)?),
-            actual_power: narrow(&values.get("actual_power")?)?,
-            vacuum: narrow(&values.get("vacuum")?)?,
+            message_id: values.get("message_id")?,
+            in_control_range: values.flag("in_control_range")?,
+            part_detached: values.flag("part_detached")?,
+            part_present: values.flag("part_present")?,
+            device_status: vacuum::DeviceStatus::from_byte(values.get("device_status")?),
+            actual_power: values.get("actual_power")?,
+            vacuum: values.get("vacuum")?,
         })
     }
 
@@ -159,42 +153,44 @@ impl Device for vacuum::Version {
     }
 }
 
-/// A member of the values, or zero where there are none.
-fn field<T: TryFrom<u64> + Default>(values: Option<&Node<'_>>, name: &str) -> Result<T, Malformed> {
-    values.map_or(Ok(T::default()), |values| narrow(&values.get(name)?))
+/// A value, or zero without values.
+fn field<T: DeserializeOwned + Default>(values: Option<&Values>, name: &str) -> anyhow::Result<T> {
+    values.map_or(Ok(T::default()), |values| values.get(name))
 }
 
-fn command_named<D: Device>(name: &str, node: &Node<'_>) -> Result<D::Command, Malformed> {
+fn command_named<D: Device>(name: &str) -> anyhow::Result<D::Command> {
     let mut commands = D::COMMANDS.iter().copied();
-    commands
-        .find(|command| format!("{command:?}") == name)
-        .ok_or_else(|| node.malformed("a command of the device"))
+    let command = commands.find(|command| format!("{command:?}") == name);
+    command.with_context(|| format!("{name}: expected a command of the device"))
 }
 
-fn device_messages<D: Device>(report: &mut Report, list: &Node<'_>) -> Result<(), Malformed> {
-    for node in list.list()? {
-        let name = node.get("message")?.text()?;
-        let (values, bytes) = (node.get("values")?, node.get("hex")?.bytes()?);
-        let title = format!("{} {name}", node.path());
+fn device_messages<D: Device>(
+    report: &mut Report,
+    list: &str,
+    messages: &[Golden],
+) -> anyhow::Result<()> {
+    for (index, golden) in messages.iter().enumerate() {
+        let (name, values, bytes) = (&golden.message, &golden.values, &golden.bytes);
+        let title = format!("{list}[{index}] {name}");
         match name.split_once(' ') {
             Some((command, "request")) => {
-                let request = D::request(command_named::<D>(command, &node)?, Some(&values))?;
-                let id = CommandId(narrow(&values.get("command_id")?)?);
-                report.case(title, |case| check_request::<D>(case, &request, id, &bytes));
+                let request = D::request(command_named::<D>(command)?, Some(values))?;
+                let id = CommandId(values.get("command_id")?);
+                report.case(title, |case| check_request::<D>(case, &request, id, bytes));
             }
             Some((command, "reply")) => {
-                let command = command_named::<D>(command, &node)?;
-                let id = CommandId(narrow(&values.get("command_id")?)?);
-                let reply = reply::<D>(command, &values)?;
+                let command = command_named::<D>(command)?;
+                let id = CommandId(values.get("command_id")?);
+                let reply = reply::<D>(command, values)?;
                 report.case(title, |case| {
-                    check_reply::<D>(case, command, reply, id, &bytes)
+                    check_reply::<D>(case, command, reply, id, bytes);
                 });
             }
             _ => {
-                let state = D::state(&values)?;
+                let state = D::state(values)?;
                 report.case(title, |case| {
-                    case.equal("bytes", &D::encode(&state), &bytes);
-                    case.equal("values", D::decode(&bytes), Ok(state));
+                    case.equal("bytes", &D::encode(&state), bytes);
+                    case.equal("values", D::decode(bytes), Ok(state));
                     let short = D::decode(&bytes[..bytes.len() - 1]);
                     case.equal("shorter datagram is refused", short.is_err(), true);
                 });
@@ -204,23 +200,24 @@ fn device_messages<D: Device>(report: &mut Report, list: &Node<'_>) -> Result<()
     Ok(())
 }
 
-fn reply<D: Device>(command: D::Command, values: &Node<'_>) -> Result<gripper::Reply, Malformed> {
-    let number = values.get("status")?;
+fn reply<D: Device>(command: D::Command, values: &Values) -> anyhow::Result<gripper::Reply> {
+    let status: u16 = values.get("status")?;
     if command == D::Command::CONNECT {
-        let version = narrow(&values.get("version")?)?;
-        let status = match number.integer()? {
-            0 => ConnectStatus::Success,
-            1 => ConnectStatus::IncompatibleLibraryVersion,
-            _ => return Err(number.malformed("an answer to a handshake")),
-        };
-        return Ok(gripper::Reply::Connect { status, version });
+        return Ok(gripper::Reply::Connect {
+            status: match status {
+                0 => ConnectStatus::Success,
+                1 => ConnectStatus::IncompatibleLibraryVersion,
+                _ => bail!("status {status} of a handshake"),
+            },
+            version: values.get("version")?,
+        });
     }
-    Ok(gripper::Reply::Done(match number.integer()? {
+    Ok(gripper::Reply::Done(match status {
         0 => gripper::Status::Success,
         1 => gripper::Status::Fail,
         2 => gripper::Status::Unsuccessful,
         3 => gripper::Status::Aborted,
-        _ => return Err(number.malformed("a status")),
+        _ => bail!("status {status}"),
     }))
 }
 
@@ -298,95 +295,107 @@ fn server_bytes<D: Device>(
     Ok(answer.as_bytes().to_vec())
 }
 
+/// What the vendor's headers declare.
+#[derive(Deserialize)]
+struct Headers {
+    version: u16,
+    tcp_port: u16,
+    header_size: usize,
+    state_struct: String,
+    commands: Vec<DeclaredCommand>,
+    enums: Vec<DeclaredEnum>,
+    structs: Vec<DeclaredStruct>,
+}
+
+#[derive(Deserialize)]
+struct DeclaredCommand {
+    id: u32,
+    name: String,
+    request_total_bytes: usize,
+    response_total_bytes: usize,
+}
+
 /// Checks version, port, sizes, the numbers of commands and every number of the enums. Offsets are
 /// asserted when the protocol crate is compiled.
-fn headers<D: Device>(root: &Node<'_>) -> Result<Report, Malformed> {
+fn headers<D: Device>(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    let (version, port): (u16, u16) = (
-        narrow(&root.get("version")?)?,
-        narrow(&root.get("tcp_port")?)?,
-    );
-    let header_size: usize = narrow(&root.get("header_size")?)?;
+    let file: Headers = serde_json::from_slice(text)?;
     report.case("service", |case| {
-        case.equal("version", D::default().number(), version);
-        case.equal("port", D::PORT, port);
-        let header = u32::try_from(header_size).unwrap_or_default().to_le_bytes();
-        let bytes = [&[0; 6][..], &header].concat();
+        case.equal("version", D::default().number(), file.version);
+        case.equal("port", D::PORT, file.tcp_port);
+        let bytes = message_of(file.header_size, &[]);
         case.equal("header size", whole(&bytes).map(|m| m.payload.len()), Ok(0));
     });
-    for node in root.get("commands")?.list()? {
-        check_command::<D>(&mut report, &node, header_size)?;
+    for declared in &file.commands {
+        declared.check::<D>(&mut report, file.header_size)?;
     }
-    for node in root.get("enums")?.list()? {
-        check_enum::<D>(&mut report, &node)?;
+    for declared in &file.enums {
+        check_enum::<D>(&mut report, declared);
     }
-    let state = root.get("state_struct")?.text()?;
-    for node in root.get("structs")?.list()? {
-        if node.get("name")?.text()? == state {
-            let size: usize = narrow(&node.get("size")?)?;
-            report.case(state, |case| {
-                case.equal("its size is read", D::decode(&vec![0; size]).is_ok(), true);
-                case.equal("less is not", D::decode(&vec![0; size - 1]).is_ok(), false);
-            });
-        }
-    }
+    let state = file
+        .structs
+        .iter()
+        .find(|declared| declared.name == file.state_struct);
+    let size = state
+        .and_then(|state| state.size)
+        .context("no size of the state")?;
+    report.case(&file.state_struct, |case| {
+        case.equal("its size is read", D::decode(&vec![0; size]).is_ok(), true);
+        case.equal("less is not", D::decode(&vec![0; size - 1]).is_ok(), false);
+    });
     Ok(report)
 }
 
-fn check_command<D: Device>(
-    report: &mut Report,
-    node: &Node<'_>,
-    header_size: usize,
-) -> Result<(), Malformed> {
-    let name = node.get("name")?.text()?;
-    let number: u32 = narrow(&node.get("id")?)?;
-    let request_size: usize = narrow(&node.get("request_total_bytes")?)?;
-    let response_size: usize = narrow(&node.get("response_total_bytes")?)?;
-    let command = command_named::<D>(name.trim_start_matches('k'), node)?;
-    let request = D::request(command, None)?;
-    report.case(format!("command {name}"), |case| {
-        match D::default().encode_request(&request, CommandId(0)) {
-            Ok(sent) => {
-                case.equal("request size", sent.as_bytes().len(), request_size);
-                case.equal("number", u32::from(sent.as_bytes()[0]), number);
-            }
-            Err(error) => case.fail(error.to_string()),
-        }
-        let decode = |size: usize| {
-            let total = (size as u32).to_le_bytes();
-            let bytes = [&[0; 6][..], &total, &vec![0; size - header_size]].concat();
-            whole(&bytes).is_ok_and(|message| D::default().decode_reply(command, &message).is_ok())
-        };
-        case.equal("reply of this size is read", decode(response_size), true);
-        case.equal("shorter reply is read", decode(response_size - 1), false);
-    });
-    Ok(())
+/// A message of this size in which everything but size and payload is zero.
+fn message_of(size: usize, payload: &[u8]) -> Vec<u8> {
+    [&[0; 6], &(size as u32).to_le_bytes()[..], payload].concat()
 }
 
-fn check_enum<D: Device>(report: &mut Report, node: &Node<'_>) -> Result<(), Malformed> {
-    let name = node.get("name")?.text()?;
-    let command = match name {
+impl DeclaredCommand {
+    fn check<D: Device>(&self, report: &mut Report, header_size: usize) -> anyhow::Result<()> {
+        let command = command_named::<D>(self.name.trim_start_matches('k'))?;
+        let request = D::request(command, None)?;
+        report.case(format!("command {}", self.name), |case| {
+            match D::default().encode_request(&request, CommandId(0)) {
+                Ok(sent) => {
+                    let size = sent.as_bytes().len();
+                    case.equal("request size", size, self.request_total_bytes);
+                    case.equal("number", u32::from(sent.as_bytes()[0]), self.id);
+                }
+                Err(error) => case.fail(error.to_string()),
+            }
+            let decode = |size: usize| {
+                let bytes = message_of(size, &vec![0; size - header_size]);
+                let message = whole(&bytes);
+                message.is_ok_and(|m| D::default().decode_reply(command, &m).is_ok())
+            };
+            let size = self.response_total_bytes;
+            case.equal("reply of this size is read", decode(size), true);
+            case.equal("shorter reply is read", decode(size - 1), false);
+        });
+        Ok(())
+    }
+}
+
+fn check_enum<D: Device>(report: &mut Report, declared: &DeclaredEnum) {
+    let name = &declared.name;
+    let command = match name.as_str() {
         "Connect::Status" => D::Command::CONNECT,
         "CommandBase::Status" => D::COMMANDS[1],
         // The numbers of commands are checked with the commands, the bytes of the other enums in
         // the messages.
-        _ => return Ok(()),
+        _ => return,
     };
-    let mut names = vec![None; 256];
-    for (enumerator, value) in node.get("values")?.members()? {
-        names[narrow::<usize>(&value)?] = Some(enumerator.to_owned());
-    }
     report.case(format!("enum {name}"), |case| {
-        for (number, name) in (0..=u8::MAX).zip(names) {
-            let bytes = [0, 0, 0, 0, 0, 0, 14, 0, 0, 0, number, 0, 0, 0];
+        for (number, name) in (0..=u8::MAX).zip(declared.names()) {
+            let bytes = message_of(14, &[number, 0, 0, 0]);
             let decoded = whole(&bytes).map(|m| D::default().decode_reply(command, &m));
             let got = match decoded {
                 Ok(Ok(gripper::Reply::Connect { status, .. })) => Some(format!("k{status:?}")),
                 Ok(Ok(gripper::Reply::Done(status))) => Some(format!("k{status:?}")),
                 _ => None,
             };
-            case.equal(&format!("number {number}"), got, name);
+            case.equal(&format!("number {number}"), got.as_deref(), name);
         }
     });
-    Ok(())
 }

@@ -1,5 +1,8 @@
 //! The version table of the protocol against the vendor's headers.
 
+use std::collections::BTreeMap;
+
+use anyhow::Context as _;
 use franka_proto::framing::{Header, Message};
 use franka_proto::{
     Architecture, CollisionBehavior, Command, CommandId, ControllerMode, DecodeError, Filters,
@@ -7,84 +10,120 @@ use franka_proto::{
     RobotError, RobotMode, RobotState, System, Version,
 };
 
-use super::wire::{narrow, status_of};
-use super::{Case, Malformed, Node, Report};
+use serde::Deserialize;
+
+use super::wire::status_of;
+use super::{Case, Report};
+
+/// What the vendor's headers declare.
+#[derive(Deserialize)]
+struct File {
+    fci_version: u16,
+    header_size: usize,
+    commands: Vec<DeclaredCommand>,
+    enums: Vec<DeclaredEnum>,
+    errors: Vec<DeclaredError>,
+    structs: Vec<DeclaredStruct>,
+}
+
+#[derive(Deserialize)]
+struct DeclaredCommand {
+    id: u32,
+    name: String,
+    display_name: String,
+    request_total_bytes: usize,
+    response_total_bytes: usize,
+}
+
+#[derive(Deserialize)]
+pub(super) struct DeclaredEnum {
+    pub(super) name: String,
+    pub(super) values: BTreeMap<String, u32>,
+}
+
+impl DeclaredEnum {
+    /// The name of each byte, if it has one.
+    pub(super) fn names(&self) -> [Option<&str>; 256] {
+        let mut names = [None; 256];
+        for (name, &value) in &self.values {
+            names[value as usize] = Some(name.as_str());
+        }
+        names
+    }
+}
+
+#[derive(Deserialize)]
+struct DeclaredError {
+    index: usize,
+    name: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct DeclaredStruct {
+    pub(super) name: String,
+    /// `None` for a reply that ends with a text.
+    pub(super) size: Option<usize>,
+}
 
 /// Checks `wire_v10.json` or `wire_v5.json`: command numbers, names and sizes, the bytes of every
 /// enumerator, the errors, the sizes of the datagrams. Offsets are asserted when the protocol crate
 /// is compiled, and golden messages prove them.
-pub(super) fn headers(root: &Node<'_>) -> Result<Report, Malformed> {
-    let node = root.get("fci_version")?;
-    let version = Version::from_number(narrow(&node)?);
-    let version = version.ok_or_else(|| node.malformed("a version of the protocol"))?;
+pub(super) fn headers(text: &[u8]) -> anyhow::Result<Report> {
+    let file: File = serde_json::from_slice(text)?;
+    let version = Version::from_number(file.fci_version);
+    let version = version.context("expected a version of the protocol")?;
     let mut report = Report::default();
-    let size: usize = narrow(&root.get("header_size")?)?;
-    report.case("header_size", |case| case.equal("size", Header::SIZE, size));
-    for node in root.get("commands")?.list()? {
-        check_command(&mut report, version, &node)?;
+    report.case("header_size", |case| {
+        case.equal("size", Header::SIZE, file.header_size);
+    });
+    for declared in &file.commands {
+        declared.check(&mut report, version);
     }
-    for node in root.get("enums")?.list()? {
-        check_enum(&mut report, version, &node)?;
+    for declared in &file.enums {
+        check_enum(&mut report, version, declared);
     }
-    for (index, node) in root.get("errors")?.list()?.iter().enumerate() {
-        let name = node.get("name")?.text()?;
-        let at: usize = narrow(&node.get("index")?)?;
-        report.case(format!("error {name}"), |case| {
-            case.equal("index", at, index);
-            case.equal(
-                "name",
-                RobotError::from_index(at).map(RobotError::name),
-                Some(name),
-            );
+    for (index, error) in file.errors.iter().enumerate() {
+        report.case(format!("error {}", error.name), |case| {
+            case.equal("index", error.index, index);
+            let name = RobotError::from_index(error.index).map(RobotError::name);
+            case.equal("name", name, Some(error.name.as_str()));
         });
     }
     for (name, size) in [
         ("RobotState", version.state_size()),
         ("RobotCommand", version.command_size()),
     ] {
-        let expected: usize = narrow(&structure(root, name)?.get("size")?)?;
+        let declared = file.structs.iter().find(|declared| declared.name == name);
+        let expected = declared.and_then(|declared| declared.size);
+        let expected = expected.with_context(|| format!("no struct {name} with a size"))?;
         report.case(name, |case| case.equal("size", size, expected));
     }
     Ok(report)
 }
 
-fn structure<'a>(root: &Node<'a>, name: &str) -> Result<Node<'a>, Malformed> {
-    for node in root.get("structs")?.list()? {
-        if node.get("name")?.text()? == name {
-            return Ok(node);
-        }
+impl DeclaredCommand {
+    fn check(&self, report: &mut Report, version: Version) {
+        let (name, number) = (&self.name, self.id);
+        report.case(format!("command {name}"), |case| {
+            let Some(command) = version.command_from_number(number) else {
+                return case.fail(format!("no command {number}"));
+            };
+            case.equal("name", &format!("k{command:?}"), name);
+            if !self.display_name.starts_with("(none") {
+                case.equal("display name", command.display_name(), &self.display_name);
+            }
+            let request = sample(command).encode(version, CommandId(0));
+            let size = request.map(|bytes| bytes.as_bytes().len());
+            case.equal("request size", size, Ok(self.request_total_bytes));
+            let payload = self.response_total_bytes - Header::SIZE;
+            let bytes = vec![0; payload];
+            let decode = |size| Reply::decode(version, command, &message(number, &bytes[..size]));
+            case.equal("reply of this size is read", decode(payload).is_ok(), true);
+            let short = decode(payload - 1);
+            let too_short = matches!(short, Err(DecodeError::MessageSize { .. }));
+            case.equal("shorter reply is refused", too_short, true);
+        });
     }
-    Err(root.malformed(format!("a struct {name}")))
-}
-
-fn check_command(report: &mut Report, version: Version, node: &Node<'_>) -> Result<(), Malformed> {
-    let name = node.get("name")?.text()?;
-    let number: u32 = narrow(&node.get("id")?)?;
-    let display_name = node.get("display_name")?.text()?;
-    let request_size: usize = narrow(&node.get("request_total_bytes")?)?;
-    let response_size: usize = narrow(&node.get("response_total_bytes")?)?;
-    report.case(format!("command {name}"), |case| {
-        let Some(command) = version.command_from_number(number) else {
-            return case.fail(format!("no command {number}"));
-        };
-        case.equal("name", format!("k{command:?}"), name);
-        if !display_name.starts_with("(none") {
-            case.equal("display name", command.display_name(), display_name);
-        }
-        let id = CommandId(0);
-        let size = sample(command)
-            .encode(version, id)
-            .map(|bytes| bytes.as_bytes().len());
-        case.equal("request size", size, Ok(request_size));
-        let payload = response_size - Header::SIZE;
-        let bytes = vec![0; payload];
-        let decode = |size| Reply::decode(version, command, &message(number, &bytes[..size]));
-        case.equal("reply of this size is read", decode(payload).is_ok(), true);
-        let short = decode(payload - 1);
-        let too_short = matches!(short, Err(DecodeError::MessageSize { .. }));
-        case.equal("shorter reply is refused", too_short, true);
-    });
-    Ok(())
 }
 
 /// Some request for a command.
@@ -135,22 +174,16 @@ fn message(command: u32, payload: &[u8]) -> Message<'_> {
 }
 
 /// Checks every byte of an enum: the enumerators have their names, the rest has none.
-fn check_enum(report: &mut Report, version: Version, node: &Node<'_>) -> Result<(), Malformed> {
-    let name = node.get("name")?.text()?;
+fn check_enum(report: &mut Report, version: Version, declared: &DeclaredEnum) {
+    let name = &declared.name;
     let Some(meaning) = reader(name, version) else {
-        return Ok(());
+        return;
     };
-    let mut names = vec![None; 256];
-    for (enumerator, value) in node.get("values")?.members()? {
-        let value: u8 = narrow(&value)?;
-        names[usize::from(value)] = Some(enumerator.to_owned());
-    }
     report.case(format!("enum {name}"), |case: &mut Case<'_>| {
-        for (byte, name) in (0..=u8::MAX).zip(names) {
-            case.equal(&format!("byte {byte}"), meaning(byte), name);
+        for (byte, name) in (0..=u8::MAX).zip(declared.names()) {
+            case.equal(&format!("byte {byte}"), meaning(byte).as_deref(), name);
         }
     });
-    Ok(())
 }
 
 /// The vendor's name for a byte, if it has one.
