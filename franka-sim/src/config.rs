@@ -3,8 +3,8 @@
 mod unpublished;
 
 pub use unpublished::{
-    ErrorBits, Extrapolation, FirstCycles, Instability, SelfCollision, Setters, StartTolerance,
-    Unpublished,
+    ErrorBits, Extrapolation, FirstCycles, ForceAxes, Instability, SelfCollision, SetterBounds,
+    Setters, StartTolerance, Unpublished,
 };
 
 use bytes::Bytes;
@@ -12,7 +12,7 @@ use franka_model::{JointVector, Load, READY, RobotKind};
 use franka_proto::VirtualWall;
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 
-/// The make-up of one simulated robot. [`Default`] is a Franka Research 3 with a bare flange in the
+/// The model of one simulated robot. [`Default`] is a Franka Research 3 with a bare flange in the
 /// ready pose, as strict as a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
@@ -22,7 +22,7 @@ pub struct Config {
     pub q: JointVector,
     /// What is mounted on the flange and known to the robot, as set up in Desk.
     pub tool: Tool,
-    /// What the flange carries on top and nobody has declared; a client does that with `SetLoad`.
+    /// What the flange carries besides, undeclared; a client declares it with `SetLoad`.
     pub payload: Load,
     /// Sensor noise.
     pub noise: Noise,
@@ -82,6 +82,9 @@ pub struct Tool {
     pub f_t_ne: Matrix4<f64>,
     /// Its mass, centre of mass and inertia: `m_ee`, `F_x_Cee`, `I_ee`.
     pub load: Load,
+    /// Whether it has the shape of the Franka Hand, which the robot keeps off itself. It knows the
+    /// shape of no other tool.
+    pub has_hand_shape: bool,
 }
 
 impl Tool {
@@ -94,6 +97,7 @@ impl Tool {
             0.0, 0.0, 0.0, 1.0,
         ),
         load: Load::NONE,
+        has_hand_shape: false,
     };
 
     /// The Franka Hand: turned by -45 degrees about the flange axis, fingertips 0.1034 m out, and
@@ -109,6 +113,7 @@ impl Tool {
                 com: Vector3::new(-0.01, 0.0, 0.03),
                 inertia: Matrix3::from_diagonal(&Vector3::new(0.001, 0.0025, 0.0017)),
             },
+            has_hand_shape: true,
         }
     }
 }

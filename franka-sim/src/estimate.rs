@@ -4,6 +4,7 @@ use franka_model::{Frame, Jacobian, JointVector, Wrench};
 use franka_proto::{CollisionBehavior, Errors, RobotError};
 use nalgebra::Cholesky;
 
+use crate::config::ForceAxes;
 use crate::generator::Arm;
 use crate::signal::{halves, stack};
 
@@ -52,13 +53,14 @@ impl Estimate {
         self.wrench_base = stack(&(rotation * force), &(rotation * torque));
     }
 
-    /// Compares with the thresholds; `accelerating` selects which set. Returns the reflexes that
-    /// call for a stop.
+    /// Compares with the thresholds, forces along `axes`; `accelerating` selects which set. Returns
+    /// the errors to stop for.
     ///
     /// A collision is latched only if `moving`: an arm that holds still has nothing to stop.
     pub(crate) fn compare(
         &mut self,
         thresholds: &CollisionBehavior,
+        axes: ForceAxes,
         accelerating: bool,
         moving: bool,
     ) -> Errors {
@@ -86,7 +88,11 @@ impl Estimate {
                 ),
             )
         };
-        let (torque_now, force_now) = (self.torque.into(), self.wrench_stiffness.into());
+        let torque_now = self.torque.into();
+        let force_now = match axes {
+            ForceAxes::Base => self.wrench_base.into(),
+            ForceAxes::Stiffness => self.wrench_stiffness.into(),
+        };
         self.joint_contact = reached(&torque_now, torque.0);
         self.cartesian_contact = reached(&force_now, force.0);
         let mut reflexes = Errors::NONE;

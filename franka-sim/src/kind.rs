@@ -1,10 +1,7 @@
-//! What a simulated robot of one kind is, besides what [`franka_model`] says of it: the one place
-//! that tells the kinds apart.
+//! What differs between the kinds of robot, besides their arms: versions, names, statuses.
 
 use franka_model::RobotKind;
 use franka_proto::{MoveStatus, RecoveryStatus, RobotError, SetterStatus, Version};
-
-use crate::plant::ArmParameters;
 
 /// One kind of robot.
 pub(crate) struct Description {
@@ -13,8 +10,6 @@ pub(crate) struct Description {
     pub(crate) version: Version,
     /// How its description names it; `None` if it serves none.
     pub(crate) urdf_name: Option<&'static str>,
-    /// Rotors, friction and stops of its arm.
-    pub(crate) arm: fn() -> ArmParameters,
     /// Precision in which its states carry numbers.
     pub(crate) precision: Precision,
     /// Errors of desired joint positions outside their range.
@@ -71,7 +66,6 @@ static FR3: Description = Description {
     kind: RobotKind::Fr3,
     version: Version::V10,
     urdf_name: Some("fr3"),
-    arm: ArmParameters::fr3,
     precision: Precision::Single,
     // One name whatever was commanded (FCI documentation, since system 5.7.2).
     range: RangeErrors {
@@ -91,7 +85,6 @@ static FER: Description = Description {
     kind: RobotKind::Fer,
     version: Version::V5,
     urdf_name: None,
-    arm: ArmParameters::fer,
     precision: Precision::Double,
     range: RangeErrors {
         joint_position: RobotError::JointMotionGeneratorPositionLimitsViolation,

@@ -42,9 +42,9 @@
 //! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. Needs Rust 1.95, and MuJoCo's library: in
 //!   this workspace `cargo xtask mujoco` fetches it.
 //!
-//! # Hands on
+//! # Disturbances
 //!
-//! [`Robot`], and [`Running`] from any task: [`touch`](Robot::touch) the arm anywhere ([`Touch`]:
+//! [`Robot`], and from any task through [`Running::with`]: [`touch`](Robot::touch) the arm anywhere ([`Touch`]:
 //! push it, also over time, pull it by a spring, hold it, block a joint, put a wall in its way),
 //! press the user stop, close the brakes, guide the arm, activate a safety function, change the
 //! payload, trip any error, and perform the recovery that takes a person.
@@ -65,6 +65,7 @@
 
 mod brake;
 pub mod config;
+mod connection;
 pub mod end_effector;
 mod estimate;
 mod filter;

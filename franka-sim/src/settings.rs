@@ -4,7 +4,7 @@ use franka_model::{EndEffector, JointVector, Load, Twist, transform};
 use franka_proto::{CollisionBehavior, Filters, Request, SetterStatus};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
-use crate::config::{Tool, Unpublished};
+use crate::config::{SetterBounds, Tool, Unpublished};
 
 /// The values in force. They outlive the client that set them, as on a robot.
 #[derive(Debug, Clone)]
@@ -24,9 +24,10 @@ pub(crate) struct Settings {
     pub(crate) guiding: Guiding,
     /// Of commands; `None`: they are taken as they come.
     pub(crate) filters: Option<Filters>,
+    bounds: SetterBounds,
 }
 
-/// What a hand may move while it guides the arm.
+/// The directions in which a person may guide the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Guiding {
     /// Translation along and rotation about the axes of the end effector.
@@ -59,6 +60,7 @@ impl Settings {
             thresholds: factory.thresholds,
             guiding: Guiding::FREE,
             filters: factory.command_filter.map(Filters::uniform),
+            bounds: factory.setter_bounds,
         }
     }
 
@@ -90,15 +92,17 @@ impl Settings {
                 };
                 Some(())
             }
-            Request::SetEEToK(matrix) => rigid(matrix).map(|m| self.frames.ee_t_k = m),
-            Request::SetNEToEE(matrix) => rigid(matrix).map(|m| {
+            Request::SetEEToK(matrix) => {
+                rigid(matrix, &self.bounds).map(|m| self.frames.ee_t_k = m)
+            }
+            Request::SetNEToEE(matrix) => rigid(matrix, &self.bounds).map(|m| {
                 self.ne_t_ee = m;
                 self.frames.f_t_ee = self.tool.f_t_ne * m;
             }),
             Request::SetFilters(filters) => {
                 are_filters(filters).then(|| self.filters = Some(*filters))
             }
-            Request::SetLoad(load) => physical(load).map(|load| self.load = load),
+            Request::SetLoad(load) => physical(load, &self.bounds).map(|load| self.load = load),
             _ => None,
         };
         match applied {
@@ -124,8 +128,8 @@ fn are_filters(filters: &Filters) -> bool {
     all_within(&frequencies, 1.0, 1000.0)
 }
 
-/// Thresholds are finite and not negative. Upper ones below the lower ones are allowed: then the
-/// collision comes without a contact before it.
+/// Thresholds are finite and not negative. A threshold of zero is always reached. Upper ones below
+/// the lower ones are allowed: the collision then comes without a contact before it.
 fn are_thresholds(thresholds: &CollisionBehavior) -> bool {
     let t = thresholds;
     let torques = [
@@ -147,26 +151,31 @@ fn are_thresholds(thresholds: &CollisionBehavior) -> bool {
         .all(|value| value.is_finite() && *value >= 0.0)
 }
 
-fn rigid(column_major: &[f64; 16]) -> Option<Matrix4<f64>> {
-    transform::isometry_from_array(column_major)?;
-    Some(Matrix4::from_column_slice(column_major))
+/// A rigid transform within the bounds.
+fn rigid(column_major: &[f64; 16], bounds: &SetterBounds) -> Option<Matrix4<f64>> {
+    let pose = transform::isometry_from_array(column_major)?;
+    let is_near = pose.translation.vector.norm() <= bounds.translation;
+    is_near.then(|| Matrix4::from_column_slice(column_major))
 }
 
 /// A load that a rigid body can have: mass not negative, inertia symmetric and positive
-/// semidefinite (up to rounding).
-fn physical(load: &franka_proto::Load) -> Option<Load> {
+/// semidefinite (up to rounding), all of it within the bounds.
+fn physical(load: &franka_proto::Load, bounds: &SetterBounds) -> Option<Load> {
     let inertia = Matrix3::from_column_slice(&load.I_load);
     let com = Vector3::from(load.F_x_Cload);
     let finite = load.m_load.is_finite()
         && com.iter().all(|x| x.is_finite())
         && inertia.iter().all(|x| x.is_finite());
-    if !finite || load.m_load < 0.0 {
+    if !finite || !(0.0..=bounds.mass).contains(&load.m_load) || com.norm() > bounds.com {
         return None;
     }
     let tolerance = 1e-9 + 1e-6 * inertia.amax();
-    let symmetric = (inertia - inertia.transpose()).amax() <= tolerance;
-    let semidefinite = symmetric && inertia.symmetric_eigenvalues().min() >= -tolerance;
-    semidefinite.then_some(Load {
+    let is_symmetric = (inertia - inertia.transpose()).amax() <= tolerance;
+    if !is_symmetric || inertia.amax() > bounds.inertia {
+        return None;
+    }
+    let moments = inertia.symmetric_eigenvalues();
+    (moments.min() >= -tolerance && moments.max() <= bounds.inertia).then_some(Load {
         mass: load.m_load,
         com,
         inertia,

@@ -27,6 +27,14 @@ pub struct Unpublished {
     pub error_bits: ErrorBits,
     /// The modes besides Idle in which setters are taken.
     pub setters: Setters,
+    /// The largest load and frames that setters take.
+    pub setter_bounds: SetterBounds,
+    /// The axes in which force thresholds are compared.
+    pub force_axes: ForceAxes,
+    /// Measured joint velocity above which no motion under an external controller may finish,
+    /// `[rad/s]`; infinite for a robot that lets it. Default 0.1: motions of the robot's own
+    /// controllers are known to be refused when they finish at speed.
+    pub finish_velocity: f64,
     /// Stiffness of the internal joint impedance controller until a client sets another,
     /// `[N·m/rad]`. Default: the values of libfranka 0.21, `examples_common.cpp`.
     pub joint_stiffness: JointVector,
@@ -69,6 +77,9 @@ impl Default for Unpublished {
             move_clears_reason: true,
             error_bits: ErrorBits::All,
             setters: Setters::default(),
+            setter_bounds: SetterBounds::default(),
+            force_axes: ForceAxes::default(),
+            finish_velocity: 0.1,
             joint_stiffness: joint_vector([3000.0, 3000.0, 3000.0, 2500.0, 2500.0, 2000.0, 2000.0]),
             cartesian_stiffness: Twist::new(3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0),
             thresholds: CollisionBehavior::uniform(
@@ -168,6 +179,42 @@ impl Default for Setters {
             other: true,
         }
     }
+}
+
+/// Beyond these values a setter's argument is invalid. Physical, but larger values would drive the
+/// controllers of an arm at rest out of any range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SetterBounds {
+    /// Mass of a declared load, `[kg]`. Default 10: three times what the arms carry.
+    pub mass: f64,
+    /// Distance of its centre of mass from the flange, `[m]`. Default 1.
+    pub com: f64,
+    /// The largest of its principal moments of inertia, `[kg·m²]`. Default 1.
+    pub inertia: f64,
+    /// Translation of `NE_T_EE` and `EE_T_K`, `[m]`. Default 2.
+    pub translation: f64,
+}
+
+impl Default for SetterBounds {
+    fn default() -> Self {
+        Self {
+            mass: 10.0,
+            com: 1.0,
+            inertia: 1.0,
+            translation: 2.0,
+        }
+    }
+}
+
+/// The axes of the wrench that is compared with force thresholds; its point is the origin of the
+/// stiffness frame in either case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ForceAxes {
+    /// Those of the base: `O_F_ext_hat_K`.
+    #[default]
+    Base,
+    /// Those of the stiffness frame: `K_F_ext_hat_K`.
+    Stiffness,
 }
 
 /// The arm against itself, by the vendor's capsules.

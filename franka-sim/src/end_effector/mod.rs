@@ -1,4 +1,4 @@
-//! What hangs on the flange and has a server of its own, as values: bytes in, bytes out, one
+//! The end effectors that have a server of their own, as values: bytes in, bytes out, one
 //! millisecond per [`EndEffector::tick`].
 //!
 //! ```text
@@ -6,8 +6,8 @@
 //!                                                        tick() ──> states by UDP, 50 a second
 //! ```
 //!
-//! There is no clock, socket or thread in here. [`Hand`] and [`VacuumGripper`] differ in their
-//! [`Mechanism`] and in nothing else.
+//! There is no clock, socket or thread in here. [`Hand`] and [`VacuumGripper`] differ only in their
+//! [`Mechanism`].
 //!
 //! One action runs at a time. A new one aborts it, and so does a stop; both answer it as aborted. A
 //! client that goes while its action runs stops it; what is held by then stays held.
@@ -25,10 +25,9 @@ use std::collections::VecDeque;
 
 use bytes::Bytes;
 use franka_proto::gripper::{Reply, Status, next_message};
-use franka_proto::server::{Event, Session};
 use franka_proto::{CommandId, Protocol};
 
-use crate::robot::{Datagram, SessionError};
+use crate::connection::{Connection, Datagram, SessionError};
 
 /// A Franka Hand and its server.
 pub type Hand = EndEffector<Fingers>;
@@ -69,7 +68,7 @@ pub trait Mechanism {
 /// A mechanism and its server; see the [module](self).
 pub struct EndEffector<M: Mechanism> {
     mechanism: M,
-    client: Option<Client<M::Protocol>>,
+    client: Option<Connection<M::Protocol>>,
     replies: VecDeque<Bytes>,
     /// The request whose action runs.
     running: Option<CommandId>,
@@ -78,12 +77,6 @@ pub struct EndEffector<M: Mechanism> {
     clock: u32,
     state_period: u32,
     datagram: Bytes,
-}
-
-struct Client<P: Protocol> {
-    session: Session<P>,
-    received: Vec<u8>,
-    udp_port: Option<u16>,
 }
 
 impl<M: Mechanism> EndEffector<M> {
@@ -108,21 +101,17 @@ impl<M: Mechanism> EndEffector<M> {
         self
     }
 
-    /// Takes a client in. False if another one is there: there is one client at a time.
+    /// Connects a client. False if another one is connected: there is one at a time.
     pub fn connect(&mut self) -> bool {
         if self.client.is_some() {
             return false;
         }
         self.replies.clear();
-        self.client = Some(Client {
-            session: Session::new(M::Protocol::default()),
-            received: Vec::new(),
-            udp_port: None,
-        });
+        self.client = Some(Connection::new(M::Protocol::default(), next_message));
         true
     }
 
-    /// Takes leave of the client. Its action ends; what the end effector holds, it goes on holding.
+    /// Disconnects the client. Its action ends; what the end effector holds, it goes on holding.
     pub fn disconnect(&mut self) {
         if self.running.take().is_some() {
             self.mechanism.halt();
@@ -131,9 +120,14 @@ impl<M: Mechanism> EndEffector<M> {
         self.replies.clear();
     }
 
-    /// Whether a client is there.
+    /// Whether a client is connected.
     pub fn is_connected(&self) -> bool {
         self.client.is_some()
+    }
+
+    /// The UDP port that the client announced: where its states go.
+    pub fn udp_port(&self) -> Option<u16> {
+        self.client.as_ref()?.udp_port()
     }
 
     /// Takes bytes from the client's stream, in any portions.
@@ -148,8 +142,8 @@ impl<M: Mechanism> EndEffector<M> {
         let Some(client) = &mut self.client else {
             return Ok(());
         };
-        client.received.extend_from_slice(bytes);
-        let result = self.take_messages();
+        client.receive(bytes);
+        let result = self.take_requests();
         if result.is_err() {
             let replies = std::mem::take(&mut self.replies);
             self.disconnect();
@@ -176,7 +170,7 @@ impl<M: Mechanism> EndEffector<M> {
         if !std::mem::take(&mut self.ended) && !due {
             return None;
         }
-        let port = self.client.as_ref()?.udp_port?;
+        let port = self.client.as_ref()?.udp_port()?;
         self.datagram = M::encode(&self.state());
         Some(Datagram {
             port,
@@ -199,33 +193,12 @@ impl<M: Mechanism> EndEffector<M> {
         &mut self.mechanism
     }
 
-    fn take_messages(&mut self) -> Result<(), SessionError<<M::Protocol as Protocol>::Command>> {
+    fn take_requests(&mut self) -> Result<(), SessionError<<M::Protocol as Protocol>::Command>> {
         while let Some(client) = &mut self.client {
-            let message = next_message(&client.received).map_err(SessionError::Frame)?;
-            let Some(message) = message else {
+            let Some((id, request)) = client.next_request(&mut self.replies)? else {
                 break;
             };
-            let size = message.size();
-            let event = client
-                .session
-                .on_message(message)
-                .map_err(SessionError::Violation)?;
-            client.received.drain(..size);
-            match event {
-                Event::Connect {
-                    udp_port, reply, ..
-                } => {
-                    client.udp_port = Some(udp_port);
-                    self.queue(reply.as_bytes());
-                }
-                Event::Incompatible { version, reply } => {
-                    self.queue(reply.as_bytes());
-                    return Err(SessionError::Incompatible { announced: version });
-                }
-                Event::Rejected { reply, .. } => self.queue(reply.as_bytes()),
-                Event::Request { id, request } => self.answer(id, &request),
-                _ => {}
-            }
+            self.answer(id, &request);
         }
         Ok(())
     }
@@ -251,12 +224,9 @@ impl<M: Mechanism> EndEffector<M> {
         self.ended = true;
         // The session refuses replies to what it has not been asked, and none is made up here.
         if let Ok(message) = client.session.reply(id, Reply::Done(status)) {
-            self.queue(message.as_bytes());
+            let message = Bytes::copy_from_slice(message.as_bytes());
+            self.replies.push_back(message);
         }
-    }
-
-    fn queue(&mut self, message: &[u8]) {
-        self.replies.push_back(Bytes::copy_from_slice(message));
     }
 }
 

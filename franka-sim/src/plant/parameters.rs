@@ -4,7 +4,6 @@ use franka_model::{JointVector, Model, RobotKind, joint_vector};
 use nalgebra::Vector3;
 
 use super::{EndStops, Friction};
-use crate::kind::Description;
 
 /// Rotor inertia of the joints of a Franka Research 3, felt at the joint, `[kg·m²]`.
 ///
@@ -26,14 +25,21 @@ pub struct ArmParameters {
     pub friction: Friction,
     /// Mechanical end stops.
     pub stops: EndStops,
-    /// Gravitational acceleration in the base frame, `[m/s²]`.
+    /// Gravitational acceleration in the base frame, `[m/s²]`: that of the physics alone. The
+    /// robot's controllers believe that the arm stands upright, and its state says so (`O_ddP_O`);
+    /// with another value here they feel a load that is not there, as on an arm that is mounted
+    /// at a tilt that Desk does not know of.
     pub gravity_earth: Vector3<f64>,
 }
 
 impl ArmParameters {
     /// An arm of this kind, standing upright.
     pub fn of(kind: RobotKind) -> Self {
-        (Description::of(kind).arm)()
+        let kinds: [(RobotKind, fn() -> Self); 2] =
+            [(RobotKind::Fr3, Self::fr3), (RobotKind::Fer, Self::fer)];
+        let found = kinds.into_iter().find(|(of, _)| *of == kind);
+        let (_, parameters) = found.expect("every kind has parameters");
+        parameters()
     }
 
     /// A Franka Research 3 standing upright.
@@ -101,5 +107,16 @@ impl Resistance {
         dt: f64,
     ) -> JointVector {
         motor - self.friction - (armature + self.friction_slope * dt).component_mul(ddq)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_has_parameters_of_its_own() {
+        let [first, second] = RobotKind::ALL.map(ArmParameters::of);
+        assert_ne!(first, second);
     }
 }

@@ -82,7 +82,8 @@ impl Plant for RigidArm {
                 gravity_earth,
                 &(armature + slope * dt),
             )
-            .unwrap_or_else(JointVector::zeros);
+            // No acceleration solves the equation. The robot notices non-finite values and stops.
+            .unwrap_or_else(|| JointVector::repeat(f64::NAN));
         self.sensed = resistance.sensed(motor, armature, &ddq, dt);
         self.dq += ddq * dt;
         self.q += self.dq * dt;

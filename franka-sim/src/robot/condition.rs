@@ -198,8 +198,10 @@ impl Robot {
             limits: self.config.enforce_limits,
             communication: self.config.enforce_communication,
             filters: self.settings.filters,
+            finish_velocity: self.config.unpublished.finish_velocity,
         };
-        match motion.cycle(command.as_ref(), &mut self.desired, &arm, rules) {
+        let dq = self.plant.dq();
+        match motion.cycle(command.as_ref(), &mut self.desired, dq, &arm, rules) {
             Verdict::Continues => {}
             Verdict::Finished if self.misses_goal() => {
                 self.reflex(RobotError::MaxGoalPoseDeviationViolation.into());
@@ -219,9 +221,11 @@ impl Robot {
             _ => self.measurement.ddq,
         };
         let accelerating = ddq.amax() > self.config.unpublished.accelerating;
+        let thresholds = &self.settings.thresholds;
+        let axes = self.config.unpublished.force_axes;
         let mut errors = self
             .estimate
-            .compare(&self.settings.thresholds, accelerating, moving);
+            .compare(thresholds, axes, accelerating, moving);
         if moving && self.config.enforce_limits {
             let sight = Sight {
                 q: self.plant.q(),

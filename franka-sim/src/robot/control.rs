@@ -1,7 +1,7 @@
 //! One millisecond of control and physics.
 
 use franka_model::{EndEffector, GRAVITY_EARTH, JointVector, MassMatrix, Twist, joint_vector};
-use franka_proto::MoveControllerMode;
+use franka_proto::{MoveControllerMode, MoveStatus, RobotError};
 use nalgebra::Matrix4;
 
 use super::operation::Guidance;
@@ -46,7 +46,38 @@ impl Measurement {
 
 impl Robot {
     /// Drives the arm for one millisecond; returns the controller's last torques, gravity excluded.
+    ///
+    /// An arm whose control or physics diverge is put back at rest where it was, with
+    /// `instability_detected`: a non-finite number would stay in it for all later clients.
     pub(super) fn control(&mut self) -> JointVector {
+        let before = *self.plant.q();
+        let torque = self.drive();
+        if self.is_physical() && torque.iter().all(|value| value.is_finite()) {
+            return torque;
+        }
+        self.forget_motion(MoveStatus::ReflexAborted);
+        self.place(&before);
+        self.reflex(RobotError::InstabilityDetected.into());
+        JointVector::zeros()
+    }
+
+    /// Whether the arm is one that physics allows: finite, and at velocities below
+    /// [`VELOCITY_MAX`].
+    fn is_physical(&self) -> bool {
+        let Measurement { torque, ddq, .. } = &self.measurement;
+        let rest = [
+            self.plant.q(),
+            torque,
+            ddq,
+            &self.dynamics.gravity,
+            &self.estimate.torque,
+        ];
+        let mut rest = rest.into_iter().flat_map(|joints| joints.iter());
+        let is_slow = self.plant.dq().iter().all(|dq| dq.abs() <= VELOCITY_MAX);
+        is_slow && rest.all(|value| value.is_finite())
+    }
+
+    fn drive(&mut self) -> JointVector {
         self.advance_desired();
         let law = self.law();
         self.touches.advance(self.clock);
@@ -235,10 +266,13 @@ impl Robot {
     }
 }
 
+/// Joint velocity that no arm reaches, `[rad/s]`: physics has diverged beyond it.
+const VELOCITY_MAX: f64 = 1e3;
+
 /// What closed brakes amount to, `[N·m/rad]`: as stiff as the internal controller can be set.
 const BRAKE_STIFFNESS: JointVector = joint_vector([14_250.0; 7]);
 
-/// Of a guided arm, `[N·m·s/rad]`, so that it comes to rest when nobody pushes: a choice.
+/// Of a guided arm, `[N·m·s/rad]`, so that it comes to rest when nothing pushes it: a choice.
 const GUIDING_DAMPING: JointVector = joint_vector([2.0, 2.0, 2.0, 2.0, 0.5, 0.5, 0.5]);
 
 /// Stiffness of locked directions of a guided arm, `[N/m, N·m/rad]`: the most that the Cartesian

@@ -6,7 +6,7 @@
 //! datagrams ── command() ──> the newest command ────┘    tick()   plant   └──> tick(): datagram
 //! ```
 //!
-//! There is no clock, socket, thread or log in here. Whoever drives it calls, per millisecond:
+//! There is no clock, socket, thread or log in here. Its driver calls, per millisecond:
 //!
 //! 1. [`command`](Robot::command) for each datagram, [`receive`](Robot::receive) for stream bytes,
 //!    and after each `receive` sends what [`take_reply`](Robot::take_reply) has;
@@ -16,7 +16,7 @@
 mod boards;
 mod condition;
 mod control;
-mod hands;
+mod interaction;
 mod motion;
 mod operation;
 mod publish;
@@ -27,7 +27,8 @@ mod shaking;
 mod touch;
 mod watch;
 
-pub use session::SessionError;
+pub use crate::connection::{Datagram, SessionError};
+pub(crate) use session::next_request;
 pub use touch::{Touch, TouchId};
 
 use std::collections::VecDeque;
@@ -38,6 +39,7 @@ use franka_proto::{CommandId, Errors, MoveRequest, RobotCommand, RobotState, Ver
 
 use crate::brake::Brake;
 use crate::config::Config;
+use crate::connection::Connection;
 use crate::estimate::Estimate;
 use crate::generator::{Arm, Desired};
 use crate::kind::Description;
@@ -52,7 +54,6 @@ pub(crate) use motion::Awaited;
 use motion::Motion;
 use operation::{Guidance, Lock};
 use recovery::Recovery;
-use session::Client;
 use touch::Touches;
 use watch::Watch;
 
@@ -63,10 +64,11 @@ pub struct Robot {
     /// The arm as it is, which is also what the robot's controllers believe.
     model: &'static Model,
     plant: Box<dyn Plant>,
-    description: Option<String>,
+    /// URDF text.
+    description: Option<Bytes>,
     settings: Settings,
 
-    client: Option<Client>,
+    client: Option<Connection<Version>>,
     replies: VecDeque<Bytes>,
     /// The command for the cycle that the last state opened.
     command: Option<RobotCommand>,
@@ -112,15 +114,6 @@ enum Activity {
     Guided(Guidance),
 }
 
-/// A state to send to the client.
-#[derive(Debug, Clone, Copy)]
-pub struct Datagram<'a> {
-    /// The client's UDP port.
-    pub port: u16,
-    /// The encoded state.
-    pub bytes: &'a [u8],
-}
-
 impl Robot {
     /// A robot at rest, with the rigid-body plant.
     pub fn new(config: Config) -> Self {
@@ -154,8 +147,8 @@ impl Robot {
             kind,
             model,
             description: kind.urdf_name.map(|name| match &config.urdf {
-                Some(text) => text.clone(),
-                None => crate::urdf::text(name, model),
+                Some(text) => text.clone().into(),
+                None => crate::urdf::text(name, model).into(),
             }),
             client: None,
             replies: VecDeque::new(),
@@ -190,7 +183,8 @@ impl Robot {
     /// Takes a UDP datagram of the client.
     ///
     /// It counts if it answers the newest state and is the first to do so; everything else is
-    /// dropped, as is a datagram that is no command.
+    /// dropped, as is an invalid datagram. Of the targets of an asynchronous motion, which answer no
+    /// state, the last one counts.
     pub fn command(&mut self, datagram: &[u8]) {
         let Ok(command) = RobotCommand::decode(self.version(), datagram) else {
             return;
@@ -198,7 +192,11 @@ impl Robot {
         let Activity::Moving(motion) = &self.activity else {
             return;
         };
-        if self.command.is_none() && motion.accepts(command.message_id, self.clock) {
+        let replaces = match &self.command {
+            None => true,
+            Some(earlier) => motion.is_asynchronous() && !earlier.motion_generation_finished,
+        };
+        if replaces && motion.accepts(command.message_id, self.clock) {
             self.command = Some(command);
         }
     }
@@ -229,6 +227,12 @@ impl Robot {
         })
     }
 
+    /// The UDP port that the client announced: where its states go, and where its commands come
+    /// from.
+    pub fn udp_port(&self) -> Option<u16> {
+        self.client.as_ref()?.udp_port()
+    }
+
     /// The last state, as the client sees it apart from the wire's rounding.
     pub fn state(&self) -> &RobotState {
         &self.state
@@ -239,7 +243,7 @@ impl Robot {
         &self.config
     }
 
-    /// What its controllers move. Who knows what it is takes it as that:
+    /// The plant; downcast through `Any`:
     ///
     /// ```
     /// # use std::any::Any;
@@ -252,8 +256,8 @@ impl Robot {
         self.plant.as_ref()
     }
 
-    /// The same, to reach into its surroundings: what it is made of is the plant's own business,
-    /// and what is done to the arm behind the robot's back is a blow to it.
+    /// The plant, to change its surroundings. Changes of the arm itself bypass the controllers and
+    /// act as disturbances.
     pub fn plant_mut(&mut self) -> &mut dyn Plant {
         self.plant.as_mut()
     }
@@ -265,7 +269,7 @@ impl Robot {
 
     /// The description that clients fetch, a URDF text; `None` for a kind that serves none.
     pub fn description(&self) -> Option<&str> {
-        self.description.as_deref()
+        std::str::from_utf8(self.description.as_ref()?).ok()
     }
 
     fn arm(&self) -> Arm<'_> {

@@ -48,6 +48,8 @@ pub(super) struct Rules {
     pub(super) limits: bool,
     pub(super) communication: bool,
     pub(super) filters: Option<Filters>,
+    /// Measured joint velocity above which no external controller may finish, `[rad/s]`.
+    pub(super) finish_velocity: f64,
 }
 
 /// What became of a motion in one cycle.
@@ -59,7 +61,7 @@ pub(super) enum Verdict {
     Finished,
     /// A command broke these rules; nothing of it has been taken over.
     Broken(Errors),
-    /// A command holds numbers that are none.
+    /// A command holds non-finite numbers.
     Invalid,
 }
 
@@ -105,6 +107,11 @@ impl Motion {
         self.request.controller == MoveControllerMode::ExternalController
     }
 
+    /// Whether the robot itself moves to targets that come irregularly.
+    pub(super) fn is_asynchronous(&self) -> bool {
+        self.asynchronous.is_some()
+    }
+
     /// Whether torques are all that the client sends.
     pub(super) fn is_torque_only(&self) -> bool {
         self.request.generator == MoveGeneratorMode::None
@@ -141,7 +148,8 @@ impl Motion {
         }
     }
 
-    /// Takes in what arrived for one cycle, and advances `desired`.
+    /// Takes in what arrived for one cycle, and advances `desired`. The joints have the measured
+    /// velocities `dq`, `[rad/s]`.
     ///
     /// Torques of a lost cycle are those of the one before (FCI documentation), with or without
     /// [`Rules::communication`].
@@ -149,6 +157,7 @@ impl Motion {
         &mut self,
         command: Option<&RobotCommand>,
         desired: &mut Desired,
+        dq: &JointVector,
         arm: &Arm<'_>,
         rules: Rules,
     ) -> Verdict {
@@ -209,7 +218,7 @@ impl Motion {
         }
         *desired = next;
         if command.is_some_and(|command| self.is_last(command)) {
-            self.finish(desired, arm, rules)
+            self.finish(desired, dq, arm, rules)
         } else {
             Verdict::Continues
         }
@@ -254,11 +263,20 @@ impl Motion {
     }
 
     /// A motion may only finish at rest: its last command then stands still, which is checked like
-    /// any other command.
-    fn finish(&self, desired: &mut Desired, arm: &Arm<'_>, rules: Rules) -> Verdict {
+    /// any other command. Under an external controller the arm itself has to stand, too.
+    fn finish(
+        &self,
+        desired: &mut Desired,
+        dq: &JointVector,
+        arm: &Arm<'_>,
+        rules: Rules,
+    ) -> Verdict {
         match advance(self.request.generator, Input::Rest, desired, arm) {
             Err(_) => Verdict::Invalid,
-            Ok((_, broken)) => {
+            Ok((_, mut broken)) => {
+                if self.is_external() && dq.amax() > rules.finish_velocity {
+                    broken.insert(RobotError::JointMotionGeneratorVelocityDiscontinuity);
+                }
                 let errors = enforced(broken, rules);
                 if errors.is_empty() {
                     desired.joints = JointSignal::resting(desired.joints.q);

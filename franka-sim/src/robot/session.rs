@@ -1,67 +1,31 @@
 //! The client's connection: stream bytes to requests, and replies back.
 
 use bytes::Bytes;
-use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, next_message_within};
-use franka_proto::server::{Event, Session};
+use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_within};
 use franka_proto::{
-    Command, CommandId, LibraryStatus, MoveStatus, Reply, Request, RobotMode, ServiceCommand,
-    SetterStatus, Version, Violation, VirtualWall,
+    CommandId, LibraryStatus, MoveStatus, Reply, Request, RobotMode, SetterStatus, VirtualWall,
 };
 
 use super::{Activity, Arm, Robot};
+use crate::connection::{Connection, SessionError};
 
-/// The client that is connected.
-pub(super) struct Client {
-    session: Session,
-    received: Vec<u8>,
-    udp_port: Option<u16>,
-}
-
-impl Client {
-    fn new(version: Version) -> Self {
-        Self {
-            session: Session::new(version),
-            received: Vec::new(),
-            udp_port: None,
-        }
-    }
-
-    /// Where to send states; unknown before the handshake.
-    pub(super) fn udp_port(&self) -> Option<u16> {
-        self.udp_port
-    }
-}
-
-/// Why a client is disconnected; `C` is what it could have asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SessionError<C: ServiceCommand = Command> {
-    /// Its bytes are no messages.
-    #[error("{0}")]
-    Frame(FrameError),
-    /// Its messages are not allowed.
-    #[error("{0}")]
-    Violation(Violation<C>),
-    /// It speaks another version, and is told so.
-    #[error("it speaks protocol {announced}, which is not understood here")]
-    Incompatible {
-        /// The version that it announces.
-        announced: u16,
-    },
+/// Cuts the first message off a client's stream.
+pub(crate) fn next_request(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
+    next_message_within(received, MAX_REQUEST_SIZE)
 }
 
 impl Robot {
-    /// Takes a client in. False if another one is there: the robot has one client at a time.
+    /// Connects a client. False if another one is connected: the robot has one at a time.
     pub fn connect(&mut self) -> bool {
         if self.client.is_some() {
             return false;
         }
         self.replies.clear();
-        self.client = Some(Client::new(self.version()));
+        self.client = Some(Connection::new(self.version(), next_request));
         true
     }
 
-    /// Takes leave of the client. A motion of its ends: the arm brakes and holds.
+    /// Disconnects the client. Its motion ends: the arm brakes and holds.
     pub fn disconnect(&mut self) {
         if self.client.is_some() {
             self.forget_client();
@@ -70,7 +34,7 @@ impl Robot {
         }
     }
 
-    /// Whether a client is there.
+    /// Whether a client is connected.
     pub fn is_connected(&self) -> bool {
         self.client.is_some()
     }
@@ -84,8 +48,8 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return Ok(());
         };
-        client.received.extend_from_slice(bytes);
-        let result = self.take_messages();
+        client.receive(bytes);
+        let result = self.take_requests();
         if result.is_err() {
             self.forget_client();
             self.client = None;
@@ -93,44 +57,17 @@ impl Robot {
         result
     }
 
-    /// The next message for the client's stream, to be written whole.
+    /// The next bytes for the client's stream: a message, or the first or second part of one.
     pub fn take_reply(&mut self) -> Option<Bytes> {
         self.replies.pop_front()
     }
 
-    fn take_messages(&mut self) -> Result<(), SessionError> {
+    fn take_requests(&mut self) -> Result<(), SessionError> {
         while let Some(client) = &mut self.client {
-            let message = next_message_within(&client.received, MAX_REQUEST_SIZE)
-                .map_err(SessionError::Frame)?;
-            let Some(message) = message else {
+            let Some((id, request)) = client.next_request(&mut self.replies)? else {
                 break;
             };
-            let size = message.size();
-            let event = client
-                .session
-                .on_message(message)
-                .map_err(SessionError::Violation)?;
-            client.received.drain(..size);
-            match event {
-                Event::Connect {
-                    udp_port, reply, ..
-                } => {
-                    client.udp_port = Some(udp_port);
-                    self.replies
-                        .push_back(Bytes::copy_from_slice(reply.as_bytes()));
-                }
-                Event::Incompatible { version, reply } => {
-                    self.replies
-                        .push_back(Bytes::copy_from_slice(reply.as_bytes()));
-                    return Err(SessionError::Incompatible { announced: version });
-                }
-                Event::Rejected { reply, .. } => {
-                    self.replies
-                        .push_back(Bytes::copy_from_slice(reply.as_bytes()));
-                }
-                Event::Request { id, request } => self.answer(id, &request),
-                _ => {}
-            }
+            self.answer(id, &request);
         }
         Ok(())
     }
@@ -190,7 +127,7 @@ impl Robot {
         }
     }
 
-    /// A wall that nobody has set up is not active.
+    /// Answers with the wall of this number; one that was not set up is inactive.
     fn send_wall(&mut self, id: CommandId, number: i32) {
         let known = self.config.walls.iter().find(|(known, _)| *known == number);
         let wall = known.map_or(NO_WALL, |(_, wall)| *wall);
@@ -203,9 +140,10 @@ impl Robot {
             return;
         };
         // A version without the request never gets here.
-        let text = self.description.as_deref().unwrap_or_default().as_bytes();
+        let text = self.description.clone().unwrap_or_default();
         if let Ok(header) = client.session.model_header(id, text.len()) {
-            self.replies.push_back(joined(header.as_bytes(), text));
+            let header = Bytes::copy_from_slice(header.as_bytes());
+            self.replies.extend([header, text]);
         }
     }
 
@@ -216,29 +154,29 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        // One that is longer than a message may be is as good as none.
+        // A library that is longer than a message may be is not served.
         match client.session.library_header(id, library.len()) {
-            Ok(header) => self.replies.push_back(joined(header.as_bytes(), library)),
+            Ok(header) => {
+                // The bytes are shared, not copied: a library has megabytes.
+                let header = Bytes::copy_from_slice(header.as_bytes());
+                self.replies.extend([header, library.clone()]);
+            }
             Err(_) => self.reply(id, NO_LIBRARY),
         }
     }
 
-    /// Ends a motion without a brake, for an arm that is about to stand elsewhere.
-    pub(super) fn forget_motion(&mut self) {
+    /// Ends a motion with this status and without a brake, for an arm that is about to be placed.
+    pub(super) fn forget_motion(&mut self, status: MoveStatus) {
         if let Activity::Moving(motion) = &self.activity {
             let id = motion.id();
             self.command = None;
-            self.reply(id, Reply::Move(MoveStatus::Preempted));
+            self.reply(id, Reply::Move(status));
         }
         self.activity = Activity::Holding;
     }
 }
 
-fn joined(header: &[u8], tail: &[u8]) -> Bytes {
-    [header, tail].concat().into()
-}
-
-/// A wall that is none.
+/// An inactive wall.
 const NO_WALL: VirtualWall = VirtualWall {
     object_world_size: [0.0; 3],
     object_frame: [

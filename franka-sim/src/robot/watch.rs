@@ -7,7 +7,7 @@ use nalgebra::{Matrix4, Vector3};
 
 use super::ratchet::Ratchet;
 use super::shaking::Shaking;
-use crate::config::{Config, Tool};
+use crate::config::Config;
 
 /// Self-collision, virtual walls, power and stability.
 #[derive(Debug, Clone)]
@@ -37,11 +37,9 @@ pub(super) struct Sight<'a> {
 impl Watch {
     pub(super) fn new(config: &Config) -> Self {
         let arm = Shape::vendor();
-        // Of other tools the robot knows no shape.
-        let shape = if config.tool == Tool::hand() {
-            arm.with_hand()
-        } else {
-            arm
+        let shape = match config.tool.has_hand_shape {
+            true => arm.with_hand(),
+            false => arm,
         };
         Self {
             shape,
@@ -158,8 +156,25 @@ const LEVER: f64 = 1.25;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::Tool;
     use crate::noise::Random;
     use franka_model::{Model, READY};
+
+    #[test]
+    fn a_hand_of_another_mass_keeps_its_shape() {
+        let bodies = |tool: Tool| {
+            let config = Config {
+                tool,
+                ..Config::default()
+            };
+            Watch::new(&config).pairs.len()
+        };
+        let mut heavy = Tool::hand();
+        heavy.load.mass += 0.1;
+        heavy.f_t_ne.m34 += 0.02;
+        assert_eq!(bodies(heavy), bodies(Tool::hand()));
+        assert!(bodies(Tool::NONE) < bodies(heavy));
+    }
 
     #[test]
     fn an_arm_that_is_left_unseen_is_clear() {

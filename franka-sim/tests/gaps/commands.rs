@@ -122,6 +122,40 @@ fn the_path_and_goal_deviations_of_a_move_are_kept() {
 }
 
 #[test]
+fn of_two_asynchronous_targets_in_one_millisecond_the_newer_counts() {
+    let mut pair = Pair::fr3();
+    pair.begin(MoveRequest {
+        asynchronous: Some([0.3; 7]),
+        ..MoveRequest::new(
+            MoveControllerMode::JointImpedance,
+            MoveGeneratorMode::JointPosition,
+        )
+    });
+    let at = |offset: f64| {
+        let mut q = READY;
+        q[0] += offset;
+        positions(&q)
+    };
+    for offset in [-0.1, 0.1] {
+        pair.datagram(&RobotCommand {
+            message_id: pair.state.message_id,
+            ..at(offset)
+        });
+    }
+    pair.idle(1000);
+    assert!((pair.q()[0] - 0.1).abs() < 1e-3, "{}", pair.q());
+    // What comes behind the finish belongs to nothing any more.
+    for command in [finished(at(0.1)), at(-0.1)] {
+        pair.datagram(&RobotCommand {
+            message_id: pair.state.message_id,
+            ..command
+        });
+    }
+    pair.idle(1);
+    assert_eq!(pair.state.robot_mode, RobotMode::Idle);
+}
+
+#[test]
 fn an_asynchronous_motion_keeps_the_velocities_of_its_move() {
     let mut pair = Pair::fr3();
     let velocity = [0.3, 0.3, 0.3, 0.3, 0.6, 0.6, 0.6];

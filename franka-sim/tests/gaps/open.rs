@@ -4,13 +4,13 @@
 use franka_model::{JointVector, READY, RobotKind, Twist};
 use franka_proto::{
     CollisionBehavior, Filters, MoveControllerMode, MoveGeneratorMode, MoveStatus, Request,
-    RobotCommand, RobotError as E, RobotMode, SetterStatus, Status,
+    RobotCommand, RobotError as E, RobotMode, SetterStatus, Status, Version,
 };
-use franka_sim::config::{ErrorBits, Extrapolation, FirstCycles, Setters};
+use franka_sim::config::{ErrorBits, Extrapolation, FirstCycles, ForceAxes, Setters};
 use franka_sim::end_effector::STATE_PERIOD;
 use franka_sim::{Config, Touch, Unpublished};
 
-use crate::pair::{Pair, positions, ramp, stay};
+use crate::pair::{Pair, finished, positions, ramp, stay, torques};
 
 fn assuming(change: impl FnOnce(&mut Unpublished)) -> Pair {
     let mut config = Config::default();
@@ -212,6 +212,84 @@ fn setters_in_reflex_guiding_and_user_stopped() {
     };
     let refused = Status::Setter(SetterStatus::CommandNotPossibleRejected);
     assert_eq!(ask(Some(never)), [refused; 4]);
+}
+
+#[test]
+fn the_largest_load_and_frames_that_setters_take() {
+    let load = |m_load: f64| {
+        Request::SetLoad(franka_proto::Load {
+            m_load,
+            ..franka_proto::Load::default()
+        })
+    };
+    let success = Status::Setter(SetterStatus::Success);
+    let invalid = Status::Setter(SetterStatus::InvalidArgumentRejected);
+    assert_eq!(Pair::fr3().ask(&load(10.0)), success);
+    assert_eq!(Pair::fr3().ask(&load(10.1)), invalid);
+    let mut pair = assuming(|u| u.setter_bounds.mass = 20.0);
+    assert_eq!(pair.ask(&load(10.1)), success);
+}
+
+#[test]
+fn the_axes_of_force_thresholds() {
+    // Low along y only, and the hand turned by 45 degrees against the base.
+    let mut q = READY;
+    q[6] += std::f64::consts::FRAC_PI_4;
+    let thresholds = CollisionBehavior::uniform(
+        [100.0; 7],
+        [100.0; 7],
+        [100.0; 6],
+        [100.0, 10.0, 100.0, 100.0, 100.0, 100.0],
+    );
+    let stops = |axes: Option<ForceAxes>, x: f64, y: f64| {
+        let mut config = Config {
+            q,
+            tool: franka_sim::Tool::hand(),
+            ..Config::default()
+        };
+        config.unpublished.thresholds = thresholds;
+        config.unpublished.force_axes = axes.unwrap_or(config.unpublished.force_axes);
+        let mut pair = Pair::new(config);
+        pair.start_joints();
+        pair.robot
+            .touch(Touch::force(nalgebra::Vector3::new(x, y, 0.0)));
+        for _ in 0..300 {
+            pair.tick(Some(positions(&q)));
+        }
+        pair.state.errors.contains(E::CartesianReflex)
+    };
+    // Along the base's y by 12 N: 8.5 N along either axis of the hand.
+    assert!(stops(None, 0.0, 12.0));
+    assert!(!stops(Some(ForceAxes::Stiffness), 0.0, 12.0));
+    // Along the base's x it is the other way round: one hand's axis is beyond its own 10 N.
+    assert!(!stops(None, 16.0, 0.0));
+    assert!(stops(Some(ForceAxes::Stiffness), 16.0, 0.0));
+}
+
+#[test]
+fn the_velocity_at_which_torques_may_finish() {
+    let finish = |mut pair: Pair| {
+        let id = pair.start_torques();
+        let mut tau = JointVector::zeros();
+        while pair.robot.dq()[6] < 0.3 {
+            tau[6] = (tau[6] + 0.5).min(3.0);
+            pair.tick(Some(torques(&tau)));
+        }
+        let mut last = finished(torques(&tau));
+        // Protocol 5 has the other flag only.
+        last.torque_command_finished = pair.robot.version() == Version::V10;
+        pair.tick(Some(last));
+        (pair.outcome(id), pair.state.errors)
+    };
+    let discontinuity = E::JointMotionGeneratorVelocityDiscontinuity.into();
+    assert_eq!(
+        finish(Pair::fr3()),
+        (MoveStatus::ReflexAborted, discontinuity)
+    );
+    let (status, errors) = finish(Pair::fer());
+    assert_eq!((status, errors), (MoveStatus::ReflexAborted, discontinuity));
+    let (status, errors) = finish(assuming(|u| u.finish_velocity = f64::INFINITY));
+    assert_eq!((status, errors.is_empty()), (MoveStatus::Success, true));
 }
 
 #[test]

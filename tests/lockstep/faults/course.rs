@@ -19,9 +19,9 @@ pub(crate) const END: u64 = 2 * REST + 2 * RAMP + CRUISE;
 const JOINT_SPEED: f64 = 0.05;
 /// Full speed of the end effector, `[m/s]`: some three times as many rad/s in a joint.
 const CARTESIAN_SPEED: f64 = 0.02;
-/// Torque on joint 1 in the place of full speed, `[N m]`. It grows by up to 0.24 N m in a
-/// millisecond.
-const TORQUE: f64 = 3.0;
+/// The largest torque on joint 1, `[N m]`. It changes by up to 0.4 N m in a millisecond, so that one
+/// lost cycle is bridged.
+const TORQUE: f64 = 5.0;
 
 /// The joint that moves, or takes the torque.
 pub(crate) const JOINT: usize = 0;
@@ -93,9 +93,14 @@ pub(crate) fn cartesian_velocities(_: &RobotState, ms: u64) -> CartesianVelociti
     }
 }
 
-/// Torque on the joint, `[N m]`.
+/// Torque on the joint, `[N m]`: one way for half of the time and the other way for the rest, so that
+/// the arm ends at rest. In the middle it is fastest.
 pub(crate) fn torque(ms: u64) -> f64 {
-    TORQUE * share(ms)
+    let duration = END - 2 * REST;
+    match ms {
+        _ if ms <= REST || ms >= END - REST => 0.0,
+        _ => TORQUE * (core::f64::consts::TAU * (ms - REST) as f64 / duration as f64).sin(),
+    }
 }
 
 /// Torques of a motion that has nothing else.

@@ -51,6 +51,13 @@ fn torques_come_beside_a_generator_of_zero_velocities() {
     }
     assert!(pair.robot.dq().norm() > 1e-3, "torques move the arm");
     assert_eq!(pair.q_d(), READY, "and the generator stands still");
+    while pair.robot.dq().amax() > 0.05 {
+        let brake = -JointVector::from(pair.state.dq) * 2.0;
+        let last = JointVector::from(pair.state.tau_J_d);
+        let tau = last + (brake - last).map(|d| d.clamp(-0.9, 0.9));
+        pair.tick(Some(torques(&tau)));
+    }
+    let tau = JointVector::from(pair.state.tau_J_d);
     pair.tick(Some(finished(torques(&tau))));
     assert_eq!(pair.outcome(id), MoveStatus::Success);
     assert_eq!(pair.state.robot_mode, RobotMode::Idle);

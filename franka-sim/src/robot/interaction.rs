@@ -1,7 +1,8 @@
-//! What a person beside the robot can do to the arm: push it, hold it, hang a load on it. What can
-//! be operated is in [`operation`](super::operation).
+//! What a person beside the robot can do to the arm: push it, hold it, hang a load on it. The stop,
+//! brakes and buttons are in [`operation`](super::operation).
 
 use franka_model::{JointVector, Load, Wrench};
+use franka_proto::MoveStatus;
 
 use super::boards::Boards;
 use super::touch::{Touch, TouchId};
@@ -29,7 +30,7 @@ impl Robot {
         self.touches.felt(touch)
     }
 
-    /// Takes all hands off the arm, and everything else that touches it.
+    /// Ends all touches.
     pub fn let_go(&mut self) {
         self.touches.clear();
     }
@@ -47,7 +48,7 @@ impl Robot {
     /// Puts the arm at rest at `q`, `[rad]`, as if someone had guided it there. A motion under way
     /// ends as by a stop.
     pub fn place(&mut self, q: &JointVector) {
-        self.forget_motion();
+        self.forget_motion(MoveStatus::Preempted);
         self.plant.place(q);
         self.desired = Desired::resting(&self.arm(), *q);
         self.activity = Activity::Holding;
