@@ -1,11 +1,13 @@
 //! A simulated Franka robot for any client that speaks its protocol.
 
+use std::fs;
 use std::io::IsTerminal;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use bytes::Bytes;
 use clap::{ArgAction, Parser, ValueEnum};
 use franka_model::{JointVector, Load, RobotKind};
 use franka_sim::network::{BurstLoss, Conditions, Loss};
@@ -85,6 +87,11 @@ struct Arguments {
     #[arg(long, value_name = "FILE.xml")]
     scene: Option<PathBuf>,
 
+    /// A file with the model library that the robot serves (FER only): the vendor's, which is not
+    /// ours to give, for clients that insist on one. Without, they are told that there is none.
+    #[arg(long, value_name = "FILE")]
+    model_library: Option<PathBuf>,
+
     /// What happens to states and commands on their way, besides what the network between the hosts
     /// does.
     #[arg(long, value_enum, default_value_t = NetworkKind::Perfect)]
@@ -136,6 +143,9 @@ struct Arguments {
 
 /// How long an answer may take in virtual time.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// The longest model library: what a message carries.
+const LIBRARY_MAX: usize = franka_proto::framing::MAX_MESSAGE_SIZE - 64;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -235,7 +245,9 @@ impl Arguments {
 
     /// The robot, or why there is none.
     fn sim(&self) -> Result<Sim, String> {
-        let sim = Sim::new(self.config())
+        let mut config = self.config();
+        config.model_library = self.library()?;
+        let sim = Sim::new(config)
             .bind(SocketAddr::new(self.bind, self.port))
             .realtime(self.realtime)
             .strict_clock(self.strict_clock);
@@ -266,6 +278,25 @@ impl Arguments {
         Ok(sim
             .hand(fingers, beside(1))
             .vacuum_gripper(suction, beside(2)))
+    }
+
+    /// The model library to serve.
+    fn library(&self) -> Result<Option<Bytes>, String> {
+        let Some(path) = &self.model_library else {
+            return Ok(None);
+        };
+        if let Kind::Fr3 = self.robot {
+            return Err("a model library needs --robot fer: an FR3 serves a description".into());
+        }
+        let library = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        if library.len() > LIBRARY_MAX {
+            return Err(format!(
+                "{}: {} bytes are too long for a model library, at most {LIBRARY_MAX} expected",
+                path.display(),
+                library.len()
+            ));
+        }
+        Ok(Some(library.into()))
     }
 
     fn with_plant(&self, sim: Sim) -> Result<Sim, String> {
@@ -399,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn arguments_become_the_make_up() {
+    fn arguments_become_the_configuration() {
         let arguments = parse(&["--q", "-1,0,0,-2,0,1.5,0", "--payload", "2", "--hand"]);
         let config = arguments.expect("valid").config();
         assert_eq!(config.q[0], -1.0);
@@ -471,6 +502,26 @@ mod tests {
             "0.04",
         ];
         assert!(why(&object).is_err());
+    }
+
+    #[test]
+    fn a_model_library_is_that_of_the_file() {
+        let file = std::env::temp_dir().join(format!("franka-sim-{}.so", std::process::id()));
+        fs::write(&file, [7; 100]).expect("a temporary file");
+        let path = file.to_str().expect("text");
+        let library = |robot: &str, path: &str| {
+            let arguments = ["--robot", robot, "--model-library", path];
+            parse(&arguments).expect("valid").library()
+        };
+        assert_eq!(library("fer", path), Ok(Some(vec![7; 100].into())));
+        let error = library("fr3", path).expect_err("it serves none");
+        assert!(error.contains("--robot fer"), "{error}");
+        let error = library("fer", "/no/such/file.so").expect_err("no such file");
+        assert!(error.starts_with("/no/such/file.so: "), "{error}");
+        fs::write(&file, vec![0; LIBRARY_MAX + 1]).expect("room for it");
+        let error = library("fer", path).expect_err("too long");
+        assert!(error.contains("too long"), "{error}");
+        fs::remove_file(&file).expect("it is there");
     }
 
     #[test]
