@@ -144,11 +144,11 @@ fn what_comes_twice_counts_once() {
 fn half_a_state_is_none() {
     arrives(mishaps::halves, |version, report, tally, _| {
         assert_counted(report, tally);
-        let whole = tally.lost - tally.halved;
+        let whole = tally.lost - tally.fragment_lost;
         match version {
             // Of both packets, more than one in twenty times.
-            Version::V5 => assert!(tally.halved > 10 * whole, "{tally:?}"),
-            Version::V10 => assert_eq!(tally.halved, 0),
+            Version::V5 => assert!(tally.fragment_lost > 10 * whole, "{tally:?}"),
+            Version::V10 => assert_eq!(tally.fragment_lost, 0),
         }
         let packets = if version == Version::V5 { 2 } else { 1 };
         let expected = (1.0 - mishaps::LOST_TO_CLIENT).powi(packets);

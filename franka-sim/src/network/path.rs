@@ -44,9 +44,9 @@ pub struct Tally {
     pub sent: u64,
     /// Those that do not arrive.
     pub lost: u64,
-    /// Those among them of which some packets arrive and others do not. A host throws such pieces
-    /// away, so that programs see what they see of any loss: nothing.
-    pub halved: u64,
+    /// Those among them of which some packets (IP fragments) arrive and others do not. The host
+    /// cannot reassemble the datagram; programs see it as lost.
+    pub fragment_lost: u64,
 }
 
 impl Path {
@@ -103,7 +103,7 @@ impl Path {
         self.drop_next = self.drop_next.saturating_sub(1);
         if cut || dropped || lost > 0 {
             self.tally.lost += 1;
-            self.tally.halved += u64::from(!cut && !dropped && lost < packets);
+            self.tally.fragment_lost += u64::from(!cut && !dropped && lost < packets);
             return;
         }
         let Conditions {

@@ -88,7 +88,7 @@ fn a_cut_takes_what_leaves_within_it_and_nothing_else() {
     let arrived = numbers(&pass(&mut path, 200, 371));
     assert_eq!(arrived, (0..10).chain(40..90).collect::<Vec<_>>());
     assert_eq!(path.tally().lost, 140);
-    assert_eq!(path.tally().halved, 0);
+    assert_eq!(path.tally().fragment_lost, 0);
 }
 
 #[test]
@@ -146,9 +146,9 @@ fn half_of_a_datagram_is_none() {
     });
     // Of two packets, none is lost with 0.81, both with 0.01. Three deviations are 120 and 115.
     assert!(large.lost.abs_diff(1900) < 120, "{large:?}");
-    assert!(large.halved.abs_diff(1800) < 115, "{large:?}");
+    assert!(large.fragment_lost.abs_diff(1800) < 115, "{large:?}");
     assert!(small.lost.abs_diff(1000) < 90, "{small:?}");
-    assert_eq!(small.halved, 0);
+    assert_eq!(small.fragment_lost, 0);
 }
 
 #[test]
