@@ -3,19 +3,19 @@
 use std::time::{Duration, Instant};
 
 use super::clock::{Clock, PERIOD, Pace};
-use super::seat::Seat;
+use super::device_server::DeviceServer;
 use crate::end_effector::{Hand, VacuumGripper};
 use crate::robot::{Awaited, Robot};
 
 /// Time on the wall between two states that take no answer, in virtual time: a client has to be
 /// able to read them.
-const HASTE: Duration = Duration::from_micros(100);
+const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 
 /// The devices, which share one clock.
 pub(super) struct Cycle {
-    pub(super) robot: Seat<Robot>,
-    pub(super) hand: Option<Seat<Hand>>,
-    pub(super) vacuum: Option<Seat<VacuumGripper>>,
+    pub(super) robot: DeviceServer<Robot>,
+    pub(super) hand: Option<DeviceServer<Hand>>,
+    pub(super) vacuum: Option<DeviceServer<VacuumGripper>>,
 }
 
 impl Cycle {
@@ -54,12 +54,15 @@ impl Cycle {
             let patience = match self.robot.awaits() {
                 Awaited::Nothing => {
                     attempts = 0;
-                    let period = if self.robot.is_taken() { HASTE } else { PERIOD };
+                    let period = match self.robot.has_client() {
+                        true => VIRTUAL_IDLE_PERIOD,
+                        false => PERIOD,
+                    };
                     self.sleep_until(Instant::now() + period, &mut clock);
                     continue;
                 }
-                // A client that looks at a state before it begins is soon shown the next one; one
-                // that is slow gets its time.
+                // A client may look at several states before its first command: the wait for it is
+                // short at first, and longer each time, for a client that is slow.
                 Awaited::First => {
                     attempts += 1;
                     patience.min(PERIOD * 2_u32.saturating_pow(attempts))
@@ -94,7 +97,7 @@ impl Cycle {
 
     /// One millisecond of every device. False at the end.
     fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
-        // The robot's ends the thread; the others live and die with it.
+        // The end of the robot's service ends the thread, and with it the other devices.
         let goes_on = self.robot.cycle(now, pace);
         if let Some(hand) = &mut self.hand {
             self.robot.device_mut().couple(hand.device_mut());

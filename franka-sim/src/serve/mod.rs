@@ -1,24 +1,36 @@
 //! The simulated robot on real sockets.
 //!
 //! ```text
-//!  Tokio: listener ── bytes, hands ──> queue ──> cycle thread: Robot, UDP socket, 1 kHz
-//!            └──────── replies <────── queue <──────┘           (and Hand, VacuumGripper)
+//!  Tokio: listener ── bytes, jobs ──> queue ──> cycle thread: Robot, UDP socket, 1 kHz
+//!            └──────── replies <───── queue <──────┘           (and Hand, VacuumGripper)
 //! ```
 //!
 //! The thread owns robot and UDP socket and keeps the millisecond; whatever blocks the Tokio
 //! runtime delays requests and replies, and no state. A hand and a vacuum gripper have listeners,
 //! queues and sockets of their own and share thread and clock.
+//!
+//! | module | content |
+//! |---|---|
+//! | `clock` | when a state is due, and what becomes of a late host: [`Pace`] |
+//! | `cycle` | the loop of the thread |
+//! | `device_server` | a device on its sockets: commands, orders and jobs in, states and replies out |
+//! | `device` | what the server needs of a device |
+//! | `relay` | the simulated network between sockets and device |
+//! | `tcp` | sessions, one client at a time, and the refusal of a second client |
+//! | `pending` | connections before their handshake |
+//! | `stream` | messages of a stream, and how slow they may come |
+//! | `service` | the handle on a device from other tasks |
+//! | `priority` | the priority of the thread |
 
-mod between;
 mod clock;
 mod cycle;
 mod device;
-mod hands;
-mod lobby;
-mod portion;
+mod device_server;
+mod pending;
 mod priority;
-mod seat;
+mod relay;
 mod service;
+mod stream;
 mod tcp;
 
 pub use clock::Pace;
@@ -82,7 +94,7 @@ impl Sim {
         })
     }
 
-    /// A robot of this make-up, on a free port of 127.0.0.1.
+    /// A robot of this configuration, on a free port of 127.0.0.1.
     pub fn new(config: Config) -> Self {
         Self {
             config,
@@ -137,7 +149,7 @@ impl Sim {
         self
     }
 
-    /// Hangs a load on the flange that nobody has declared to the robot.
+    /// Hangs a load on the flange that is not declared to the robot.
     pub fn payload(mut self, payload: Load) -> Self {
         self.config.payload = payload;
         self
@@ -201,7 +213,7 @@ impl Sim {
     }
 
     /// Lets robot time pass as fast as the client answers, instead of by the clock on the wall: for
-    /// tests and for programs that learn, which nobody watches.
+    /// tests and for programs that learn.
     ///
     /// * In a motion whose every state takes an answer, the next millisecond begins as soon as the
     ///   answer to the last state is there. However long the client takes for it, no command is
@@ -254,31 +266,31 @@ impl Sim {
             Some(plant) => Robot::with_plant(self.config, plant),
             None => Robot::new(self.config),
         };
-        let (robot, seat) = service::open(self.bind, robot).await?;
+        let (robot, robot_server) = service::open(self.bind, robot).await?;
         let beside = |port| {
             let mut address = self.bind;
             address.set_port(port);
             address
         };
-        let (hand, hand_seat) = match self.hand {
+        let (hand, hand_server) = match self.hand {
             Some((fingers, port)) => {
-                let (hand, seat) = service::open(beside(port), Hand::new(fingers)).await?;
-                (Some(hand), Some(seat))
+                let (hand, server) = service::open(beside(port), Hand::new(fingers)).await?;
+                (Some(hand), Some(server))
             }
             None => (None, None),
         };
-        let (vacuum_gripper, vacuum_seat) = match self.vacuum_gripper {
+        let (vacuum_gripper, vacuum_server) = match self.vacuum_gripper {
             Some((suction, port)) => {
                 let gripper = VacuumGripper::new(suction);
-                let (gripper, seat) = service::open(beside(port), gripper).await?;
-                (Some(gripper), Some(seat))
+                let (gripper, server) = service::open(beside(port), gripper).await?;
+                (Some(gripper), Some(server))
             }
             None => (None, None),
         };
         let cycle = Cycle {
-            robot: seat.behind(self.network),
-            hand: hand_seat,
-            vacuum: vacuum_seat,
+            robot: robot_server.behind(self.network),
+            hand: hand_server,
+            vacuum: vacuum_server,
         };
         let (realtime, strict, patience) = (self.realtime, self.strict_clock, self.patience);
         let (done, finished) = watch::channel(());
@@ -330,7 +342,19 @@ impl Running {
         self.vacuum_gripper.as_ref()
     }
 
-    /// [`Service::with`] of the robot: push it, read it, press its stop.
+    /// Runs `job` on the robot between two milliseconds, as [`Service::with`] does: push it, press
+    /// its stop, close its brakes, read it.
+    ///
+    /// ```
+    /// # use franka_sim::{Sim, Touch};
+    /// # #[tokio::main(flavor = "current_thread")]
+    /// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// # let sim = Sim::fr3().start().await?;
+    /// sim.with(|robot| robot.press_user_stop(true)).await?;
+    /// # sim.stop().await;
+    /// # Ok(())
+    /// # }
+    /// ```
     ///
     /// # Errors
     /// As [`Service::with`].
@@ -339,9 +363,9 @@ impl Running {
     /// As [`Service::with`].
     pub async fn with<R: Send + 'static>(
         &self,
-        hands: impl FnOnce(&mut Robot) -> R + Send + 'static,
+        job: impl FnOnce(&mut Robot) -> R + Send + 'static,
     ) -> Result<R, Stopped> {
-        self.robot.with(hands).await
+        self.robot.with(job).await
     }
 
     /// The newest state, in full precision.
@@ -393,7 +417,7 @@ impl Running {
         if let Some(gripper) = vacuum_gripper {
             gripper.close().await;
         }
-        // The thread ends when nobody can give orders to the robot, or has died already.
+        // The thread ends when no orders to the robot can come, or has died already.
         robot.close().await;
         let _ = finished.changed().await;
     }

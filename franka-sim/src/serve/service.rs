@@ -10,13 +10,13 @@ use tokio::task::JoinHandle;
 
 use super::clock::Pace;
 use super::device::Device;
-use super::seat::{Hands, Seat};
+use super::device_server::{DeviceServer, Job};
 use super::tcp;
 
 /// A device that is being served. Dropping it closes its sockets.
 pub struct Service<D> {
     address: SocketAddr,
-    hands: mpsc::Sender<Hands<D>>,
+    jobs: mpsc::Sender<Job<D>>,
     server: JoinHandle<()>,
 }
 
@@ -25,12 +25,12 @@ pub struct Service<D> {
 #[error("the simulated robot has stopped")]
 pub struct Stopped;
 
-/// Opens the sockets of a device. Its seat is for the thread. Errors name the address, since there
-/// are several.
+/// Opens the sockets of a device. Returns its handle, and its server for the thread. Errors name the
+/// address, since there are several.
 pub(super) async fn open<D: Device>(
     bind: SocketAddr,
     device: D,
-) -> io::Result<(Service<D>, Seat<D>)> {
+) -> io::Result<(Service<D>, DeviceServer<D>)> {
     let listener = TcpListener::bind(bind)
         .await
         .map_err(|error| io::Error::new(error.kind(), format!("{bind}: {error}")))?;
@@ -40,14 +40,14 @@ pub(super) async fn open<D: Device>(
     let socket = UdpSocket::bind(beside)?;
     socket.set_nonblocking(true)?;
     let (orders, stream) = mpsc::channel(QUEUE);
-    let (hands, lent) = mpsc::channel(QUEUE);
-    let server = tokio::spawn(tcp::serve::<D>(listener, orders, device.name()));
+    let (jobs, waiting) = mpsc::channel(QUEUE);
+    let server = tokio::spawn(tcp::serve(listener, orders, device.name(), D::FRAMING));
     let service = Service {
         address,
-        hands,
+        jobs,
         server,
     };
-    Ok((service, Seat::new(device, socket, stream, lent)))
+    Ok((service, DeviceServer::new(device, socket, stream, waiting)))
 }
 
 impl<D: 'static> Service<D> {
@@ -56,19 +56,19 @@ impl<D: 'static> Service<D> {
         self.address
     }
 
-    /// Does something with the device between two milliseconds. `hands` runs on the thread that
-    /// keeps the cycle, so it should not take long.
+    /// Runs `job` on the device between two milliseconds. It runs on the thread that keeps the
+    /// cycle, so it should not take long.
     ///
     /// # Errors
-    /// [`Stopped`] if the simulation has ended, which only a panic in another `hands` brings about.
+    /// [`Stopped`] if the simulation has ended, which only a panic in another `job` brings about.
     ///
     /// # Cancel safety
-    /// Once polled, `hands` may run although the future is dropped.
+    /// Once polled, `job` may run although the future is dropped.
     pub async fn with<R: Send + 'static>(
         &self,
-        hands: impl FnOnce(&mut D) -> R + Send + 'static,
+        job: impl FnOnce(&mut D) -> R + Send + 'static,
     ) -> Result<R, Stopped> {
-        self.ask(|device, _| hands(device)).await
+        self.ask(|device, _| job(device)).await
     }
 
     /// How well the thread has kept the millisecond so far.
@@ -78,18 +78,18 @@ impl<D: 'static> Service<D> {
 
     async fn ask<R: Send + 'static>(
         &self,
-        hands: impl FnOnce(&mut D, Pace) -> R + Send + 'static,
+        job: impl FnOnce(&mut D, Pace) -> R + Send + 'static,
     ) -> Result<R, Stopped> {
         let (answer, result) = oneshot::channel();
-        let hands: Hands<D> = Box::new(move |device, pace| {
-            // Whoever asked may have gone.
-            let _ = answer.send(hands(device, pace));
+        let job: Job<D> = Box::new(move |device, pace| {
+            // The future that waits for the answer may have been dropped.
+            let _ = answer.send(job(device, pace));
         });
-        self.hands.send(hands).await.map_err(|_| Stopped)?;
+        self.jobs.send(job).await.map_err(|_| Stopped)?;
         result.await.map_err(|_| Stopped)
     }
 
-    /// Closes the sockets of the stream, and returns when that is done and nobody can give orders.
+    /// Closes the sockets of the stream, and returns when no more orders can come.
     pub(super) async fn close(mut self) {
         self.server.abort();
         // An aborted task ends with an error, the intended one.
@@ -111,6 +111,6 @@ impl<D> Drop for Service<D> {
     }
 }
 
-/// Messages of the client, and hands, that may wait for the thread, which takes some of them every
+/// Messages of the client, and jobs, that may wait for the thread, which takes some of them every
 /// millisecond.
 const QUEUE: usize = 64;

@@ -1,12 +1,12 @@
-//! The stream: one client at a time.
+//! The stream: one client at a time, and what becomes of a second one.
 //!
 //! ```text
-//! lobby: anybody ── first message is whole ──> waits a moment ── seat is free ──> session
-//!          └─ too slow, too many: closed            └─ seat is taken: closed
+//! pending ── handshake is whole ──> waits a moment ── device is free ──> session
+//!   └─ too slow, too many: closed      └─ device has a client: refused
 //! ```
 //!
-//! A connection takes the seat with its first message and not before, so that one that says nothing
-//! keeps nobody out.
+//! A connection takes the device with its handshake and not before, so that one that says nothing
+//! keeps no client out.
 
 use std::time::Duration;
 
@@ -16,10 +16,10 @@ use tokio::net::TcpListener;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until, timeout};
 
-use super::device::Device;
-use super::lobby::{Lobby, Visitor};
-use super::portion::{Silence, portion};
-use super::seat::{Order, REPLIES};
+use super::device_server::{Order, REPLIES};
+use super::pending::{Handshake, PendingConnections};
+use super::stream::{Patience, StreamEnd, next_message};
+use crate::connection::Framing;
 
 /// How long a client may leave no room for a reply. One that does not read must not keep others
 /// out.
@@ -30,48 +30,49 @@ const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 const HANDOVER: Duration = Duration::from_millis(50);
 
 /// Serves clients until the thread has gone or the task is aborted.
-pub(super) async fn serve<D: Device>(
+pub(super) async fn serve(
     listener: TcpListener,
     orders: mpsc::Sender<Order>,
     name: &'static str,
+    framing: Framing,
 ) {
-    let mut lobby = Lobby::<D>::new(listener, name);
+    let mut pending = PendingConnections::new(listener, name, framing);
     let mut next = None;
     while !orders.is_closed() {
-        let visitor = match next.take() {
-            Some(visitor) => visitor,
-            None => lobby.next().await,
+        let handshake = match next.take() {
+            Some(handshake) => handshake,
+            None => pending.next().await,
         };
-        let mut session = std::pin::pin!(session::<D>(visitor, orders.clone(), name));
-        let mut waiting: Option<(Visitor, Instant)> = None;
+        let mut session = std::pin::pin!(session(handshake, orders.clone(), name, framing));
+        let mut second: Option<(Handshake, Instant)> = None;
         loop {
-            let patience = waiting.as_ref().map(|(_, deadline)| *deadline);
+            let patience = second.as_ref().map(|(_, deadline)| *deadline);
             tokio::select! {
                 biased;
                 () = &mut session => break,
-                visitor = lobby.next() => {
+                handshake = pending.next() => {
                     let deadline = Instant::now() + HANDOVER;
-                    if let Some((other, _)) = waiting.replace((visitor, deadline)) {
+                    if let Some((other, _)) = second.replace((handshake, deadline)) {
                         refuse(other, name);
                     }
                 }
                 () = until(patience) => {
-                    if let Some((visitor, _)) = waiting.take() {
-                        refuse(visitor, name);
+                    if let Some((handshake, _)) = second.take() {
+                        refuse(handshake, name);
                     }
                 }
             }
         }
-        next = waiting.map(|(visitor, _)| visitor);
+        next = second.map(|(handshake, _)| handshake);
     }
 }
 
-/// Refused by a reset, which every client takes for the end of the connection. libfranka 0.21 waits
-/// for its first answer beyond an orderly end, for ever.
-fn refuse(visitor: Visitor, name: &str) {
-    let peer = visitor.peer;
+/// Refuses a second client by a reset, which every client takes for the end of the connection.
+/// libfranka 0.21 waits for its first answer beyond an orderly end, for ever.
+fn refuse(second: Handshake, name: &str) {
+    let peer = second.peer;
     tracing::warn!(%peer, "refused: the {name} has a client");
-    if let Err(error) = visitor.stream.set_zero_linger() {
+    if let Err(error) = second.stream.set_zero_linger() {
         tracing::debug!(%peer, %error, "an option of the connection");
     }
 }
@@ -84,8 +85,8 @@ async fn until(deadline: Option<Instant>) {
 }
 
 /// One client from first message to last.
-async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order>, name: &str) {
-    let peer = visitor.peer;
+async fn session(handshake: Handshake, orders: mpsc::Sender<Order>, name: &str, framing: Framing) {
+    let peer = handshake.peer;
     tracing::info!(%peer, "client of the {name} connected");
     let (sender, replies) = mpsc::channel(REPLIES);
     let connect = Order::Connect {
@@ -93,7 +94,7 @@ async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order>, name:
         replies: sender,
     };
     if orders.send(connect).await.is_ok() {
-        transfer::<D>(visitor, &orders, replies, name).await;
+        transfer(handshake, &orders, replies, name, framing).await;
         // If the thread has gone, so has the robot.
         let _ = orders.send(Order::Disconnect).await;
     }
@@ -101,29 +102,30 @@ async fn session<D: Device>(visitor: Visitor, orders: mpsc::Sender<Order>, name:
 }
 
 /// Moves messages both ways until either side is done.
-async fn transfer<D: Device>(
-    visitor: Visitor,
+async fn transfer(
+    handshake: Handshake,
     orders: &mpsc::Sender<Order>,
     mut replies: mpsc::Receiver<Bytes>,
     name: &str,
+    framing: Framing,
 ) {
-    let Visitor {
+    let Handshake {
         mut stream,
         peer,
         mut received,
-    } = visitor;
+    } = handshake;
     let (mut read, mut write) = stream.split();
     let incoming = async {
         loop {
-            match portion::<D>(&mut read, &mut received).await {
+            match next_message(&mut read, &mut received, framing, Patience::SESSION).await {
                 Ok(length) => {
                     let bytes = received.split_to(length).freeze();
                     if orders.send(Order::Receive(bytes)).await.is_err() {
                         return;
                     }
                 }
-                Err(Silence::Closed) => return,
-                Err(Silence::Unfinished) => {
+                Err(StreamEnd::Closed) => return,
+                Err(StreamEnd::TooSlow) => {
                     tracing::warn!(%peer, "client of the {name} disconnected: half a message");
                     return;
                 }

@@ -77,21 +77,28 @@ fn states_come_every_millisecond_even_while_the_runtime_is_blocked() {
 }
 
 #[test]
-fn a_second_client_is_turned_away_and_the_next_one_served() {
+fn a_second_client_is_refused_by_a_reset_and_the_next_one_served() {
     let runtime = runtime();
     let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
     let first = Client::connect(sim.addr());
-    let mut second = TcpStream::connect(sim.addr()).expect("a listener");
-    second
-        .set_read_timeout(Some(Duration::from_secs(2)))
-        .expect("a timeout");
-    assert_eq!(second.read(&mut [0; 1]).expect("an orderly end"), 0);
+    let refused = Client::try_connect(sim.addr()).map(drop);
+    let kind = refused.expect_err("the robot has a client").kind();
+    assert_eq!(kind, std::io::ErrorKind::ConnectionReset);
     first.state();
     drop(first);
     // At once, and again: the old connection is still being taken down.
     for _ in 0..5 {
         Client::connect(sim.addr()).state();
     }
+}
+
+#[test]
+fn a_connection_that_says_nothing_is_closed_and_keeps_no_client_out() {
+    let runtime = runtime();
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
+    let mut silent = TcpStream::connect(sim.addr()).expect("a listener");
+    Client::connect(sim.addr()).state();
+    assert_eq!(silent.read(&mut [0; 1]).expect("an orderly end"), 0);
 }
 
 #[test]
@@ -143,7 +150,7 @@ fn a_client_that_does_not_read_makes_room_for_the_next() {
 }
 
 #[test]
-fn hands_reach_the_robot_and_stopping_frees_the_port() {
+fn jobs_reach_the_robot_and_stopping_frees_the_port() {
     let runtime = runtime();
     runtime.block_on(async {
         let sim = Sim::fr3().start().await.expect("a robot");
@@ -175,25 +182,42 @@ fn a_person_beside_the_robot_reaches_it_from_any_task() {
             tokio::time::sleep(Duration::from_millis(20)).await;
             sim.state().await.expect("running").robot_mode
         };
-        sim.close_brakes().await.expect("running");
+        sim.with(|robot| robot.close_brakes())
+            .await
+            .expect("running");
         assert_eq!(mode(&sim).await, RobotMode::Other);
-        sim.open_brakes().await.expect("running");
-        assert!(sim.guide(true).await.expect("running"));
+        let guided = sim.with(|robot| {
+            robot.open_brakes();
+            robot.guide(true)
+        });
+        assert!(guided.await.expect("running"));
         assert_eq!(mode(&sim).await, RobotMode::Guiding);
         let torque = JointVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
-        let push = sim.touch(Touch::torque(torque)).await.expect("running");
+        let push = sim.with(move |robot| robot.touch(Touch::torque(torque)));
+        let push = push.await.expect("running");
         tokio::time::sleep(Duration::from_millis(100)).await;
         assert!(sim.state().await.expect("running").q[6] > franka_model::READY[6]);
-        assert!(sim.release(push).await.expect("running"));
-        sim.guide(false).await.expect("running");
+        let released = sim.with(move |robot| {
+            robot.guide(false);
+            robot.release(push)
+        });
+        assert!(released.await.expect("running"));
         tokio::time::sleep(Duration::from_millis(100)).await;
-        sim.activate_safety_function(true).await.expect("running");
+        sim.with(|robot| robot.activate_safety_function(true))
+            .await
+            .expect("running");
         assert_eq!(mode(&sim).await, RobotMode::UserStopped);
-        sim.activate_safety_function(false).await.expect("running");
-        sim.trip(RobotError::JointReflex).await.expect("running");
+        let tripped = sim.with(|robot| {
+            robot.activate_safety_function(false);
+            robot.trip(RobotError::JointReflex);
+        });
+        tripped.await.expect("running");
         assert_eq!(mode(&sim).await, RobotMode::Reflex);
-        assert!(sim.drop_into_hand(0.04).await.expect("running"));
-        assert_eq!(sim.take_from_hand().await, Ok(Some(0.04)));
+        let hand = sim.hand().expect("a hand");
+        let placed = hand.with(|hand| hand.mechanism_mut().place_object(0.04));
+        assert_eq!(placed.await, Ok(true));
+        let taken = hand.with(|hand| hand.mechanism_mut().take_object());
+        assert_eq!(taken.await, Ok(Some(0.04)));
         sim.stop().await;
     });
 }

@@ -96,6 +96,13 @@ impl Client {
         self.send_bytes(&bytes[..length]);
     }
 
+    /// Sends a command from another socket.
+    pub(crate) fn send_from(&self, socket: &UdpSocket, command: &RobotCommand) {
+        let mut bytes = [0; RobotCommand::MAX_SIZE];
+        let length = command.encode(self.version, &mut bytes).expect("room");
+        socket.send_to(&bytes[..length], self.robot).expect("sent");
+    }
+
     pub(crate) fn send_bytes(&self, bytes: &[u8]) {
         self.udp.send_to(bytes, self.robot).expect("sent");
     }

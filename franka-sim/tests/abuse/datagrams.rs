@@ -13,6 +13,34 @@ use crate::good::{assert_moves, assert_moves_during, assert_served};
 /// From the client's host, and from another one.
 const SOURCES: [&str; 2] = ["127.0.0.1:0", "127.0.0.2:0"];
 
+/// Commands of another socket, of the client's host too, are not the client's.
+#[test]
+fn only_the_socket_that_the_client_announced_commands() {
+    each_robot(|binary| {
+        let mut client = Client::connect(binary);
+        client.start(
+            MoveControllerMode::JointImpedance,
+            MoveGeneratorMode::JointVelocity,
+        );
+        let foreign = SOURCES.map(|source| UdpSocket::bind(source).expect("Linux"));
+        let q = client.state.q;
+        for _ in 0..200 {
+            let mut faster = client.holding();
+            faster.dq_c[0] = client.state.dq_d[0] + 0.005;
+            for socket in &foreign {
+                client.send_from(socket, &faster);
+            }
+            client.send(&client.holding());
+            client.next_state();
+        }
+        assert!(client.state.motion_running());
+        assert!(client.state.errors.is_empty(), "{:?}", client.state.errors);
+        assert!((client.state.q[0] - q[0]).abs() < 1e-3);
+        drop(client);
+        assert_served(binary);
+    });
+}
+
 /// Lengths about those of commands and states, and the longest that UDP carries.
 const LENGTHS: [usize; 9] = [0, 1, 8, 369, 370, 371, 1377, 2373, 65_507];
 

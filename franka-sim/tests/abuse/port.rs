@@ -144,11 +144,12 @@ impl Connection {
         }
     }
 
-    /// Writes a byte at a time, each in a segment of its own.
+    /// Writes a byte at a time, each in a segment of its own, for half a second in all.
     pub(crate) fn trickle(&mut self, bytes: &[u8]) {
+        let pause = Duration::from_millis(500) / bytes.len() as u32;
         for byte in bytes {
             self.send(&[*byte]);
-            std::thread::sleep(Duration::from_millis(2));
+            std::thread::sleep(pause);
         }
     }
 

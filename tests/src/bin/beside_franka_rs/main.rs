@@ -160,9 +160,8 @@ async fn felt(sim: &Running, way: Vector3<f64>) -> anyhow::Result<f64> {
     let begin = sim.state().await?;
     let pose = begin.O_T_EE;
     let from = Vector3::new(pose[12], pose[13], pose[14]);
-    let push = sim
-        .touch(Touch::carry(move |t| from + way * hand(t), STIFFNESS))
-        .await?;
+    let carry = Touch::carry(move |t| from + way * hand(t), STIFFNESS);
+    let push = sim.with(move |robot| robot.touch(carry)).await?;
     let deadline = Instant::now() + PATIENCE;
     let (mut sum, mut seen, mut last) = (0.0, 0.0, 0);
     loop {
@@ -184,6 +183,6 @@ async fn felt(sim: &Running, way: Vector3<f64>) -> anyhow::Result<f64> {
         }
     }
     ensure!(seen > 10.0, "only {seen} looks at the contact");
-    sim.release(push).await?;
+    sim.with(move |robot| robot.release(push)).await?;
     Ok(sum / seen)
 }

@@ -7,18 +7,18 @@ use bytes::Bytes;
 use franka_proto::{RobotCommand, server};
 use tokio::sync::mpsc;
 
-use super::between::Between;
 use super::clock::Pace;
 use super::device::Device;
+use super::relay::Relay;
 use crate::network::Network;
 use crate::robot::Awaited;
 
 /// Something to do with a device between two milliseconds.
-pub(super) type Hands<D> = Box<dyn FnOnce(&mut D, Pace) + Send>;
+pub(super) type Job<D> = Box<dyn FnOnce(&mut D, Pace) + Send>;
 
 /// What the stream asks of the thread.
 pub(super) enum Order {
-    /// A client is there: where it is, and where its replies go.
+    /// A client has connected: its address, and the queue of its replies.
     Connect {
         peer: SocketAddr,
         replies: mpsc::Sender<Bytes>,
@@ -35,44 +35,48 @@ const DATAGRAMS: usize = 64;
 /// Orders taken per cycle, at most, for the same reason.
 const ORDERS: usize = 32;
 
-/// How long orders and hands wait for a command that is waited for, at most.
-const ATTENTION: Duration = Duration::from_millis(1);
+/// How long orders and jobs wait for a command that is waited for, at most.
+const JOB_POLL: Duration = Duration::from_millis(1);
 
-/// Replies that may wait for a client. One that has no room for the answers to what is open and to
-/// one request more is not heard until it has read some.
+/// Replies that may wait for a client. Without room for the answers to all open requests and to one
+/// more, which may take two replies, no request is read.
 pub(super) const REPLIES: usize = 2 * ANSWERS;
-const ANSWERS: usize = 1 + <server::Session>::PENDING_LIMIT;
+const ANSWERS: usize = 2 + <server::Session>::PENDING_LIMIT;
 
-/// Device, UDP socket and the queues; and the network, if it is not the host's alone.
-pub(super) struct Seat<D> {
+/// A device, its UDP socket, the queues from its listener, and the simulated network, if any.
+///
+/// The queues are those of Tokio: both ends of each are a task and this thread, the task waits for
+/// room or for a reply without blocking a worker, and the thread only tries. A queue between threads
+/// (crossbeam) has no end that a task can await.
+pub(super) struct DeviceServer<D> {
     device: D,
     socket: UdpSocket,
     orders: mpsc::Receiver<Order>,
-    hands: mpsc::Receiver<Hands<D>>,
+    jobs: mpsc::Receiver<Job<D>>,
     client: Option<(SocketAddr, mpsc::Sender<Bytes>)>,
-    between: Option<Between>,
+    relay: Option<Relay>,
 }
 
-impl<D: Device> Seat<D> {
+impl<D: Device> DeviceServer<D> {
     pub(super) fn new(
         device: D,
         socket: UdpSocket,
         orders: mpsc::Receiver<Order>,
-        hands: mpsc::Receiver<Hands<D>>,
+        jobs: mpsc::Receiver<Job<D>>,
     ) -> Self {
         Self {
             device,
             socket,
             orders,
-            hands,
+            jobs,
             client: None,
-            between: None,
+            relay: None,
         }
     }
 
-    /// With this network between socket and device.
+    /// Puts this network between socket and device.
     pub(super) fn behind(mut self, network: Option<Network>) -> Self {
-        self.between = network.map(Between::new);
+        self.relay = network.map(Relay::new);
         self
     }
 
@@ -81,11 +85,11 @@ impl<D: Device> Seat<D> {
         &mut self.device
     }
 
-    /// One millisecond, at `now`: commands, orders, hands, state, replies. False at the end.
+    /// One millisecond, at `now`: commands, orders, jobs, state, replies. False at the end.
     pub(super) fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
         self.take_commands(now);
         self.take_orders();
-        if !self.lend_hands(pace) {
+        if !self.run_jobs(pace) {
             return false;
         }
         self.send_replies();
@@ -93,8 +97,8 @@ impl<D: Device> Seat<D> {
             // With the interface of a link-local peer.
             let mut listener = *peer;
             listener.set_port(datagram.port);
-            match &mut self.between {
-                Some(between) => between.send_state(now, datagram.bytes, listener),
+            match &mut self.relay {
+                Some(relay) => relay.send_state(now, datagram.bytes, listener),
                 None => publish(&self.socket, datagram.bytes, listener),
             }
         }
@@ -105,7 +109,7 @@ impl<D: Device> Seat<D> {
 
     /// Whether datagrams are to be [`relay`](Self::relay)ed, and how long not.
     pub(super) fn pause(&self, now: Instant) -> Option<Duration> {
-        self.between.as_ref().map(|between| between.pause(now))
+        self.relay.as_ref().map(|relay| relay.pause(now))
     }
 
     /// The command that the newest state asks for and that has not come.
@@ -114,7 +118,7 @@ impl<D: Device> Seat<D> {
     }
 
     /// Waits for the command that the newest state asks for, if it does, and no longer than
-    /// `patience`. Orders and hands are taken meanwhile as they are between two milliseconds. False
+    /// `patience`. Orders and jobs are taken meanwhile as they are between two milliseconds. False
     /// at the end.
     pub(super) fn await_command(&mut self, patience: Duration, pace: Pace) -> bool {
         let begun = Instant::now();
@@ -124,12 +128,12 @@ impl<D: Device> Seat<D> {
                 return true;
             }
             self.take_orders();
-            if !self.lend_hands(pace) {
+            if !self.run_jobs(pace) {
                 return false;
             }
             self.send_replies();
             let pause = self.pause(Instant::now());
-            self.wait_for_datagram(pause.unwrap_or(ATTENTION));
+            self.wait_for_datagram(pause.unwrap_or(JOB_POLL));
         }
     }
 
@@ -146,8 +150,8 @@ impl<D: Device> Seat<D> {
         let _ = socket.set_nonblocking(true);
     }
 
-    /// Whether a client is there.
-    pub(super) fn is_taken(&self) -> bool {
+    /// Whether a client is connected.
+    pub(super) fn has_client(&self) -> bool {
         self.client.is_some()
     }
 
@@ -158,10 +162,10 @@ impl<D: Device> Seat<D> {
     }
 
     fn deliver_states(&mut self, now: Instant) {
-        let Some(between) = &mut self.between else {
+        let Some(relay) = &mut self.relay else {
             return;
         };
-        while let Some((state, listener)) = between.take_state(now) {
+        while let Some((state, listener)) = relay.take_state(now) {
             publish(&self.socket, &state, listener);
         }
     }
@@ -171,10 +175,12 @@ impl<D: Device> Seat<D> {
         for _ in 0..DATAGRAMS {
             match self.socket.recv_from(&mut buffer) {
                 Ok((length, source)) => {
-                    let known = self.client.as_ref().map(|(peer, _)| peer.ip());
-                    if known == Some(source.ip()) {
-                        match &mut self.between {
-                            Some(between) => between.send_command(now, &buffer[..length]),
+                    // Other sockets of the client's host are not the client.
+                    let ip = self.client.as_ref().map(|(peer, _)| peer.ip());
+                    let client = ip.zip(self.device.udp_port());
+                    if client == Some((source.ip(), source.port())) {
+                        match &mut self.relay {
+                            Some(relay) => relay.send_command(now, &buffer[..length]),
                             None => self.device.command(&buffer[..length]),
                         }
                     }
@@ -184,8 +190,8 @@ impl<D: Device> Seat<D> {
                 Err(_) => break,
             }
         }
-        if let Some(between) = &mut self.between {
-            while let Some(command) = between.take_command(now) {
+        if let Some(relay) = &mut self.relay {
+            while let Some(command) = relay.take_command(now) {
                 self.device.command(&command);
             }
         }
@@ -227,11 +233,11 @@ impl<D: Device> Seat<D> {
             .is_some_and(|(_, replies)| full(replies))
     }
 
-    /// False if nobody is left who could lend any.
-    fn lend_hands(&mut self, pace: Pace) -> bool {
+    /// Runs the jobs that wait. False when none can come any more: the simulation is to end.
+    fn run_jobs(&mut self, pace: Pace) -> bool {
         for _ in 0..ORDERS {
-            match self.hands.try_recv() {
-                Ok(hands) => hands(&mut self.device, pace),
+            match self.jobs.try_recv() {
+                Ok(job) => job(&mut self.device, pace),
                 Err(mpsc::error::TryRecvError::Empty) => return true,
                 Err(mpsc::error::TryRecvError::Disconnected) => return false,
             }
@@ -260,8 +266,8 @@ impl<D: Device> Seat<D> {
     /// Forgets it, and what is on its way to it and from it.
     fn forget_client(&mut self) {
         self.client = None;
-        if let Some(between) = &mut self.between {
-            between.clear();
+        if let Some(relay) = &mut self.relay {
+            relay.clear();
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A network between the sockets and a device.
+//! The simulated network between the sockets and a device.
 
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use crate::network::Network;
 
 /// A network in the time of the thread's clock, and where it leads.
 #[derive(Debug)]
-pub(super) struct Between {
+pub(super) struct Relay {
     network: Network,
     /// Where the network's time begins.
     origin: Instant,
@@ -17,7 +17,7 @@ pub(super) struct Between {
     listener: Option<SocketAddr>,
 }
 
-impl Between {
+impl Relay {
     pub(super) fn new(network: Network) -> Self {
         Self {
             network,
@@ -70,10 +70,10 @@ impl Between {
     pub(super) fn pause(&self, now: Instant) -> Duration {
         let next = self.network.to_client.next_arrival();
         let left = next.map(|at| (self.origin + at).saturating_duration_since(now));
-        left.unwrap_or(GLANCE).min(GLANCE)
+        left.unwrap_or(RELAY_POLL).min(RELAY_POLL)
     }
 }
 
 /// Time between two looks at the socket, and about what datagrams are later than the network has
 /// it.
-const GLANCE: Duration = Duration::from_micros(100);
+const RELAY_POLL: Duration = Duration::from_micros(100);

@@ -1,7 +1,6 @@
-//! Where connections wait until their first message is there.
+//! Connections that have not sent their handshake yet.
 
 use std::collections::VecDeque;
-use std::marker::PhantomData;
 use std::net::SocketAddr;
 use std::time::Duration;
 
@@ -9,17 +8,14 @@ use bytes::BytesMut;
 use socket2::{SockRef, TcpKeepalive};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::{AbortHandle, JoinSet};
-use tokio::time::{sleep, timeout};
+use tokio::time::sleep;
 
-use super::device::Device;
-use super::portion::{Silence, portion};
+use super::stream::{Patience, StreamEnd, next_message};
+use crate::connection::Framing;
 
-/// Connections that may be here at the same time. The next one is taken in and the oldest closed,
-/// so that any number of silent ones keeps nobody out.
-const GUESTS: usize = 64;
-
-/// How long the first message may take. Clients send it at once.
-const GREETING: Duration = Duration::from_secs(1);
+/// Connections that may be pending at the same time. For the next one the oldest is closed, so that
+/// any number of silent connections keeps no client out.
+const MAX_PENDING: usize = 64;
 
 /// How long to wait after the listener failed (out of file descriptors, for one).
 const RETRY: Duration = Duration::from_millis(100);
@@ -29,31 +25,31 @@ const RETRY: Duration = Duration::from_millis(100);
 const KEEPALIVE: (Duration, u32) = (Duration::from_secs(1), 3);
 
 /// A connection whose first message has come.
-pub(super) struct Visitor {
+pub(super) struct Handshake {
     pub(super) stream: TcpStream,
     pub(super) peer: SocketAddr,
     /// What has been read of the stream: the message, or what can never become one, and maybe more.
     pub(super) received: BytesMut,
 }
 
-/// The listener, and the connections that have not said anything yet.
-pub(super) struct Lobby<D> {
+/// The listener, and the connections whose handshake is awaited.
+pub(super) struct PendingConnections {
     listener: TcpListener,
     name: &'static str,
-    greetings: JoinSet<Option<Visitor>>,
-    /// Of the greetings, oldest first.
+    framing: Framing,
+    handshakes: JoinSet<Option<Handshake>>,
+    /// Of the handshakes, oldest first.
     handles: VecDeque<AbortHandle>,
-    device: PhantomData<fn(D)>,
 }
 
-impl<D: Device> Lobby<D> {
-    pub(super) fn new(listener: TcpListener, name: &'static str) -> Self {
+impl PendingConnections {
+    pub(super) fn new(listener: TcpListener, name: &'static str, framing: Framing) -> Self {
         Self {
             listener,
             name,
-            greetings: JoinSet::new(),
+            framing,
+            handshakes: JoinSet::new(),
             handles: VecDeque::new(),
-            device: PhantomData,
         }
     }
 
@@ -61,17 +57,17 @@ impl<D: Device> Lobby<D> {
     ///
     /// # Cancel safety
     /// Dropping the future loses no connection.
-    pub(super) async fn next(&mut self) -> Visitor {
+    pub(super) async fn next(&mut self) -> Handshake {
         loop {
             tokio::select! {
                 biased;
-                Some(greeted) = self.greetings.join_next() => {
-                    if let Ok(Some(visitor)) = greeted {
-                        return visitor;
+                Some(done) = self.handshakes.join_next() => {
+                    if let Ok(Some(handshake)) = done {
+                        return handshake;
                     }
                 }
                 accepted = self.listener.accept() => match accepted {
-                    Ok((stream, peer)) => self.take_in(stream, peer),
+                    Ok((stream, peer)) => self.accept(stream, peer),
                     Err(error) => {
                         tracing::warn!(%error, "cannot accept a connection to the {}", self.name);
                         sleep(RETRY).await;
@@ -81,12 +77,12 @@ impl<D: Device> Lobby<D> {
         }
     }
 
-    fn take_in(&mut self, stream: TcpStream, peer: SocketAddr) {
-        self.handles.retain(|greeting| !greeting.is_finished());
-        if self.handles.len() >= GUESTS
+    fn accept(&mut self, stream: TcpStream, peer: SocketAddr) {
+        self.handles.retain(|handshake| !handshake.is_finished());
+        if self.handles.len() >= MAX_PENDING
             && let Some(oldest) = self.handles.pop_front()
         {
-            tracing::warn!("{GUESTS} connections to the {} say nothing", self.name);
+            tracing::warn!("{MAX_PENDING} connections to the {} say nothing", self.name);
             oldest.abort();
         }
         // Without these options replies are slower, and a client that lost its network stays
@@ -100,27 +96,27 @@ impl<D: Device> Lobby<D> {
         if let Err(error) = stream.set_nodelay(true).and(kept) {
             tracing::debug!(%peer, %error, "an option of the connection");
         }
-        let greeting = greet::<D>(stream, peer, self.name);
-        self.handles.push_back(self.greetings.spawn(greeting));
+        let handshake = handshake(stream, peer, self.name, self.framing);
+        self.handles.push_back(self.handshakes.spawn(handshake));
     }
 }
 
 /// Waits for the first message.
-async fn greet<D: Device>(
+async fn handshake(
     mut stream: TcpStream,
     peer: SocketAddr,
     name: &'static str,
-) -> Option<Visitor> {
+    framing: Framing,
+) -> Option<Handshake> {
     let mut received = BytesMut::new();
-    match timeout(GREETING, portion::<D>(&mut stream, &mut received)).await {
-        Ok(Ok(_)) => Some(Visitor {
+    match next_message(&mut stream, &mut received, framing, Patience::HANDSHAKE).await {
+        Ok(_) => Some(Handshake {
             stream,
             peer,
             received,
         }),
-        // It has gone by itself.
-        Ok(Err(Silence::Closed)) => None,
-        Ok(Err(Silence::Unfinished)) | Err(_) => {
+        Err(StreamEnd::Closed) => None,
+        Err(StreamEnd::TooSlow) => {
             tracing::warn!(%peer, "connection to the {name} closed: no message came");
             None
         }
