@@ -288,6 +288,3 @@ impl Robot {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -376,19 +376,3 @@ fn a_push_on_any_link_moves_the_arm_and_a_grip_holds_it() {
     let moved = Vector3::from(pair.position()) - before;
     assert!(moved.norm() > 0.01, "{moved}");
 }
-
-#[test]
-fn a_blocked_joint_stays_and_a_spring_pulls_to_its_point() {
-    let mut pair = Pair::fr3();
-    assert!(pair.robot.guide(true));
-    pair.robot.touch(Touch::block(0));
-    pair.robot.touch(push(0, 20.0).lasting(300));
-    pair.idle(300);
-    assert!(pair.q()[0].abs() < 2e-3, "{}", pair.q()[0]);
-    pair.robot.let_go();
-    let goal = Vector3::from(pair.position()) + Vector3::new(0.0, 0.05, 0.05);
-    pair.robot.touch(Touch::spring(goal, 400.0));
-    pair.idle(4000);
-    let off = Vector3::from(pair.position()) - goal;
-    assert!(off.norm() < 2e-3, "{off}");
-}

@@ -7,11 +7,11 @@ use franka_model::Load;
 use franka_proto::CollisionBehavior;
 use nalgebra::{Matrix3, Vector3};
 
-use super::plants::robots;
-use super::*;
-use crate::config::Tool;
-use crate::plant::RigidArm;
-use crate::robot::Touch;
+use crate::pair::*;
+use crate::plants::robots;
+use franka_sim::Touch;
+use franka_sim::config::Tool;
+use franka_sim::plant::RigidArm;
 
 const HIGH: f64 = 1e4;
 

@@ -1,6 +1,6 @@
 //! Commands that do not come: what the robot makes up for them, and what comes of it.
 
-use super::*;
+use crate::pair::*;
 
 const CYCLE: f64 = 1e-3;
 

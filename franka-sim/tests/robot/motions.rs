@@ -3,7 +3,7 @@
 use franka_model::{READY, Wrench, rotation, transform};
 use nalgebra::Vector3;
 
-use super::*;
+use crate::pair::*;
 
 const CONTROLLERS: [MoveControllerMode; 2] = [
     MoveControllerMode::JointImpedance,

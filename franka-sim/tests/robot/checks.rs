@@ -1,9 +1,9 @@
 //! Which commands a robot refuses, and by which names.
 
-use franka_model::{READY, transform};
+use franka_model::READY;
 use franka_proto::RobotError as E;
 
-use super::*;
+use crate::pair::*;
 
 fn joint_velocity() -> (Pair, CommandId) {
     let mut pair = Pair::fr3();
@@ -68,7 +68,7 @@ fn joint_velocities_have_their_own_names() {
 fn the_velocity_envelope_closes_towards_the_limit() {
     let mut q = READY;
     q[0] = 2.5;
-    let mut pair = Pair::connected(Config {
+    let mut pair = Pair::new(Config {
         q,
         ..Config::default()
     });
@@ -84,28 +84,6 @@ fn the_velocity_envelope_closes_towards_the_limit() {
     // The envelope there: sqrt(2 · 6 · 0.25) - 0.3 and less.
     assert!(command.dq_c[0] > 1.0 && command.dq_c[0] < 1.44);
     pair.assert_reflex(id, &[E::JointMotionGeneratorVelocityLimitsViolation]);
-}
-
-#[test]
-fn a_position_out_of_range_has_the_fr3s_name() {
-    let mut q = READY;
-    q[0] = 2.7499;
-    let mut pair = Pair::connected(Config {
-        q,
-        ..Config::default()
-    });
-    let id = pair.start_joints();
-    pair.tick(Some(positions(&q)));
-    q[0] = 2.7503;
-    pair.tick(Some(positions(&q)));
-    assert!(pair.state.errors.contains(E::JointPositionLimitsViolation));
-    assert!(
-        !pair
-            .state
-            .errors
-            .contains(E::JointMotionGeneratorPositionLimitsViolation)
-    );
-    assert_eq!(pair.outcome(id), MoveStatus::ReflexAborted);
 }
 
 #[test]
@@ -260,21 +238,6 @@ fn lost_commands_are_extrapolated_and_twenty_end_the_motion() {
 }
 
 #[test]
-fn a_late_command_does_not_count() {
-    let mut pair = Pair::fr3();
-    let id = pair.start_joints();
-    pair.tick(Some(positions(&READY)));
-    for _ in 0..20 {
-        pair.datagram(&RobotCommand {
-            message_id: pair.state.message_id - 1,
-            ..positions(&READY)
-        });
-        pair.tick(None);
-    }
-    pair.assert_reflex(id, &[E::CommunicationConstraintsViolation]);
-}
-
-#[test]
 fn of_two_commands_for_a_cycle_the_first_counts() {
     let mut pair = Pair::fr3();
     pair.start_torques();
@@ -319,29 +282,6 @@ fn a_leftover_finish_of_the_last_motion_does_not_end_the_next() {
 }
 
 #[test]
-fn a_robot_without_enforcement_lets_everything_pass() {
-    let mut pair = Pair::connected(Config {
-        enforce_limits: false,
-        enforce_communication: false,
-        ..Config::default()
-    });
-    pair.start_joints();
-    let mut q_c = READY;
-    q_c[0] += 0.05;
-    pair.tick(Some(positions(&q_c)));
-    pair.idle(500);
-    assert_eq!(
-        pair.state.robot_mode,
-        RobotMode::Move,
-        "{}",
-        pair.state.errors
-    );
-    assert!((pair.q()[0] - 0.05).abs() < 1e-3);
-    let pose = transform::isometry_from_array(&pair.state.O_T_EE);
-    assert!(pose.is_some());
-}
-
-#[test]
 fn a_fast_tip_of_a_long_tool_is_a_cartesian_violation() {
     let mut pair = Pair::fr3();
     let mut ne_t_ee = pair.state.NE_T_EE;
@@ -354,40 +294,6 @@ fn a_fast_tip_of_a_long_tool_is_a_cartesian_violation() {
         pair.tick(Some(torques(&tau)));
     }
     pair.assert_reflex(id, &[E::CartesianVelocityViolation]);
-}
-
-#[test]
-fn a_soft_arm_pushed_off_its_path_or_goal_is_noticed_if_the_client_cares() {
-    let run = |path: f64, goal: f64| {
-        let mut pair = Pair::fr3();
-        pair.request(&Request::SetJointImpedance([200.0; 7]));
-        let mut request = MoveRequest::new(
-            MoveControllerMode::JointImpedance,
-            MoveGeneratorMode::JointPosition,
-        );
-        request.maximum_path_deviation.translation = path;
-        request.maximum_goal_pose_deviation.translation = goal;
-        let id = pair.begin(request);
-        let push = JointVector::from([10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        pair.robot.push_joints(push, 2000);
-        for _ in 0..500 {
-            pair.tick(Some(positions(&READY)));
-            if pair.state.robot_mode != RobotMode::Move {
-                return (pair, id);
-            }
-        }
-        pair.tick(Some(RobotCommand {
-            motion_generation_finished: true,
-            ..positions(&READY)
-        }));
-        (pair, id)
-    };
-    let (pair, id) = run(0.01, 10.0);
-    pair.assert_reflex(id, &[E::MaxPathPoseDeviationViolation]);
-    let (pair, id) = run(10.0, 0.01);
-    pair.assert_reflex(id, &[E::MaxGoalPoseDeviationViolation]);
-    let (pair, id) = run(10.0, 10.0);
-    assert_eq!(pair.outcome(id), MoveStatus::Success);
 }
 
 #[test]
@@ -414,7 +320,7 @@ fn losses_right_after_the_first_command_leave_no_trace() {
         MoveGeneratorMode::JointPosition,
         MoveGeneratorMode::CartesianPosition,
     ] {
-        let mut pair = Pair::connected(Config {
+        let mut pair = Pair::new(Config {
             q,
             ..Config::default()
         });

@@ -3,7 +3,7 @@
 use franka_model::{READY, Twist, rotation};
 use franka_proto::{MotionGeneratorMode, MoveGeneratorMode};
 
-use super::*;
+use crate::pair::*;
 
 #[test]
 fn zero_torque_holds_the_arm_for_two_seconds() {
@@ -41,18 +41,18 @@ fn an_impedance_of_750_newton_per_metre_ends_within_a_third_of_a_millimetre() {
     pair.start_torques();
     let model = franka_model::Model::fr3();
     let frames = franka_model::EndEffector::default();
-    let start = pair.robot.arm().pose(&READY);
+    let start = pair.pose_at(&READY);
     let mut last = JointVector::zeros();
     for cycle in 0..4000 {
         let (q, dq) = (pair.q(), JointVector::from(pair.state.dq));
         let frame = franka_model::Frame::EndEffector;
         let jacobian = model.zero_jacobian(frame, &q, &frames);
-        let pose = pair.robot.arm().pose(&q);
+        let pose = pair.pose_at(&q);
         let mut goal = start;
         goal.translation.vector.z += 0.05 * ramp(f64::from(cycle) * 1e-3, 1.0);
         let shift = (goal.translation.vector - pose.translation.vector) * 750.0;
         let turn = rotation::error(&goal.rotation, &pose.rotation) * 50.0;
-        let spring = crate::signal::stack(&shift, &turn);
+        let spring = stack(&shift, &turn);
         let velocity = jacobian * dq;
         let damper = Twist::from_fn(|i, _| if i < 3 { 55.0 } else { 14.0 } * velocity[i]);
         let tau = jacobian.tr_mul(&(spring - damper));
@@ -60,7 +60,7 @@ fn an_impedance_of_750_newton_per_metre_ends_within_a_third_of_a_millimetre() {
         last += step;
         pair.tick(Some(torques(&last)));
     }
-    let end = pair.robot.arm().pose(pair.robot.q());
+    let end = pair.pose_at(pair.robot.q());
     let error = end.translation.vector.z - start.translation.vector.z - 0.05;
     assert!(error.abs() < 0.3e-3, "{error}");
     assert!(pair.robot.dq().amax() < 1e-3);

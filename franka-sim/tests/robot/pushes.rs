@@ -3,9 +3,9 @@
 use franka_model::{Frame, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
 
-use super::plants::{robots, robots_with_and_without_hand};
-use super::*;
-use crate::robot::Touch;
+use crate::pair::*;
+use crate::plants::{robots, robots_with_and_without_hand};
+use franka_sim::Touch;
 
 /// How hard a hand pushes, `[N]`.
 const PUSH: f64 = 5.0;
@@ -28,7 +28,7 @@ fn directions() -> [Vector3<f64>; 5] {
     .map(Vector3::from)
 }
 
-fn push(pair: &mut Pair, direction: &Vector3<f64>) -> crate::robot::TouchId {
+fn push(pair: &mut Pair, direction: &Vector3<f64>) -> franka_sim::TouchId {
     let push = Touch::force(direction * PUSH).at(Frame::Flange);
     pair.robot.touch(push)
 }
@@ -94,7 +94,7 @@ fn a_clients_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness
     for (name, mut pair) in robots(&Config::default()) {
         pair.start_torques();
         let goal = end_effector(&pair);
-        let model = pair.robot.model;
+        let model = pair.model();
         gives_way(&name, &mut pair, |pair| {
             let q = pair.q();
             let jacobian = model.zero_jacobian(Frame::EndEffector, &q, &Default::default());
@@ -103,7 +103,7 @@ fn a_clients_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness
             let turn = rotation::error(&goal.rotation, &pose.rotation) * 50.0;
             let velocity = jacobian * JointVector::from(pair.state.dq);
             let damper = Twist::from_fn(|i, _| if i < 3 { 55.0 } else { 14.0 } * velocity[i]);
-            torques(&jacobian.tr_mul(&(crate::signal::stack(&shift, &turn) - damper)))
+            torques(&jacobian.tr_mul(&(stack(&shift, &turn) - damper)))
         });
     }
 }

@@ -3,9 +3,9 @@
 use franka_model::{Frame, Load, Wrench};
 use nalgebra::{Matrix3, Vector3};
 
-use super::plants::robots;
-use super::*;
-use crate::robot::Touch;
+use crate::pair::*;
+use crate::plants::robots;
+use franka_sim::Touch;
 
 fn for_each_robot(test: impl Fn(&str, &mut Pair)) {
     for (name, mut pair) in robots(&Config::default()) {
@@ -20,7 +20,7 @@ fn hand(pair: &Pair) -> Vector3<f64> {
 
 fn elbow(pair: &Pair) -> Vector3<f64> {
     let frames = Default::default();
-    let pose = pair.robot.model.pose(Frame::Joint4, &pair.q(), &frames);
+    let pose = pair.model().pose(Frame::Joint4, &pair.q(), &frames);
     Vector3::new(pose.m14, pose.m24, pose.m34)
 }
 

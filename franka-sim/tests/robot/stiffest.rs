@@ -1,7 +1,7 @@
 //! The stiffest gains that libfranka's users set, on every plant.
 
-use super::plants::robots;
-use super::*;
+use crate::pair::*;
+use crate::plants::robots;
 
 /// Every robot, with nothing on the flange: where it is least stable.
 fn for_each_plant(test: impl Fn(&mut Pair, &str)) {

@@ -1,21 +1,29 @@
 //! A client and a robot in one thread; time is a counter.
 
-use franka_model::{JointVector, RobotKind};
-use franka_proto::framing::next_message;
-use franka_proto::{
-    CommandId, Errors, MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus, Reply,
-    Request, RobotCommand, RobotError, RobotMode, RobotState, Status, VirtualWall, client,
+pub(crate) use franka_model::{JointVector, RobotKind};
+pub(crate) use franka_proto::{
+    CommandId, ControllerMode, Errors, MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode,
+    MoveRequest, MoveStatus, Request, RobotCommand, RobotError, RobotMode, RobotState, Status,
+    client,
 };
-use franka_sim::{Config, Robot};
+pub(crate) use franka_sim::{Config, Robot};
+
+use franka_model::{Frame, Model, Twist, transform};
+use franka_proto::framing::next_message;
+use franka_proto::{Reply, VirtualWall};
+use nalgebra::{Isometry3, Vector3};
+
+const PORT: u16 = 5000;
 
 /// Both ends of a session, and what the client has got so far.
 pub(crate) struct Pair {
     pub(crate) robot: Robot,
     /// As decoded from the newest datagram.
     pub(crate) state: RobotState,
-    client: client::Session,
+    pub(crate) client: client::Session,
     stream: Vec<u8>,
-    answers: Vec<(CommandId, Status)>,
+    /// All answers, with the clock of the state that the client had by then.
+    answers: Vec<(u64, CommandId, Status)>,
     wall: VirtualWall,
     /// The size of every reply so far.
     pub(crate) sizes: Vec<usize>,
@@ -23,7 +31,10 @@ pub(crate) struct Pair {
 
 impl Pair {
     pub(crate) fn new(config: Config) -> Self {
-        let mut robot = Robot::new(config);
+        Self::with(Robot::new(config))
+    }
+
+    pub(crate) fn with(mut robot: Robot) -> Self {
         assert!(robot.connect());
         let mut pair = Self {
             client: client::Session::new(robot.version()),
@@ -34,7 +45,7 @@ impl Pair {
             wall: VirtualWall::default(),
             sizes: Vec::new(),
         };
-        let hello = pair.client.connect(5000);
+        let hello = pair.client.connect(PORT);
         pair.send(hello.as_bytes());
         assert!(pair.client.is_connected());
         pair.tick(None);
@@ -56,7 +67,8 @@ impl Pair {
         Self::of(RobotKind::Fer)
     }
 
-    fn send(&mut self, bytes: &[u8]) {
+    /// Sends stream bytes, and reads what the robot answers at once.
+    pub(crate) fn send(&mut self, bytes: &[u8]) {
         self.robot.receive(bytes).expect("a conforming client");
         self.read();
     }
@@ -74,8 +86,8 @@ impl Pair {
                 if let Reply::CartesianLimit { wall, .. } = reply {
                     self.wall = wall;
                 }
-                self.answers
-                    .push((id, reply.status().expect("not a handshake")));
+                let status = reply.status().expect("not a handshake");
+                self.answers.push((self.state.message_id, id, status));
             }
             self.stream.drain(..size);
         }
@@ -89,8 +101,8 @@ impl Pair {
 
     /// The answers to a request so far.
     pub(crate) fn statuses(&self, id: CommandId) -> Vec<Status> {
-        let of_id = |answer: &&(CommandId, Status)| answer.0 == id;
-        self.answers.iter().filter(of_id).map(|a| a.1).collect()
+        let of_id = |answer: &&(u64, CommandId, Status)| answer.1 == id;
+        self.answers.iter().filter(of_id).map(|a| a.2).collect()
     }
 
     /// The only answer to a request, which has come at once.
@@ -117,7 +129,10 @@ impl Pair {
             });
         }
         let datagram = self.robot.tick().expect("a client is there");
+        assert_eq!(datagram.port, PORT);
+        let last = self.state.message_id;
         self.state = RobotState::decode(self.client.version(), datagram.bytes).expect("a state");
+        assert!(last == 0 || self.state.message_id == last + 1);
         self.read();
     }
 
@@ -138,7 +153,11 @@ impl Pair {
         let id = self.request(&Request::Move(request));
         assert_eq!(self.statuses(id), [Status::Move(MoveStatus::MotionStarted)]);
         self.tick(None);
-        assert_eq!(self.state.robot_mode, RobotMode::Move);
+        let state = &self.state;
+        assert_eq!(state.robot_mode, RobotMode::Move);
+        assert_eq!(state.motion_generator_mode, request.generator.in_state());
+        assert_eq!(state.controller_mode, request.controller.in_state());
+        assert_eq!(state.control_command_success_rate, 0.0);
         id
     }
 
@@ -206,16 +225,40 @@ impl Pair {
         cycles
     }
 
-    /// Asserts that the motion ended by a reflex for exactly these reasons.
+    /// Asserts that the newest state shows a reflex for exactly these reasons, and that the motion's
+    /// final reply came after the first state that did.
     pub(crate) fn assert_reflex(&self, id: CommandId, reasons: &[RobotError]) {
         let reasons: Errors = reasons.iter().copied().collect();
+        assert_eq!(self.state.reflex_reason, reasons);
         assert_eq!(self.state.errors, reasons);
         assert_eq!(self.state.robot_mode, RobotMode::Reflex);
+        assert_eq!(self.state.motion_generator_mode, MotionGeneratorMode::Idle);
+        assert_eq!(self.state.controller_mode, ControllerMode::Other);
+        assert_eq!(self.state.control_command_success_rate, 0.0);
         assert_eq!(self.outcome(id), MoveStatus::ReflexAborted);
+        let (seen, ..) = self.answers[self.answers.len() - 1];
+        assert_eq!(seen, self.state.message_id, "the reply overtook its state");
+    }
+
+    /// The model that the robot's controllers believe in.
+    pub(crate) fn model(&self) -> &'static Model {
+        Model::physically_consistent(self.robot.config().kind)
+    }
+
+    /// The end effector at the joint positions `q`, with the default frames of a bare flange.
+    pub(crate) fn pose_at(&self, q: &JointVector) -> Isometry3<f64> {
+        let pose = self
+            .model()
+            .pose(Frame::EndEffector, q, &Default::default());
+        transform::isometry(&pose).expect("a rigid transform")
     }
 
     pub(crate) fn q(&self) -> JointVector {
         JointVector::from(self.state.q)
+    }
+
+    pub(crate) fn q_d(&self) -> JointVector {
+        JointVector::from(self.state.q_d)
     }
 
     /// Position of the end effector, `[m]`.
@@ -223,6 +266,11 @@ impl Pair {
         let pose = &self.state.O_T_EE;
         [pose[12], pose[13], pose[14]]
     }
+}
+
+/// The `[linear; angular]` vector of two halves.
+pub(crate) fn stack(linear: &Vector3<f64>, angular: &Vector3<f64>) -> Twist {
+    Twist::from_fn(|i, _| if i < 3 { linear[i] } else { angular[i - 3] })
 }
 
 /// A path from 0 to 1 within `duration` seconds, smooth to the acceleration.

@@ -6,10 +6,10 @@ use franka_model::READY;
 use franka_proto::gripper::{self, Grasp, Reply, Request as HandRequest, Status as HandStatus};
 use nalgebra::{Isometry3, Vector3};
 
-use super::*;
-use crate::end_effector::{Fingers, Hand};
-use crate::plant::{MujocoArm, Scene};
-use crate::{Config, Tool};
+use crate::pair::*;
+use franka_sim::end_effector::{Fingers, Hand};
+use franka_sim::plant::{MujocoArm, Scene};
+use franka_sim::{Config, Tool};
 
 /// Where the fingertips are in the ready pose: x and z, `[m]`.
 const TCP: (f64, f64) = (0.306_89, 0.486_88);

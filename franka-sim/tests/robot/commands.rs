@@ -5,7 +5,7 @@ use franka_proto::{
 };
 use franka_sim::{Config, Touch};
 
-use crate::pair::{Pair, finished, positions, ramp, stay};
+use crate::pair::{Pair, finished, positions, ramp};
 
 #[test]
 fn limits_and_communication_are_enforced_unless_switched_off() {
@@ -18,18 +18,21 @@ fn limits_and_communication_are_enforced_unless_switched_off() {
             q[0] += 0.05;
             pair.tick(Some(positions(&q)));
         }
-        pair.idle(25);
-        pair.state.errors
+        pair.idle(500);
+        (pair.state.errors, pair.q()[0])
     };
     let strict = Config::default();
-    assert!(!outcome(strict.clone(), true).is_empty());
-    assert!(outcome(strict.clone(), false).contains(E::CommunicationConstraintsViolation));
+    assert!(!outcome(strict.clone(), true).0.is_empty());
+    let (errors, _) = outcome(strict.clone(), false);
+    assert!(errors.contains(E::CommunicationConstraintsViolation));
     let permissive = Config {
         enforce_limits: false,
         enforce_communication: false,
         ..strict
     };
-    assert!(outcome(permissive, true).is_empty());
+    let (errors, q) = outcome(permissive, true);
+    assert!(errors.is_empty(), "{errors}");
+    assert!((q - 0.05).abs() < 1e-3, "{q}");
 }
 
 #[test]
@@ -257,24 +260,4 @@ fn a_start_in_a_singularity_is_told_after_the_motion_has_been_accepted() {
     }
     let status = pair.ask(&request(MoveGeneratorMode::JointPosition));
     assert_eq!(status, Status::Move(MoveStatus::MotionStarted));
-}
-
-#[test]
-fn a_jump_in_the_pose_breaks_bounds_of_hand_and_joints_together() {
-    let mut pair = Pair::fr3();
-    pair.start(
-        MoveControllerMode::CartesianImpedance,
-        MoveGeneratorMode::CartesianPosition,
-    );
-    let mut command = stay(&pair.state);
-    pair.tick(Some(command));
-    command.O_T_EE_c[12] += 0.01;
-    pair.tick(Some(command));
-    for error in [
-        E::CartesianMotionGeneratorVelocityLimitsViolation,
-        E::CartesianMotionGeneratorAccelerationDiscontinuity,
-        E::CartesianMotionGeneratorJointAccelerationDiscontinuity,
-    ] {
-        assert!(pair.state.errors.contains(error), "{error}");
-    }
 }

@@ -1,14 +1,14 @@
 //! The robots that tests of physics run on: of every kind, on every plant.
 
 #[cfg(feature = "mujoco")]
-use crate::plant::{MujocoArm, Scene};
+use franka_sim::plant::{MujocoArm, Scene};
 
-use super::*;
-use crate::config::Tool;
+use crate::pair::*;
+use franka_sim::config::Tool;
 
 /// A robot of every kind on every plant, with its client, and what it is. Those in MuJoCo stand on
 /// the table, and have the Hand's body and fingers if that is the tool.
-pub(super) fn robots(config: &Config) -> Vec<(String, Pair)> {
+pub(crate) fn robots(config: &Config) -> Vec<(String, Pair)> {
     let mut robots = Vec::new();
     for kind in RobotKind::ALL {
         let config = Config {
@@ -25,13 +25,13 @@ pub(super) fn robots(config: &Config) -> Vec<(String, Pair)> {
             let robot = Robot::with_plant(config.clone(), Box::new(arm));
             robots.push((format!("{kind:?}, MuJoCo"), Pair::with(robot)));
         }
-        robots.push((format!("{kind:?}, rigid"), Pair::connected(config)));
+        robots.push((format!("{kind:?}, rigid"), Pair::new(config)));
     }
     robots
 }
 
 /// [`robots`] with a bare flange, and with a Hand.
-pub(super) fn robots_with_and_without_hand() -> Vec<(String, Pair)> {
+pub(crate) fn robots_with_and_without_hand() -> Vec<(String, Pair)> {
     let tools = [("bare", Tool::NONE), ("Hand", Tool::hand())];
     let with = |(name, tool): (&str, Tool)| {
         let named = |(robot, pair)| (format!("{robot}, {name}"), pair);

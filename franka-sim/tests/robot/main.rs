@@ -1,0 +1,42 @@
+//! The simulated robot in virtual time, through the sessions of both sides and the bytes between
+//! them. What the simulators before this one left open has a test here, too.
+//!
+//! | module | content |
+//! |---|---|
+//! | `session` | stream, handshake, requests, stop, recovery, one client at a time |
+//! | `wire` | versions, their negotiation, second clients, the size of replies, late and missing commands |
+//! | `motions`, `torques` | every generator and controller: followed, echoed, ended |
+//! | `checks`, `commands` | strictness: limits, start, continuity, several errors at once, finishing, deviations, asynchronous motions |
+//! | `losing` | lost commands: extrapolated, and bridged or refused |
+//! | `contact`, `pushes`, `falling` | the estimate of what touches the arm, thresholds, reflexes, loads |
+//! | `modes`, `people` | recovery, user stop, brakes, guiding, safety functions, the errors of the robot itself, touches |
+//! | `setters` | ranges, modes, and the effect of stiffnesses |
+//! | `stiffest` | the stiffest springs that clients set |
+//! | `echo` | what the state tells of a motion |
+//! | `hand`, `scene` | the Franka Hand and the vacuum gripper, alone and in MuJoCo |
+//! | `fer` | the Franka Emika Robot |
+//! | `open` | what is not known of a robot: each an option, with the default that is documented |
+//! | `pair`, `plants` | a client and a robot in one thread; on every plant |
+
+mod checks;
+mod commands;
+mod contact;
+mod echo;
+mod falling;
+mod fer;
+mod hand;
+mod losing;
+mod modes;
+mod motions;
+mod open;
+mod pair;
+mod people;
+mod plants;
+mod pushes;
+#[cfg(feature = "mujoco")]
+mod scene;
+mod session;
+mod setters;
+mod stiffest;
+mod torques;
+mod wire;
