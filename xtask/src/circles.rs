@@ -28,11 +28,6 @@ const KNOWN: &[(&str, &str)] = &[
         "active, arm, bridge, builder, channel, connect, error, follow, input, model, motion, \
          parameters, reading, robot",
     ),
-    (
-        "franka_sim",
-        "brake, end_effector, estimate, filter, generator, kind, law, observer, plant, robot, \
-         signal",
-    ),
 ];
 
 /// Fails with each circle that is not part of a [`KNOWN`] one, and where each of its imports is;

@@ -45,19 +45,18 @@ enum Activity {
 }
 
 impl Fingers {
-    /// Distance of the open fingers `[m]`. Source: Franka Hand, technical data.
-    pub const STROKE: f64 = 0.08;
+    /// [`FingerDrive::STROKE`].
+    pub const STROKE: f64 = FingerDrive::STROKE;
 
-    /// The fastest that the width changes `[m/s]`: 0.05 for each finger. Source: Franka Hand,
-    /// technical data. Faster requests are carried out at this speed, which is a choice made here.
-    pub const MAX_SPEED: f64 = 0.1;
+    /// [`FingerDrive::MAX_SPEED`]. Faster requests are carried out at this speed, which is a choice
+    /// made here.
+    pub const MAX_SPEED: f64 = FingerDrive::MAX_SPEED;
 
     /// Speed of the width during a homing `[m/s]`, a choice made here.
     pub const HOMING_SPEED: f64 = 0.05;
 
-    /// The least and the largest force of a squeeze `[N]`. The least is reported by users of real
-    /// hands, whatever they ask for; the largest is that of the technical data.
-    pub const FORCE: [f64; 2] = [30.0, 140.0];
+    /// [`FingerDrive::FORCE`].
+    pub const FORCE: [f64; 2] = FingerDrive::FORCE;
 
     /// How long a move tries to pass an object `[ms]`. Users report 100 s to 120 s.
     pub const BLOCKED_MS: u32 = 110_000;

@@ -1,6 +1,6 @@
-//! What the motor of a hand is told.
+//! The motor of a hand: its setpoint and its limits.
 
-/// Fingers on their way.
+/// The setpoint of the motor of a hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FingerDrive {
     /// Where to: distance of the fingers, `[m]`.
@@ -9,4 +9,17 @@ pub struct FingerDrive {
     pub speed: f64,
     /// How strongly each finger may push, `[N]`.
     pub force: f64,
+}
+
+impl FingerDrive {
+    /// Distance of the open fingers `[m]`. Source: Franka Hand, technical data.
+    pub const STROKE: f64 = 0.08;
+
+    /// The fastest that the width changes `[m/s]`: 0.05 for each finger. Source: Franka Hand,
+    /// technical data.
+    pub const MAX_SPEED: f64 = 0.1;
+
+    /// The least and the largest force of a squeeze `[N]`. The least is reported by users of real
+    /// hands, whatever they ask for; the largest is that of the technical data.
+    pub const FORCE: [f64; 2] = [30.0, 140.0];
 }

@@ -7,7 +7,6 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::mjcf::{add, geom, quaternion, write_capsule};
 use super::scene::{SceneError, joint};
-use crate::Fingers;
 use crate::plant::FingerDrive;
 
 /// The body of the Hand in its own frame. Source: fitted to the vendor's collision mesh
@@ -25,7 +24,7 @@ pub(super) fn write_hand(text: &mut String) {
     // The right finger is the left one turned about the axis of the Hand, so that both open in the
     // positive direction.
     for (name, turn) in JOINTS.into_iter().zip(["1 0 0 0", "0 0 0 1"]) {
-        let stroke = Fingers::STROKE / 2.0;
+        let stroke = FingerDrive::STROKE / 2.0;
         add(
             text,
             format_args!(
@@ -69,9 +68,9 @@ impl FingerJoints {
             qpos: [left.0, right.0],
             dof: [left.1, right.1],
             drive: FingerDrive {
-                width: Fingers::STROKE,
-                speed: Fingers::MAX_SPEED,
-                force: Fingers::FORCE[0],
+                width: FingerDrive::STROKE,
+                speed: FingerDrive::MAX_SPEED,
+                force: FingerDrive::FORCE[0],
             },
             push: 0.0,
         })
@@ -80,7 +79,7 @@ impl FingerJoints {
     /// Opens the fingers, at once.
     pub(super) fn open(&self, data: &mut MjData<Box<MjModel>>) {
         for place in self.qpos {
-            data.qpos_mut()[place] = Fingers::STROKE / 2.0;
+            data.qpos_mut()[place] = FingerDrive::STROKE / 2.0;
         }
     }
 
