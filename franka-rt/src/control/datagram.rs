@@ -4,6 +4,7 @@ use franka_proto::{MoveGeneratorMode, RobotCommand, Version};
 
 use super::{GeneratorCommand, JointVelocities, MotionCommand, Torques};
 use crate::driver::Modes;
+use crate::shaping::{InvalidCommand, check};
 
 /// What is sent in a cycle: a command to the motion generator, torques, or both, as the motion
 /// wants.
@@ -67,7 +68,16 @@ impl Command {
     /// The datagram that answers the state `message_id`. What is not commanded is zero. The
     /// finishing flag is that of the motion generator where there is a command to it, and that of
     /// the torques otherwise.
-    pub fn datagram(&self, message_id: u64, finished: bool) -> RobotCommand {
+    ///
+    /// Every command that leaves is made here, whatever program commands it.
+    ///
+    /// # Errors
+    /// [`InvalidCommand::NotFinite`] if any of its numbers is not finite.
+    pub fn datagram(
+        &self,
+        message_id: u64,
+        finished: bool,
+    ) -> Result<RobotCommand, InvalidCommand> {
         let mut command = RobotCommand {
             message_id,
             motion_generation_finished: finished && self.motion.is_some(),
@@ -80,7 +90,13 @@ impl Command {
         if let Some(Torques(tau)) = self.torques {
             command.tau_J_d = tau;
         }
-        command
+        check::finite(&command.q_c)?;
+        check::finite(&command.dq_c)?;
+        check::finite(&command.O_T_EE_c)?;
+        check::finite(&command.O_dP_EE_c)?;
+        check::finite(command.elbow_c.as_ref().map_or(&[], |elbow| &elbow[..]))?;
+        check::finite(&command.tau_J_d)?;
+        Ok(command)
     }
 }
 
@@ -89,7 +105,7 @@ mod tests {
     use franka_proto::{ControllerMode, MotionGeneratorMode};
 
     use super::*;
-    use crate::control::JointPositions;
+    use crate::control::{CartesianPose, CartesianVelocities, JointPositions};
 
     const MOTION: MotionCommand = MotionCommand::JointPositions(JointPositions([0.5; 7]));
     const TORQUES: Torques = Torques([2.0; 7]);
@@ -150,20 +166,50 @@ mod tests {
     }
 
     #[test]
+    #[allow(non_snake_case)]
+    fn no_datagram_carries_a_number_that_is_not_finite() {
+        let identity = core::array::from_fn(|i| if i % 5 == 0 { 1.0 } else { 0.0 });
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let pose = |O_T_EE, elbow| CartesianPose { O_T_EE, elbow }.into();
+            let twist = |O_dP_EE, elbow| CartesianVelocities { O_dP_EE, elbow }.into();
+            let motions: [MotionCommand; 7] = [
+                JointPositions([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, bad]).into(),
+                JointVelocities([bad, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).into(),
+                pose([bad; 16], None),
+                pose(identity, Some([bad, 1.0])),
+                pose(identity, Some([0.0, bad])),
+                twist([bad; 6], None),
+                twist([0.0; 6], Some([bad, -1.0])),
+            ];
+            let motions = motions.map(|motion| Command {
+                motion: Some(motion),
+                torques: None,
+            });
+            let torques = Command::torques(Version::V10, Torques([bad; 7]));
+            for command in motions.into_iter().chain([torques]) {
+                let made = command.datagram(7, false);
+                assert_eq!(made, Err(InvalidCommand::NotFinite), "{command:?}");
+            }
+        }
+    }
+
+    #[test]
     fn the_generators_flag_ends_a_motion_that_has_one() {
         let both = Command {
             motion: Some(MOTION),
             torques: Some(TORQUES),
         };
-        let sent = both.datagram(7, true);
+        let sent = both.datagram(7, true).unwrap();
         assert_eq!(sent.message_id, 7);
         assert_eq!((sent.q_c, sent.tau_J_d), ([0.5; 7], [2.0; 7]));
         assert!(sent.motion_generation_finished && !sent.torque_command_finished);
-        let alone = Command::torques(Version::V10, TORQUES).datagram(7, true);
+        let alone = Command::torques(Version::V10, TORQUES);
+        let alone = alone.datagram(7, true).unwrap();
         assert!(!alone.motion_generation_finished && alone.torque_command_finished);
-        let beside = Command::torques(Version::V5, TORQUES).datagram(7, true);
+        let beside = Command::torques(Version::V5, TORQUES);
+        let beside = beside.datagram(7, true).unwrap();
         assert!(beside.motion_generation_finished && !beside.torque_command_finished);
-        let going_on = both.datagram(7, false);
+        let going_on = both.datagram(7, false).unwrap();
         assert!(!going_on.motion_generation_finished && !going_on.torque_command_finished);
     }
 }

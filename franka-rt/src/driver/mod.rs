@@ -15,7 +15,8 @@
 //! it finishes.
 //!
 //! A program that fails, in place of finishing, leaves the motion `Silent`: no command, until the
-//! robot has left its modes. So does `Order::Silence`, when nobody is in charge of the program any
+//! robot has left its modes. So does a command with a number that is not finite, whatever program
+//! made it, and `Order::Silence`, when nobody is in charge of the program any
 //! more.
 //!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are
@@ -269,7 +270,7 @@ impl Driver {
             return Err(WriteError::NotRunning);
         };
         active.check(command, motion.modes, finished)?;
-        let sent = command.datagram(newest, finished);
+        let sent = command.datagram(newest, finished)?;
         motion.sent = sent;
         motion.log.note_command(&sent);
         self.record.tau_c = sent.tau_J_d;
@@ -320,8 +321,11 @@ impl Driver {
         }
         match step.answer {
             Answer::Command { command, finished } => {
-                motion.sent = command.datagram(state.message_id, finished);
-                let sent = motion.sent;
+                let sent = match command.datagram(state.message_id, finished) {
+                    Ok(sent) => sent,
+                    Err(invalid) => return self.fail(motion, Failure::Invalid(invalid)),
+                };
+                motion.sent = sent;
                 self.record.tau_c = sent.tau_J_d;
                 self.phase = if finished {
                     self.record.activity = Activity::Finishing;
@@ -338,16 +342,19 @@ impl Driver {
                 self.phase = Phase::Running(motion);
                 None
             }
-            Answer::Failed(failure) => {
-                self.record.activity = Activity::Silent;
-                self.events.push(Event::Failed {
-                    motion: motion.id,
-                    failure,
-                });
-                self.phase = Phase::Silent(motion);
-                None
-            }
+            Answer::Failed(failure) => self.fail(motion, failure),
         }
+    }
+
+    /// Leaves a motion without commands from now on, as its program cannot go on.
+    fn fail(&mut self, motion: Motion, failure: Failure) -> Option<RobotCommand> {
+        self.record.activity = Activity::Silent;
+        self.events.push(Event::Failed {
+            motion: motion.id,
+            failure,
+        });
+        self.phase = Phase::Silent(motion);
+        None
     }
 
     /// Ends a motion with the state that shows its end. There is nothing to answer then, so its log

@@ -7,7 +7,7 @@ use franka_proto::{ControllerMode, MotionGeneratorMode, RobotMode, RobotState, V
 use nalgebra::Isometry3;
 
 use super::*;
-use crate::control::{ActiveControl, Callback, Torques};
+use crate::control::{ActiveControl, AsynchronousPositions, AsynchronousTarget, Callback, Torques};
 use crate::law::Gains;
 use crate::session::{Backend, Goal, GoalId, OnArrival, Setpoints, Target, TargetSession};
 use crate::shaping::{InvalidCommand, Shaper};
@@ -225,6 +225,34 @@ fn a_program_that_fails_leaves_the_motion_without_commands_until_the_robot_ends_
     assert_eq!(ended.ending, Ending::Aborted);
     assert_eq!(ended.log.len(), 5, "it is noted to the end");
     assert!(driver.is_watching());
+}
+
+#[test]
+fn a_command_that_is_not_finite_fails_the_motion_whatever_program_made_it() {
+    let (positions, mut targets) = AsynchronousPositions::new();
+    let mut driver = armed_with(Program::Asynchronous(positions));
+    let mut target = AsynchronousTarget {
+        q: [0.1; 7],
+        finished: false,
+    };
+    targets.write(&target);
+    let sent = answer(&mut driver, &moving(101)).expect("a command");
+    assert_eq!(sent.q_c, [0.1; 7]);
+    target.q[4] = f64::NAN;
+    targets.write(&target);
+    assert!(answer(&mut driver, &moving(102)).is_none());
+    assert_eq!(driver.record().activity, Activity::Silent);
+    let failed = core::iter::from_fn(|| driver.take_event()).last();
+    let Some(Event::Failed { failure, .. }) = failed else {
+        panic!("{failed:?}")
+    };
+    assert!(matches!(
+        failure,
+        Failure::Invalid(InvalidCommand::NotFinite)
+    ));
+    target.q[4] = 0.1;
+    targets.write(&target);
+    assert!(answer(&mut driver, &moving(103)).is_none(), "nothing later");
 }
 
 #[test]

@@ -56,6 +56,11 @@ pub(super) struct Active {
     pub(super) given_up: Option<&'static str>,
     /// Since when its last command is out.
     pub(super) finishing: Option<Duration>,
+    /// Why its program could not go on.
+    pub(super) failure: Option<MotionError>,
+    /// Since when a `StopMove` is out, or about to be, because a stop was asked for or the program
+    /// failed.
+    pub(super) stopped: Option<Duration>,
     /// Where the thread counts the times of its cycles.
     pub(super) times: Arc<MotionTimes>,
 }
@@ -80,8 +85,6 @@ pub(super) struct Goals {
     pub(super) current: Waiting,
     pub(super) settled: Option<Settled>,
     pub(super) bad_tool: bool,
-    /// Why the session could not go on, if that has happened.
-    pub(super) failure: Option<MotionError>,
     /// The session that the goals belong to, if it goes on from goal to goal.
     pub(super) engaged: Option<Engaged>,
     /// Who turns setpoints into torques.
@@ -109,10 +112,6 @@ pub(super) struct Engaged {
 pub(super) struct Programmed {
     /// Names whoever awaits its end.
     pub(super) id: GoalId,
-    /// Why the program could not go on.
-    pub(super) failure: Option<MotionError>,
-    /// Since when a `StopMove` is out, or about to be.
-    pub(super) stopped: Option<Duration>,
     /// Whoever else awaits the end, having asked for it.
     pub(super) stops: Vec<GoalId>,
 }
@@ -158,7 +157,7 @@ impl Active {
             unreachable!("a motion concludes when its thread side has ended")
         };
         // What came after a failure is its consequence.
-        if let Some(failure) = self.work.failure() {
+        if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
         let status = match (ended.ending, self.command) {
@@ -182,7 +181,7 @@ impl Active {
             }
             // So ends a program's motion on a stop that was asked for, even with its finishing
             // command on its way,
-            Some(_) if status == MoveStatus::Preempted && self.work.stopped() => {
+            Some(_) if status == MoveStatus::Preempted && self.stopped.is_some() => {
                 return Err(MotionError::Stopped);
             }
             Some(refusal) => {
@@ -197,7 +196,7 @@ impl Active {
         let outcome = match &self.work {
             Work::Goals(goals) if ended.ending == Ending::Finished => goals.outcome(ended),
             Work::Goals(_) => None,
-            Work::Program(program) => program.outcome(ended),
+            Work::Program(_) => outcome_of_program(ended, self.stopped.is_some()),
         };
         // libfranka, `robot_impl.cpp`, has this text for it.
         outcome.unwrap_or(Err(MotionError::Protocol {
@@ -214,17 +213,18 @@ impl Active {
     /// Whether it is coming to its end, and nobody wants it to go on.
     pub(super) fn is_letting_go(&self) -> bool {
         self.is_ending()
+            || self.stopped.is_some()
             || match &self.work {
                 Work::Goals(goals) if goals.engaged.is_some() => !goals.goes_on(),
                 Work::Goals(goals) => goals.current.cancelled,
-                Work::Program(program) => program.stopped.is_some(),
+                Work::Program(_) => false,
             }
     }
 
     /// Until when a motion under way may go on: without end, unless its last command is out or a
     /// stop was asked for.
     pub(super) fn running_deadline(&self) -> Option<Duration> {
-        let since = self.finishing.or(self.work.stopped_since());
+        let since = self.finishing.or(self.stopped);
         since.map(|since| since + END_TIMEOUT)
     }
 
@@ -246,24 +246,25 @@ impl Active {
     }
 }
 
-impl Work {
-    fn stopped_since(&self) -> Option<Duration> {
-        match self {
-            Self::Program(program) => program.stopped,
-            Self::Goals(_) => None,
+/// How the motion of a program turned out that finished well or was stopped as asked.
+fn outcome_of_program(
+    ended: &Ended,
+    is_stopped: bool,
+) -> Option<Result<MotionReport, MotionError>> {
+    match ended.ending {
+        Ending::Finished => {
+            if let Some(fault) = ended.start_fault() {
+                return Some(Err(fault.into()));
+            }
+            let duration_ms = ended.statistics.duration_ms();
+            Some(Ok(MotionReport::new(
+                &Counted::of(ended),
+                duration_ms,
+                None,
+            )))
         }
-    }
-
-    /// Why its program could not go on, if that has happened.
-    pub(super) fn failure(&self) -> Option<&MotionError> {
-        match self {
-            Self::Program(program) => program.failure.as_ref(),
-            Self::Goals(goals) => goals.failure.as_ref(),
-        }
-    }
-
-    fn stopped(&self) -> bool {
-        self.stopped_since().is_some()
+        _ if is_stopped => Some(Err(MotionError::Stopped)),
+        _ => None,
     }
 }
 
@@ -358,36 +359,6 @@ impl From<Failure> for MotionError {
             Failure::Panicked(payload) => Self::Panicked {
                 message: panic::message(&*payload),
             },
-        }
-    }
-}
-
-impl Programmed {
-    pub(super) fn new(id: GoalId) -> Self {
-        Self {
-            id,
-            failure: None,
-            stopped: None,
-            stops: Vec::new(),
-        }
-    }
-
-    /// How a motion turned out that finished well or was stopped as asked.
-    fn outcome(&self, ended: &Ended) -> Option<Result<MotionReport, MotionError>> {
-        match ended.ending {
-            Ending::Finished => {
-                if let Some(fault) = ended.start_fault() {
-                    return Some(Err(fault.into()));
-                }
-                let duration_ms = ended.statistics.duration_ms();
-                Some(Ok(MotionReport::new(
-                    &Counted::of(ended),
-                    duration_ms,
-                    None,
-                )))
-            }
-            _ if self.stopped.is_some() => Some(Err(MotionError::Stopped)),
-            _ => None,
         }
     }
 }

@@ -352,7 +352,6 @@ impl Lifecycle {
             current: waiting,
             settled: None,
             bad_tool: false,
-            failure: None,
             engaged,
             backend,
             chunks,

@@ -24,6 +24,8 @@ mod engagement;
 mod goals;
 mod outcome;
 mod programs;
+#[cfg(test)]
+mod tests;
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -391,6 +393,8 @@ impl Lifecycle {
             deadline: Some(now + START_TIMEOUT),
             given_up: None,
             finishing: None,
+            failure: None,
+            stopped: None,
             times,
         }));
     }
@@ -431,7 +435,7 @@ impl Lifecycle {
             (Some(error), _) => {
                 let order = active.abandon();
                 self.outputs.extend(order.map(Output::Order));
-                let error = active.work.failure().cloned().unwrap_or(error);
+                let error = active.failure.take().unwrap_or(error);
                 (Err(error), Counted::default())
             }
             (None, ThreadSide::Ended(ended)) => {

@@ -120,7 +120,8 @@ pub enum MotionError {
     /// Caller: the protocol version has no such motion. Nothing was sent.
     #[error(transparent)]
     Unsupported(#[from] RequestError),
-    /// Caller: what a control function returned cannot be sent. The robot was told to stop.
+    /// Caller: a command cannot be sent: what a control function returned, or what was computed from
+    /// a state or a goal with non-finite numbers. The robot was told to stop.
     #[error(transparent)]
     Invalid(#[from] InvalidCommand),
     /// Caller: a control function panicked. The robot was told to stop.

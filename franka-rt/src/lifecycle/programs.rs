@@ -5,7 +5,7 @@ use core::time::Duration;
 use franka_proto::{MoveRequest, Request};
 
 use super::active::{CommandSide, Programmed, Work};
-use super::{END_TIMEOUT, Lifecycle, MotionError, Phase};
+use super::{Lifecycle, MotionError, Phase};
 use crate::control::Callback;
 use crate::driver::{Failure, MotionId, Program};
 use crate::session::GoalId;
@@ -55,7 +55,10 @@ impl Lifecycle {
         now: Duration,
     ) -> Result<(), MotionError> {
         self.check_free(ticket.as_ref())?;
-        let work = Work::Program(Programmed::new(id));
+        let work = Work::Program(Programmed {
+            id,
+            stops: Vec::new(),
+        });
         self.start(work, program, request, (ticket, None), now);
         Ok(())
     }
@@ -99,20 +102,9 @@ impl Lifecycle {
 
     /// Takes note that the program of a motion could not go on, and has the robot stop.
     pub(super) fn on_failure(&mut self, motion: MotionId, failure: Failure, now: Duration) {
-        let Some(active) = self.active(motion) else {
-            return;
-        };
-        let failure = MotionError::from(failure);
-        match &mut active.work {
-            Work::Program(program) => {
-                program.failure = Some(failure);
-                self.send_stop(now);
-            }
-            Work::Goals(goals) => {
-                goals.failure = Some(failure);
-                active.deadline = active.deadline.or(Some(now + END_TIMEOUT));
-                self.send(motion, Request::StopMove);
-            }
+        if let Some(active) = self.active(motion) {
+            active.failure = Some(failure.into());
+            self.send_stop(now);
         }
     }
 
@@ -126,20 +118,20 @@ impl Lifecycle {
         }
     }
 
-    /// Asks the robot to stop the program's motion, unless it has been asked or the motion is over
+    /// Asks the robot to stop the motion under way, unless it has been asked or the motion is over
     /// for it. Its answer is not awaited: that the motion has ended is what counts, and a robot
     /// that goes on is told once more, then given up.
     fn send_stop(&mut self, now: Duration) {
         let Phase::Active(active) = &mut self.phase else {
             return;
         };
-        let (motion, command) = (active.motion, active.command);
-        let Work::Program(program) = &mut active.work else {
-            return;
-        };
-        let open = matches!(command, CommandSide::Requested | CommandSide::Started);
-        if open && program.stopped.is_none() {
-            program.stopped = Some(now);
+        let motion = active.motion;
+        let open = matches!(
+            active.command,
+            CommandSide::Requested | CommandSide::Started
+        );
+        if open && active.stopped.is_none() {
+            active.stopped = Some(now);
             let ending = active.running_deadline();
             active.deadline = active.deadline.or(ending);
             self.send(motion, Request::StopMove);

@@ -60,7 +60,9 @@ fn both(
 /// What goes out: `dq_c` and `tau_J_d` of the first joint, and whether it is the last.
 fn step(callback: &mut Callback, message_id: u64) -> (f64, f64, bool) {
     let (command, finished) = callback.step(&at(message_id)).expect("good commands");
-    let sent = command.datagram(message_id, finished);
+    let sent = command
+        .datagram(message_id, finished)
+        .expect("it is finite");
     assert_eq!(sent.motion_generation_finished, finished);
     (sent.dq_c[0], sent.tau_J_d[0], finished)
 }
@@ -167,7 +169,10 @@ fn the_first_command_is_shaped_as_the_first() {
             ..state
         };
         let (command, _) = callback.step(&state).expect("good commands");
-        command.datagram(message_id, false).q_c[0]
+        command
+            .datagram(message_id, false)
+            .expect("it is finite")
+            .q_c[0]
     };
     assert_eq!(q(5), 2.0);
     let second = q(6);

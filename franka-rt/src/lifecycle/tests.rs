@@ -1,0 +1,112 @@
+//! The lifecycle beside a driver whose states a test makes up.
+
+use franka_model::READY;
+use franka_proto::{RobotMode, RobotState};
+
+use super::*;
+use crate::driver::{Driver, Failure};
+use crate::session::{Goal, OnArrival, Target};
+use crate::shaping::InvalidCommand;
+
+const NOW: Duration = Duration::ZERO;
+
+/// A lifecycle with its driver, and what the lifecycle has asked of the robot or resolved.
+struct Pair {
+    lifecycle: Lifecycle,
+    driver: Driver,
+    sent: Vec<Request>,
+    resolved: Vec<(GoalId, Result<MotionReport, MotionError>)>,
+    state: RobotState,
+}
+
+impl Pair {
+    fn new() -> Self {
+        let state = RobotState {
+            q: READY.into(),
+            q_d: READY.into(),
+            ..RobotState::default()
+        };
+        Self {
+            lifecycle: Lifecycle::new(Model::fr3().clone().into(), Version::V10),
+            driver: Driver::new(Version::V10),
+            sent: Vec::new(),
+            resolved: Vec::new(),
+            state,
+        }
+    }
+
+    /// Carries out what the lifecycle wants, and tells it what the driver has to say.
+    fn settle(&mut self) {
+        loop {
+            while let Some(output) = self.lifecycle.poll() {
+                match output {
+                    Output::Order(order) => self.driver.on_order(order),
+                    Output::Send { request, .. } => self.sent.push(request),
+                    Output::Began { .. } => {}
+                    Output::Resolve { goal, result } => self.resolved.push((goal, result)),
+                }
+            }
+            let Some(event) = self.driver.take_event() else {
+                break;
+            };
+            self.lifecycle.on_event(event, NOW);
+        }
+    }
+
+    /// A cycle of the robot in this mode. Returns whether it is answered.
+    fn cycle(&mut self, robot_mode: RobotMode) -> bool {
+        self.state.message_id += 1;
+        self.state.robot_mode = robot_mode;
+        let answered = self.driver.on_state(&self.state).is_some();
+        self.settle();
+        answered
+    }
+
+    /// A motion towards a joint target that the robot has started, and its goal.
+    fn moving() -> (Self, MotionId, GoalId) {
+        let mut pair = Self::new();
+        let mut target: [f64; 7] = READY.into();
+        target[0] += 0.3;
+        let id = GoalId(1);
+        let limits = Model::fr3().joint_limits();
+        let goal = Goal::new(
+            id,
+            Target::Joints(target),
+            OnArrival::ReportAndFinish,
+            limits,
+        );
+        let begun = pair.lifecycle.submit(goal, &pair.state, NOW);
+        begun.expect("it is accepted");
+        pair.settle();
+        let [Request::Move(request)] = &pair.sent[..] else {
+            panic!("{:?}", pair.sent)
+        };
+        let modes = Modes::of(request);
+        pair.state.motion_generator_mode = modes.generator;
+        pair.state.controller_mode = modes.controller;
+        let motion = MotionId(1);
+        let started = MoveStatus::MotionStarted;
+        pair.lifecycle.on_move_reply(motion, started, NOW);
+        for _ in 0..20 {
+            assert!(pair.cycle(RobotMode::Move));
+        }
+        (pair, motion, id)
+    }
+}
+
+#[test]
+fn a_goal_whose_program_fails_has_the_robot_stop_and_says_why() {
+    let (mut pair, motion, goal) = Pair::moving();
+    let failure = Failure::Invalid(InvalidCommand::NotFinite);
+    pair.lifecycle
+        .on_event(Event::Failed { motion, failure }, NOW);
+    pair.settle();
+    assert_eq!(pair.sent.last(), Some(&Request::StopMove));
+    assert_eq!(pair.resolved, [], "the motion has not ended yet");
+    pair.lifecycle
+        .on_move_reply(motion, MoveStatus::Preempted, NOW);
+    pair.cycle(RobotMode::Idle);
+    let reason = MotionError::Invalid(InvalidCommand::NotFinite);
+    assert_eq!(pair.resolved, [(goal, Err(reason))]);
+    assert!(pair.lifecycle.is_idle());
+}
