@@ -111,6 +111,12 @@ impl Robot {
 /// nowhere else, and a thread that neither reads nor writes leaves the robot without commands,
 /// which stops it.
 ///
+/// **A thread that hangs** between two reads takes the states of the whole connection with it:
+/// [`Robot::state`] stands still and the loss of the link goes unseen. After the link timeout the
+/// motion is given up, the robot is told to stop, and what is read or written next fails with
+/// [`MotionError::Stalled`]. Until then, or until this is dropped, other motions are refused with
+/// [`MotionError::Busy`].
+///
 /// Commands pass no filter and no limiter. All methods block; none may be called from async code.
 /// Nothing is raised but the driver's own thread: real-time scheduling of the calling thread is up
 /// to the caller, see [`franka_rt::sched`].
@@ -158,11 +164,20 @@ impl<C> Active<C> {
             let lease = self.lease()?;
             let turned = lease.turn();
             // The motion is over for the cycle, or the thread is: the bridge knows why.
-            if turned.is_err() || lease.core().is_watching() {
-                return Err(match self.end() {
-                    Ok(_) => ActiveError::Finished,
-                    Err(error) => error.into(),
-                });
+            let is_over = turned.is_err() || lease.core().is_watching();
+            // Or it was given up while nothing was read.
+            let given_up = self.outcome.as_mut().map(oneshot::Receiver::try_recv);
+            let outcome = match given_up {
+                Some(Ok(outcome)) => {
+                    (self.lease, self.outcome) = (None, None);
+                    Some(outcome)
+                }
+                _ => is_over.then(|| self.end()),
+            };
+            match outcome {
+                Some(Ok(_)) => return Err(ActiveError::Finished),
+                Some(Err(error)) => return Err(error.into()),
+                None => {}
             }
             if let Ok(Some(state)) = turned {
                 let previous = self.previous.replace(state.message_id);

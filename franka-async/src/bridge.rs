@@ -28,6 +28,10 @@ use crate::telemetry::{self, Telemetry};
 /// Time that a motion gets to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 
+/// Time that an arm on its way to a goal gets to come to rest when the connection is lost, before the
+/// thread that brakes it ends.
+const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
+
 /// Makes the thread's bell heard on this runtime.
 ///
 /// # Errors
@@ -64,6 +68,8 @@ pub(crate) struct Bridge {
     started: Instant,
     /// Whether robot or thread is out of reach, for good.
     lost: bool,
+    /// Whether the thread that runs active control reads no states.
+    stalled: bool,
 }
 
 impl Bridge {
@@ -94,6 +100,7 @@ impl Bridge {
             replies: HashMap::new(),
             started: Instant::now(),
             lost: false,
+            stalled: false,
         }
     }
 
@@ -203,6 +210,15 @@ impl Bridge {
     fn listen(&mut self) {
         self.publisher.publish();
         self.telemetry.watch(Instant::now());
+        self.take_notices();
+        self.look_for_a_stall();
+        if self.thread_has_ended() {
+            let text = "it has ended".into();
+            self.lose(CloseReason::ThreadEnded { text });
+        }
+    }
+
+    fn take_notices(&mut self) {
         while let Ok(notice) = self.notices.pop() {
             match notice {
                 Notice::Core(event) => {
@@ -223,15 +239,42 @@ impl Bridge {
                 Notice::Link(fault) => tracing::warn!(%fault, "control link"),
             }
         }
-        if self.thread.as_ref().is_some_and(Thread::has_ended) {
-            let text = "it has ended".into();
-            self.lose(CloseReason::ThreadEnded { text });
+    }
+
+    /// Takes note that the thread that runs active control reads no states, or that it does again.
+    fn look_for_a_stall(&mut self) {
+        let stalled = self.thread.as_ref().and_then(Thread::stalled);
+        if stalled.is_some() != self.stalled {
+            self.stalled = stalled.is_some();
+            if let Some(silence) = stalled {
+                tracing::error!(?silence, "active control does not read states");
+                self.publisher.tell_silence(silence);
+            }
+            self.lifecycle.on_stall(stalled, self.now());
         }
     }
 
-    /// Takes note that robot or thread is out of reach. Everything else ends with it: a thread
-    /// without a connection would go on towards a goal that nobody can take back, while one that
-    /// has ended lets the robot stop the arm.
+    fn thread_has_ended(&self) -> bool {
+        self.thread.as_ref().is_none_or(Thread::has_ended)
+    }
+
+    /// Waits until an arm that is being braked rests, for [`BRAKING_TIMEOUT`] at most.
+    async fn rest(&mut self) {
+        let deadline = Instant::now() + BRAKING_TIMEOUT;
+        while self.lifecycle.is_braking() && !self.thread_has_ended() {
+            match tokio::time::timeout_at(deadline, hear(&self.bell)).await {
+                Ok(Ok(())) => self.listen(),
+                Ok(Err(_)) | Err(_) => {
+                    tracing::warn!("the arm was not seen to rest; the control thread ends");
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Takes note that robot or thread is out of reach. Everything else ends with it, after an arm
+    /// on its way to a goal has been braked: a thread without a connection would go on towards a
+    /// goal that can no longer be taken back.
     fn lose(&mut self, reason: CloseReason) {
         let reason = self.channel.closing().note(reason);
         self.lifecycle.on_connection_closed(reason);
@@ -242,6 +285,9 @@ impl Bridge {
         let now = self.now();
         // Without an audience, what was published last is not the newest.
         self.publisher.refresh();
+        // What is asked for may follow on what the thread has said, before its bell is heard.
+        self.look_for_a_stall();
+        self.take_notices();
         match input {
             Input::Begin { motion, replies } => {
                 let id = motion.id();
@@ -356,8 +402,8 @@ impl Bridge {
         Instant::now() + CLOSING_TIMEOUT
     }
 
-    /// Tells everybody who still waits, closes the connection and ends the thread. Whoever asks for
-    /// that meanwhile joins `done`.
+    /// Tells everybody who still waits, has an arm that moves brake, closes the connection and ends
+    /// the thread. Those who ask for that meanwhile join `done`.
     async fn end(
         mut self,
         mut inbox: mpsc::UnboundedReceiver<Input>,
@@ -373,6 +419,7 @@ impl Bridge {
                 done.push(reply);
             }
         }
+        self.rest().await;
         if let Some(connection) = self.connection.take() {
             connection.close().await;
         }

@@ -27,6 +27,7 @@
 //! itself, the bell rings, and [`Thread::join`] tells. Printing the panic is the business of the
 //! process's panic hook.
 
+mod borrower;
 mod cycle;
 mod desk;
 mod driven;
@@ -52,6 +53,7 @@ pub use self::fault::LinkFault;
 pub use self::handle::{Handle, Lost, Notice, StateReader, StateSequence, Thread};
 pub use self::lease::{Lease, Lender, WriteFault};
 
+use self::borrower::BorrowerWatch;
 use self::cycle::Cycle;
 use self::desk::{Desk, NotReturned};
 use self::fault::Latch;
@@ -144,7 +146,8 @@ pub fn spawn<C: Core>(
     let (state_ring, states) = touched_ring(capacity.states);
     let (state_slot, state_reader) = slot::slot();
     let desk = Arc::new(Desk::new(exchange::TICK));
-    let wait = exchange::wait_for(core.link_timeout());
+    let link_timeout = core.link_timeout();
+    let wait = exchange::wait_for(link_timeout);
     let exchange = Exchange::new(socket, robot, size)?.with_wait(wait)?;
     let now = Instant::now();
     let mut cycle = Box::new(Cycle {
@@ -186,7 +189,11 @@ pub fn spawn<C: Core>(
         let ended = catch_unwind(AssertUnwindSafe(|| {
             while !refused && !lifetime.stop_wanted() {
                 if desk.is_wanted() {
-                    cycle = desk.lend(cycle, || lifetime.stop_wanted())?;
+                    let mut watch = BorrowerWatch::new(&lifetime, &wake, link_timeout);
+                    cycle = desk.lend(cycle, || {
+                        watch.look();
+                        lifetime.stop_wanted()
+                    })?;
                 }
                 cycle.turn();
             }
@@ -229,6 +236,7 @@ pub fn spawn<C: Core>(
         thread: Thread {
             shared: lifetime,
             joiner: Some(joiner),
+            link_timeout,
         },
     })
 }

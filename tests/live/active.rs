@@ -197,3 +197,39 @@ async fn a_panic_of_the_thread_has_the_robot_stop_and_the_connection_goes_on() {
         robot.shutdown().await;
     }
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_thread_that_hangs_is_reported_and_gives_the_connection_back_when_it_goes_on() {
+    let _alone = alone();
+    let sim = franka_sim::Sim::fr3().start().await.unwrap();
+    let builder = Robot::builder(sim.addr()).realtime(franka_async::Realtime::Ignore);
+    let builder = builder.link_timeout(Duration::from_millis(100));
+    let robot = builder.connect().await.unwrap();
+    let control = robot.active_torques().await.unwrap();
+    let (go_on, hanging) = std::sync::mpsc::channel::<()>();
+    let thread = tokio::task::spawn_blocking(move || {
+        let mut control = control;
+        control.read_once().unwrap();
+        hanging.recv().unwrap();
+        control.read_once().unwrap_err()
+    });
+    let reading = robot.read(|_| std::ops::ControlFlow::<()>::Continue(()));
+    let reported = tokio::time::timeout(Duration::from_secs(5), reading).await;
+    reported.expect("the hang is reported").unwrap_err();
+    let busy = robot.move_to(robot.pose()).await;
+    assert_eq!(busy.unwrap_err(), MotionError::Busy);
+    go_on.send(()).unwrap();
+    let error = thread.await.unwrap();
+    let silence = Duration::from_millis(100);
+    assert_eq!(error, MotionError::Stalled { silence }.into());
+    let mut states = robot.states();
+    let rests = states.wait_for(|state| state.robot_mode != RobotMode::Move);
+    rests.await.expect("it is connected");
+    // The robot may have stopped itself before it was told to.
+    if robot.state().robot_mode == RobotMode::Reflex {
+        robot.recover().await.unwrap();
+    }
+    let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();
+    robot.move_to(up).await.expect("the cycle is back");
+    robot.shutdown().await;
+}

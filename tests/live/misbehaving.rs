@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use franka_async::error::CommandError;
 use franka_async::settings::Load;
-use franka_async::{MotionError, Pose};
+use franka_async::{MotionError, Pose, RobotState};
 use franka_proto::Command;
 use franka_proto::framing::Header;
 use tokio::task::JoinSet;
@@ -279,4 +279,32 @@ async fn no_pose_is_followed_after_the_robot_has_gone() {
         sender.send(Pose::identity()).is_err(),
         "nobody follows any more"
     );
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_arm_on_its_way_is_braked_when_the_robot_closes_the_connection() {
+    let _alone = alone();
+    let peer = Peer::start(Manners::default());
+    let robot = peer.connect().await;
+    let moving = tokio::spawn(long_way(&robot).into_future());
+    let mut states = robot.states();
+    let fast = |state: &RobotState| state.dq.iter().any(|dq| dq.abs() > 0.1);
+    let under_way = timeout(SOON, states.wait_for(fast)).await;
+    under_way.expect("it moves").expect("it is connected");
+    peer.close();
+    let outcome = timeout(SOON, moving).await.expect("no hang").unwrap();
+    assert!(
+        matches!(outcome, Err(MotionError::ConnectionClosed { .. })),
+        "{outcome:?}"
+    );
+    let speed = timeout(2 * SOON, async {
+        loop {
+            match peer.speed_at_goodbye() {
+                Some(speed) => break speed,
+                None => sleep(Duration::from_millis(5)).await,
+            }
+        }
+    });
+    let speed = speed.await.expect("the client goes");
+    assert!(speed < 0.02, "{speed} rad/s when the client went");
 }

@@ -2,7 +2,7 @@
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream, UdpSocket};
-use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU16, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
@@ -42,7 +42,7 @@ impl Default for Manners {
 /// What a test asks for in mid-session.
 enum Mischief {
     Bytes(Vec<u8>),
-    /// The stream ends; states go on.
+    /// The stream ends; states go on until the client no longer answers them.
     Close,
 }
 
@@ -58,6 +58,9 @@ struct Shared {
     udp_port: AtomicU16,
     deaf: AtomicBool,
     over: AtomicBool,
+    /// Bits of the speed of the fastest joint when the last client had gone, `[rad/s]`.
+    speed: AtomicU64,
+    goodbyes: AtomicU64,
 }
 
 impl Peer {
@@ -79,6 +82,7 @@ impl Peer {
             shared: shared.clone(),
         };
         server.udp.set_nonblocking(true).unwrap();
+        let shared_by_server = shared.clone();
         std::thread::spawn(move || {
             while !server.is_over() {
                 match listener.accept() {
@@ -86,6 +90,11 @@ impl Peer {
                         server.robot.connect();
                         // However it ended, the next one is served.
                         let _ = server.serve(&stream);
+                        let speed = server.robot.dq().amax();
+                        shared_by_server
+                            .speed
+                            .store(speed.to_bits(), Ordering::Relaxed);
+                        shared_by_server.goodbyes.fetch_add(1, Ordering::Release);
                         server.robot.disconnect();
                     }
                     Err(_) => std::thread::sleep(Duration::from_millis(1)),
@@ -112,6 +121,12 @@ impl Peer {
     /// Ends the stream to the client.
     pub(crate) fn close(&self) {
         self.mischief.send(Mischief::Close).unwrap();
+    }
+
+    /// Speed of the fastest joint when a client had gone, `[rad/s]`; `None` before that.
+    pub(crate) fn speed_at_goodbye(&self) -> Option<f64> {
+        let gone = self.shared.goodbyes.load(Ordering::Acquire) > 0;
+        gone.then(|| f64::from_bits(self.shared.speed.load(Ordering::Relaxed)))
     }
 
     /// Stops reading the stream, for good.
@@ -150,12 +165,15 @@ impl Server {
         stream.set_nodelay(true)?;
         let mut received = Vec::new();
         let mut deadline = Instant::now();
-        while !self.is_over() {
+        // Cycles without a command since we ended the stream.
+        let mut unanswered = None;
+        while !self.is_over() && unanswered < Some(GOODBYE) {
             deadline = (deadline + Duration::from_millis(1)).max(Instant::now());
             std::thread::sleep(deadline.saturating_duration_since(Instant::now()));
             if !self.shared.deaf.load(Ordering::Relaxed) {
                 let mut buffer = [0; 4096];
                 match stream.read(&mut buffer) {
+                    Ok(0) if unanswered.is_some() => {}
                     Ok(0) => return Ok(()),
                     Ok(length) => received.extend_from_slice(&buffer[..length]),
                     Err(error) if error.kind() == ErrorKind::WouldBlock => {}
@@ -164,7 +182,9 @@ impl Server {
             }
             self.requests(&mut received, stream)?;
             let mut command = [0; RobotCommand::MAX_SIZE];
+            unanswered = unanswered.map(|cycles| cycles + 1);
             while let Ok((length, _)) = self.udp.recv_from(&mut command) {
+                unanswered = unanswered.map(|_| 0);
                 self.robot.command(&command[..length]);
             }
             if let Some(datagram) = self.robot.tick() {
@@ -187,7 +207,10 @@ impl Server {
             for mischief in self.asked.try_iter() {
                 match mischief {
                     Mischief::Bytes(bytes) => stream.write_all(&bytes)?,
-                    Mischief::Close => stream.shutdown(Shutdown::Write)?,
+                    Mischief::Close => {
+                        stream.shutdown(Shutdown::Write)?;
+                        unanswered = Some(0);
+                    }
                 }
             }
         }
@@ -210,6 +233,9 @@ impl Server {
         Ok(())
     }
 }
+
+/// Cycles without a command after which a client counts as gone whose stream we have ended.
+const GOODBYE: u32 = 100;
 
 /// A reply of one status byte to the request with this header.
 pub(crate) fn reply(request: Header, status: u8) -> Vec<u8> {

@@ -90,6 +90,11 @@ pub struct Lifecycle {
     /// The last session that goes from goal to goal, if it did not end as asked, and how it ended.
     ended: Option<(GoalId, MotionError)>,
     motions: u64,
+    /// The motion that was given up in a stall, or is braked because the connection is gone, until
+    /// the thread has ended it.
+    unfinished: Option<MotionId>,
+    /// Whether a thread that has borrowed the cycle does not run it.
+    is_stalled: bool,
     /// Cycles that the log of a motion holds.
     log_size: usize,
     /// Regions that the arm keeps out of under target control.
@@ -115,6 +120,8 @@ impl Lifecycle {
             next: None,
             ended: None,
             motions: 0,
+            unfinished: None,
+            is_stalled: false,
             log_size: ControlLog::DEFAULT_CAPACITY,
             keep_out: KeepOut::default(),
             outputs: VecDeque::new(),
@@ -205,6 +212,7 @@ impl Lifecycle {
                 }
             }
             Event::Ended(ended) => {
+                self.unfinished.take_if(|motion| *motion == ended.motion);
                 let Some(active) = self.active(ended.motion) else {
                     return;
                 };
@@ -218,19 +226,48 @@ impl Lifecycle {
         }
     }
 
-    /// The command connection is gone: every goal resolves, an arm that moves is braked (by the
-    /// robot itself, if a program of the user's moves it: it gets no more commands), nothing starts
-    /// any more.
+    /// The command connection is gone: every goal resolves and nothing starts any more.
+    ///
+    /// An arm on its way to a goal is braked, for as long as the thread goes on: see
+    /// [`Self::is_braking`]. One that a program of the user's moves gets no more commands, and the
+    /// robot stops it.
     pub fn on_connection_closed(&mut self, reason: CloseReason) {
         let phase = core::mem::replace(&mut self.phase, Phase::Closed(reason.clone()));
         let error = MotionError::ConnectionClosed { reason };
+        if !matches!(phase, Phase::Closed(_)) {
+            self.unfinished = None;
+        }
         if let Phase::Active(mut active) = phase {
+            let runs_goals = matches!(
+                (&active.work, &active.thread),
+                (Work::Goals(_), ThreadSide::Running)
+            );
+            self.unfinished = runs_goals.then_some(active.motion);
             let order = active.abandon();
             self.outputs.extend(order.map(Output::Order));
             self.resolve_work(active.work, &Err(error.clone()), &Err(error.clone()));
         }
         if let Some(next) = self.next.take() {
             self.resolve(next.waiting.goal.id, Err(error));
+        }
+    }
+
+    /// Whether the thread is still needed after the end of the connection: to brake an arm that was
+    /// on its way to a goal.
+    pub fn is_braking(&self) -> bool {
+        matches!(self.phase, Phase::Closed(_)) && self.unfinished.is_some()
+    }
+
+    /// Takes note that a thread that has borrowed the cycle has not run it for `silence`, or that it
+    /// does again (`None`). Meanwhile no state arrives and no motion can run: the one under way is
+    /// given up and resolves as [`MotionError::Stalled`], and none begins until the cycle has seen
+    /// its end.
+    pub fn on_stall(&mut self, silence: Option<Duration>, now: Duration) {
+        self.is_stalled = silence.is_some();
+        if let (Some(silence), Phase::Active(active)) = (silence, &self.phase) {
+            let runs = matches!(active.thread, ThreadSide::Running);
+            self.unfinished = runs.then_some(active.motion);
+            self.finish(now, Some(MotionError::Stalled { silence }));
         }
     }
 
@@ -299,6 +336,9 @@ impl Lifecycle {
             Phase::Closed(reason) => Err(MotionError::ConnectionClosed {
                 reason: reason.clone(),
             }),
+            Phase::Idle | Phase::Active(_) if self.is_stalled || self.unfinished.is_some() => {
+                Err(MotionError::Busy)
+            }
             Phase::Idle | Phase::Active(_) => Ok(()),
         }
     }

@@ -130,6 +130,16 @@ pub enum MotionError {
         /// What the panic said, if it was text.
         message: String,
     },
+    /// Caller: the thread that runs active control has read no state for so long. The robot was told
+    /// to stop.
+    #[error(
+        "active control has read no state for {} ms: its thread has to call `read_once` for each",
+        .silence.as_millis()
+    )]
+    Stalled {
+        /// For how long, when it was given up.
+        silence: Duration,
+    },
     /// Robot: it refused to start the motion.
     #[error("{0}")]
     Rejected(Refusal),
@@ -211,7 +221,8 @@ impl MotionError {
             | Self::Start(_)
             | Self::Unsupported(_)
             | Self::Invalid(_)
-            | Self::Panicked { .. } => Party::Caller,
+            | Self::Panicked { .. }
+            | Self::Stalled { .. } => Party::Caller,
             Self::Rejected(_) | Self::Control(_) | Self::TargetNotReached(_) => Party::Robot,
             Self::LinkLost { .. } => Party::Link,
             Self::ConnectionClosed { reason } => reason.party(),

@@ -110,3 +110,55 @@ fn a_goal_whose_program_fails_has_the_robot_stop_and_says_why() {
     assert_eq!(pair.resolved, [(goal, Err(reason))]);
     assert!(pair.lifecycle.is_idle());
 }
+
+#[test]
+fn an_arm_on_its_way_is_braked_after_the_connection_is_gone() {
+    let (mut pair, _, goal) = Pair::moving();
+    pair.lifecycle
+        .on_connection_closed(CloseReason::ClosedByPeer);
+    pair.lifecycle.on_connection_closed(CloseReason::ClosedByUs);
+    pair.settle();
+    let reason = CloseReason::ClosedByPeer;
+    let closed = Err(MotionError::ConnectionClosed { reason });
+    assert_eq!(pair.resolved, [(goal, closed)], "at once");
+    assert!(pair.lifecycle.is_braking());
+    assert!(pair.cycle(RobotMode::Move), "the thread goes on");
+    assert!(pair.lifecycle.is_braking());
+    pair.cycle(RobotMode::Idle);
+    assert!(!pair.lifecycle.is_braking(), "the motion has ended");
+
+    let mut idle = Pair::new();
+    idle.lifecycle
+        .on_connection_closed(CloseReason::ClosedByPeer);
+    assert!(!idle.lifecycle.is_braking(), "nothing moves");
+}
+
+#[test]
+fn a_borrower_that_stalls_ends_the_motion_and_none_begins_until_it_goes_on() {
+    let (mut pair, _, goal) = Pair::moving();
+    let silence = Duration::from_millis(100);
+    pair.lifecycle.on_stall(Some(silence), NOW);
+    pair.settle();
+    assert_eq!(pair.sent.last(), Some(&Request::StopMove));
+    assert_eq!(
+        pair.resolved,
+        [(goal, Err(MotionError::Stalled { silence }))]
+    );
+    let state = pair.state;
+    let submit = |lifecycle: &mut Lifecycle, id| {
+        let limits = Model::fr3().joint_limits();
+        let target = Target::Joints(READY.into());
+        let goal = Goal::new(GoalId(id), target, OnArrival::ReportAndFinish, limits);
+        lifecycle.submit(goal, &state, NOW)
+    };
+    assert_eq!(submit(&mut pair.lifecycle, 2), Err(MotionError::Busy));
+    pair.lifecycle.on_stall(None, NOW);
+    let too_early = submit(&mut pair.lifecycle, 3);
+    assert_eq!(
+        too_early,
+        Err(MotionError::Busy),
+        "the cycle is in the motion"
+    );
+    pair.cycle(RobotMode::Idle);
+    assert_eq!(submit(&mut pair.lifecycle, 4), Ok(()));
+}

@@ -1,5 +1,6 @@
 //! The thread as seen from outside.
 
+use core::time::Duration;
 use std::any::Any;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -63,6 +64,7 @@ pub enum Notice<E> {
 pub struct Thread<C> {
     pub(super) shared: Arc<Lifetime>,
     pub(super) joiner: Option<JoinHandle<Result<C, Lost>>>,
+    pub(super) link_timeout: Duration,
 }
 
 impl<C> Thread<C> {
@@ -77,6 +79,13 @@ impl<C> Thread<C> {
     /// rings after this has become true.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended()
+    }
+
+    /// The link timeout, if a thread that has borrowed the cycle has not run it for that long. While
+    /// that lasts no state is received or published, and the loss of the link goes unseen. The bell
+    /// rings after this has changed.
+    pub fn stalled(&self) -> Option<Duration> {
+        self.shared.is_stalled().then_some(self.link_timeout)
     }
 
     /// Stops the thread, waits for it and returns the core. Blocks for a cycle or a tick; from

@@ -58,8 +58,9 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
 
 /// The cycle of a control thread, in the hands of another. Dropping it gives it back.
 ///
-/// Whoever holds it *is* the cycle: states are read, published and counted in its turns and nowhere
-/// else.
+/// Its holder *is* the cycle: states are read, published and counted in its turns and nowhere else.
+/// A holder that runs no turn for the link timeout is reported by
+/// [`Thread::stalled`](super::Thread::stalled).
 ///
 /// A panic of the holder's gives it back as well. Only if the core itself panics, in a
 /// [`turn`](Self::turn) or a [`write`](Lease::write), is the cycle destroyed and the thread ended.
@@ -83,6 +84,7 @@ impl<C: Core> Lease<C> {
         if self.cycle().lifetime.stop_wanted() || self.is_unsound {
             return Err(BorrowError::Ended);
         }
+        self.cycle().lifetime.note_turn();
         Ok(self.guarded(|cycle| cycle.turn().then(|| cycle.state()).flatten()))
     }
 
@@ -136,6 +138,9 @@ impl Lease<Driver> {
 impl<C: Core> Drop for Lease<C> {
     fn drop(&mut self) {
         let cycle = self.cycle.take();
+        if let Some(cycle) = &cycle {
+            cycle.lifetime.set_stalled(false);
+        }
         self.desk.give_back(cycle.filter(|_| !self.is_unsound));
     }
 }

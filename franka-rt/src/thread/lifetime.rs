@@ -1,19 +1,23 @@
-//! The two flags between the thread and its owner.
+//! What the thread and its owner tell each other by flags.
 //!
 //! Nothing here knows the thread: `tests/loom.rs` includes this file and explores what the flags
 //! order.
 
 #[cfg(not(loom))]
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 #[cfg(loom)]
-use loom::sync::atomic::{AtomicBool, Ordering};
+use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Whether the thread is to stop, and whether it has ended.
+/// Whether the thread is to stop, whether it has ended, and whether whoever has borrowed its cycle
+/// runs it.
 #[derive(Debug, Default)]
 pub(super) struct Lifetime {
     stop: AtomicBool,
     ended: AtomicBool,
+    /// Turns that borrowers have run.
+    turns: AtomicU64,
+    stalled: AtomicBool,
 }
 
 impl Lifetime {
@@ -35,5 +39,26 @@ impl Lifetime {
 
     pub(super) fn has_ended(&self) -> bool {
         self.ended.load(Ordering::Acquire)
+    }
+
+    /// Counts a turn of a borrower, which ends a stall. There is one borrower at a time, so a load
+    /// and a store do. Relaxed, as all below: each value stands for itself.
+    pub(super) fn note_turn(&self) {
+        let turns = self.turns.load(Ordering::Relaxed);
+        self.turns.store(turns.wrapping_add(1), Ordering::Relaxed);
+        self.stalled.store(false, Ordering::Relaxed);
+    }
+
+    pub(super) fn turns(&self) -> u64 {
+        self.turns.load(Ordering::Relaxed)
+    }
+
+    /// Returns whether this is a change.
+    pub(super) fn set_stalled(&self, stalled: bool) -> bool {
+        self.stalled.swap(stalled, Ordering::Relaxed) != stalled
+    }
+
+    pub(super) fn is_stalled(&self) -> bool {
+        self.stalled.load(Ordering::Relaxed)
     }
 }

@@ -60,6 +60,29 @@ fn one_of_many_borrowers_at_once_gets_it_and_the_thread_goes_on_after() {
 }
 
 #[test]
+fn a_borrower_that_runs_no_turn_is_reported_until_it_does() {
+    let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");
+    let driver = Driver::new(VERSION).with_link_timeout(timeout);
+    let (handle, robot) = start(config(), driver);
+    assert_eq!(handle.thread.stalled(), None);
+    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let stalled = wait_for("report", || handle.thread.stalled());
+    assert_eq!(stalled, LinkTimeout::MIN);
+    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+    wait_for("end of the stall", || {
+        robot.send(1);
+        lease.turn().expect("the thread lives");
+        handle.thread.stalled().is_none().then_some(())
+    });
+    wait_for("report", || handle.thread.stalled());
+    drop(lease);
+    wait_for("end of the stall", || {
+        handle.thread.stalled().is_none().then_some(())
+    });
+    handle.thread.join().map(drop).expect("nothing panics");
+}
+
+#[test]
 fn a_thread_that_is_stopped_does_not_wait_for_its_borrower() {
     let (handle, _robot) = start(config(), Probe::default());
     let mut lease = handle.lender.borrow().expect("nobody else has it");
