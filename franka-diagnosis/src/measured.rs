@@ -1,6 +1,6 @@
 //! What the sensors show.
 
-use franka_model::collision::{Body, Shape};
+use franka_model::collision::Shape;
 use franka_model::{Frame, JointVector};
 use franka_proto::RobotError;
 
@@ -113,20 +113,16 @@ pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
     } else {
         arm
     };
-    let number = |body| match body {
-        Body::Link(link) => link,
-        Body::Tool => 8,
-    };
     let placed = shape.at(&state.q.into());
     let pair = placed
         .pairs()
-        .filter(|pair| number(pair.bodies.1) - number(pair.bodies.0) >= 3)
+        .filter(|pair| pair.bodies.1.number() - pair.bodies.0.number() >= 3)
         .min_by(|a, b| a.distance.total_cmp(&b.distance))?;
     let (inner, outer) = pair.bodies;
     (pair.distance < NEAR).then(|| {
         unbounded(
             RobotError::SelfCollisionAvoidanceViolation,
-            Subject::Bodies(number(inner), number(outer)),
+            Subject::Bodies(inner.number(), outer.number()),
             Quantity::Distance,
             pair.distance,
             state.message_id,

@@ -80,7 +80,16 @@ pub enum Body {
 }
 
 impl Body {
-    /// How many joints move it.
+    /// Its number along the arm: links count from the base, and the tool is number 8.
+    #[must_use]
+    pub fn number(self) -> u8 {
+        match self {
+            Self::Link(link) => link,
+            Self::Tool => 8,
+        }
+    }
+
+    /// The number of joints that move it.
     fn joints(self) -> usize {
         match self {
             Self::Link(link) => usize::from(link),

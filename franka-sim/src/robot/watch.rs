@@ -1,7 +1,7 @@
 //! What the robot watches in a motion besides the limits of its joints and what touches it.
 
 use franka_model::JointVector;
-use franka_model::collision::{Body, Shape};
+use franka_model::collision::Shape;
 use franka_proto::{Errors, RobotError, VirtualWall};
 use nalgebra::{Matrix4, Vector3};
 
@@ -106,7 +106,7 @@ impl Watch {
         for (pair, ratchet) in arm.pairs().zip(&mut self.pairs) {
             let (inner, outer) = pair.bodies;
             let passed = ratchet.is_passed(pair.distance, rule.margin, rule.closing);
-            violated |= passed && number(outer) - number(inner) >= rule.apart;
+            violated |= passed && outer.number() - inner.number() >= rule.apart;
         }
         violated
     }
@@ -119,14 +119,6 @@ impl Watch {
             }
         }
         violated
-    }
-}
-
-/// Links count from the base; the tool comes after the last.
-fn number(body: Body) -> u8 {
-    match body {
-        Body::Link(link) => link,
-        Body::Tool => 8,
     }
 }
 

@@ -21,13 +21,6 @@ fn shapes() -> [(Shape<'static>, Shape<'static>); 4] {
     ]
 }
 
-fn number(body: Body) -> u8 {
-    match body {
-        Body::Link(link) => link,
-        Body::Tool => 8,
-    }
-}
-
 fn random_regions(random: &mut Random) -> [Option<Obstacle>; REGIONS_MAX] {
     core::array::from_fn(|i| {
         let at = random.vector3(1.0);
@@ -55,7 +48,7 @@ fn plain(
     q: &JointVector,
 ) -> Vec<f64> {
     let arm = arm.at(q);
-    let far = |(a, b): (Body, Body)| number(b) - number(a) >= links;
+    let far = |(a, b): (Body, Body)| b.number() - a.number() >= links;
     let pairs = arm.distances().filter(|(bodies, _)| far(*bodies));
     let mut margins: Vec<f64> = pairs.map(|(_, distance)| distance - APART).collect();
     let cover = cover.at(q);

@@ -21,12 +21,8 @@ fn of(keep_out: KeepOut) -> Clearance {
 
 /// What is left at a posture of every distance that is to be kept.
 fn margins(keep_out: &KeepOut, q: &JointVector) -> Vec<f64> {
-    let number = |body| match body {
-        Body::Link(link) => link,
-        Body::Tool => 8,
-    };
     let arm = Shape::vendor().with_hand().at(q);
-    let far = |(a, b)| number(b) - number(a) >= APART;
+    let far = |(a, b): (Body, Body)| b.number() - a.number() >= APART;
     let pairs = arm.distances().filter(|(bodies, _)| far(*bodies));
     let mut margins: Vec<f64> = pairs.map(|(_, distance)| distance - SELF_STOP).collect();
     let cover = Shape::covering(RobotKind::Fr3).with_hand().at(q);
