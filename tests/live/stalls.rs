@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex};
 
 use franka_async::control::{Finish as _, Torques};
 use franka_sim::{Network, Sim};
-use franka_tests::tally::Tally;
+use franka_tests::cycle_counts::CycleCounts;
 
 use crate::{alone, by_the_clock};
 
@@ -24,31 +24,31 @@ async fn the_stalls_of_an_fer_are_bridged_and_make_commands_late() {
     let seconds = std::env::var("FRANKA_STALLS_SECONDS").ok();
     let seconds: u64 = seconds.map_or(SECONDS, |text| text.parse().expect("a number"));
     let (robot, sim) = by_the_clock(Sim::fer().network(Network::fer(1))).await;
-    let tally = Arc::new(Mutex::new(Tally::default()));
-    let noted = Arc::clone(&tally);
+    let counts = Arc::new(Mutex::new(CycleCounts::default()));
+    let noted = Arc::clone(&counts);
     let before = sim.pace().await.expect("it runs");
     let motion = robot.control_torques(move |state, step| {
-        let mut tally = noted.lock().expect("no panic");
-        tally.note(state, step);
-        Torques([0.0; 7]).finish_if(tally.cycles >= 1000 * seconds)
+        let mut counts = noted.lock().expect("no panic");
+        counts.note(state, step);
+        Torques([0.0; 7]).finish_if(counts.cycles >= 1000 * seconds)
     });
     let report = motion.await.expect("the robot bridges such gaps");
     let after = sim.pace().await.expect("it runs");
     robot.shutdown().await;
-    let tally = *tally.lock().expect("no panic");
+    let counts = *counts.lock().expect("no panic");
     println!(
         "{} of {} lost, {} in a row at most, success rate {:.4}; {} states skipped, {:?}; the host \
          was late for {} states",
-        tally.lost(),
-        tally.cycles,
-        tally.row,
-        tally.rate(),
+        counts.lost(),
+        counts.cycles,
+        counts.row,
+        counts.rate(),
         report.skipped_states,
         report.turnaround,
         after.late() - before.late(),
     );
     // No machine is better than the robot's network.
-    assert!(tally.rate() < 0.995, "{tally:?}");
+    assert!(counts.rate() < 0.995, "{counts:?}");
 }
 
 /// How long, unless told otherwise.

@@ -15,20 +15,20 @@ use franka_rt::control::{Callback, Finish, Torques};
 use franka_rt::driver::Program;
 use franka_sim::Network;
 use franka_sim::network::Conditions;
+use franka_tests::cycle_counts::CycleCounts;
 use franka_tests::lockstep::{Link, Lockstep};
-use franka_tests::tally::Tally;
 
 /// Commands no torque to an FER for so many cycles, over `network`.
-fn communicate(network: Network, turnaround: Duration, cycles: u64) -> Tally {
+fn communicate(network: Network, turnaround: Duration, cycles: u64) -> CycleCounts {
     let mut lockstep = Lockstep::ready_of(RobotKind::Fer);
     lockstep.link = Link::over(network);
     lockstep.client.turnaround = turnaround;
-    let tally = Arc::new(Mutex::new(Tally::default()));
-    let noted = Arc::clone(&tally);
+    let counts = Arc::new(Mutex::new(CycleCounts::default()));
+    let noted = Arc::clone(&counts);
     let callback = Callback::torques(Version::V5, move |state, step| {
-        let mut tally = noted.lock().expect("no panic");
-        tally.note(state, step);
-        Torques([0.0; 7]).finish_if(tally.cycles >= cycles)
+        let mut counts = noted.lock().expect("no panic");
+        counts.note(state, step);
+        Torques([0.0; 7]).finish_if(counts.cycles >= cycles)
     });
     let request = callback.request(Version::V5, MoveControllerMode::JointImpedance);
     let id = lockstep
@@ -36,7 +36,7 @@ fn communicate(network: Network, turnaround: Duration, cycles: u64) -> Tally {
         .expect("nothing else runs");
     let outcome = lockstep.until_resolved(id, cycles + 1000);
     outcome.expect("the robot bridges such gaps");
-    *tally.lock().expect("no panic")
+    *counts.lock().expect("no panic")
 }
 
 /// A measurement, `[ms]`.
@@ -50,26 +50,26 @@ const RUNS: u64 = 12;
 /// answered; from 40 us on, two in a row give way to a newer one.
 const TURNAROUND: Duration = Duration::from_micros(35);
 
-fn measure(turnaround: Duration, runs: u64) -> Vec<Tally> {
+fn measure(turnaround: Duration, runs: u64) -> Vec<CycleCounts> {
     let run = |seed| {
-        let tally = communicate(Network::fer(seed), turnaround, RUN);
-        let (lost, rate) = (tally.lost(), tally.rate());
+        let counts = communicate(Network::fer(seed), turnaround, RUN);
+        let (lost, rate) = (counts.lost(), counts.rate());
         println!("{turnaround:?}, seed {seed}: {lost} lost, rate {rate:.4}");
-        tally
+        counts
     };
     (0..runs).map(run).collect()
 }
 
-fn mean(runs: &[Tally], figure: impl Fn(&Tally) -> f64) -> f64 {
+fn mean(runs: &[CycleCounts], figure: impl Fn(&CycleCounts) -> f64) -> f64 {
     runs.iter().map(figure).sum::<f64>() / runs.len() as f64
 }
 
-fn mean_rate(runs: &[Tally]) -> f64 {
-    mean(runs, Tally::rate)
+fn mean_rate(runs: &[CycleCounts]) -> f64 {
+    mean(runs, CycleCounts::rate)
 }
 
-fn mean_loss(runs: &[Tally]) -> f64 {
-    mean(runs, |tally| tally.lost() as f64)
+fn mean_loss(runs: &[CycleCounts]) -> f64 {
+    mean(runs, |counts| counts.lost() as f64)
 }
 
 /// Between runs, as between measurements, the losses deviate by some 5, since few stalls are long
@@ -79,10 +79,10 @@ fn mean_loss(runs: &[Tally]) -> f64 {
 fn the_figures_measured_on_fers_come_out_of_the_stalls() {
     let runs = measure(TURNAROUND, RUNS);
     println!("{} lost, rate {:.4}", mean_loss(&runs), mean_rate(&runs));
-    for tally in &runs {
-        assert!(tally.lost().abs_diff(28) <= 20, "{tally:?}");
-        assert_eq!(tally.row, 1, "{tally:?}");
-        assert!((tally.rate() - 0.986).abs() < 0.004, "{tally:?}");
+    for counts in &runs {
+        assert!(counts.lost().abs_diff(28) <= 20, "{counts:?}");
+        assert_eq!(counts.row, 1, "{counts:?}");
+        assert!((counts.rate() - 0.986).abs() < 0.004, "{counts:?}");
     }
     let (lost, rate) = (mean_loss(&runs), mean_rate(&runs));
     assert!((lost - 28.0).abs() < 6.0, "{lost}");
@@ -99,13 +99,13 @@ fn a_faster_client_loses_no_state_and_is_as_late_with_its_answers() {
     assert!((mean_rate(&fast) - mean_rate(&measured)).abs() < 5e-4);
     // It misses all but the first and the last of a burst, or nearly.
     assert!(mean_loss(&slow) > 3.0 * mean_loss(&measured));
-    assert!(slow.iter().all(|tally| tally.row > 1));
+    assert!(slow.iter().all(|counts| counts.row > 1));
     assert!((mean_rate(&slow) - mean_rate(&measured)).abs() < 2e-3);
 }
 
 #[test]
 fn on_the_same_cable_without_stalls_nothing_is_late() {
     let cable = Conditions::cable();
-    let tally = communicate(Network::new(1, cable, cable), TURNAROUND, 5000);
-    assert_eq!((tally.lost(), tally.rate()), (0, 1.0));
+    let counts = communicate(Network::new(1, cable, cable), TURNAROUND, 5000);
+    assert_eq!((counts.lost(), counts.rate()), (0, 1.0));
 }

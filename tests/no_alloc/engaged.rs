@@ -17,7 +17,7 @@ use franka_rt::session::{
     Backend, Chunk, Deadman, Fate, Free, Goal, GoalId, Guard, OnArrival, OnTimeout, Setpoints,
     Target, Watchdog,
 };
-use franka_tests::lockstep::{Errand, Guarded, Lockstep, Part};
+use franka_tests::lockstep::{Guarded, Lockstep, Part, Workload};
 use nalgebra::Translation3;
 
 use crate::calls_during;
@@ -27,12 +27,12 @@ const CYCLES: u64 = 30_000;
 
 #[test]
 fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
-    for (errand, seed) in Errand::ALL
-        .map(|errand| (errand, 0))
+    for (workload, seed) in Workload::ALL
+        .map(|workload| (workload, 0))
         .into_iter()
-        .chain([(Errand::RobotController, 1)])
+        .chain([(Workload::RobotController, 1)])
     {
-        let mut arm = Guarded::new(errand, seed);
+        let mut arm = Guarded::new(workload, seed);
         let (mut cycles, mut calls) = (0, 0);
         while cycles < CYCLES {
             arm.tick_around(|part, work| {
@@ -41,17 +41,20 @@ fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
             });
         }
         let bound = &arm.bound;
-        println!("{errand:?}: {bound:?}");
+        println!("{workload:?}: {bound:?}");
         for guard in [Guard::Watchdog, Guard::Deadman, Guard::Clearance] {
-            let watched = errand != Errand::Guide || guard != Guard::Clearance;
-            assert!(!watched || bound.contains(&guard), "{errand:?}: {bound:?}");
+            let watched = workload != Workload::Guide || guard != Guard::Clearance;
+            assert!(
+                !watched || bound.contains(&guard),
+                "{workload:?}: {bound:?}"
+            );
         }
-        if matches!(errand, Errand::Poses | Errand::Joints) {
+        if matches!(workload, Workload::Poses | Workload::Joints) {
             for guard in [Guard::ForceCap, Guard::Lead, Guard::Leash] {
-                assert!(bound.contains(&guard), "{errand:?}: {bound:?}");
+                assert!(bound.contains(&guard), "{workload:?}: {bound:?}");
             }
         }
-        if errand == Errand::Chunks {
+        if workload == Workload::Chunks {
             for fate in [
                 Fate::Replaced,
                 Fate::Ended,
@@ -61,8 +64,8 @@ fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
                 assert!(arm.fates.contains(&fate), "no chunk is {fate:?}");
             }
         }
-        assert!(arm.stops <= 3, "{errand:?}: {} reflexes", arm.stops);
-        assert_eq!(calls, 0, "{errand:?}, seed {seed}");
+        assert!(arm.stops <= 3, "{workload:?}: {} reflexes", arm.stops);
+        assert_eq!(calls, 0, "{workload:?}, seed {seed}");
     }
 }
 

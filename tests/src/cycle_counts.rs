@@ -1,28 +1,27 @@
-//! What a control function notes of the cycles that it is called in, as libfranka's example
-//! `communication_test` does.
+//! Counts of the cycles of a control function, as in libfranka's example `communication_test`.
 
 use core::time::Duration;
 
 use franka_proto::RobotState;
 
-/// Counts of a control function.
+/// Cycles, calls and success rates, counted by a control function.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Tally {
-    /// Cycles of the robot, by the time that has passed.
+pub struct CycleCounts {
+    /// Cycles of the robot, from the time steps of the calls.
     pub cycles: u64,
-    /// Calls in which time had passed.
+    /// Calls with a time step above zero.
     pub calls: u64,
-    /// Most of the cycles without a call that followed each other.
+    /// The largest number of consecutive cycles without a call.
     pub row: u64,
     /// Sum of the success rates.
     rates: f64,
 }
 
-impl Tally {
-    /// Notes a call.
+impl CycleCounts {
+    /// Counts a call.
     pub fn note(&mut self, state: &RobotState, step: Duration) {
         let passed = step.as_millis() as u64;
-        // The first call is told that no time has passed.
+        // The time step of the first call is zero.
         if passed > 0 {
             self.cycles += passed;
             self.calls += 1;
@@ -31,12 +30,12 @@ impl Tally {
         }
     }
 
-    /// Cycles without a call.
+    /// The number of cycles without a call.
     pub fn lost(&self) -> u64 {
         self.cycles - self.calls
     }
 
-    /// Mean of the success rates.
+    /// The mean of the success rates.
     pub fn rate(&self) -> f64 {
         self.rates / self.calls as f64
     }

@@ -4,20 +4,20 @@
 //! | module | what it is |
 //! |---|---|
 //! | [`mod@bench`] | what the work of one control cycle costs |
+//! | [`cycle_counts`] | cycles, calls and success rates that a control function counts |
 //! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
-//! | [`mishaps`] | networks under which one thing happens to datagrams |
-//! | [`push`] | a hand that pushes an arm |
-//! | [`tally`] | what a control function notes of its cycles |
+//! | [`mishaps`] | networks with one kind of fault each |
+//! | [`push`] | the path of a hand that pushes an arm |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
 pub mod bench;
+pub mod cycle_counts;
 pub mod golden;
 pub mod lockstep;
 pub mod mishaps;
 pub mod push;
-pub mod tally;
 
-/// Holds the programs of the README and the book to what there is.
+/// Compiles the programs of the README and the book.
 #[cfg(doctest)]
 mod programs {
     #[doc = include_str!("../../README.md")]

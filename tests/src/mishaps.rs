@@ -1,7 +1,5 @@
-//! Networks under which one thing happens to datagrams, for the suites in virtual time and over
-//! sockets: what is seen in one is to be seen in the other.
-//!
-//! Unless a function says otherwise, it happens in both directions.
+//! Networks with one kind of fault each, for the suites in virtual time and over sockets: both have
+//! to show the same effects. Unless a function says otherwise, the fault acts in both directions.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -9,19 +7,19 @@ use std::time::Duration;
 use franka_sim::Network;
 use franka_sim::network::{BurstLoss, Conditions, Loss, Reordering};
 
-/// Share of packets that get lost in [`loss`] and [`bursts`].
+/// Share of packets that are lost in [`loss`] and [`bursts`].
 pub const LOST: f64 = 0.03;
 
-/// Share of packets that get lost on their way to the client in [`halves`].
+/// Share of packets to the client that are lost in [`halves`].
 pub const LOST_TO_CLIENT: f64 = 0.06;
 
-/// How many packets are lost in a row in [`bursts`], in the mean.
+/// Mean number of packets that are lost in a row in [`bursts`].
 pub const ROW: f64 = 4.0;
 
-/// Share of datagrams that others overtake in [`reordering`].
+/// Share of datagrams that are overtaken in [`reordering`].
 pub const OVERTAKEN: f64 = 0.1;
 
-/// Share of datagrams that come twice in [`duplication`].
+/// Share of datagrams that are duplicated in [`duplication`].
 pub const DOUBLED: f64 = 0.5;
 
 /// Packets are lost, independently of each other.
@@ -29,12 +27,12 @@ pub fn loss(seed: u64) -> Network {
     both(seed, losing(Loss::Independent(LOST)))
 }
 
-/// As many are lost, in bursts.
+/// The same share of packets as in [`loss`] is lost, in bursts.
 pub fn bursts(seed: u64) -> Network {
     both(seed, losing(Loss::Bursts(BurstLoss::of(LOST, ROW))))
 }
 
-/// Either way takes so long.
+/// Each direction takes `time`.
 pub fn delay(time: Duration) -> Network {
     both(
         0,
@@ -45,8 +43,8 @@ pub fn delay(time: Duration) -> Network {
     )
 }
 
-/// Datagrams are up to 0.8 ms late. If state and command are late by more than a millisecond
-/// together, the command misses its cycle, which is so for 28 of 100.
+/// Datagrams are up to 0.8 ms late. If the delays of state and command add up to more than a
+/// millisecond, the command misses its cycle; this happens to 28 of 100.
 pub fn jitter(seed: u64) -> Network {
     both(
         seed,
@@ -57,7 +55,7 @@ pub fn jitter(seed: u64) -> Network {
     )
 }
 
-/// Some datagrams take a way that is 2.5 ms longer: two or three others overtake them.
+/// Some datagrams take 2.5 ms longer: two or three others overtake them.
 pub fn reordering(seed: u64) -> Network {
     both(
         seed,
@@ -71,7 +69,7 @@ pub fn reordering(seed: u64) -> Network {
     )
 }
 
-/// Some datagrams come twice.
+/// Some datagrams arrive twice.
 pub fn duplication(seed: u64) -> Network {
     both(
         seed,
@@ -82,7 +80,7 @@ pub fn duplication(seed: u64) -> Network {
     )
 }
 
-/// Nothing passes within that time.
+/// No datagram passes within `time`.
 pub fn cut(time: Range<Duration>) -> Network {
     let mut network = Network::perfect();
     network.to_client.cut(time.clone());
@@ -90,8 +88,9 @@ pub fn cut(time: Range<Duration>) -> Network {
     network
 }
 
-/// Packets to the client are lost. A state of protocol 5 takes two, so that there mostly half of a
-/// state is lost, and almost twice as many states as packets; a state of protocol 10 takes one.
+/// Packets to the client are lost. A state of protocol 5 takes two packets. There, a loss is mostly
+/// half of a state, and the share of lost states is almost twice that of lost packets. A state of
+/// protocol 10 takes one packet.
 pub fn halves(seed: u64) -> Network {
     let losing = losing(Loss::Independent(LOST_TO_CLIENT));
     Network::new(seed, losing, Conditions::default())

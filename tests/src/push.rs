@@ -1,18 +1,18 @@
-//! A hand that pushes an arm which is to stay where it is.
+//! The path of a hand that pushes an arm while the arm holds its pose.
 
-/// Its pace, `[m/s]`.
+/// Velocity of the hand, `[m/s]`.
 pub const PACE: f64 = 0.25;
 
-/// How long it takes to come to that pace, `[s]`.
+/// Time in which the hand accelerates to [`PACE`], `[s]`.
 pub const START: f64 = 0.1;
 
-/// How long it pushes, `[ms]`: over 16 cm.
+/// Duration of the push, `[ms]`: over 16 cm.
 pub const PUSH: u64 = 700;
 
 /// Stiffness of the hand, `[N/m]`.
 pub const STIFFNESS: f64 = 5000.0;
 
-/// Where the hand is after so many seconds, `[m]`.
+/// The distance that the hand has moved after `t` seconds, `[m]`.
 pub fn hand(t: f64) -> f64 {
     if t < START {
         let turn = core::f64::consts::PI / START;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::tracer::{Call, Calls};
 
-/// The calls that a cycle may make, whatever they are made with.
+/// The calls that a cycle may make, with any arguments.
 const ALLOWED: &[i64] = &[
     libc::SYS_recvfrom,
     libc::SYS_recvmsg,
@@ -13,14 +13,14 @@ const ALLOWED: &[i64] = &[
     libc::SYS_ppoll,
     #[cfg(target_arch = "x86_64")]
     libc::SYS_poll,
-    // Where the kernel gives the time without a call, this one does not show.
+    // Absent where the kernel serves the clock without a system call (vDSO).
     libc::SYS_clock_gettime,
 ];
 
-/// What the bell is, in the words of `/proc`.
+/// The target of an eventfd's descriptor in `/proc`.
 const EVENTFD: &str = "anon_inode:[eventfd]";
 
-/// Whether a cycle may make this call. Of all that can be written to, only the bell is allowed.
+/// Whether a cycle may make this call. A `write` is allowed to the eventfd only.
 pub(crate) fn is_allowed(call: &Call) -> bool {
     ALLOWED.contains(&call.number) || call.target.as_deref() == Some(EVENTFD)
 }
@@ -31,8 +31,8 @@ fn receives(call: &Call) -> bool {
 }
 
 impl Calls {
-    /// The calls from the first that waits for the robot to the last: without those that set the
-    /// thread up and take it down, which are anything.
+    /// The calls from the first to the last that waits for the robot. Calls before and after them
+    /// set the thread up and take it down, and are not restricted.
     pub(crate) fn of_the_cycle(&self) -> &[Call] {
         let first = self.calls.iter().position(receives);
         let last = self.calls.iter().rposition(receives);
@@ -43,7 +43,7 @@ impl Calls {
     }
 }
 
-/// How often each call was made.
+/// The number of times that each call was made.
 pub(crate) fn counted<'a>(calls: impl IntoIterator<Item = &'a Call>) -> BTreeMap<String, u64> {
     let mut counts = BTreeMap::new();
     for call in calls {
@@ -64,7 +64,7 @@ fn name_of(call: &Call) -> String {
     }
 }
 
-/// Names of calls that may turn up; others appear by their number.
+/// Names of calls that may occur; other calls are shown by their number.
 const NAMES: &[(i64, &str)] = &[
     (libc::SYS_recvfrom, "recvfrom"),
     (libc::SYS_recvmsg, "recvmsg"),

@@ -1,13 +1,13 @@
-//! What the control thread asks of the system, call by call.
+//! The system calls of the control thread, one by one.
 //!
-//! Each test runs a scenario in a child of its own, which is this same program, traced by the
-//! kernel (`ptrace`), and looks at every system call that the thread of the cycle makes between its
-//! first wait for the robot and its last. They have to be receives, sends, polls, the clock and the
-//! bell; a lock that has to wait, an allocation that reaches the system, a log or a file would be
-//! something else.
+//! Each test runs a scenario in a child process of its own: this same program, traced with
+//! `ptrace`. It checks every system call that the thread of the cycle makes between its first and
+//! its last wait for the robot. Only receives, sends, polls, the clock and the eventfd are allowed.
+//! A contended lock, an allocation that reaches the system, a log or a file would show as another
+//! call.
 //!
-//! A lock that is free and an allocation from memory at hand make no call: `no_alloc` counts
-//! allocations.
+//! An uncontended lock and an allocation from memory that the process already has make no call.
+//! `no_alloc` counts allocations.
 
 mod calls;
 mod scenarios;
@@ -26,10 +26,10 @@ use crate::tracer::Calls;
 /// The driver's own thread.
 const CONTROL: &str = "franka-rt";
 
-/// Held while a child runs: each has a robot, which keeps a processor busy.
+/// Held while a child runs: each child simulates a robot, which keeps a processor busy.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Runs `scenario` in a child, in which only `test` runs, and gives the calls of the threads with
+/// Runs `scenario` in a child, in which only `test` runs, and passes the calls of the threads with
 /// these `names` to `judge`.
 fn trace(
     test: impl Fn(),
@@ -66,18 +66,18 @@ fn forbidden(thread: &Calls) -> BTreeMap<String, u64> {
     counted(calls.iter().filter(|call| !is_allowed(call)))
 }
 
-/// Asserts that the control thread has made many calls and no others than a cycle may.
+/// Asserts that the control thread has made many calls, all of them allowed in a cycle.
 fn assert_clean(threads: &[Calls]) {
     let [thread] = threads else {
         panic!("one control thread: {threads:?}")
     };
     assert_eq!(forbidden(thread), BTreeMap::new());
-    // A second or more, of which each millisecond takes three calls or more.
+    // A second or more, with at least three calls per millisecond.
     assert!(thread.of_the_cycle().len() > 2000, "the trace is too short");
 }
 
 #[test]
-fn a_thread_that_watches_and_one_that_hears_nothing_only_receive_and_ring() {
+fn a_thread_without_a_motion_only_receives_and_notifies_with_and_without_states() {
     trace(
         a_thread_that_watches_and_one_that_hears_nothing_only_receive_and_ring,
         &[CONTROL],
@@ -87,7 +87,7 @@ fn a_thread_that_watches_and_one_that_hears_nothing_only_receive_and_ring() {
 }
 
 #[test]
-fn targets_are_followed_with_the_calls_of_a_cycle_alone() {
+fn targets_are_followed_with_allowed_calls_only() {
     trace(
         targets_are_followed_with_the_calls_of_a_cycle_alone,
         &[CONTROL],
@@ -97,7 +97,7 @@ fn targets_are_followed_with_the_calls_of_a_cycle_alone() {
 }
 
 #[test]
-fn an_engaged_session_takes_the_calls_of_a_cycle_alone() {
+fn an_engaged_session_makes_allowed_calls_only() {
     trace(
         an_engaged_session_takes_the_calls_of_a_cycle_alone,
         &[CONTROL],
@@ -107,7 +107,7 @@ fn an_engaged_session_takes_the_calls_of_a_cycle_alone() {
 }
 
 #[test]
-fn control_functions_and_reflexes_take_the_calls_of_a_cycle_alone() {
+fn control_functions_and_reflexes_make_allowed_calls_only() {
     trace(
         control_functions_and_reflexes_take_the_calls_of_a_cycle_alone,
         &[CONTROL],
@@ -117,7 +117,7 @@ fn control_functions_and_reflexes_take_the_calls_of_a_cycle_alone() {
 }
 
 #[test]
-fn asynchronous_targets_take_the_calls_of_a_cycle_alone() {
+fn asynchronous_targets_make_allowed_calls_only() {
     trace(
         asynchronous_targets_take_the_calls_of_a_cycle_alone,
         &[CONTROL],
@@ -127,7 +127,7 @@ fn asynchronous_targets_take_the_calls_of_a_cycle_alone() {
 }
 
 #[test]
-fn a_thread_of_the_users_makes_the_same_calls_while_it_is_the_cycle() {
+fn a_users_thread_makes_allowed_calls_only_while_it_is_the_cycle() {
     let names = [CONTROL, scenarios::ACTIVE];
     trace(
         a_thread_of_the_users_makes_the_same_calls_while_it_is_the_cycle,
@@ -138,7 +138,7 @@ fn a_thread_of_the_users_makes_the_same_calls_while_it_is_the_cycle() {
             let user = called(scenarios::ACTIVE).expect("it ran");
             assert_eq!(forbidden(user), BTreeMap::new());
             assert!(user.of_the_cycle().len() > 2000, "the trace is too short");
-            // The driver's own thread waits meanwhile, in the one way there is.
+            // The driver's own thread only waits meanwhile.
             let driver = forbidden(called(CONTROL).expect("it ran"));
             assert_eq!(driver.keys().collect::<Vec<_>>(), ["futex"]);
         },
@@ -146,7 +146,7 @@ fn a_thread_of_the_users_makes_the_same_calls_while_it_is_the_cycle() {
 }
 
 #[test]
-fn any_other_call_is_seen() {
+fn any_other_call_is_detected() {
     trace(
         any_other_call_is_seen,
         &[CONTROL],
@@ -160,7 +160,7 @@ fn any_other_call_is_seen() {
 }
 
 #[test]
-fn a_write_to_anything_but_the_bell_is_seen() {
+fn a_write_to_anything_but_the_eventfd_is_detected() {
     trace(
         a_write_to_anything_but_the_bell_is_seen,
         &[CONTROL],

@@ -1,5 +1,4 @@
-//! What the traced child does: every way to control a robot, against a simulated one in the same
-//! process.
+//! What the traced child does: it controls a simulated robot in the same process, in every way.
 
 use std::future::IntoFuture;
 use std::os::unix::process::parent_id;
@@ -24,7 +23,7 @@ use tokio::time::sleep;
 /// Name of the thread that runs active control.
 pub(crate) const ACTIVE: &str = "active-control";
 
-/// A simulated FR3 and a handle on it. Tracing costs cycles, which this robot does not mind.
+/// A simulated FR3 and a handle on it. Tracing makes commands late, which this robot tolerates.
 async fn simulated() -> (Robot, Running) {
     let sim = Sim::fr3().tool(Tool::hand());
     let sim = sim.enforce_limits(false).enforce_communication(false);
@@ -39,7 +38,7 @@ fn above(robot: &Robot, metres: f64) -> Pose {
     Pose::translation(0.0, 0.0, metres) * robot.pose()
 }
 
-/// No motion, and then no states either.
+/// No motion; then no states either.
 pub(crate) async fn watching() {
     let (robot, sim) = simulated().await;
     sleep(Duration::from_secs(1)).await;
@@ -84,8 +83,8 @@ pub(crate) async fn targets() {
     robot.shutdown().await;
 }
 
-/// Sessions of both backends through every kind of goal, with an observer, a deadman and a stream
-/// that falls silent.
+/// Sessions of both backends with every kind of goal, an observer, a deadman and a stream that
+/// times out.
 pub(crate) async fn engaged() {
     let (robot, _sim) = simulated().await;
     let (deadman, monitor) = Deadman::new(Duration::from_millis(500));
@@ -107,7 +106,7 @@ pub(crate) async fn engaged() {
     still(&deadman).await;
     let records = seen.load(Ordering::Relaxed);
     assert!(records > 500, "{records} cycles seen");
-    // A silent deadman holds the arm.
+    // The arm is held when the deadman times out.
     let held = arm.move_to(above(&robot, 0.1)).await;
     assert_eq!(held, Err(MotionError::Held(Lapse::Deadman)));
     deadman.keep_alive();
@@ -122,7 +121,7 @@ pub(crate) async fn engaged() {
     robot.shutdown().await;
 }
 
-/// Joint positions, a chunk, and a stream of poses that falls silent.
+/// Joint positions, a chunk, and a stream of poses that times out.
 async fn every_kind_of_goal(robot: &Robot, arm: &Arm, deadman: &Deadman) {
     let mut q = robot.state().q_d;
     q[0] += 0.05;
@@ -160,7 +159,7 @@ async fn every_kind_of_goal(robot: &Robot, arm: &Arm, deadman: &Deadman) {
     deadman.keep_alive();
 }
 
-/// Half a second in which the deadman lives.
+/// Half a second in which the deadman is kept alive.
 async fn still(deadman: &Deadman) {
     for _ in 0..10 {
         sleep(Duration::from_millis(50)).await;
@@ -168,8 +167,7 @@ async fn still(deadman: &Deadman) {
     }
 }
 
-/// A control function that answers so many states with a command, and that is `also` called each
-/// time.
+/// A control function that answers so many states with a command, and calls `also` each time.
 fn holding<C: Finish + Copy + Send + 'static>(
     command: C,
     mut also: impl FnMut() + Send + 'static,
@@ -186,7 +184,7 @@ fn holding<C: Finish + Copy + Send + 'static>(
     }
 }
 
-/// Commands of the four generators that leave the arm where it is.
+/// Control functions for the four generators that leave the arm where it is.
 fn generators(robot: &Robot) -> [Control; 4] {
     let state = robot.state();
     let pose = CartesianPose {
@@ -205,7 +203,7 @@ fn generators(robot: &Robot) -> [Control; 4] {
     ]
 }
 
-/// Control functions of all nine kinds, with filter and limiter; then one that provokes a reflex.
+/// Control functions of all nine kinds, with filter and limiter; then one that causes a reflex.
 pub(crate) async fn functions() {
     let (robot, sim) = simulated().await;
     let torques = || holding(Torques([0.0; 7]), || {});
@@ -221,14 +219,14 @@ pub(crate) async fn functions() {
     let trip = sim.with(|robot| robot.trip(RobotError::CartesianReflex));
     trip.await.expect("the simulator runs");
     let error = tripped.await.expect("no panic").expect_err("a reflex");
-    let control = error.control().expect("the robot's doing");
+    let control = error.control().expect("ended by the robot");
     assert!(!control.log.is_empty(), "{control:?}");
     robot.recover().await.expect("it recovers");
     sleep(Duration::from_millis(200)).await;
     robot.shutdown().await;
 }
 
-/// A thread of the program's own that is the cycle for a while.
+/// A thread of the user's program is the cycle for a while.
 pub(crate) async fn active() {
     let (robot, _sim) = simulated().await;
     let control = robot.active_torques().await.expect("it begins");
@@ -270,7 +268,7 @@ pub(crate) async fn asynchronous() {
     robot.shutdown().await;
 }
 
-/// A control function that asks the system who its parent is.
+/// A control function that makes another system call: `getppid`.
 pub(crate) async fn asking() {
     let (robot, _sim) = simulated().await;
     let ask = || {
@@ -282,7 +280,7 @@ pub(crate) async fn asking() {
     robot.shutdown().await;
 }
 
-/// A control function that writes to something that is not the bell.
+/// A control function that writes to `/dev/null` instead of the eventfd.
 pub(crate) async fn writing() {
     use std::io::Write;
 

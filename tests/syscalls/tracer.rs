@@ -1,4 +1,4 @@
-//! A tracer of system calls: the kernel stops a child at each of them and tells this process.
+//! A tracer of system calls: the kernel stops a child process at each call and notifies this one.
 //!
 //! ```text
 //! this process --fork--> child: PTRACE_TRACEME, exec of this same program for one test
@@ -6,8 +6,8 @@
 //!      +---- every call ---+-- thread with a name that is asked for: stopped at each call
 //! ```
 //!
-//! Tracing one's own child needs no privilege. The child cannot slip through: new threads are
-//! traced from their first instruction, and go free only once they have named themselves.
+//! Tracing a child process needs no privilege. No thread escapes: new threads are traced from their
+//! first instruction, and released only once they have set another name.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -25,31 +25,31 @@ use nix::unistd::Pid;
 /// Set in the child.
 const TRACED: &str = "FRANKA_TESTS_TRACED";
 
-/// Whether this process is the child that is being traced.
+/// Whether this process is the traced child.
 pub(crate) fn in_the_child() -> bool {
     env::var_os(TRACED).is_some()
 }
 
-/// One system call, as it was entered.
+/// One system call, at its entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Call {
     /// Its number on this platform.
     pub(crate) number: i64,
-    /// For `write`: what the descriptor is, in the words of `/proc`.
+    /// For `write`: the target of the descriptor in `/proc`.
     pub(crate) target: Option<String>,
 }
 
 /// The calls of one thread, in order.
 #[derive(Debug, Default)]
 pub(crate) struct Calls {
-    /// What the thread is called.
+    /// The name of the thread.
     pub(crate) name: String,
-    /// From its naming to its end.
+    /// The calls from the setting of its name to its end.
     pub(crate) calls: Vec<Call>,
 }
 
-/// Runs the test of this program called `test` in a child, and returns the calls of all its threads
-/// that have one of these `names`.
+/// Runs this program's test `test` in a child, and returns the calls of all its threads that have
+/// one of these `names`.
 ///
 /// # Errors
 /// If the system refuses to start or to trace the child.
@@ -66,10 +66,10 @@ pub(crate) fn run(test: &str, names: &[&str]) -> io::Result<Vec<Calls>> {
     // SAFETY: between fork and exec the closure makes one system call, which takes no lock and
     // allocates nothing; its error is a number.
     unsafe { command.pre_exec(|| ptrace::traceme().map_err(io::Error::from)) };
-    // This thread is the tracer of what it forks, and the only one that may ask about it.
+    // Only the thread that forks a child is its tracer and may wait for it.
     let child = command.spawn()?;
     let root = Pid::from_raw(child.id().cast_signed());
-    // The exec has stopped it.
+    // The child stops at the exec.
     waitpid(root, Some(WaitPidFlag::__WALL))?;
     let options =
         Options::PTRACE_O_EXITKILL | Options::PTRACE_O_TRACECLONE | Options::PTRACE_O_TRACESYSGOOD;
@@ -87,13 +87,14 @@ pub(crate) fn run(test: &str, names: &[&str]) -> io::Result<Vec<Calls>> {
 
 /// How closely a thread is followed.
 enum Followed {
-    /// Nothing but its end and its new threads.
+    /// Only its end and its new threads.
     Free,
-    /// Every call, until it names itself: before that, it has the name of the thread that made it.
+    /// Every call, until it sets its name: before that, it has the name of the thread that created
+    /// it.
     Unnamed,
-    /// In the call that names it.
+    /// Inside the call that sets its name.
     Naming,
-    /// Every call, noted.
+    /// Every call, recorded.
     Noted(Calls),
 }
 
@@ -105,9 +106,9 @@ struct Tracer<'a> {
 }
 
 impl Tracer<'_> {
-    /// Waits for one thing to happen and lets the thread go on. False after the end of the child.
+    /// Waits for one event and resumes the thread. False after the end of the child.
     fn step(&mut self) -> io::Result<bool> {
-        // Children of the threads beside this one are theirs.
+        // Children of this process's other threads are not waited for here.
         let flags = WaitPidFlag::__WALL | WaitPidFlag::__WNOTHREAD;
         match waitpid(None, Some(flags))? {
             WaitStatus::PtraceSyscall(thread) => {
@@ -116,7 +117,7 @@ impl Tracer<'_> {
             }
             WaitStatus::PtraceEvent(thread, ..) => self.go_on(thread, None)?,
             WaitStatus::Stopped(thread, signal) => {
-                // A new thread begins with a stop that nobody sent.
+                // A new thread begins with a stop by ptrace, not by a signal.
                 let begins = !self.threads.contains_key(&thread);
                 self.threads.entry(thread).or_insert(Followed::Unnamed);
                 self.go_on(thread, (!begins).then_some(signal))?;
@@ -137,12 +138,12 @@ impl Tracer<'_> {
         Ok(true)
     }
 
-    /// Notes a call at its entry; at the return of the one that names a thread, decides how to
-    /// follow it.
+    /// Records a call at its entry. At the return of the call that names a thread, decides how to
+    /// follow that thread.
     fn note(&mut self, thread: Pid) -> io::Result<()> {
         let info = match ptrace::syscall_info(thread) {
             Ok(info) => info,
-            // Killed in the stop, by the end of its process.
+            // Killed during the stop, by the end of its process.
             Err(Errno::ESRCH) => return Ok(()),
             Err(error) => return Err(error.into()),
         };

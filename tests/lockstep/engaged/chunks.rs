@@ -67,11 +67,11 @@ fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
         let goal = watched(&mut lockstep, Target::Rest, 50, OnTimeout::Hold);
         let goal = give(&mut lockstep, engaged, goal, chunk(0.0, 0.05));
         // It settles, and the next chunk leaves before that is known.
-        lockstep.client.is_deaf = true;
+        lockstep.client.lifecycle_is_paused = true;
         lockstep.run(2000);
         lockstep.chunk(engaged, chunk(0.05, 0.2)).unwrap();
         lockstep.run(500);
-        lockstep.client.is_deaf = false;
+        lockstep.client.lifecycle_is_paused = false;
         let outcome = lockstep.until_resolved(goal, 10);
         assert!(matches!(outcome, Err(MotionError::Held(_))), "{outcome:?}");
         assert!((lockstep.robot.q()[0] - turned_q(0.05)[0]).abs() < 2e-3);

@@ -190,12 +190,12 @@ fn a_goal_that_was_given_up_and_rests_is_not_taken_up_again() {
         let goal = watched(&mut lockstep, turned(0.05), 50, OnTimeout::Hold);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         // It settles, and the next target leaves before that is known.
-        lockstep.client.is_deaf = true;
+        lockstep.client.lifecycle_is_paused = true;
         lockstep.run(2000);
         let next = turned(0.2);
         assert_eq!(lockstep.update(goal, next), Ok(true));
         lockstep.run(500);
-        lockstep.client.is_deaf = false;
+        lockstep.client.lifecycle_is_paused = false;
         let outcome = lockstep.until_resolved(goal, 10);
         assert!(matches!(outcome, Err(MotionError::Held(_))), "{outcome:?}");
         assert!((lockstep.robot.q()[0] - turned_q(0.05)[0]).abs() < 2e-3);

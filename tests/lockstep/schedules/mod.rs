@@ -49,13 +49,13 @@ const SESSIONS: u64 = 200;
 
 /// How schedules turned out: so many goals in each way, and the robot's time.
 #[derive(Debug, Default)]
-struct Tally {
+struct OutcomeCounts {
     outcomes: BTreeMap<&'static str, u64>,
     /// `[ms]`
     robot_time: u64,
 }
 
-impl Tally {
+impl OutcomeCounts {
     fn count(&mut self, outcome: &Outcome) {
         *self.outcomes.entry(kind(outcome)).or_default() += 1;
     }
@@ -63,17 +63,17 @@ impl Tally {
 
 #[test]
 fn every_schedule_ends_with_all_goals_resolved_and_the_arm_at_rest() {
-    run(MOTIONS, |seed, tally| {
+    run(MOTIONS, |seed, counts| {
         let mut schedule = Motions::new(seed);
         schedule.play();
-        schedule.finish(tally);
+        schedule.finish(counts);
     });
 }
 
 #[test]
 fn every_schedule_of_a_session_ends_with_all_goals_resolved_and_the_arm_at_rest() {
-    run(SESSIONS, |seed, tally| {
-        Sessions::play(seed, Lockstep::ready_of, tally);
+    run(SESSIONS, |seed, counts| {
+        Sessions::play(seed, Lockstep::ready_of, counts);
     });
 }
 
@@ -84,37 +84,37 @@ fn schedules_of_sessions_end_as_well_with_an_arm_of_mujoco() {
     use franka_sim::Robot;
     use franka_sim::plant::{MujocoArm, Scene};
 
-    run(SESSIONS / 2, |seed, tally| {
+    run(SESSIONS / 2, |seed, counts| {
         let arm = |kind: RobotKind| {
             let plant = MujocoArm::new(kind, Scene::table()).expect("a scene");
             let robot = Robot::with_plant(Lockstep::config_of(kind), Box::new(plant));
             Lockstep::with_robot(robot)
         };
-        Sessions::play(seed, arm, tally);
+        Sessions::play(seed, arm, counts);
     });
 }
 
 /// Plays so many schedules, or as many as the environment says: `FRANKA_SCHEDULES` from
 /// `FRANKA_SCHEDULE_SEED` on.
-fn run(count: u64, mut play: impl FnMut(u64, &mut Tally)) {
+fn run(count: u64, mut play: impl FnMut(u64, &mut OutcomeCounts)) {
     let number = |name| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let first: u64 = number("FRANKA_SCHEDULE_SEED").unwrap_or(1);
     let count: u64 = number("FRANKA_SCHEDULES").unwrap_or(count);
-    let mut tally = Tally::default();
+    let mut counts = OutcomeCounts::default();
     let mut failed = Vec::new();
     for seed in first..first + count {
-        // What a schedule that failed has counted stays: the tally is a count, and nothing else.
-        let played = catch_unwind(AssertUnwindSafe(|| play(seed, &mut tally)));
+        // What a schedule that failed has counted stays: the counts is a count, and nothing else.
+        let played = catch_unwind(AssertUnwindSafe(|| play(seed, &mut counts)));
         if played.is_err() {
             eprintln!("replay with FRANKA_SCHEDULE_SEED={seed} FRANKA_SCHEDULES=1");
             failed.push(seed);
         }
         let played = seed + 1 - first;
         if played == count || played.is_multiple_of(500) {
-            let Tally {
+            let OutcomeCounts {
                 outcomes,
                 robot_time,
-            } = &tally;
+            } = &counts;
             let seconds = robot_time / 1000;
             println!("seeds {first} to {seed}: {seconds} s of robot time, {outcomes:?}");
         }

@@ -11,7 +11,7 @@ use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
 use super::causes::Causes;
-use super::{Tally, draw, kind};
+use super::{OutcomeCounts, draw, kind};
 
 /// Largest torque of a session's first command at rest, `[N m]`, for budgets up to the default:
 /// what the reference's own first millisecond asks of the dampers.
@@ -231,7 +231,7 @@ impl Motions {
     }
 
     /// Lets everything come to its end, checks it, and counts how the goals turned out.
-    pub(super) fn finish(&mut self, tally: &mut Tally) {
+    pub(super) fn finish(&mut self, counts: &mut OutcomeCounts) {
         let deadline = self.lockstep.now() + 60_000;
         while !self.lockstep.client.lifecycle.is_idle() {
             self.tick();
@@ -275,8 +275,8 @@ impl Motions {
         let outcome = self.lockstep.until_resolved(again, 15_000);
         assert!(outcome.is_ok(), "{outcome:?}");
         for (_, outcome) in &outcomes {
-            tally.count(outcome);
+            counts.count(outcome);
         }
-        tally.robot_time += self.lockstep.now();
+        counts.robot_time += self.lockstep.now();
     }
 }

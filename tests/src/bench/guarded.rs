@@ -11,7 +11,7 @@ use std::rc::Rc;
 use std::time::Instant;
 
 use super::{Benchmark, Statistic, Subject};
-use crate::lockstep::{Errand, Guarded, Part};
+use crate::lockstep::{Guarded, Part, Workload};
 
 /// All kinds of goals mixed, each kind, and the longest cycle, as it came and measured again.
 pub fn all() -> Vec<Benchmark> {
@@ -20,7 +20,7 @@ pub fn all() -> Vec<Benchmark> {
     let mut benchmarks = vec![
         sampled(
             "rt.cycle_guarded_ns",
-            &Errand::ALL,
+            &Workload::ALL,
             &[Statistic::P50, Statistic::P99],
         ),
         Benchmark {
@@ -34,17 +34,17 @@ pub fn all() -> Vec<Benchmark> {
             round: Box::new(move || vec![survey.borrow_mut().longest()]),
         },
     ];
-    let kinds: [(_, &'static [Errand]); 5] = [
-        ("rt.cycle_poses_ns", &[Errand::Poses]),
-        ("rt.cycle_joints_ns", &[Errand::Joints]),
-        ("rt.cycle_chunks_ns", &[Errand::Chunks]),
-        ("rt.cycle_guide_ns", &[Errand::Guide]),
-        ("rt.cycle_setpoints_ns", &[Errand::RobotController]),
+    let kinds: [(_, &'static [Workload]); 5] = [
+        ("rt.cycle_poses_ns", &[Workload::Poses]),
+        ("rt.cycle_joints_ns", &[Workload::Joints]),
+        ("rt.cycle_chunks_ns", &[Workload::Chunks]),
+        ("rt.cycle_guide_ns", &[Workload::Guide]),
+        ("rt.cycle_setpoints_ns", &[Workload::RobotController]),
     ];
     benchmarks.extend(
         kinds
             .into_iter()
-            .map(|(key, errands)| sampled(key, errands, &[Statistic::P50])),
+            .map(|(key, workloads)| sampled(key, workloads, &[Statistic::P50])),
     );
     benchmarks
 }
@@ -55,7 +55,11 @@ pub fn subjects() -> Vec<Subject> {
     let mut arms: Option<Vec<Guarded>> = None;
     let mut turn = 0;
     let call = move || {
-        let begin = || Errand::ALL.map(|errand| Guarded::new(errand, SEED)).into();
+        let begin = || {
+            Workload::ALL
+                .map(|workload| Guarded::new(workload, SEED))
+                .into()
+        };
         let arms = arms.get_or_insert_with(begin);
         let arm = turn % arms.len();
         turn += 1;
@@ -71,7 +75,7 @@ pub fn subjects() -> Vec<Subject> {
 /// Each round has an episode of its own of each of these kinds.
 fn sampled(
     key: &'static str,
-    errands: &'static [Errand],
+    workloads: &'static [Workload],
     statistics: &'static [Statistic],
 ) -> Benchmark {
     let mut seed = SEED;
@@ -80,9 +84,9 @@ fn sampled(
         statistics,
         round: Box::new(move || {
             seed += 1;
-            let mut samples = Vec::with_capacity(errands.len() * EPISODE);
-            for &errand in errands {
-                run(Episode { errand, seed }, EPISODE, |_, took| {
+            let mut samples = Vec::with_capacity(workloads.len() * EPISODE);
+            for &workload in workloads {
+                run(Episode { workload, seed }, EPISODE, |_, took| {
                     samples.push(took);
                 });
             }
@@ -93,14 +97,14 @@ fn sampled(
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Episode {
-    errand: Errand,
+    workload: Workload,
     seed: u64,
 }
 
 /// Runs so many cycles of an episode, and tells of each which it was and the nanoseconds that it
 /// took.
 fn run(episode: Episode, cycles: usize, mut each: impl FnMut(usize, u64)) {
-    let mut arm = Guarded::new(episode.errand, episode.seed);
+    let mut arm = Guarded::new(episode.workload, episode.seed);
     let mut cycle = 0;
     while cycle < cycles {
         arm.tick_around(|part, work| {
@@ -155,8 +159,8 @@ impl Survey {
         let mut suspects: Vec<(u64, Episode, usize)> = Vec::new();
         let mut shortest = vec![0; EPISODE];
         for seed in 0..SEEDS {
-            for errand in Errand::ALL {
-                let episode = Episode { errand, seed };
+            for workload in Workload::ALL {
+                let episode = Episode { workload, seed };
                 run(episode, EPISODE, |cycle, took| {
                     self.longest = self.longest.max(took);
                     shortest[cycle] = took;
@@ -198,9 +202,9 @@ mod tests {
 
     #[test]
     fn an_episode_goes_the_same_way_each_time() {
-        for errand in Errand::ALL {
+        for workload in Workload::ALL {
             let commanded = || {
-                let mut arm = Guarded::new(errand, 3);
+                let mut arm = Guarded::new(workload, 3);
                 (0..1000)
                     .map(|_| {
                         arm.tick_around(|_, work| work());
@@ -209,7 +213,7 @@ mod tests {
                     })
                     .collect::<Vec<_>>()
             };
-            assert_eq!(commanded(), commanded(), "{errand:?}");
+            assert_eq!(commanded(), commanded(), "{workload:?}");
         }
     }
 }

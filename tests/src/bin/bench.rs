@@ -31,5 +31,5 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Enough for a median that two disturbed rounds do not move.
+/// Enough for a median that two disturbed rounds do not change.
 const ROUNDS: usize = 15;

@@ -22,7 +22,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What runs under valgrind: `calls` calls of one subject.
+/// Makes `calls` calls of one subject, under valgrind.
 fn repeat(key: &str, calls: u64) -> ExitCode {
     let Some(Subject { mut call, .. }) = subjects().into_iter().find(|s| s.key == key) else {
         eprintln!("nothing is called {key}");
@@ -71,6 +71,6 @@ fn count(key: &str, within: Option<&str>, calls: u64) -> Option<u64> {
     line.rsplit(':').next()?.trim().parse().ok()
 }
 
-/// A multiple of the number of inputs less another, so that all count alike.
+/// Their difference is a multiple of the number of inputs, so that all inputs weigh the same.
 const FEW: u64 = 1_000;
 const MANY: u64 = 9_000;

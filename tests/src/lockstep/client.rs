@@ -15,7 +15,7 @@ use franka_rt::stats::{Arrival, CycleTimes};
 
 use super::Outcome;
 
-/// All of the driver but its sockets and its clock: bytes and time go in, bytes come out.
+/// The driver without its sockets and its clock: bytes and time go in, bytes come out.
 pub struct Client {
     /// The pure core of the control thread.
     pub driver: Driver,
@@ -25,16 +25,15 @@ pub struct Client {
     pub record: Record,
     /// The newest state that arrived.
     pub state: RobotState,
-    /// From the state before it to that one, `[ms]` of the robot's clock.
+    /// Time from the previous state to the newest one, `[ms]` of the robot's clock.
     step: u64,
-    /// The time, from any fixed moment.
+    /// The time since any fixed moment.
     pub now: Duration,
-    /// How long it takes from a state to its answer, and to being ready for the next state.
+    /// The time from a state to its answer. The client is then ready for the next state.
     pub turnaround: Duration,
-    /// Whether the lifecycle hears nothing of the driver for now, as if its task did not get to
-    /// run.
-    pub is_deaf: bool,
-    /// When it has answered the newest state.
+    /// Whether events of the driver do not reach the lifecycle, as if its task were not scheduled.
+    pub lifecycle_is_paused: bool,
+    /// The time at which the newest state is answered.
     pub(super) free: Duration,
     session: Session,
     motions: HashMap<CommandId, MotionId>,
@@ -47,7 +46,7 @@ pub struct Client {
 }
 
 impl Client {
-    /// A client that has not connected, for a robot of this model that speaks `version`.
+    /// Returns an unconnected client, for a robot of this model that speaks `version`.
     pub fn new(model: &Model, version: Version) -> Self {
         Self {
             driver: Driver::new(version),
@@ -57,7 +56,7 @@ impl Client {
             step: 0,
             now: Duration::ZERO,
             turnaround: Duration::ZERO,
-            is_deaf: false,
+            lifecycle_is_paused: false,
             free: Duration::ZERO,
             session: Session::new(version),
             motions: HashMap::new(),
@@ -76,7 +75,7 @@ impl Client {
         self
     }
 
-    /// The version that it speaks.
+    /// The protocol version of this client.
     pub fn version(&self) -> Version {
         self.session.version()
     }
@@ -86,33 +85,36 @@ impl Client {
         self.session.is_connected()
     }
 
-    /// Requests whose answers have not all come.
+    /// The number of requests with an answer outstanding.
     pub fn pending(&self) -> usize {
         self.session.pending()
     }
 
-    /// Begins the handshake; states are expected at `udp_port`.
+    /// Begins the handshake, which announces `udp_port` for states.
     pub fn connect(&mut self, udp_port: u16) {
         let hello = self.session.connect(udp_port);
         self.to_robot.push_back(hello.as_bytes().to_vec());
     }
 
-    /// Sends a request that is not a motion; what the answer says is not kept.
+    /// Sends a request that is not a motion; its answer is discarded.
     ///
     /// # Panics
     /// If the session refuses it.
     pub fn request(&mut self, request: &Request) {
-        let outgoing = self.session.request(request).expect("the session takes it");
+        let outgoing = self
+            .session
+            .request(request)
+            .expect("the session accepts the request");
         self.to_robot.push_back(outgoing.as_bytes().to_vec());
     }
 
-    /// The next message for the robot.
+    /// Returns the next message for the robot.
     pub fn take_message(&mut self) -> Option<Vec<u8>> {
         self.to_robot.pop_front()
     }
 
-    /// Takes bytes of the robot's stream, cut anywhere. What leaves the protocol ends the motion
-    /// that it answers, or else the connection, after which nothing is taken any more.
+    /// Processes bytes of the robot's stream, split anywhere. A protocol violation ends the motion
+    /// that it answers, or else closes the connection. Bytes after that are ignored.
     pub fn on_bytes(&mut self, bytes: &[u8]) {
         let mut received = std::mem::take(&mut self.from_robot);
         received.extend_from_slice(bytes);
@@ -143,7 +145,7 @@ impl Client {
         self.from_robot = rest.to_vec();
     }
 
-    /// Tells the lifecycle, if it is a motion's reply that cannot be read.
+    /// Notifies the lifecycle if the violation is an unreadable reply to a motion.
     fn on_violation(&mut self, violation: Violation) {
         let (Violation::Reply { id, .. } | Violation::SecondMotionStarted { id }) = &violation
         else {
@@ -155,13 +157,12 @@ impl Client {
         }
     }
 
-    /// What the control thread does between a state and its command: takes the datagram, and
-    /// returns the size of the command that answers it, if one does.
-    ///
-    /// A function of its own in every profile: instructions are counted by its name.
+    /// What the control thread does between a state and its command: decodes the datagram, and
+    /// returns the size of the command that answers it, if there is one. Never inlined:
+    /// instructions are counted by its name.
     ///
     /// # Panics
-    /// If the datagram is no state.
+    /// If the datagram is not a state.
     #[inline(never)]
     pub fn answer(&mut self, datagram: &[u8], command: &mut [u8]) -> Option<usize> {
         let version = self.session.version();
@@ -172,7 +173,7 @@ impl Client {
         answer.map(|answer| answer.encode(version, command).expect("it fits"))
     }
 
-    /// What the control thread does after that: in a world where states come when they are due, and
+    /// What the control thread does after [`Self::answer`], if states arrive when they are due and
     /// answers take no time.
     pub fn conclude(&mut self, answered: bool) {
         let state = &self.state;
@@ -189,10 +190,10 @@ impl Client {
         }
     }
 
-    /// Passes on what the driver has to tell, watches deadlines, and carries out what follows from
-    /// both. Returns whether anything did: the driver may have more to tell then.
+    /// Passes on the driver's events, checks deadlines, and carries out the lifecycle's outputs.
+    /// Returns whether there were any: the driver may then have more events.
     pub fn settle(&mut self) -> bool {
-        while !self.is_deaf
+        while !self.lifecycle_is_paused
             && let Some(event) = self.driver.take_event()
         {
             self.lifecycle.on_event(event, self.now);
@@ -201,13 +202,13 @@ impl Client {
         self.carry_out()
     }
 
-    /// A name for a goal that no other has.
+    /// Returns a new, unique goal id.
     pub fn next_goal(&mut self) -> GoalId {
         self.goals += 1;
         GoalId(self.goals)
     }
 
-    /// Starts a motion under a program of the test's own.
+    /// Starts a motion under a program of the test.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -222,7 +223,7 @@ impl Client {
         begun.map(|()| id)
     }
 
-    /// Brakes; `None` if nothing moves.
+    /// Brakes and returns the id of the stop; `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
         let id = self.next_goal();
         let stopping = self.lifecycle.stop(id, self.now);
@@ -230,13 +231,13 @@ impl Client {
         stopping.then_some(id)
     }
 
-    /// Takes work back, as dropping its future does.
+    /// Cancels work, as dropping its future does.
     pub fn cancel(&mut self, id: GoalId) {
         self.lifecycle.cancel(id, self.now);
         self.carry_out();
     }
 
-    /// The newest motion, and the request that began it.
+    /// Returns the newest motion and the request that began it.
     ///
     /// # Panics
     /// If there was no motion yet.
@@ -246,7 +247,7 @@ impl Client {
         (id, motion)
     }
 
-    /// Has the newest motion's command connection bring a reply that cannot be read.
+    /// Simulates an unreadable reply to the newest motion.
     ///
     /// # Panics
     /// If there was no motion yet.
@@ -258,32 +259,31 @@ impl Client {
         self.carry_out();
     }
 
-    /// The command connection has ended.
+    /// Ends the command connection for this reason.
     pub fn close(&mut self, reason: CloseReason) {
         self.closed = true;
         self.lifecycle.on_connection_closed(reason);
         self.carry_out();
     }
 
-    /// Goals and programs that have been resolved so far.
+    /// The number of goals and programs resolved so far.
     pub fn resolved(&self) -> usize {
         self.outcomes.len()
     }
 
-    /// How a goal or a program turned out, if it has.
+    /// The outcome of a goal or a program, once resolved.
     pub fn outcome(&self, id: GoalId) -> Option<&Outcome> {
         self.outcomes.get(&id)
     }
 
-    /// Gives up waiting for replies to the motions so far: the lifecycle begins one after the
-    /// other.
+    /// Forgets the replies expected for earlier motions: the lifecycle runs one motion at a time.
     fn forget_motions(&mut self) {
         for (id, _) in self.motions.drain() {
             self.session.abandon(id);
         }
     }
 
-    /// Carries out what the lifecycle has decided, in its order. Returns whether that was anything.
+    /// Carries out the lifecycle's outputs in their order. Returns whether there were any.
     pub(super) fn carry_out(&mut self) -> bool {
         let mut any = false;
         while let Some(output) = self.lifecycle.poll() {
@@ -298,7 +298,7 @@ impl Client {
                     let outgoing = self
                         .session
                         .request(&request)
-                        .expect("the session takes it");
+                        .expect("the session accepts the request");
                     if begins {
                         self.motions.insert(outgoing.id(), motion);
                     }
@@ -307,7 +307,7 @@ impl Client {
                 Output::Began { .. } => {}
                 Output::Resolve { goal, result } => {
                     let twice = self.outcomes.insert(goal, result);
-                    assert!(twice.is_none(), "goal {goal:?} is resolved once");
+                    assert!(twice.is_none(), "goal {goal:?} is resolved twice");
                 }
             }
         }

@@ -15,7 +15,7 @@ impl Lockstep {
         self.engage_with(Engagement::default())
     }
 
-    /// The same, bound to a deadman or the like.
+    /// Like [`Self::engage`], with these options, such as a deadman.
     ///
     /// # Panics
     /// As [`Self::engage`].
@@ -30,18 +30,18 @@ impl Lockstep {
         panic!("no session after a second: {:?}", self.client.lifecycle);
     }
 
-    /// Asks for a session, and does not wait until it holds the arm.
+    /// Requests a session, and does not wait until it holds the arm.
     ///
     /// # Panics
     /// If it is refused at once.
     pub fn begin_session(&mut self, engagement: Engagement) -> GoalId {
-        // The robot is the judge of its setpoints.
+        // The robot checks the setpoints itself.
         self.guard = (engagement.backend == Backend::Torques)
             .then(|| CommandGuard::new(self.model.joint_limits()));
         self.try_engage(engagement).expect("nothing else moves")
     }
 
-    /// Asks for a session.
+    /// Requests a session.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -52,7 +52,7 @@ impl Lockstep {
         })
     }
 
-    /// Hands a goal to the session `engaged`: one that is awaited, or one that is held until the
+    /// Submits a goal to the session `engaged`: one that is awaited, or one that is held until the
     /// next.
     ///
     /// # Errors
@@ -67,7 +67,7 @@ impl Lockstep {
         self.submit_within(engaged, goal)
     }
 
-    /// The same with a goal of the test's own.
+    /// Submits this goal to the session `engaged`.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -77,7 +77,7 @@ impl Lockstep {
         })
     }
 
-    /// Hands a chunk to the session.
+    /// Sends a chunk to the session.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -86,8 +86,8 @@ impl Lockstep {
         self.submit_chunk(engaged, goal, chunk).map(|_| ())
     }
 
-    /// The same with a goal of the test's own, which names the chunk unless it goes on from another
-    /// one.
+    /// Sends a chunk with this goal. The goal's id names the chunk, unless the chunk continues
+    /// another one.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -102,7 +102,7 @@ impl Lockstep {
         })
     }
 
-    /// Changes how the session goes about its goal.
+    /// Changes gains, budget or force cap of the session.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -111,7 +111,7 @@ impl Lockstep {
         client.lifecycle.tune(engaged, tuning, &client.state)
     }
 
-    /// Ends the session as asked.
+    /// Ends the session.
     pub fn disengage(&mut self, engaged: GoalId) {
         let client = &mut self.client;
         client.lifecycle.disengage(engaged, client.now);

@@ -1,4 +1,4 @@
-//! Holds every command against the limits of the robot, independently of the code that made it.
+//! Checks every command against the limits of the robot, independently of the code under test.
 
 use franka_model::limits::JointLimits;
 use franka_proto::{RobotCommand, RobotState};
@@ -8,7 +8,7 @@ use franka_rt::session::Guard;
 /// Length of a cycle, `[s]`.
 const CYCLE: f64 = 1e-3;
 
-/// Remembers the command before, for rates.
+/// Keeps the previous command, for rates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandGuard {
     limits: &'static JointLimits,
@@ -27,7 +27,7 @@ struct Last {
 }
 
 impl CommandGuard {
-    /// For a robot with these limits.
+    /// Returns a guard for a robot with these limits.
     pub(super) fn new(limits: &'static JointLimits) -> Self {
         Self { limits, last: None }
     }
@@ -51,8 +51,8 @@ impl CommandGuard {
                 tau.is_finite() && tau.abs() <= limits.torque[i],
                 "{at}: joint {joint} gets {tau} N m"
             );
-            // The robot holds a command against the last one that it took, which an FR3 echoes as
-            // `f32`.
+            // The robot compares a command with the last one that it received, which an FR3 echoes
+            // as `f32`.
             let rate = (tau - state.tau_J_d[i]).abs() / CYCLE;
             assert!(
                 rate <= limits.torque_rate[i] + 0.01,
@@ -76,7 +76,7 @@ impl CommandGuard {
         {
             for i in 0..7 {
                 let joint = i + 1;
-                // Against the unrounded command, where no command was lost in between.
+                // Compared with the unrounded command if no command was lost in between.
                 let sent = last.tau[i];
                 if [sent, f64::from(sent as f32)].contains(&state.tau_J_d[i]) {
                     let rate = (command.tau_J_d[i] - sent).abs() / CYCLE;
@@ -94,7 +94,7 @@ impl CommandGuard {
                     step <= most,
                     "{at}: reference of joint {joint} steps by {step} rad/s^2"
                 );
-                // The leash moves the reference with the arm, which may be pushed.
+                // The leash moves the reference with the arm, and the arm may be pushed.
                 if !(leashed || last.leashed) {
                     let step = (record.q_ref[i] - last.q_ref[i]).abs();
                     let most = limits.velocity[i] * CYCLE * 1.001;

@@ -1,7 +1,6 @@
-//! Target control that never ends with every guard on, whatever it is given to do.
-//!
-//! Updates that stay away, a deadman that falls silent, pushes, regions in the way and targets far
-//! ahead are part of it: from time to time each of the guards binds.
+//! Endless target control with every guard on, for several workloads. Missing updates, deadman
+//! timeouts, pushes, regions in the way and targets far ahead make each of the guards bind from
+//! time to time.
 
 use std::collections::HashSet;
 use std::time::Duration;
@@ -25,24 +24,24 @@ use rand::{Rng, SeedableRng};
 
 use super::{Lockstep, Part};
 
-/// What a session is given to do.
+/// The kind of goals that a session gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Errand {
-    /// Poses, as steps and as streams.
+pub enum Workload {
+    /// Poses, as single goals and as streams.
     Poses,
     /// Joint positions, likewise.
     Joints,
     /// Chunks of joints and of poses, most of them replaced before their end.
     Chunks,
-    /// A hand to guide it, and a pose now and then.
+    /// Guiding, and a pose now and then.
     Guide,
     /// Joint positions and poses for the robot's own controller; under an odd seed poses alone, as
     /// Cartesian setpoints.
     RobotController,
 }
 
-impl Errand {
-    /// All of them.
+impl Workload {
+    /// All workloads.
     pub const ALL: [Self; 5] = [
         Self::Poses,
         Self::Joints,
@@ -60,18 +59,18 @@ impl Errand {
     }
 }
 
-/// A session with every guard on, and a world that keeps it busy, from a seed.
+/// A session with every guard on, and the goals and disturbances that it gets, from a seed.
 pub struct Guarded {
-    /// The system that it runs in.
+    /// The system that the session runs in.
     pub lockstep: Lockstep,
     /// The guards that have bound so far.
     pub bound: HashSet<Guard>,
-    /// What became of the chunks so far.
+    /// The fates of the chunks so far.
     pub fates: Vec<Fate>,
-    /// How often the robot has stopped the arm, which is then put back: pushed hard enough, it
-    /// comes to a limit.
+    /// How often the robot has stopped the arm, since a hard push can drive it to a limit. The arm
+    /// then starts again from the ready pose.
     pub stops: u32,
-    errand: Errand,
+    workload: Workload,
     backend: Backend,
     random: SmallRng,
     home: Isometry3<f64>,
@@ -80,21 +79,25 @@ pub struct Guarded {
     deadman: Deadman,
     goal: Goal,
     turns: usize,
-    /// When something new comes, and when the deadman shows life again, `[ms]`.
+    /// The times of the next change of course and of the next sign of life of the deadman, `[ms]`.
     next: u64,
     beat: u64,
 }
 
 impl Guarded {
-    /// An arm in the ready pose, on its way.
+    /// Returns an arm in the ready pose with its session running.
     ///
     /// # Panics
     /// If the motion does not begin.
-    pub fn new(errand: Errand, seed: u64) -> Self {
-        Self::begin(errand, errand.backend(seed), SmallRng::seed_from_u64(seed))
+    pub fn new(workload: Workload, seed: u64) -> Self {
+        Self::begin(
+            workload,
+            workload.backend(seed),
+            SmallRng::seed_from_u64(seed),
+        )
     }
 
-    fn begin(errand: Errand, backend: Backend, random: SmallRng) -> Self {
+    fn begin(workload: Workload, backend: Backend, random: SmallRng) -> Self {
         let mut lockstep = Lockstep::ready();
         let most = CollisionBehavior::uniform([1000.0; 7], [1000.0; 7], [1000.0; 6], [1000.0; 6]);
         lockstep.request(&Request::SetCollisionBehavior(most));
@@ -138,7 +141,7 @@ impl Guarded {
             bound: HashSet::new(),
             fates: Vec::new(),
             stops: 0,
-            errand,
+            workload,
             backend,
             random,
             home,
@@ -155,10 +158,10 @@ impl Guarded {
         this
     }
 
-    /// One millisecond; see [`Lockstep::tick_around`].
+    /// Advances by one millisecond; see [`Lockstep::tick_around`].
     ///
     /// # Panics
-    /// If an arm that the robot has stopped does not begin again.
+    /// If the motion does not begin again after the robot has stopped the arm.
     pub fn tick_around(&mut self, around: impl FnMut(Part, &mut dyn FnMut())) {
         let now = self.lockstep.now();
         if now >= self.beat {
@@ -186,7 +189,7 @@ impl Guarded {
             self.bound.insert(guard);
         }
         if !self.is_running() {
-            let again = Self::begin(self.errand, self.backend, self.random.clone());
+            let again = Self::begin(self.workload, self.backend, self.random.clone());
             let before = std::mem::replace(self, again);
             self.bound = before.bound;
             self.fates = before.fates;
@@ -198,10 +201,10 @@ impl Guarded {
         self.lockstep.client.record.activity == Activity::Running
     }
 
-    /// Pushes the arm, or does not.
+    /// Pushes the arm at random.
     fn disturb(&mut self) {
-        let (often, most) = match self.errand {
-            Errand::Guide => (0.5, 8.0),
+        let (often, most) = match self.workload {
+            Workload::Guide => (0.5, 8.0),
             _ => (0.1, 25.0),
         };
         if self.random.random_bool(often) {
@@ -213,25 +216,25 @@ impl Guarded {
     }
 
     fn change_course(&mut self) {
-        match self.errand {
-            Errand::Poses => {
+        match self.workload {
+            Workload::Poses => {
                 let pose = self.pose();
                 self.go_to(Target::Pose(pose));
             }
-            Errand::Joints => {
+            Workload::Joints => {
                 let q = self.joints();
                 self.go_to(Target::Joints(q));
             }
-            Errand::Chunks => self.send_chunk(),
-            Errand::Guide if self.random.random_bool(0.2) => self.submit(Target::Pose(self.home)),
-            Errand::Guide => {
+            Workload::Chunks => self.send_chunk(),
+            Workload::Guide if self.random.random_bool(0.2) => self.submit(Target::Pose(self.home)),
+            Workload::Guide => {
                 let free = Free {
                     axes: core::array::from_fn(|_| self.random.random_bool(0.7)),
                     elbow: self.random.random_bool(0.3),
                 };
                 self.submit(Target::Guide(free));
             }
-            Errand::RobotController => {
+            Workload::RobotController => {
                 let poses = self.backend == Backend::RobotController(Setpoints::Poses);
                 let target = if poses || self.random.random_bool(0.5) {
                     Target::Pose(self.pose())
@@ -243,7 +246,7 @@ impl Guarded {
         }
     }
 
-    /// By a goal of its own, or as the newest target of the one before.
+    /// Submits the target as a new goal, or as an update of the previous one.
     fn go_to(&mut self, target: Target) {
         let alike = core::mem::discriminant(&target) == core::mem::discriminant(&self.goal.target);
         if alike && self.random.random_bool(0.5) {
@@ -297,7 +300,7 @@ impl Guarded {
         self.goals.write(&self.goal);
     }
 
-    /// From where the arm is to somewhere else, through a good many points.
+    /// Sends a chunk of many points from the arm's position to a random target.
     fn send_chunk(&mut self) {
         if self.random.random_bool(0.15) {
             self.submit(Target::Rest);
@@ -321,8 +324,8 @@ impl Guarded {
         if self.random.random_bool(0.25) {
             chunk = chunk.replace();
         }
-        // Twice at once: the second supersedes the first. What is not in use comes back in the next
-        // cycle, so there is room.
+        // Two at once: the second supersedes the first. Unused chunks come back in the next cycle,
+        // so there is room.
         let times = if self.random.random_bool(0.1) { 2 } else { 1 };
         for chunk in std::iter::repeat_n(chunk, times) {
             let sent = self.chunks.send(self.goal.id, chunk);
@@ -351,7 +354,7 @@ fn limits() -> &'static JointLimits {
     Model::fr3().joint_limits()
 }
 
-/// A floor, a wall, a table and a shelf, of which the last three are near enough to be met.
+/// A floor, a wall, a table and a shelf. The last three are within reach.
 fn regions(home: &Isometry3<f64>) -> KeepOut {
     let at = home.translation;
     let (x, y, z) = (at.x, at.y, at.z);
@@ -370,7 +373,7 @@ fn regions(home: &Isometry3<f64>) -> KeepOut {
     ]
 }
 
-/// Silence of the deadman that is the end of a goal, and of a stream.
+/// The timeouts of the deadman and of a stream.
 const SILENCE: Duration = Duration::from_millis(100);
 const SILENT_STREAM: Duration = Duration::from_millis(300);
 

@@ -1,46 +1,46 @@
-//! What is between client and robot: the simulator's network, and what only a test can want of it.
+//! What is between client and robot: the simulator's network, and faults for tests only.
 
 use std::time::Duration;
 
 use franka_sim::Network;
 use franka_sim::network::{Conditions, Loss};
 
-/// Between client and robot: datagrams pass a [`Network`], messages arrive or do not.
+/// The link between client and robot: datagrams pass a [`Network`], and messages can be lost.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// The network that states and commands pass.
+    /// The network for states and commands.
     pub network: Network,
-    /// Finishing commands that are lost next.
+    /// The number of finishing commands to lose next.
     drop_finishing: u64,
-    /// Whether requests reach the robot. While they do not, they are lost.
+    /// Whether requests reach the robot; they are lost otherwise.
     pub requests: bool,
     /// Whether the robot's replies arrive.
     pub replies: bool,
 }
 
-/// A state that the client takes from its socket.
+/// A state that the client receives.
 pub(super) struct Reception {
-    /// When it does.
+    /// The time of reception.
     pub(super) at: Duration,
     pub(super) datagram: Vec<u8>,
-    /// Others that were there, and are older than this one.
+    /// The number of older states that were there too, and are skipped.
     pub(super) skipped: u64,
 }
 
 impl Link {
-    /// Loses nothing.
+    /// Returns a link without losses.
     pub fn perfect() -> Self {
         Self::over(Network::perfect())
     }
 
-    /// Loses states and commands with these probabilities.
+    /// Returns a link that loses states and commands with these probabilities.
     pub fn lossy(seed: u64, state_loss: f64, command_loss: f64) -> Self {
         let [states, commands] = [state_loss, command_loss]
             .map(|loss| Conditions::default().with_loss(Loss::Independent(loss)));
         Self::over(Network::new(seed, states, commands))
     }
 
-    /// This network. Its time is that of [`Lockstep::now`](super::Lockstep::now).
+    /// Returns a link over this network, whose time is [`Lockstep::now`](super::Lockstep::now).
     pub fn over(network: Network) -> Self {
         Self {
             network,
@@ -65,8 +65,8 @@ impl Link {
         self.drop_finishing = count;
     }
 
-    /// What a client takes that reads when something is there, from `free` on and before `end`: the
-    /// newest of the states that have come, if it is newer than `last`.
+    /// Returns what a client receives that is ready from `free` on, before `end`: the newest of the
+    /// states that have arrived, if it is newer than `last`.
     pub(super) fn receive(
         &mut self,
         free: Duration,
@@ -108,7 +108,7 @@ impl Link {
         }
     }
 
-    /// The next command that has arrived before `end`.
+    /// Returns the next command that has arrived before `end`.
     pub(super) fn command(&mut self, end: Duration) -> Option<Vec<u8>> {
         let commands = &mut self.network.to_robot;
         let is_there = commands.next_arrival().is_some_and(|at| at < end);
@@ -116,7 +116,7 @@ impl Link {
     }
 }
 
-/// The first field of a state, in either version.
+/// The `message_id`, which is the first field of a state in either version.
 fn message_id(state: &[u8]) -> u64 {
     u64::from_le_bytes(*state.first_chunk().expect("a state has a number"))
 }

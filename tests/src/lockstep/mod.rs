@@ -10,11 +10,11 @@
 //! ```
 //!
 //! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`]:
-//! datagrams the simulator's network, which delays and loses what its seed says. One call of
+//! datagrams pass the simulator's network, whose delays and losses come from its seed. One call of
 //! [`Lockstep::tick`] is one millisecond, from one cycle of the robot to the next; within it,
-//! datagrams arrive when they arrive. Whatever a test does, every command of target control that
-//! leaves the driver is held against the robot's limits. The [`Client`] half also runs beside
-//! robots that follow a script.
+//! datagrams arrive when they arrive. In every test, each command of target control that leaves the
+//! driver is checked against the robot's limits. The [`Client`] half also runs beside scripted
+//! robots.
 
 mod client;
 mod engaged;
@@ -25,7 +25,7 @@ mod wander;
 
 use std::time::Duration;
 
-use franka_model::collision::{Body, Shape};
+use franka_model::collision::Shape;
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
 use franka_proto::{MoveRequest, Request, RobotCommand, RobotState};
 use franka_rt::control::{Callback, Command, WriteError};
@@ -37,13 +37,13 @@ use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
 
 pub use client::Client;
-pub use guarded::{Errand, Guarded};
+pub use guarded::{Guarded, Workload};
 pub use link::Link;
 pub use wander::Wander;
 
 use guard::CommandGuard;
 
-/// How a goal turned out.
+/// The outcome of a goal.
 pub type Outcome = Result<MotionReport, MotionError>;
 
 /// A part of the control cycle.
@@ -51,35 +51,35 @@ pub type Outcome = Result<MotionReport, MotionError>;
 pub enum Part {
     /// From the datagram of a state to that of the command.
     Answer,
-    /// What the driver does once the command has left.
+    /// The driver's work after the command has left.
     Aftermath,
 }
 
 /// The whole system, one millisecond at a time.
 pub struct Lockstep {
-    /// The simulated robot, for pushing and tripping.
+    /// The simulated robot, which a test can push and trip.
     pub robot: Robot,
     /// The network between.
     pub link: Link,
     /// The driver, without its sockets.
     pub client: Client,
     model: &'static Model,
-    /// Absent once a program of a test's own has run, which may command what it likes.
+    /// Absent once a test's own program has run, which may command anything.
     guard: Option<CommandGuard>,
     milliseconds: u64,
     heard: u64,
 }
 
 impl Lockstep {
-    /// A robot as configured, connected over a perfect link.
+    /// Returns a robot as configured, connected over a perfect link.
     ///
     /// # Panics
-    /// If the handshake fails or no state comes.
+    /// If the handshake fails or no state arrives.
     pub fn new(config: Config) -> Self {
         Self::with_robot(Robot::new(config))
     }
 
-    /// This robot, with whatever plant, connected over a perfect link.
+    /// Returns this robot, with any plant, connected over a perfect link.
     ///
     /// # Panics
     /// As [`Self::new`].
@@ -99,17 +99,17 @@ impl Lockstep {
         this
     }
 
-    /// A Franka Research 3 in the ready pose with its hand, strict about limits.
+    /// Returns a Franka Research 3 in the ready pose with its hand, which enforces its limits.
     pub fn ready() -> Self {
         Self::ready_of(RobotKind::Fr3)
     }
 
-    /// A robot of this kind in the ready pose with its hand, strict about limits.
+    /// Returns a robot of this kind in the ready pose with its hand, which enforces its limits.
     pub fn ready_of(kind: RobotKind) -> Self {
         Self::new(Self::config_of(kind))
     }
 
-    /// What makes the robot of [`Self::ready_of`].
+    /// The configuration of [`Self::ready_of`].
     pub fn config_of(kind: RobotKind) -> Config {
         Config {
             kind,
@@ -118,25 +118,24 @@ impl Lockstep {
         }
     }
 
-    /// Time since the beginning, `[ms]`.
+    /// The time since the beginning, `[ms]`.
     pub fn now(&self) -> u64 {
         self.milliseconds
     }
 
-    /// One millisecond of everything.
+    /// Advances everything by one millisecond.
     ///
     /// # Panics
-    /// If a command violates a limit of the robot, or the client's session meets a message it
-    /// cannot read.
+    /// If a command violates a limit of the robot, or the client's session cannot read a message.
     pub fn tick(&mut self) {
         self.tick_around(|_, work| work());
     }
 
-    /// Like [`Self::tick`], with both parts of the control cycle run by `around`: to time them, or
-    /// to count what they allocate.
+    /// Like [`Self::tick`], but `around` runs both parts of the control cycle, to time them or to
+    /// count their allocations.
     ///
     /// # Panics
-    /// See [`Self::tick`]; and if `around` does not run what it is given.
+    /// As [`Self::tick`], and if `around` does not run the part that it is given.
     pub fn tick_around(&mut self, mut around: impl FnMut(Part, &mut dyn FnMut())) {
         self.milliseconds += 1;
         self.client.now = Duration::from_millis(self.milliseconds);
@@ -166,8 +165,8 @@ impl Lockstep {
         self.client.settle();
     }
 
-    /// Gives the client the states that come before the robot's next cycle. Returns whether any
-    /// does.
+    /// Passes the client the states that arrive before the robot's next cycle. Returns whether
+    /// there was one.
     fn take_states(&mut self, around: &mut impl FnMut(Part, &mut dyn FnMut())) -> bool {
         let end = self.next_cycle();
         let mut heard = false;
@@ -176,7 +175,7 @@ impl Lockstep {
                 .receive(self.client.free, end, self.client.state.message_id)
         {
             if heard {
-                // What the state before has led to.
+                // The effects of the previous state.
                 self.client.settle();
             }
             heard = true;
@@ -202,7 +201,7 @@ impl Lockstep {
         heard
     }
 
-    /// Gives the robot the commands that come before its next cycle.
+    /// Passes the robot the commands that arrive before its next cycle.
     fn deliver_commands(&mut self) {
         let end = self.next_cycle();
         while let Some(command) = self.link.command(end) {
@@ -210,12 +209,12 @@ impl Lockstep {
         }
     }
 
-    /// When the robot has its next one.
+    /// The time of the robot's next cycle.
     fn next_cycle(&self) -> Duration {
         Duration::from_millis(self.milliseconds + 1)
     }
 
-    /// So many milliseconds in which nothing arrives from a robot whose own time stands still.
+    /// Lets so many milliseconds pass without a state; the robot's own time stands still.
     pub fn silence(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             self.milliseconds += 1;
@@ -226,7 +225,7 @@ impl Lockstep {
         }
     }
 
-    /// Lets the client's clock jump, as that of a host that slept. It misses no state meanwhile.
+    /// Lets the client's clock jump, as on a host that slept. No state is missed.
     pub fn jump(&mut self, milliseconds: u64) {
         self.milliseconds += milliseconds;
         self.heard += milliseconds;
@@ -248,7 +247,7 @@ impl Lockstep {
         Ok(())
     }
 
-    /// Gives the connection up, if it lives, and opens another one to the same robot over a perfect
+    /// Closes the connection, if it is open, and connects to the same robot again over a perfect
     /// link.
     ///
     /// # Panics
@@ -269,7 +268,7 @@ impl Lockstep {
         assert!(self.client.state.message_id > 0, "states come");
     }
 
-    /// Holds a command against the limits, and sends it.
+    /// Checks a command against the limits, and sends it.
     fn pass_command(&mut self, command: &[u8]) {
         let Client { state, record, .. } = &self.client;
         let version = self.client.version();
@@ -286,14 +285,14 @@ impl Lockstep {
         self.link.send(sent, command, finishing);
     }
 
-    /// So many milliseconds.
+    /// Advances by so many milliseconds.
     pub fn run(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             self.tick();
         }
     }
 
-    /// A goal with the defaults of the async face: see `franka_async::Motion`.
+    /// Returns a goal with the defaults of the async API: see `franka_async::Motion`.
     pub fn goal(&mut self, target: Target, on_arrival: OnArrival) -> Goal {
         let limits = self.model.joint_limits();
         Goal::new(self.client.next_goal(), target, on_arrival, limits)
@@ -360,8 +359,8 @@ impl Lockstep {
         self.submit(goal).expect("the goal is accepted")
     }
 
-    /// Starts a motion under a program of the test's own. From then on no command is held against
-    /// the limits: the simulated robot is the judge.
+    /// Starts a motion under a program of the test. From then on the harness checks no commands:
+    /// the simulated robot judges them.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -374,17 +373,17 @@ impl Lockstep {
         self.client.control(program, request)
     }
 
-    /// Brakes; `None` if nothing moves.
+    /// Brakes and returns the id of the stop; `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
         self.client.stop()
     }
 
-    /// Takes a goal back, as dropping its future does.
+    /// Cancels a goal, as dropping its future does.
     pub fn cancel(&mut self, goal: GoalId) {
         self.client.cancel(goal);
     }
 
-    /// Moves the target of a goal that is held; returns whether it still is.
+    /// Moves the target of a held goal. Returns whether the goal is still held.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -395,7 +394,7 @@ impl Lockstep {
         lifecycle.update(goal, target, state)
     }
 
-    /// Runs until the goal is resolved.
+    /// Runs until the goal is resolved, and returns its outcome.
     ///
     /// # Panics
     /// If that takes longer than `most` milliseconds.
@@ -412,7 +411,7 @@ impl Lockstep {
         );
     }
 
-    /// Runs until nothing moves any more.
+    /// Runs until no motion is active.
     ///
     /// # Panics
     /// If that takes longer than `most` milliseconds.
@@ -439,7 +438,7 @@ impl Lockstep {
         self.pose_at(self.robot.q())
     }
 
-    /// The pose of the end effector where the reference of the driver's last command is.
+    /// The pose of the end effector at the reference of the driver's last command.
     pub fn reference_pose(&self) -> Isometry3<f64> {
         self.pose_at(&self.client.record.q_ref.into())
     }
@@ -455,7 +454,7 @@ impl Lockstep {
     }
 }
 
-/// Runs `test` for every kind of robot, each time with what makes one: see [`Lockstep::ready_of`].
+/// Runs `test` for every kind of robot, with a function that makes one: see [`Lockstep::ready_of`].
 pub fn for_each_robot(test: impl Fn(&dyn Fn() -> Lockstep)) {
     for kind in RobotKind::ALL {
         println!("{kind:?}");
@@ -463,23 +462,19 @@ pub fn for_each_robot(test: impl Fn(&dyn Fn() -> Lockstep)) {
     }
 }
 
-/// Pose of the end effector at `q`, of any kind of robot: their geometry is the same.
+/// The pose of the end effector at `q`; the kinematics of all kinds of robot are the same.
 pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
     transform::isometry(&pose).expect("a rigid end effector")
 }
 
-/// How far the nearest links are apart that have two others between them, `[m]`; the Hand comes
-/// after link 7. What the robot's self-collision avoidance looks at.
+/// The smallest distance between links that are three or more apart in the chain, `[m]`; the Hand
+/// comes after link 7. The robot's self-collision avoidance checks this distance.
 pub fn self_distance(q: &JointVector) -> f64 {
-    let number = |body| match body {
-        Body::Link(link) => link,
-        Body::Tool => 8,
-    };
     let arm = Shape::vendor().with_hand().at(q);
     let apart = arm
         .distances()
-        .filter(|((inner, outer), _)| number(*outer) - number(*inner) >= 3);
+        .filter(|((inner, outer), _)| outer.number() - inner.number() >= 3);
     apart
         .map(|(_, distance)| distance)
         .fold(f64::INFINITY, f64::min)

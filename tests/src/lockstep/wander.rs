@@ -1,5 +1,5 @@
-//! Target control that never ends: targets of both kinds, steps and streams, at irregular times,
-//! under each law in turn.
+//! Endless target control: targets of both kinds, single and streamed, at irregular times, under
+//! each law in turn.
 
 use franka_model::READY;
 use franka_rt::law::{Gains, Law};
@@ -10,9 +10,9 @@ use rand::{Rng, SeedableRng};
 
 use super::{Lockstep, Part};
 
-/// Sends an arm about, from a seed.
+/// Moves an arm to random targets, from a seed.
 pub struct Wander {
-    /// The system that is being sent about.
+    /// The system whose arm is moved.
     pub lockstep: Lockstep,
     random: SmallRng,
     home: Isometry3<f64>,
@@ -22,12 +22,12 @@ pub struct Wander {
 }
 
 impl Wander {
-    /// An arm in the ready pose, on its way.
+    /// Returns an arm in the ready pose with its first goal.
     pub fn new(seed: u64) -> Self {
         Self::of(Lockstep::ready(), seed)
     }
 
-    /// An arm in this system, on its way from where it is.
+    /// Returns the arm of this system with its first goal, from its present position.
     pub fn of(mut lockstep: Lockstep, seed: u64) -> Self {
         let home = lockstep.true_pose();
         let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
@@ -44,7 +44,7 @@ impl Wander {
         this
     }
 
-    /// One millisecond; see [`Lockstep::tick_around`].
+    /// Advances by one millisecond; see [`Lockstep::tick_around`].
     pub fn tick_around(&mut self, around: impl FnMut(Part, &mut dyn FnMut())) {
         if self.lockstep.now() >= self.next {
             self.next = self.lockstep.now() + self.random.random_range(5..400);
@@ -85,7 +85,7 @@ impl Wander {
     }
 }
 
-/// The goal under one law after the other, with a force cap under two of three.
+/// The goal with the law of this turn; two of three laws have a force cap.
 fn in_turn(turn: usize, goal: Goal) -> Goal {
     let gains = match turn % 3 {
         0 => return goal,

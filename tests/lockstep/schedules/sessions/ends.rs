@@ -102,7 +102,7 @@ impl Sessions<'_> {
                 self.causes.pushed() && outcome == Err(MotionError::Braked(Lapse::Blocked));
             assert!(outcome.is_ok() || pushed_together, "{outcome:?}");
         }
-        self.tally.robot_time += self.lockstep.now();
+        self.counts.robot_time += self.lockstep.now();
     }
 
     pub(super) fn recover(&mut self) {

@@ -19,7 +19,7 @@ use nalgebra::Isometry3;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-use super::Tally;
+use super::OutcomeCounts;
 use super::causes::Causes;
 use super::given::{Given, Work};
 
@@ -33,7 +33,7 @@ const PATIENCE: u64 = 20_000;
 pub(super) struct Sessions<'a> {
     lockstep: Lockstep,
     random: SmallRng,
-    tally: &'a mut Tally,
+    counts: &'a mut OutcomeCounts,
     home: Isometry3<f64>,
     /// Nothing comes from outside.
     calm: bool,
@@ -69,7 +69,11 @@ struct Hand {
 
 impl<'a> Sessions<'a> {
     /// Plays the schedule of that seed with a robot from `robot`.
-    pub(super) fn play(seed: u64, robot: impl FnOnce(RobotKind) -> Lockstep, tally: &'a mut Tally) {
+    pub(super) fn play(
+        seed: u64,
+        robot: impl FnOnce(RobotKind) -> Lockstep,
+        counts: &'a mut OutcomeCounts,
+    ) {
         let mut random = SmallRng::seed_from_u64(seed);
         let kind = RobotKind::ALL[random.random_range(0..RobotKind::ALL.len())];
         let mut lockstep = robot(kind);
@@ -88,7 +92,7 @@ impl<'a> Sessions<'a> {
             home: lockstep.true_pose(),
             lockstep,
             random,
-            tally,
+            counts,
             calm,
             causes: Causes::default(),
             session: None,
@@ -220,14 +224,14 @@ impl<'a> Sessions<'a> {
         let Self {
             lockstep,
             causes,
-            tally,
+            counts,
             ..
         } = self;
         self.open
             .retain(|given| match lockstep.client.outcome(given.id) {
                 Some(outcome) => {
                     given.judge(outcome, lockstep, causes);
-                    tally.count(outcome);
+                    counts.count(outcome);
                     false
                 }
                 None => true,

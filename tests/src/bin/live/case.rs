@@ -15,7 +15,7 @@ use crate::trace::Summary;
 
 /// What controls.
 #[derive(Clone, Debug)]
-pub(crate) enum Client {
+pub(crate) enum ClientKind {
     /// One receive and one send per state.
     Echo,
     /// Our control function.
@@ -44,7 +44,7 @@ pub(crate) enum Scheduler {
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
     /// What controls.
-    pub(crate) client: Client,
+    pub(crate) client: ClientKind,
     /// How.
     pub(crate) scheduler: Scheduler,
 }
@@ -60,7 +60,7 @@ pub(crate) struct Measured {
     pub(crate) fifo_priority: Option<u32>,
 }
 
-impl Client {
+impl ClientKind {
     /// The client in words.
     pub(crate) fn name(&self) -> &'static str {
         match self {
@@ -122,10 +122,10 @@ impl Case {
             command
         };
         let mut command = match &self.client {
-            Client::Echo => ours("echo"),
-            Client::Torques => ours("torques"),
-            Client::Targets => ours("targets"),
-            Client::Vendor {
+            ClientKind::Echo => ours("echo"),
+            ClientKind::Torques => ours("torques"),
+            ClientKind::Targets => ours("targets"),
+            ClientKind::Vendor {
                 interpreter,
                 script,
             } => {
@@ -169,7 +169,7 @@ const POLL: Duration = Duration::from_millis(10);
 mod tests {
     use super::*;
 
-    fn line(client: Client, scheduler: Scheduler) -> String {
+    fn line(client: ClientKind, scheduler: Scheduler) -> String {
         let case = Case { client, scheduler };
         let address = SocketAddr::new(loopback_address(254), PORT);
         let command = case.command(Path::new("/bin"), address, 5);
@@ -180,12 +180,12 @@ mod tests {
 
     #[test]
     fn every_client_hears_where_and_how_long() {
-        let fifo = line(Client::Torques, Scheduler::Fifo);
+        let fifo = line(ClientKind::Torques, Scheduler::Fifo);
         assert_eq!(fifo, "/bin/live_client torques 127.2.1.1:1337 --fifo 5");
-        let normal = line(Client::Targets, Scheduler::Normal);
+        let normal = line(ClientKind::Targets, Scheduler::Normal);
         assert_eq!(normal, "/bin/live_client targets 127.2.1.1:1337 5");
         // Which knows the port by itself.
-        let vendor = Client::Vendor {
+        let vendor = ClientKind::Vendor {
             interpreter: "python".into(),
             script: "script.py".into(),
         };

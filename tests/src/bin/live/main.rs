@@ -22,15 +22,15 @@
 //! | [`trace`] | what passed, and the numbers that come of it |
 //! | [`process`] | simulator and clients: started, watched, ended |
 //! | [`case`] | one client measured |
-//! | [`burden`] | one simulator measured |
+//! | [`simulator_case`] | one simulator measured |
 //! | [`report`] | the tables, and the JSON |
 
-mod burden;
 mod case;
 mod listener;
 mod process;
 mod relay;
 mod report;
+mod simulator_case;
 mod stamp;
 mod trace;
 
@@ -43,8 +43,8 @@ use anyhow::Context as _;
 use clap::{Args, Parser, Subcommand};
 use serde_json::Value;
 
-use burden::{Burden, Company, Plant};
-use case::{Case, Client, Scheduler};
+use case::{Case, ClientKind, Scheduler};
+use simulator_case::{ConnectedClient, Plant, SimulatorCase};
 
 /// Measures over real sockets.
 #[derive(Debug, Parser)]
@@ -121,12 +121,12 @@ fn measure_clients(
     python: Option<&[PathBuf]>,
 ) -> anyhow::Result<()> {
     let time = common.time();
-    let ours = [Client::Echo, Client::Torques, Client::Targets];
+    let ours = [ClientKind::Echo, ClientKind::Torques, ClientKind::Targets];
     let with = |scheduler| ours.clone().map(|client| Case { client, scheduler });
     let mut cases = Vec::from(with(Scheduler::Fifo));
     if let Some([interpreter, script]) = python {
         cases.push(Case {
-            client: Client::Vendor {
+            client: ClientKind::Vendor {
                 interpreter: interpreter.clone(),
                 script: script.clone(),
             },
@@ -150,30 +150,30 @@ fn measure_clients(
 fn measure_simulator(programs: &Path, common: &Common, mujoco: bool) -> anyhow::Result<()> {
     let time = common.time();
     let mut starts = Vec::new();
-    let mut burdens = Vec::new();
+    let mut cases = Vec::new();
     for plant in [Plant::Rigid, Plant::Mujoco] {
         if plant == Plant::Mujoco && !mujoco {
             continue;
         }
         eprintln!("starting {} {STARTS} times", plant.name());
         starts.push((plant, plant.start(programs, STARTS)?));
-        for (company, realtime) in [
-            (Company::Nobody, false),
-            (Company::Listener, false),
-            (Company::Listener, true),
-            (Company::Targets, false),
+        for (client, realtime) in [
+            (ConnectedClient::None, false),
+            (ConnectedClient::Listener, false),
+            (ConnectedClient::Listener, true),
+            (ConnectedClient::Targets, false),
         ] {
-            let burden = Burden {
+            let case = SimulatorCase {
                 plant,
-                company,
+                client,
                 realtime,
             };
-            eprintln!("measuring {} for {time:?}", burden.name());
-            burdens.push((burden, burden.measure(programs, time)?));
+            eprintln!("measuring {} for {time:?}", case.name());
+            cases.push((case, case.measure(programs, time)?));
         }
     }
-    println!("{}", report::simulator_markdown(&starts, &burdens, time));
-    common.write(&report::simulator_json(&starts, &burdens, time))
+    println!("{}", report::simulator_markdown(&starts, &cases, time));
+    common.write(&report::simulator_json(&starts, &cases, time))
 }
 
 /// Starts of the simulator.

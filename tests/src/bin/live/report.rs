@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::burden::{Burden, Plant, Starts, Weighed};
-use crate::case::{Case, Client, Measured};
+use crate::case::{Case, ClientKind, Measured};
+use crate::simulator_case::{Plant, SimulatorCase, SimulatorCost, Starts};
 use crate::trace::Quantiles;
 
 /// A client and what came of measuring it.
@@ -60,7 +60,7 @@ pub(crate) fn json(rows: &[Row], time: Duration) -> Value {
 /// Where it was measured, how long the simulator takes to start, and what it costs.
 pub(crate) fn simulator_markdown(
     starts: &[(Plant, Starts)],
-    burdens: &[(Burden, Weighed)],
+    cases: &[(SimulatorCase, SimulatorCost)],
     time: Duration,
 ) -> String {
     let mut text = format!("{}; {} s each\n\n", machine(), time.as_secs());
@@ -71,20 +71,15 @@ pub(crate) fn simulator_markdown(
     }
     text += "\n| plant | client | scheduler | CPU, % of a core | memory, MB | state interval p50 / p99 / p99.9 / max, µs | off a millisecond p50 / p99 / p99.9 / max, µs |\n";
     text += "|---|---|---|---|---|---|---|\n";
-    for (burden, weighed) in burdens {
+    for (case, cost) in cases {
         let columns = [
-            burden.plant.name().to_owned(),
-            burden.company.name().to_owned(),
-            scheduler(weighed.fifo_priority),
-            format!("{:.2}", weighed.cpu_percent),
-            format!("{:.1}", weighed.memory_kib as f64 * 1024.0 / 1e6),
-            weighed
-                .state_interval
-                .as_ref()
-                .map(micros)
-                .unwrap_or_default(),
-            weighed
-                .state_deviation
+            case.plant.name().to_owned(),
+            case.client.name().to_owned(),
+            scheduler(cost.fifo_priority),
+            format!("{:.2}", cost.cpu_percent),
+            format!("{:.1}", cost.memory_kib as f64 * 1024.0 / 1e6),
+            cost.state_interval.as_ref().map(micros).unwrap_or_default(),
+            cost.state_deviation
                 .as_ref()
                 .map(micros)
                 .unwrap_or_default(),
@@ -97,25 +92,25 @@ pub(crate) fn simulator_markdown(
 /// All values of the simulator.
 pub(crate) fn simulator_json(
     starts: &[(Plant, Starts)],
-    burdens: &[(Burden, Weighed)],
+    cases: &[(SimulatorCase, SimulatorCost)],
     time: Duration,
 ) -> Value {
     let starts: Vec<_> = starts
         .iter()
         .map(|(plant, starts)| json!({ "plant": plant.name(), "ready_ns": starts }))
         .collect();
-    let burdens: Vec<_> = burdens
+    let cases: Vec<_> = cases
         .iter()
-        .map(|(burden, weighed)| {
+        .map(|(case, cost)| {
             json!({
-                "plant": burden.plant.name(),
-                "client": burden.company.name(),
-                "realtime": burden.realtime,
-                "measured": weighed,
+                "plant": case.plant.name(),
+                "client": case.client.name(),
+                "realtime": case.realtime,
+                "measured": cost,
             })
         })
         .collect();
-    json!({ "machine": machine(), "seconds": time.as_secs(), "starts": starts, "simulators": burdens })
+    json!({ "machine": machine(), "seconds": time.as_secs(), "starts": starts, "simulators": cases })
 }
 
 fn scheduler(fifo_priority: Option<u32>) -> String {
@@ -128,7 +123,7 @@ fn scheduler(fifo_priority: Option<u32>) -> String {
 /// The echo under the same scheduler.
 fn echo<'a>(rows: &'a [Row], case: &Case) -> Option<&'a Measured> {
     let is_floor = |(other, _): &&Row| {
-        matches!(other.client, Client::Echo) && other.scheduler == case.scheduler
+        matches!(other.client, ClientKind::Echo) && other.scheduler == case.scheduler
     };
     rows.iter().find(is_floor)?.1.as_ref().ok()
 }
@@ -184,8 +179,8 @@ fn machine() -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::burden::Company;
     use crate::case::Scheduler;
+    use crate::simulator_case::ConnectedClient;
     use crate::trace::Summary;
 
     use super::*;
@@ -219,9 +214,9 @@ mod tests {
             (case, Ok(measured(nanos)))
         };
         let mut rows = vec![
-            row(Client::Echo, Scheduler::Normal, 50_000),
-            row(Client::Echo, Scheduler::Fifo, 10_000),
-            row(Client::Torques, Scheduler::Fifo, 12_500),
+            row(ClientKind::Echo, Scheduler::Normal, 50_000),
+            row(ClientKind::Echo, Scheduler::Fifo, 10_000),
+            row(ClientKind::Torques, Scheduler::Fifo, 12_500),
         ];
         let text = markdown(&rows, Duration::from_secs(5));
         let last = text.lines().last().unwrap();
@@ -249,32 +244,32 @@ mod tests {
         };
         let starts = [(Plant::Rigid, starts)];
         let listened = measured(100_000).summary.state_interval;
-        let burden = |company, interval| {
-            let burden = Burden {
+        let case = |client, interval| {
+            let case = SimulatorCase {
                 plant: Plant::Rigid,
-                company,
+                client,
                 realtime: false,
             };
-            let weighed = Weighed {
+            let cost = SimulatorCost {
                 cpu_percent: 2.345,
                 memory_kib: 10_000,
                 fifo_priority: None,
                 state_interval: interval,
                 state_deviation: interval,
             };
-            (burden, weighed)
+            (case, cost)
         };
-        let burdens = [
-            burden(Company::Nobody, None),
-            burden(Company::Listener, Some(listened)),
+        let cases = [
+            case(ConnectedClient::None, None),
+            case(ConnectedClient::Listener, Some(listened)),
         ];
         let time = Duration::from_secs(5);
-        let text = simulator_markdown(&starts, &burdens, time);
+        let text = simulator_markdown(&starts, &cases, time);
         assert!(text.contains("| rigid | 12.3 / 23.4 |"), "{text}");
-        let nobody = "| rigid | nobody | normal | 2.35 | 10.2 |  |  |";
-        assert!(text.contains(nobody), "{text}");
+        let none = "| rigid | none | normal | 2.35 | 10.2 |  |  |";
+        assert!(text.contains(none), "{text}");
         assert!(text.contains("| 1000 / 2000 / 3000 / 40000 |"), "{text}");
-        let json = simulator_json(&starts, &burdens, time);
+        let json = simulator_json(&starts, &cases, time);
         assert_eq!(json["starts"][0]["ready_ns"]["p50"], 12_340_000);
         let interval = &json["simulators"][1]["measured"]["state_interval"];
         assert_eq!(interval["p99"], 2_000_000);

@@ -22,9 +22,9 @@ pub(crate) enum Plant {
 
 /// Who is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Company {
+pub(crate) enum ConnectedClient {
     /// Nobody.
-    Nobody,
+    None,
     /// A client that takes the states, and commands nothing.
     Listener,
     /// Our target control, in a motion all the time.
@@ -33,18 +33,18 @@ pub(crate) enum Company {
 
 /// A simulator, and who is connected to it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Burden {
+pub(crate) struct SimulatorCase {
     /// What it computes with.
     pub(crate) plant: Plant,
     /// Who is there.
-    pub(crate) company: Company,
+    pub(crate) client: ConnectedClient,
     /// Whether it asks for `SCHED_FIFO`.
     pub(crate) realtime: bool,
 }
 
 /// What came of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Weighed {
+pub(crate) struct SimulatorCost {
     /// Processor time of the simulator's process, all threads, in percent of one core.
     pub(crate) cpu_percent: f64,
     /// The most memory that it has had, `VmHWM`, in kibibytes.
@@ -105,37 +105,37 @@ impl Plant {
     }
 }
 
-impl Company {
+impl ConnectedClient {
     /// Who it is, in words.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Self::Nobody => "nobody",
+            Self::None => "none",
             Self::Listener => "listener",
             Self::Targets => "target control",
         }
     }
 }
 
-impl Burden {
+impl SimulatorCase {
     /// What is measured, in words.
     pub(crate) fn name(&self) -> String {
         let scheduler = if self.realtime { ", --realtime" } else { "" };
-        let (plant, company) = (self.plant.name(), self.company.name());
-        format!("{plant}, {company}{scheduler}")
+        let (plant, client) = (self.plant.name(), self.client.name());
+        format!("{plant}, {client}{scheduler}")
     }
 
     /// Measures a simulator of its own for `time`; the project's programs are in `programs`.
-    pub(crate) fn measure(&self, programs: &Path, time: Duration) -> anyhow::Result<Weighed> {
+    pub(crate) fn measure(&self, programs: &Path, time: Duration) -> anyhow::Result<SimulatorCost> {
         let mut command = self.plant.simulator(programs);
         if self.realtime {
             command.arg("--realtime");
         }
         let (mut simulator, robot) = ready(&mut command)?;
         let (mut listener, mut client) = (None, None);
-        match self.company {
-            Company::Nobody => {}
-            Company::Listener => listener = Some(Listener::connect(robot)?),
-            Company::Targets => {
+        match self.client {
+            ConnectedClient::None => {}
+            ConnectedClient::Listener => listener = Some(Listener::connect(robot)?),
+            ConnectedClient::Targets => {
                 let seconds = (LEAD + time + LEAD).as_secs().to_string();
                 let mut command = Command::new(programs.join("live_client"));
                 command.args(["targets", &robot.to_string(), &seconds]);
@@ -161,7 +161,7 @@ impl Burden {
             client.finish(END_TIME_MAX)?;
         }
         let intervals = arrivals.as_deref().map(intervals);
-        Ok(Weighed {
+        Ok(SimulatorCost {
             cpu_percent: 100.0 * used.as_secs_f64() / elapsed.as_secs_f64(),
             memory_kib,
             fifo_priority,

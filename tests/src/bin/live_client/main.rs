@@ -15,7 +15,7 @@ use clap::{Parser, ValueEnum};
 #[derive(Debug, Parser)]
 struct Arguments {
     /// What to control with.
-    client: Client,
+    client: ClientKind,
     /// Where the robot listens, `host:port`.
     address: String,
     /// How long to control.
@@ -27,7 +27,7 @@ struct Arguments {
 
 /// The clients.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Client {
+enum ClientKind {
     /// Answers every datagram with one, and does nothing else.
     Echo,
     /// A control function that returns no torques.
@@ -55,8 +55,8 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     } = arguments;
     let time = Duration::from_secs(seconds.into());
     match client {
-        Client::Echo => echo::run(&address, time, fifo),
-        Client::Torques => driver::torques(&address, time, fifo),
-        Client::Targets => driver::targets(&address, time, fifo),
+        ClientKind::Echo => echo::run(&address, time, fifo),
+        ClientKind::Torques => driver::torques(&address, time, fifo),
+        ClientKind::Targets => driver::targets(&address, time, fifo),
     }
 }

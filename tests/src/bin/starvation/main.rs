@@ -1,14 +1,12 @@
-//! What a busy program costs whom: `starvation [SECONDS]` exchanges states and commands at 1 kHz,
-//! on the control thread and, beside it, in a task of the program's own runtime; each with that
-//! runtime idle, and with all its workers blocked for 20 of every 100 milliseconds. Prints a line
-//! for each.
-//!
-//! The robot here sends a state per millisecond and takes a command for each. One that has not come
-//! when the next state leaves is lost, as it is for a robot.
+//! What blocked runtime workers cost: `starvation [SECONDS]` exchanges states and commands at 1
+//! kHz, first on the control thread, then in a task of the program's async runtime. Each runs with
+//! the runtime idle, and with all its workers blocked for 20 of every 100 milliseconds. Prints a
+//! line for each case. The robot here sends a state per millisecond and expects a command for each.
+//! A command that has not arrived when the next state leaves is lost, as on a robot.
 
-mod clients;
+mod responders;
 mod robot;
-// The clock of the other bench over sockets.
+// Shared with the other benchmark over sockets.
 #[path = "../live/stamp.rs"]
 mod stamp;
 
@@ -21,7 +19,7 @@ use std::{env, thread};
 use franka_rt::sched::{Realtime, Scheduling};
 use tokio::runtime::{Builder, Runtime};
 
-use clients::Client;
+use responders::Responder;
 use robot::Outcome;
 
 fn main() -> ExitCode {
@@ -34,21 +32,21 @@ fn main() -> ExitCode {
         Ok(granted) if granted.priority.is_some() => {
             println!("SCHED_FIFO is granted: to the control thread, and to the robot");
         }
-        _ => println!("SCHED_FIFO is NOT GRANTED: the control thread is one among all others"),
+        _ => println!("SCHED_FIFO is NOT GRANTED: the control thread competes with all others"),
     }
-    println!("{seconds} s each; turnaround in microseconds, of what was answered at all");
-    println!("client          workers    states   lost   p50     p90     p99     max");
-    for client in [Client::Thread, Client::Task] {
+    println!("{seconds} s each; turnaround in microseconds, of the states that were answered");
+    println!("responder       workers    states   lost   p50     p90     p99     max");
+    for responder in [Responder::Thread, Responder::Task] {
         for blocked in [false, true] {
-            let outcome = measure(client, blocked, Duration::from_secs(seconds));
+            let outcome = measure(responder, blocked, Duration::from_secs(seconds));
             let workers = if blocked { "blocked" } else { "idle" };
-            println!("{:<15} {workers:<8} {outcome}", client.name());
+            println!("{:<15} {workers:<8} {outcome}", responder.name());
         }
     }
     ExitCode::SUCCESS
 }
 
-/// Asks for a priority, the highest if `None`, and goes on without.
+/// Requests this priority, the highest if `None`; a refusal is no error.
 fn preferred(priority: Option<i32>) -> Scheduling {
     Scheduling {
         realtime: Realtime::Ignore,
@@ -57,7 +55,7 @@ fn preferred(priority: Option<i32>) -> Scheduling {
     }
 }
 
-fn measure(client: Client, blocked: bool, time: Duration) -> Outcome {
+fn measure(responder: Responder, blocked: bool, time: Duration) -> Outcome {
     let runtime = Builder::new_multi_thread()
         .worker_threads(WORKERS)
         .enable_all()
@@ -73,13 +71,13 @@ fn measure(client: Client, blocked: bool, time: Duration) -> Outcome {
                 }
             });
         }
-        let outcome = client.run(&runtime, time);
+        let outcome = responder.run(&runtime, time);
         ended.store(true, Ordering::Relaxed);
         outcome
     })
 }
 
-/// Has every worker sleep at the same time.
+/// Makes every worker sleep at the same time.
 fn block(runtime: &Runtime) {
     let together = Arc::new(Barrier::new(WORKERS));
     for _ in 0..WORKERS {
@@ -91,13 +89,13 @@ fn block(runtime: &Runtime) {
     }
 }
 
-/// As many as small computers have.
+/// A typical number on small computers.
 const WORKERS: usize = 2;
 
-/// Time from one blocking to the next.
+/// Time from one block to the next.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// What a query of a database, a page of JSON or a decoded image may take.
+/// As long as a database query, parsing JSON or decoding an image may take.
 const BLOCKED: Duration = Duration::from_millis(20);
 
 const SECONDS: u64 = 10;

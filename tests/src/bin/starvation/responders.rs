@@ -1,4 +1,4 @@
-//! The same exchange, in the two places where it could be: newest state in, one command out,
+//! The same exchange on the control thread and in a task: the newest state in, one command out,
 //! nothing computed.
 
 use std::io;
@@ -13,16 +13,16 @@ use tokio::runtime::Runtime;
 use crate::preferred;
 use crate::robot::{self, ADDRESS, Outcome, VERSION};
 
-/// Who answers.
+/// What answers the states.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Client {
+pub(crate) enum Responder {
     /// The driver's control thread.
     Thread,
-    /// A task of the program's runtime.
+    /// A task of the program's async runtime.
     Task,
 }
 
-impl Client {
+impl Responder {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Thread => "control thread",
@@ -86,7 +86,7 @@ impl Core for Echo {
     }
 }
 
-/// What a driver does that lives in the runtime: the newest of the states that wait is answered.
+/// A driver in a task of the runtime: answers the newest of the waiting states.
 async fn answer(socket: UdpSocket) -> io::Result<()> {
     socket.set_nonblocking(true)?;
     let socket = tokio::net::UdpSocket::from_std(socket)?;

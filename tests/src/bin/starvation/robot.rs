@@ -1,4 +1,4 @@
-//! The other end: states out at 1 kHz, and when the kernel took the commands in.
+//! The robot's end: sends states at 1 kHz, and records when the kernel received the commands.
 
 use std::fmt;
 use std::io;
@@ -11,16 +11,16 @@ use franka_proto::{RobotCommand, RobotState, Version};
 use crate::preferred;
 use crate::stamp::{self, Stamped};
 
-/// The FR3's.
+/// The protocol version of the FR3.
 pub(crate) const VERSION: Version = Version::V10;
 
-/// Where it sends from.
+/// The address that states are sent from.
 pub(crate) const ADDRESS: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
-/// How the exchange went.
+/// Losses and turnarounds of an exchange.
 pub(crate) struct Outcome {
     states: usize,
-    /// States whose command had not come when the next one left.
+    /// States whose command had not arrived when the next one left.
     lost: usize,
     /// From the departure of a state to the arrival of its command, ascending.
     turnarounds: Vec<Duration>,
@@ -32,7 +32,7 @@ pub(crate) fn run(port: u16, time: Duration) -> io::Result<Outcome> {
     socket.connect((ADDRESS, port))?;
     socket.set_read_timeout(Some(SILENCE))?;
     let mut listening = Stamped::new(socket.try_clone()?)?;
-    // The kernel switches stamping on in the background.
+    // The kernel enables time stamps in the background.
     thread::sleep(20 * PERIOD);
     let states = usize::try_from(time.as_millis()).expect("a time of some seconds");
     let listener = thread::spawn(move || {
@@ -48,14 +48,14 @@ pub(crate) fn run(port: u16, time: Duration) -> io::Result<Outcome> {
     Ok(Outcome::of(&sent, &arrived))
 }
 
-/// The robot is another computer: what this one is busy with does not reach it, where the system
-/// grants that.
+/// Raises this thread's priority, where the system grants it: a robot is another computer, which
+/// the load on this one does not slow down.
 fn prefer() {
     let granted = preferred(Some(PRIORITY)).enter();
     granted.expect("nothing is enforced");
 }
 
-/// Sends a state per millisecond, and tells when each left.
+/// Sends a state per millisecond, and returns when each left.
 fn speak(socket: &UdpSocket, states: usize) -> io::Result<Vec<Duration>> {
     let mut bytes = [0; RobotState::MAX_SIZE];
     let mut sent = Vec::with_capacity(states);
@@ -74,7 +74,7 @@ fn speak(socket: &UdpSocket, states: usize) -> io::Result<Vec<Duration>> {
     Ok(sent)
 }
 
-/// Tells when the command for each state came, until nothing has come for a while.
+/// Receives until no command arrives for a while. Returns when the command for each state arrived.
 fn listen(socket: &mut Stamped, states: usize) -> Vec<Option<Duration>> {
     let mut arrived = vec![None; states];
     let mut bytes = [0; RobotCommand::MAX_SIZE];
@@ -89,7 +89,7 @@ fn listen(socket: &mut Stamped, states: usize) -> Vec<Option<Duration>> {
 impl Outcome {
     fn of(sent: &[Duration], arrived: &[Option<Duration>]) -> Self {
         let next = sent.iter().skip(1);
-        // Nothing follows the last.
+        // No state follows the last.
         let in_time = arrived
             .iter()
             .zip(next)
@@ -109,7 +109,7 @@ impl Outcome {
         }
     }
 
-    /// What that share of all turnarounds does not exceed, `[us]`.
+    /// The turnaround that this share of all does not exceed, `[us]`.
     fn quantile(&self, share: f64) -> u128 {
         let last = self.turnarounds.len().saturating_sub(1);
         let index = (last as f64 * share).round() as usize;
@@ -130,10 +130,10 @@ impl fmt::Display for Outcome {
 
 const PERIOD: Duration = Duration::from_millis(1);
 
-/// Longer than anything that is in the way of a command.
+/// Longer than any delay of a command.
 const SILENCE: Duration = Duration::from_millis(500);
 
-/// Below the control thread, which asks for the highest.
+/// Below the control thread, which requests the highest.
 const PRIORITY: i32 = 10;
 
 #[cfg(test)]
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn late_and_missing_commands_are_lost_and_only_the_late_have_a_time() {
+    fn late_and_missing_commands_are_lost_and_only_late_ones_have_a_turnaround() {
         let at = Duration::from_micros;
         let sent = [at(0), at(1000), at(2000), at(3000)];
         let arrived = [Some(at(40)), Some(at(2500)), None, Some(at(3060))];
