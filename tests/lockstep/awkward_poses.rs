@@ -1,4 +1,4 @@
-//! Poses whose straight way leads through singular postures or out of the joints' ranges.
+//! Poses whose straight path leads through singular postures or out of the joints' ranges.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// Times that a joint may turn round on one way. A law that chatters turns round tens of times a
+/// Reversals allowed per joint on one path. A law that chatters reverses a joint tens of times a
 /// second.
 const MOST_TURNS: u32 = 15;
 
@@ -29,13 +29,13 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
     };
     let mut reached = 0;
     for (case, target) in [
-        // Tilted upwards on the spot, and a little further off.
+        // Tilted upwards in place, and a little further away.
         turned(0.0, 0.0, -1.4),
         turned(0.1, 0.2, -1.2),
         // Nearly stretched.
         turned(0.42, -0.05, 0.0),
         turned(0.45, 0.05, -0.6),
-        // Straight through the axis of the base.
+        // A straight path through the axis of the base.
         turned(-0.6, 0.0, 0.0),
     ]
     .into_iter()
@@ -56,7 +56,7 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
         }
         match lockstep.client.outcome(goal).unwrap() {
             Ok(_) => reached += 1,
-            // The straight way leads through the arm itself.
+            // The straight path leads through the arm itself.
             Err(MotionError::Braked(Lapse::Blocked)) => {
                 let near = self_distance(lockstep.robot.q());
                 println!("case {case}: {:.1} mm from itself", near * 1e3);
@@ -73,7 +73,7 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
 }
 
 #[test]
-fn a_pose_far_away_is_reached_or_reported_short() {
+fn a_distant_pose_is_reached_or_reported_as_not_reached() {
     let seed = 3;
     let mut random = SmallRng::seed_from_u64(seed);
     let limits = Model::fr3().joint_limits();
@@ -83,7 +83,7 @@ fn a_pose_far_away_is_reached_or_reported_short() {
     };
     let (mut reached, mut short, mut blocked) = (0, 0, 0);
     for case in 0..40 {
-        // No straight line leads there in general: joints come to their bounds on the way, and the
+        // In general no straight path is possible: joints reach their limits on the way, and the
         // arm folds.
         let posture = JointVector::from_fn(|i, _| {
             random.random_range(limits.lower[i] + 0.2..limits.upper[i] - 0.2)
@@ -108,12 +108,12 @@ fn a_pose_far_away_is_reached_or_reported_short() {
 }
 
 #[test]
-fn an_arm_held_at_the_length_of_its_leash_is_given_up_in_time() {
+fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
     let mut lockstep = Lockstep::ready();
     let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
     lockstep.request(&Request::SetCollisionBehavior(tolerant));
     lockstep.run(5);
-    // A soft ceiling, 5 cm above the hand, on the way to 20 cm above it.
+    // A soft ceiling 5 cm above the hand; the target is 20 cm above it.
     let start = lockstep.true_pose();
     let ceiling = start.translation.z + 0.05;
     let goal = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.2) * start));
@@ -138,10 +138,10 @@ fn an_arm_held_at_the_length_of_its_leash_is_given_up_in_time() {
     assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
 }
 
-/// The robot allows less and less speed towards the end of a joint's range; a plan has to arrive
-/// there inside that.
+/// The closer a joint is to the end of its range, the less velocity the robot allows. A plan has to
+/// stay within that velocity envelope.
 #[test]
-fn joints_arrive_at_the_ends_of_their_ranges_at_any_pace() {
+fn joints_reach_the_ends_of_their_ranges_at_any_speed() {
     let limits = Model::fr3().joint_limits();
     for speed in [0.5, 1.0, 1.5] {
         for joint in 0..7 {
@@ -154,14 +154,14 @@ fn joints_arrive_at_the_ends_of_their_ranges_at_any_pace() {
                     limits.lower[joint]
                 };
                 if joint == 3 && self_distance(&q.into()) < SELF_STOP {
-                    continue; // Folded that far the hand is at the shoulder.
+                    continue; // Folded that far, the hand is at the shoulder.
                 }
                 if self_distance(&q.into()) < SELF_STOP {
-                    q[3] = -0.5; // With the elbow bent the hand would be in the base.
+                    q[3] = -0.5; // With the elbow bent, the hand would be in the base.
                 }
                 let mut goal = lockstep.goal(Target::Joints(q), OnArrival::ReportAndFinish);
                 goal.budget = goal.budget.scaled(speed);
-                // The very end is refused, and the refusal says how far the joint may go.
+                // The end itself is refused, and the error says how far the joint may go.
                 let error = lockstep.submit(goal).unwrap_err();
                 let MotionError::Goal(GoalError::OutOfRange {
                     lower: least,

@@ -1,5 +1,5 @@
-//! A goal taken back in every millisecond of its motion, as dropping its future does. Every command
-//! on the way is held against the limits, that of the jerk included, by the harness.
+//! A goal cancelled in every millisecond of its motion, as dropping its future does. The harness
+//! checks every command against the limits, jerk included.
 
 use franka_proto::RobotMode;
 use franka_rt::lifecycle::MotionError;
@@ -7,13 +7,14 @@ use franka_rt::session::{Goal, GoalId, OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
-/// Longest that an arm takes to rest once its goal is taken back, and to be let go, `[ms]`.
+/// The longest times from cancelling a goal until the arm rests, and until its motion has ended,
+/// `[ms]`.
 const STOP: u64 = 600;
 
 /// Joint velocity of an arm at rest, `[rad/s]`.
 const REST: f64 = 0.01;
 
-/// A brisk goal half a centimetre away, up and down in turn.
+/// A fast goal half a centimetre away, up and down in turn.
 fn goal(lockstep: &mut Lockstep, turn: u64, on_arrival: OnArrival, joints: bool) -> Goal {
     let way = if turn.is_multiple_of(2) { 1.0 } else { -1.0 };
     let target = if joints {
@@ -30,8 +31,8 @@ fn goal(lockstep: &mut Lockstep, turn: u64, on_arrival: OnArrival, joints: bool)
     }
 }
 
-/// Takes a goal back in its first millisecond, in its second, and so on until one arrives before
-/// that.
+/// Cancels a goal in its first millisecond, the next one in its second, and so on until one arrives
+/// before it is cancelled.
 fn in_every_millisecond(
     lockstep: &mut Lockstep,
     mut submit: impl FnMut(&mut Lockstep, u64) -> GoalId,
@@ -58,7 +59,7 @@ fn in_every_millisecond(
 }
 
 #[test]
-fn a_motion_taken_back_in_any_millisecond_ends_at_rest() {
+fn a_motion_cancelled_in_any_millisecond_ends_at_rest() {
     for_each_robot(|ready| {
         for joints in [false, true] {
             let mut lockstep = ready();
@@ -79,7 +80,7 @@ fn a_motion_taken_back_in_any_millisecond_ends_at_rest() {
 }
 
 #[test]
-fn a_goal_of_a_session_taken_back_in_any_millisecond_leaves_the_arm_held() {
+fn a_session_goal_cancelled_in_any_millisecond_leaves_the_arm_held() {
     for_each_robot(|ready| {
         for joints in [false, true] {
             let mut lockstep = ready();

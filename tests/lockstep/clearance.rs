@@ -1,4 +1,5 @@
-//! How an arm keeps clear of itself and of regions: slowly on the way there, and never too near.
+//! How an arm stays clear of itself and of regions: it slows down on approach and never comes too
+//! near.
 
 use std::time::Duration;
 
@@ -14,22 +15,22 @@ use franka_rt::session::{
 use franka_tests::lockstep::{Lockstep, for_each_robot, self_distance};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
-/// By how much less than the distance to keep there may be, `[m]`: the way to rest is looked at in
-/// two places.
+/// How far the distance may fall below the one to keep, `[m]`: the braking path is checked at two
+/// points only.
 const CURVE: f64 = 1e-4;
 
-/// The same for a brake of 6 rad/s^2, whose joints come to rest one after the other.
+/// The same for braking at 6 rad/s^2, where the joints come to rest one after the other.
 const QUICK_CURVE: f64 = 1e-3;
 
-/// Bent forwards until the hand is in the base.
+/// A posture bent forwards, with the hand in the base.
 fn into_itself() -> Target {
     let mut q: [f64; 7] = READY.into();
     q[1] += 1.9;
     Target::Joints(q)
 }
 
-/// Runs until the goal is resolved, and tells the least that `margin` was at the reference, and
-/// whether clearance bound.
+/// Runs until the goal is resolved. Returns the smallest `margin` at the reference, and whether
+/// clearance bound.
 fn least_room(
     lockstep: &mut Lockstep,
     goal: GoalId,
@@ -67,7 +68,7 @@ fn an_arm_on_its_way_into_itself_slows_down_and_stops_before_it() {
             let blocked = Some(&Err(MotionError::Braked(Lapse::Blocked)));
             assert_eq!(outcome, blocked, "speed {speed}");
             assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
-            // It is not trapped.
+            // The arm can leave again.
             let back = lockstep.begin(Target::Joints(READY.into()));
             lockstep.until_resolved(back, 10_000).expect("a way out");
         }
@@ -82,7 +83,7 @@ fn block(top: f64) -> Obstacle {
     }
 }
 
-/// Distance of arm and Hand from a region, `[m]`.
+/// The distance of arm and Hand from a region, `[m]`.
 fn room_to(kind: RobotKind, region: &Obstacle, q: &JointVector) -> f64 {
     let arm = Shape::covering(kind).with_hand().at(q);
     arm.nearest_to(region).distance
@@ -109,7 +110,7 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
         let up = lockstep.begin(Target::Pose(start));
         lockstep.until_resolved(up, 10_000).expect("a way out");
 
-        // An arm that stands in a region may only leave it.
+        // An arm inside a region may only leave it.
         regions[2] = Some(block(start.translation.z - 0.01));
         lockstep.client.lifecycle.keep_out_of(regions);
         let down = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, -0.02) * start));
@@ -120,8 +121,8 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
     });
 }
 
-/// An engaged arm above a table that its session keeps out of, 0.12 m below the hand; and how near
-/// it may come.
+/// An engaged arm above a table 0.12 m below the hand, which its session keeps out of; and a
+/// function that returns the distance left.
 fn above_a_table(ready: &dyn Fn() -> Lockstep) -> (Lockstep, GoalId, impl Fn(&Lockstep) -> f64) {
     let mut lockstep = ready();
     let table = block(lockstep.true_pose().translation.z - 0.12);
@@ -137,9 +138,9 @@ fn above_a_table(ready: &dyn Fn() -> Lockstep) -> (Lockstep, GoalId, impl Fn(&Lo
     (lockstep, engaged, margin)
 }
 
-/// A policy that would go through the table, and predicts anew every 60 ms.
+/// A policy that would go through the table, with a new prediction every 60 ms.
 #[test]
-fn chunks_that_follow_each_other_lead_no_nearer_than_one_does() {
+fn successive_chunks_come_no_nearer_than_one_does() {
     for_each_robot(|ready| {
         for joints in [false, true] {
             let (mut lockstep, engaged, margin) = above_a_table(ready);
@@ -177,7 +178,7 @@ fn chunks_that_follow_each_other_lead_no_nearer_than_one_does() {
             println!("{:.2} mm left, bound in {bound} cycles", least * 1e3);
             assert!((-CURVE..0.02).contains(&least), "{least} m left");
             assert!(bound > 500, "{bound}");
-            // Out again.
+            // The arm can leave again.
             let up = lockstep.within(engaged, Target::Pose(start), OnArrival::ReportAndHold);
             lockstep
                 .until_resolved(up.expect("a way out"), 10_000)
@@ -186,8 +187,8 @@ fn chunks_that_follow_each_other_lead_no_nearer_than_one_does() {
     });
 }
 
-/// A goal with a gentle budget takes over from a quick one on its way to the table: its brake would
-/// be far longer.
+/// A goal with a slow budget supersedes a fast one on its way to the table: braking within the slow
+/// budget would take far longer.
 #[test]
 fn a_gentler_goal_that_takes_over_comes_no_nearer() {
     for_each_robot(|ready| {

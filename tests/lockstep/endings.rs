@@ -1,4 +1,4 @@
-//! How motions end when something intervenes.
+//! How interrupted motions end.
 
 use std::sync::mpsc;
 
@@ -23,7 +23,7 @@ fn moving(ready: &dyn Fn() -> Lockstep) -> (Lockstep, franka_rt::session::GoalId
 }
 
 #[test]
-fn a_stop_brakes_and_says_so_to_both() {
+fn a_stop_brakes_and_resolves_itself_and_the_goal() {
     for_each_robot(|ready| {
         let (mut lockstep, goal) = moving(ready);
         let stop = lockstep.stop().expect("something moves");
@@ -52,7 +52,7 @@ fn a_cancelled_goal_brakes_at_any_moment_of_its_life() {
             }
             lockstep.cancel(goal);
             let outcome = lockstep.until_resolved(goal, 4000);
-            // A goal that had settled before is no longer cancelled.
+            // A goal that has settled can no longer be cancelled.
             assert!(
                 matches!(outcome, Err(MotionError::Stopped) | Ok(_)),
                 "after {after} ms: {outcome:?}"
@@ -129,7 +129,7 @@ fn the_user_stop_ends_the_motion() {
 }
 
 #[test]
-fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
+fn the_link_is_lost_at_the_timeout_and_not_before() {
     for_each_robot(|ready| {
         let (mut lockstep, goal) = moving(ready);
         let timeout = LINK_TIMEOUT.as_millis() as u64;
@@ -150,8 +150,7 @@ fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
                 .starts_with("libfranka: UDP receive: Timeout")
         );
 
-        // The robot has stopped itself meanwhile. Once the link is back, it can be recovered and
-        // moved.
+        // The robot has stopped itself meanwhile. Once the link is back, it can recover and move.
         lockstep.run(1000);
         assert!(
             lockstep
@@ -168,7 +167,7 @@ fn a_silent_robot_is_given_up_at_the_timeout_and_not_before() {
 }
 
 #[test]
-fn a_lost_connection_resolves_everything_and_takes_nothing_more() {
+fn a_lost_connection_resolves_everything_and_refuses_new_goals() {
     let (mut lockstep, goal) = moving(&Lockstep::ready);
     lockstep.client.close(CloseReason::ClosedByPeer);
     lockstep.tick();
@@ -199,8 +198,7 @@ fn losses_that_the_robot_tolerates_do_not_end_a_motion() {
                 .until_resolved(goal, 8000)
                 .unwrap_or_else(|error| panic!("seed {seed}: {error}"));
             assert!(report.lost_states > 0, "seed {seed}");
-            // While fewer than a hundred cycles have passed, one loss weighs more than one per
-            // cent.
+            // Before a hundred cycles have passed, one loss counts more than one per cent.
             assert!(report.success_rate_min < 1.0, "seed {seed}: {report:?}");
             assert!(report.success_rate_avg > 0.9, "seed {seed}: {report:?}");
         }
@@ -221,7 +219,7 @@ fn downward(newtons: f64) -> Wrench {
 }
 
 #[test]
-fn an_arm_that_is_held_short_is_reported_and_let_go_without_a_step() {
+fn an_arm_kept_from_its_target_is_reported_and_released_without_a_torque_step() {
     for_each_robot(|ready| {
         let mut lockstep = tolerant(ready);
         let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
@@ -242,7 +240,7 @@ fn an_arm_that_is_held_short_is_reported_and_let_go_without_a_step() {
 }
 
 #[test]
-fn an_arm_that_is_pushed_away_stays_on_the_leash_and_comes_back() {
+fn a_pushed_arm_keeps_its_reference_on_the_leash_and_returns() {
     for_each_robot(|ready| {
         let mut lockstep = tolerant(ready);
         let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
@@ -298,14 +296,14 @@ fn bad_goals_are_named_and_change_nothing() {
     );
     assert!(
         lockstep.until_resolved(goal, 8000).is_ok(),
-        "the motion under way went on"
+        "the active motion continued"
     );
 }
 
-/// Nobody knows what the robot is doing, so a control function gets no more states, and the robot
+/// The state of the motion is unknown, so the control function gets no more states, and the robot
 /// is told to stop.
 #[test]
-fn a_control_function_is_left_alone_when_a_reply_cannot_be_read() {
+fn a_control_function_gets_no_more_states_after_an_unreadable_reply() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let version = lockstep.client.version();

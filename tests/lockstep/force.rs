@@ -1,12 +1,11 @@
-//! With how much force the arm presses: on something that stands in its way, and on a hand that
-//! pushes it.
+//! The force of the arm on an obstacle in its way, and on a hand that pushes it.
 //!
-//! The forces are those of the simulated contact, in the millisecond in which it acts on the arm;
-//! nothing of them is taken from the driver. Of a push, the part that accelerates the arm is not
-//! the law's. It is what the contact has to give whatever the torques are, `Lambda J ddq`, with the
-//! simulated arm's whole inertia, rotors included, and is subtracted: by the equations of motion
-//! the rest is what torques and friction of the joints oppose to the hand. It holds the end
-//! effector at a point, so `J` is of the position alone:
+//! The forces are those of the simulated contact, in the millisecond in which it acts on the arm,
+//! and not estimates of the driver. The part of a push that accelerates the arm does not come from
+//! the law. The contact supplies it whatever the torques are: `Lambda J ddq`, with the simulated
+//! arm's whole inertia, rotors included. It is subtracted. By the equations of motion, the rest is
+//! the resistance of the joints' torques and friction. The hand holds the end effector at a point,
+//! so `J` is the Jacobian of the position only:
 //!
 //! ```text
 //! M ddq + c = tau - friction + J' f    =>    f - Lambda (J ddq) = -Lambda J M^-1 (tau - friction - c)
@@ -25,7 +24,7 @@ use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
 use franka_tests::push::{PUSH, STIFFNESS, hand};
 use nalgebra::{SMatrix, Translation3, Vector3};
 
-/// A robot whose collision thresholds let anybody push.
+/// A robot whose collision thresholds tolerate pushes.
 fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
     let mut lockstep = ready();
     let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
@@ -43,12 +42,12 @@ fn directions() -> [Vector3<f64>; 3] {
     [Vector3::x(), Vector3::y(), -Vector3::z()]
 }
 
-/// Twice as stiff as the default: its spring alone reaches 37.5 N at the leash.
+/// Twice the default stiffness: the spring alone reaches 37.5 N at the leash.
 fn stiff() -> Gains {
     Gains::cartesian().with_cartesian_stiffness([1500.0, 1500.0, 1500.0, 15.0, 15.0, 15.0])
 }
 
-/// Under each law, and with stiff joints.
+/// The gains of each law, and stiff ones.
 fn each_gains() -> [(&'static str, Gains); 4] {
     let operational = Gains {
         law: Law::OperationalSpace,
@@ -77,11 +76,11 @@ fn head_for(
     lockstep.submit_within(engaged, goal).expect("within reach");
 }
 
-/// Mean and greatest force on a wall 3 cm from the arm, whose goal is 5 cm beyond it, in the last
-/// of three seconds.
+/// Returns the mean and the greatest force on a wall in the last of three seconds. The wall is 3 cm
+/// from the arm, and the goal 5 cm beyond it.
 ///
-/// The wall is smooth, and stiffness that is coupled across axes lets the arm slide on it, the
-/// further the deeper the goal.
+/// The wall has no friction. Stiffness that is coupled across axes makes the arm slide on it, the
+/// further the deeper the goal is.
 fn on_a_wall(
     ready: &dyn Fn() -> Lockstep,
     way: Vector3<f64>,
@@ -119,7 +118,7 @@ fn an_arm_held_at_its_leash_pulls_with_no_more_than_the_cap() {
                 for cap in [15.0, 25.0, 30.0] {
                     let (mean, most) = on_a_wall(ready, way, gains, ForceCap::Newtons(cap));
                     println!("{name}: {free:.1} N, {mean:.2} N ({most:.2} N) under {cap} N");
-                    // Friction holds a little against the spring.
+                    // Joint friction opposes the spring a little.
                     assert!(most <= 1.05 * cap, "{way}, {name}: {most} N under {cap} N");
                     assert!(mean >= 0.95 * cap.min(free), "{way}, {name}: {mean} N");
                 }
@@ -128,15 +127,15 @@ fn an_arm_held_at_its_leash_pulls_with_no_more_than_the_cap() {
     });
 }
 
-/// The arm as the simulator has it, to tell what a push spends on its inertia.
-struct Body {
+/// The simulated arm's inertia, to compute the part of a push that accelerates it.
+struct ArmInertia {
     model: &'static Model,
     load: Load,
     parameters: ArmParameters,
     ee: EndEffector,
 }
 
-impl Body {
+impl ArmInertia {
     fn of(lockstep: &Lockstep) -> Self {
         let config = lockstep.robot.config();
         let f_t_ee = transform::isometry_from_array(&lockstep.robot.state().F_T_EE);
@@ -151,7 +150,7 @@ impl Body {
         }
     }
 
-    /// The force that a hand at the end effector has to give to accelerate the joints so.
+    /// The force of a hand at the end effector that accelerates the joints by `ddq`.
     fn inertial(&self, q: &JointVector, dq: &JointVector, ddq: &JointVector) -> Vector3<f64> {
         let gravity = &self.parameters.gravity_earth;
         let dynamics = self.model.dynamics(q, dq, &self.ee, &self.load, gravity);
@@ -163,28 +162,28 @@ impl Body {
     }
 }
 
-/// What a push felt like, `[N]`.
+/// Forces of a push, `[N]`.
 #[derive(Debug, Default)]
-struct Felt {
-    /// The greatest force of the contact.
+struct ContactForces {
+    /// The greatest contact force.
     whole: f64,
-    /// The greatest of it without what accelerates the arm.
+    /// The greatest contact force without the part that accelerates the arm.
     pressed: f64,
-    /// The mean over the last 100 ms, when the hand is at its pace.
+    /// The mean over the last 100 ms, when the hand moves at constant velocity.
     steady: f64,
-    /// In how many milliseconds the cap bound.
+    /// The number of milliseconds in which the cap bound.
     capped: u32,
 }
 
-/// A hand pushes the end effector of an arm that is to stay where it is.
+/// A hand pushes the end effector of an arm that holds its pose.
 fn pushed(
     ready: &dyn Fn() -> Lockstep,
     way: Vector3<f64>,
     gains: Gains,
     force_cap: ForceCap,
-) -> Felt {
+) -> ContactForces {
     let mut lockstep = tolerant(ready);
-    let body = Body::of(&lockstep);
+    let body = ArmInertia::of(&lockstep);
     let engaged = lockstep.engage();
     let start = lockstep.true_pose();
     head_for(&mut lockstep, engaged, start.into(), gains, force_cap);
@@ -192,7 +191,7 @@ fn pushed(
     let from = lockstep.true_pose().translation.vector;
     let push = Touch::carry(move |t| from + way * hand(t), STIFFNESS);
     let push = lockstep.robot.touch(push);
-    let mut felt = Felt::default();
+    let mut felt = ContactForces::default();
     for cycle in 0..PUSH {
         let (q, dq) = (*lockstep.robot.q(), *lockstep.robot.dq());
         lockstep.tick();
@@ -212,7 +211,7 @@ fn pushed(
 }
 
 #[test]
-fn a_hand_that_pushes_meets_no_more_than_the_cap_and_without_one_it_does() {
+fn a_pushing_hand_meets_at_most_the_cap_and_more_without_one() {
     for_each_robot(|ready| {
         for way in directions() {
             for (name, gains) in each_gains() {
@@ -257,13 +256,13 @@ fn declare(lockstep: &mut Lockstep, load: &Load) {
     lockstep.run(1000);
 }
 
-/// The target of a load that nobody has declared is missed by as much as it sags.
+/// Settle tolerances that an arm sagging under an undeclared load still meets.
 const SAG: Tolerance = Tolerance {
     translation: 0.01,
     rotation: 0.05,
 };
 
-/// Runs until the goal has arrived; returns the milliseconds in which the cap bound.
+/// Runs until the goal has arrived. Returns the number of milliseconds in which the cap bound.
 fn capped_until_it_arrives(lockstep: &mut Lockstep, engaged: GoalId, target: Target) -> u32 {
     let goal = Goal {
         tolerance: SAG,
@@ -285,7 +284,7 @@ fn capped_until_it_arrives(lockstep: &mut Lockstep, engaged: GoalId, target: Tar
 }
 
 #[test]
-fn motions_that_nothing_holds_back_do_not_meet_the_default_cap() {
+fn unobstructed_motions_do_not_reach_the_default_cap() {
     for_each_robot(|ready| {
         for (mass, declared) in [(0.0, false), (3.0, true), (0.5, false)] {
             let mut lockstep = tolerant(ready);
@@ -310,7 +309,7 @@ fn motions_that_nothing_holds_back_do_not_meet_the_default_cap() {
                 let target = Target::Joints(q);
                 capped += capped_until_it_arrives(&mut lockstep, engaged, target);
             }
-            // A stop out of full pace.
+            // A stop at full speed.
             let far = Translation3::new(0.0, 0.2, 0.0) * lockstep.reference_pose();
             lockstep
                 .within(engaged, far.into(), OnArrival::Hold)
@@ -323,7 +322,7 @@ fn motions_that_nothing_holds_back_do_not_meet_the_default_cap() {
 }
 
 #[test]
-fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
+fn an_undeclared_load_is_held_up_to_the_cap_and_always_reported() {
     for_each_robot(|ready| {
         for (mass, force_cap) in [
             (2.0, ForceCap::Off),
@@ -342,7 +341,7 @@ fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
             lockstep.robot.attach(load(mass));
             let id = lockstep.submit_within(engaged, goal).expect("in range");
             let outcome = lockstep.until_resolved(id, 30_000);
-            println!("{mass} kg, {force_cap:?}: {}", told(&outcome));
+            println!("{mass} kg, {force_cap:?}: {}", described(&outcome));
             let error = outcome.expect_err("it is not within a millimetre");
             let borne = force_cap.newtons().is_none_or(|cap| mass * 9.81 < cap);
             let short = matches!(error, MotionError::TargetNotReached(_));
@@ -351,11 +350,11 @@ fn an_undeclared_load_is_borne_up_to_the_cap_and_never_in_silence() {
     });
 }
 
-/// Nobody has declared the load, it is more than the cap, and the goal has no end of its own. The
-/// cap bounds the dampers as well, so the arm is carried off as by a hand and goes on to fall: it
-/// may reach a limit of the robot before it rests.
+/// The undeclared load exceeds the cap, and the goal has no end of its own. The cap bounds the
+/// dampers as well, so the load displaces the arm like a hand and the arm keeps sinking. It may
+/// reach a limit of the robot before it rests.
 #[test]
-fn a_held_arm_does_not_sink_in_silence() {
+fn the_sinking_of_a_held_arm_is_reported() {
     for_each_robot(|ready| {
         for mass in [3.3, 5.0] {
             for stiff in [false, true] {
@@ -375,7 +374,7 @@ fn a_held_arm_does_not_sink_in_silence() {
                 assert_eq!(lockstep.client.outcome(id), None);
                 lockstep.robot.attach(load(mass));
                 let outcome = lockstep.until_resolved(id, 10_000);
-                println!("{mass} kg, stiff joints: {stiff}: {}", told(&outcome));
+                println!("{mass} kg, stiff joints: {stiff}: {}", described(&outcome));
                 let given_up = Err(MotionError::Braked(Lapse::Displaced));
                 let fell = matches!(outcome, Err(MotionError::Control(_)));
                 assert!(outcome == given_up || fell, "{outcome:?}");
@@ -384,7 +383,7 @@ fn a_held_arm_does_not_sink_in_silence() {
     });
 }
 
-fn told(outcome: &Outcome) -> String {
+fn described(outcome: &Outcome) -> String {
     outcome.as_ref().map_or_else(
         |error| error.to_string(),
         |report| format!("{:?}", report.final_error),

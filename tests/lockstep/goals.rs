@@ -1,4 +1,4 @@
-//! What a goal does when nothing goes wrong.
+//! Goals without faults.
 
 use std::time::Duration;
 
@@ -61,7 +61,7 @@ fn the_hand_moves_on_a_straight_line() {
         let (mut reference, mut arm): (f64, f64) = (0.0, 0.0);
         while lockstep.client.outcome(goal).is_none() {
             lockstep.tick();
-            // At the end it is let go, and goes with the arm.
+            // After the end the reference follows the arm.
             if lockstep.client.record.dq_ref != [0.0; 7] {
                 reference = reference.max(aside(&pose_of(
                     &lockstep.client.record.q_ref.into(),
@@ -74,17 +74,17 @@ fn the_hand_moves_on_a_straight_line() {
         assert_near(&lockstep, &target);
         assert!(
             reference < 2e-5,
-            "the reference is {:.4} mm aside",
+            "the reference is {:.4} mm off the line",
             reference * 1e3
         );
-        // The arm is a spring: on a way of 117 mm at 0.3 m/s it swings to the side by a few
+        // The arm is compliant: on a path of 117 mm at 0.3 m/s it deviates to the side by a few
         // millimetres.
-        assert!(arm < 4e-3, "the arm is {:.2} mm aside", arm * 1e3);
+        assert!(arm < 4e-3, "the arm is {:.2} mm off the line", arm * 1e3);
     });
 }
 
 #[test]
-fn joints_are_reached_together() {
+fn joints_arrive_at_the_same_time() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let mut q: [f64; 7] = READY.into();
@@ -138,10 +138,9 @@ fn the_kind_of_goal_changes_in_mid_motion() {
 }
 
 #[test]
-fn a_goal_that_comes_while_the_motion_ends_gets_a_motion_of_its_own() {
+fn a_goal_submitted_while_a_motion_ends_gets_its_own_motion() {
     for_each_robot(|ready| {
-        // The two sides of an ending motion take some ten milliseconds; every moment of it is
-        // tried.
+        // Client and robot take some ten milliseconds to end a motion. Each of them is tried.
         for after in 0..40 {
             let mut lockstep = ready();
             let start = lockstep.true_pose();
@@ -165,7 +164,7 @@ fn a_goal_that_comes_while_the_motion_ends_gets_a_motion_of_its_own() {
 }
 
 #[test]
-fn a_followed_target_may_step_as_it_likes() {
+fn a_followed_target_may_step_arbitrarily() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let start = lockstep.true_pose();
@@ -198,17 +197,17 @@ fn a_followed_target_may_step_as_it_likes() {
 
 #[test]
 fn joints_are_reached_close_to_the_ends_of_their_ranges() {
-    // Nearer than about 0.01 rad the robot's velocity envelope allows no motion outwards at all.
+    // Closer than about 0.01 rad, the robot's velocity envelope allows no outward motion.
     let limits = Model::fr3().joint_limits();
     for i in 0..7 {
         for end in [limits.lower[i] + 0.02, limits.upper[i] - 0.02] {
             let mut q: [f64; 7] = READY.into();
             q[i] = end;
             if i == 3 && self_distance(&q.into()) < SELF_STOP {
-                continue; // Folded that far the hand is at the shoulder.
+                continue; // Folded that far, the hand is at the shoulder.
             }
             if self_distance(&q.into()) < SELF_STOP {
-                q[3] = -0.5; // With the elbow bent the hand would be in the base.
+                q[3] = -0.5; // With the elbow bent, the hand would be in the base.
             }
             let mut lockstep = Lockstep::ready();
             let goal = lockstep.begin(Target::Joints(q));
@@ -219,8 +218,8 @@ fn joints_are_reached_close_to_the_ends_of_their_ranges() {
 }
 
 #[test]
-fn goals_are_held_against_the_ranges_of_the_connected_robot() {
-    // Joint 6 of a Research 3 does not fold in that far, that of a Panda does.
+fn goals_are_checked_against_the_ranges_of_the_connected_robot() {
+    // Joint 6 of a Panda folds in that far, that of a Research 3 does not.
     let mut q: [f64; 7] = READY.into();
     q[5] = 0.5;
     let mut fer = Lockstep::ready_of(RobotKind::Fer);
@@ -241,7 +240,7 @@ fn goals_are_held_against_the_ranges_of_the_connected_robot() {
 }
 
 #[test]
-fn a_goal_is_planned_however_slow_it_is_or_refused() {
+fn a_goal_of_any_speed_is_planned_or_refused() {
     for_each_robot(|ready| {
         for pace in [1e-2, 1e-3, 1e-4, 1e-6, 1e-12, 1e-60] {
             let mut lockstep = ready();
@@ -264,7 +263,7 @@ fn a_goal_is_planned_however_slow_it_is_or_refused() {
 }
 
 #[test]
-fn a_stream_that_ends_with_a_guiding_hand_comes_to_rest() {
+fn a_stream_that_ends_while_guiding_comes_to_rest() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let goal = lockstep.goal(Target::Guide(Free::ALL), OnArrival::Hold);
@@ -276,7 +275,7 @@ fn a_stream_that_ends_with_a_guiding_hand_comes_to_rest() {
 }
 
 #[test]
-fn a_goal_that_goes_on_is_not_said_to_have_been_held() {
+fn a_goal_that_still_moves_is_not_reported_as_held() {
     for_each_robot(|ready| {
         let (mut gone_on, mut held) = (0, 0);
         for wait in (0..400).step_by(10) {

@@ -1,4 +1,4 @@
-//! What the guards do that act on targets: deviation and lead.
+//! The guards that act on targets: deviation and lead.
 
 use franka_model::Wrench;
 use franka_proto::{CollisionBehavior, Request};
@@ -7,7 +7,7 @@ use franka_rt::session::{Guard, LEAD_FRESH_MS, Lapse, Lead, OnArrival, PoseError
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
-/// A robot whose collision thresholds let anybody push.
+/// A robot whose collision thresholds tolerate pushes.
 fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
     let mut lockstep = ready();
     let behavior = CollisionBehavior::uniform([1000.0; 7], [1000.0; 7], [1000.0; 6], [1000.0; 6]);
@@ -16,8 +16,8 @@ fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
     lockstep
 }
 
-/// Pulls the arm aside against spring and damper, at a steady pace, until that is more than it is
-/// to swing back by itself. Returns how far, `[m]`.
+/// Pulls the arm aside against spring and damper, at constant velocity, until the deviation guard
+/// binds: it must not swing back by itself. Returns how far, `[m]`.
 fn pull_aside(lockstep: &mut Lockstep) -> f64 {
     let start = lockstep.true_pose().translation.y;
     loop {
@@ -36,7 +36,7 @@ fn pull_aside(lockstep: &mut Lockstep) -> f64 {
 }
 
 #[test]
-fn an_arm_that_is_carried_off_stays_where_it_is_let_go() {
+fn a_displaced_arm_stays_where_it_is_released() {
     for_each_robot(|ready| {
         for then in [OnArrival::ReportAndFinish, OnArrival::Hold] {
             let mut lockstep = tolerant(ready);
@@ -68,7 +68,7 @@ const LEAD: Lead = Lead {
 };
 
 #[test]
-fn a_wild_target_sends_the_arm_no_further_than_the_lead_once_the_stream_stops() {
+fn a_distant_target_moves_the_arm_at_most_by_the_lead_after_the_stream_stops() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let start = lockstep.true_pose();
@@ -90,7 +90,7 @@ fn a_wild_target_sends_the_arm_no_further_than_the_lead_once_the_stream_stops() 
             "{then} m, then {now} m"
         );
         assert!(now > 0.03, "{now}");
-        // As long as targets come, it goes on.
+        // While targets arrive, the arm keeps moving.
         for _ in 0..40 {
             let nearly = Translation3::new(1e-6 * lockstep.now() as f64, 0.0, 0.0) * wild;
             assert_eq!(lockstep.update(id, Target::Pose(nearly)), Ok(true));
@@ -106,7 +106,7 @@ fn a_wild_target_sends_the_arm_no_further_than_the_lead_once_the_stream_stops() 
 }
 
 #[test]
-fn a_lead_that_leaves_some_of_the_ways_free_binds_the_others() {
+fn a_lead_without_a_bound_in_some_directions_binds_in_the_others() {
     for_each_robot(|ready| {
         let free = f64::INFINITY;
         for (translation, rotation) in [(0.05, free), (free, 0.2)] {
@@ -142,7 +142,7 @@ fn a_lead_that_leaves_some_of_the_ways_free_binds_the_others() {
 }
 
 #[test]
-fn who_tunes_does_not_send_an_arm_back_that_was_carried_off_where_it_had_arrived() {
+fn tuning_does_not_send_an_arm_back_that_was_displaced_after_its_arrival() {
     for_each_robot(|ready| {
         let mut lockstep = tolerant(ready);
         let engaged = lockstep.engage();

@@ -20,7 +20,7 @@ fn laws() -> [Gains; 3] {
     [Gains::droid(), projected, operational]
 }
 
-/// A robot whose collision thresholds let an obstacle press.
+/// A robot whose collision thresholds tolerate the force of an obstacle.
 fn tolerant(mut lockstep: Lockstep) -> Lockstep {
     let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
     lockstep.request(&Request::SetCollisionBehavior(tolerant));
@@ -56,8 +56,8 @@ fn poses_are_reached_under_every_law() {
     });
 }
 
-/// Mean force on a soft floor that the arm runs onto, over the last of three seconds, and whether
-/// the cap bound. The floor takes no energy, so a light arm bounces on it for a while.
+/// Returns the mean force on a soft floor in the arm's way, over the last of three seconds, and
+/// whether the cap bound. The floor dissipates no energy, so a light arm bounces on it for a while.
 fn force_on_floor(gains: Gains, force_cap: ForceCap) -> (f64, bool) {
     let mut lockstep = tolerant(Lockstep::ready());
     let start = lockstep.true_pose();
@@ -106,8 +106,8 @@ fn an_arm_presses_on_an_obstacle_with_the_capped_force() {
     }
 }
 
-/// Held off its target by a constant force, the arm is handed from law to law, with and without a
-/// cap that binds.
+/// A constant force keeps the arm from its target while the law changes, with and without a cap
+/// that binds.
 #[test]
 fn a_change_of_law_or_cap_under_load_does_not_step_the_torque() {
     let mut lockstep = tolerant(Lockstep::ready());

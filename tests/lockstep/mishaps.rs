@@ -1,7 +1,6 @@
-//! Each thing that a network does to datagrams, under target control: what it does is what the
-//! report says, and within what the robot tolerates the arm arrives.
-//!
-//! Over sockets the same networks are in `tests/live/mishaps.rs`.
+//! Each kind of network fault, under target control: the report counts it correctly, and the arm
+//! arrives if the robot tolerates the fault. `tests/live/mishaps.rs` uses the same networks over
+//! sockets.
 
 use std::time::Duration;
 
@@ -13,7 +12,8 @@ use franka_sim::network::Tally;
 use franka_tests::lockstep::{Link, Lockstep, Outcome, for_each_robot};
 use franka_tests::mishaps;
 
-/// A motion of a bit more than a second over this network, and what became of the states meanwhile.
+/// Runs a motion of a bit more than a second over this network. Returns its outcome, and what
+/// happened to the states meanwhile.
 fn travel(ready: &dyn Fn() -> Lockstep, network: Network) -> (Lockstep, Outcome, Tally) {
     let mut lockstep = ready();
     lockstep.link = Link::over(network);
@@ -32,7 +32,7 @@ fn travel(ready: &dyn Fn() -> Lockstep, network: Network) -> (Lockstep, Outcome,
     (lockstep, outcome, tally)
 }
 
-/// The report of a motion that arrives, for each robot and seed.
+/// Checks the report of a motion that arrives, for each robot and seed.
 fn arrives(
     network: impl Fn(u64) -> Network,
     check: impl Fn(Version, &MotionReport, Tally, &Lockstep),
@@ -46,7 +46,8 @@ fn arrives(
     });
 }
 
-/// All that was lost while the motion ran is in the report; it did not run for all of the time.
+/// Asserts that the report counts all losses during the motion. The motion does not run all the
+/// time.
 fn assert_counted(report: &MotionReport, tally: Tally) {
     let lost = report.lost_states;
     assert!(
@@ -57,7 +58,7 @@ fn assert_counted(report: &MotionReport, tally: Tally) {
     assert_eq!(report.skipped_states, 0, "{report:?}");
 }
 
-/// Share of commands that come in time if datagrams pass with this probability per packet.
+/// The share of commands that arrive in time if packets pass with this probability.
 fn answered(version: Version, passes: f64) -> f64 {
     match version {
         Version::V5 => passes.powi(3),
@@ -79,7 +80,7 @@ fn loss_is_counted_and_bridged() {
 fn loss_in_bursts_is_counted_and_bridged() {
     arrives(mishaps::bursts, |_, report, tally, _| {
         assert_counted(report, tally);
-        // As long as none of the losses above.
+        // Longer than any run of losses in the test above.
         let longest = report.interval.expect("states came").max;
         assert!(longest >= Duration::from_millis(4), "{longest:?}");
         assert!(report.success_rate_min < 0.95, "{report:?}");
@@ -95,8 +96,8 @@ fn a_delay_within_the_cycle_costs_nothing() {
     });
 }
 
-/// Each command is on its way as long as the state, so that from half a millisecond on it misses
-/// its cycle: the robot never sees the motion begin, nor end.
+/// The command is delayed as long as the state, so that it misses its cycle from a delay of half a
+/// millisecond on. The robot never sees the motion begin or end.
 #[test]
 fn a_delay_beyond_the_cycle_leaves_no_command_in_time() {
     for_each_robot(|ready| {
@@ -120,7 +121,7 @@ fn jitter_makes_commands_late_and_loses_nothing() {
 }
 
 #[test]
-fn what_is_overtaken_counts_as_lost() {
+fn overtaken_states_count_as_lost() {
     arrives(mishaps::reordering, |_, report, tally, _| {
         assert_eq!(tally.lost, 0);
         let cycles = report.duration.as_millis() as f64;
@@ -133,7 +134,7 @@ fn what_is_overtaken_counts_as_lost() {
 }
 
 #[test]
-fn what_comes_twice_counts_once() {
+fn duplicated_states_count_once() {
     arrives(mishaps::duplication, |_, report, _, _| {
         assert_eq!((report.lost_states, report.skipped_states), (0, 0));
         assert_eq!(report.success_rate_min, 1.0);
@@ -141,12 +142,12 @@ fn what_comes_twice_counts_once() {
 }
 
 #[test]
-fn half_a_state_is_none() {
+fn half_a_state_is_lost() {
     arrives(mishaps::halves, |version, report, tally, _| {
         assert_counted(report, tally);
         let whole = tally.lost - tally.fragment_lost;
         match version {
-            // Of both packets, more than one in twenty times.
+            // Losing one packet of a state is far more frequent than losing both.
             Version::V5 => assert!(tally.fragment_lost > 10 * whole, "{tally:?}"),
             Version::V10 => assert_eq!(tally.fragment_lost, 0),
         }
@@ -157,9 +158,9 @@ fn half_a_state_is_none() {
     });
 }
 
-/// Nineteen commands may be missing, and twenty may not.
+/// The robot tolerates nineteen missing commands, and not twenty.
 #[test]
-fn a_cut_is_bridged_up_to_what_the_robot_tolerates() {
+fn a_cut_is_bridged_up_to_the_robots_tolerance() {
     for_each_robot(|ready| {
         let begin = Duration::from_millis(500);
         let cut = |milliseconds| mishaps::cut(begin..begin + Duration::from_millis(milliseconds));

@@ -8,8 +8,8 @@ use franka_tests::lockstep::{Lockstep, pose_of, self_distance};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// Distance kept from the ends of the joints' ranges, `[rad]`, so that a straight line between
-/// targets has room.
+/// Distance kept from the ends of the joints' ranges, `[rad]`, which leaves room for a straight
+/// line between targets.
 const MARGIN: f64 = 0.3;
 
 #[test]
@@ -34,8 +34,8 @@ fn two_hundred_random_targets(kind: RobotKind) {
     let mut worst = PoseError::default();
     let mut blocked = 0;
     for case in 0..200 {
-        // Joint targets lie anywhere in the ranges; a pose lies near the posture before it, a
-        // straight line away.
+        // Joint targets lie anywhere in the ranges. A pose lies near the previous posture, on a
+        // straight path.
         let anywhere = case % 2 == 0;
         let from = *lockstep.robot.q();
         let posture = loop {
@@ -47,7 +47,7 @@ fn two_hundred_random_targets(kind: RobotKind) {
                     (from[i] + random.random_range(-0.35..0.35)).clamp(least, most)
                 }
             });
-            // Nobody gets an arm into itself.
+            // Targets in self-collision are skipped.
             if self_distance(&posture) > SELF_STOP {
                 break posture;
             }
@@ -60,7 +60,7 @@ fn two_hundred_random_targets(kind: RobotKind) {
         };
         let goal = lockstep.begin(goal);
         let report = match lockstep.until_resolved(goal, 60_000) {
-            // The straight way there leads through the arm itself.
+            // The straight path leads through the arm itself.
             Err(MotionError::Braked(Lapse::Blocked)) if anywhere => {
                 let distance = self_distance(lockstep.robot.q());
                 assert!(distance < SELF_STOP + 0.02, "{distance}");

@@ -1,4 +1,4 @@
-//! A reflex that a control function provokes, and the log that shows how.
+//! A reflex caused by a control function, and the log that shows the cause.
 
 use crate::diagnosis::{begin, stepping};
 use franka_proto::{Errors, RobotError};
@@ -11,7 +11,7 @@ use franka_tests::lockstep::{Lockstep, for_each_robot};
 fn provoke(lockstep: &mut Lockstep, callback: Callback) -> ControlError {
     let work = begin(lockstep, callback);
     let error = lockstep.until_resolved(work, 1000).expect_err("a reflex");
-    error.control().expect("the robot's doing").clone()
+    error.control().expect("ended by the robot").clone()
 }
 
 /// Asserts that the log is full, that only its last entry has the command that `stepped`
@@ -30,7 +30,7 @@ fn assert_shown(error: &ControlError, errors: Errors, stepped: impl Fn(&LogEntry
         assert_eq!(before.state.reflex_reason, Errors::default());
         assert_eq!(before.state.message_id + 1, after.state.message_id);
     }
-    // The row of the table as well: the newest is the last.
+    // The table, too: the newest cycle is its last row.
     let table = log.to_csv();
     let row = table.lines().last().expect("rows");
     assert!(
@@ -76,9 +76,9 @@ fn a_velocity_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
     });
 }
 
-/// Losses in the last sample are said, and lower the rate.
+/// Losses in the last sample are in the text, and lower the rate.
 #[test]
-fn a_reflex_for_want_of_commands_tells_how_many_states_were_lost_at_the_end() {
+fn a_communication_reflex_says_how_many_packets_were_lost_at_the_end() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let version = lockstep.client.version();
@@ -87,8 +87,8 @@ fn a_reflex_for_want_of_commands_tells_how_many_states_were_lost_at_the_end() {
         lockstep.run(200);
         lockstep.link.drop_states(30);
         let error = lockstep.until_resolved(work, 1000).expect_err("a reflex");
-        let error = error.control().expect("the robot's doing");
-        // Thirty of a hundred: 1 - 30/100.
+        let error = error.control().expect("ended by the robot");
+        // Thirty of a hundred are lost: 1 - 30/100.
         assert_eq!(
             error.to_string(),
             "libfranka: Move command aborted: motion aborted by reflex! \

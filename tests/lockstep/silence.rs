@@ -1,5 +1,5 @@
-//! A robot that falls silent in a motion: up to the link timeout nothing happens, at it the motion
-//! is given up.
+//! A robot that sends no states during a motion: nothing happens before the link timeout, and the
+//! motion is aborted at it.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use franka_tests::lockstep::for_each_robot;
 use nalgebra::Translation3;
 
 #[test]
-fn a_motion_outlives_a_silence_below_the_timeout_and_no_longer_one() {
+fn a_motion_survives_a_silence_below_the_timeout_and_no_longer_one() {
     for timeout in [
         LinkTimeout::MIN,
         Duration::from_millis(150),
@@ -35,7 +35,7 @@ fn a_motion_outlives_a_silence_below_the_timeout_and_no_longer_one() {
                     Some(Err(MotionError::LinkLost { silence })) if lost => {
                         assert_eq!(*silence, timeout.get());
                     }
-                    // From 20 missing commands on the robot stops by itself.
+                    // From 20 missing commands on, the robot stops by itself.
                     Some(Err(MotionError::Control(_))) if !lost && silence > 20 => {}
                     None if !lost => {}
                     other => panic!("{silence} ms {silent:+}: {other:?}"),

@@ -1,10 +1,10 @@
 //! What an FER's transmit stalls do to its client.
 //!
-//! Measured on robots, in 30 s under control by a client that answers the newest state there is:
-//! some 28 of the 30 000 states gave way to a newer one, never two in a row, and the mean of
+//! Measured on robots, in 30 s under control by a client that answers the newest available state:
+//! some 28 of the 30 000 states were skipped for a newer one, never two in a row, and the mean of
 //! `control_command_success_rate` was 0.986. These are the figures of libfranka's example
-//! `communication_test`, and are counted here as there: by the program, from the time that it is
-//! told has passed and the rate in each state.
+//! `communication_test`. The tests count as the example does: in the control function, from the
+//! time steps and the rate in each state.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -45,9 +45,9 @@ const RUN: u64 = 30_000;
 /// Measurements: one seed each.
 const RUNS: u64 = 12;
 
-/// What the client of the measurement takes from a state to being ready for the next. It has not
-/// been published. Below 20 us, which a state takes on the line, every state of a burst is
-/// answered; from 40 us on, two in a row give way to a newer one.
+/// The time that the client of the measurement takes from a state until it is ready for the next.
+/// It has not been published. Below 20 us, the time of a state on the cable, every state of a burst
+/// is answered. From 40 us on, two in a row are skipped.
 const TURNAROUND: Duration = Duration::from_micros(35);
 
 fn measure(turnaround: Duration, runs: u64) -> Vec<CycleCounts> {
@@ -72,11 +72,11 @@ fn mean_loss(runs: &[CycleCounts]) -> f64 {
     mean(runs, |counts| counts.lost() as f64)
 }
 
-/// Between runs, as between measurements, the losses deviate by some 5, since few stalls are long
-/// enough for one, and the rate by 0.001. A run is allowed three to four times that, the mean of
-/// all less.
+/// Between runs, as between measurements, the losses vary by some 5, since few stalls are long
+/// enough to cause one, and the rate by 0.001. A run may deviate by three to four times that, the
+/// mean of all runs by less.
 #[test]
-fn the_figures_measured_on_fers_come_out_of_the_stalls() {
+fn the_stalls_reproduce_the_figures_measured_on_fers() {
     let runs = measure(TURNAROUND, RUNS);
     println!("{} lost, rate {:.4}", mean_loss(&runs), mean_rate(&runs));
     for counts in &runs {
@@ -89,15 +89,15 @@ fn the_figures_measured_on_fers_come_out_of_the_stalls() {
     assert!((rate - 0.986).abs() < 0.002, "{rate}");
 }
 
-/// What a client answers in time is up to the robot; how many states of a burst it sees, up to the
-/// client.
+/// The robot's stalls decide how many states are answered in time; the speed of the client decides
+/// how many states of a burst it sees.
 #[test]
 fn a_faster_client_loses_no_state_and_is_as_late_with_its_answers() {
     let [fast, measured, slow] =
         [10, 35, 120].map(|us| measure(Duration::from_micros(us), RUNS / 4));
     assert_eq!(mean_loss(&fast), 0.0);
     assert!((mean_rate(&fast) - mean_rate(&measured)).abs() < 5e-4);
-    // It misses all but the first and the last of a burst, or nearly.
+    // The slow client misses almost all states of a burst but the first and the last.
     assert!(mean_loss(&slow) > 3.0 * mean_loss(&measured));
     assert!(slow.iter().all(|counts| counts.row > 1));
     assert!((mean_rate(&slow) - mean_rate(&measured)).abs() < 2e-3);

@@ -1,20 +1,20 @@
-//! Steps of 5 cm, the common measure of impedance controllers: how far they end off, how long they
-//! take, how far the arm lags behind meanwhile.
+//! Steps of 5 cm, the common benchmark of impedance controllers: final error, duration, and lag of
+//! the arm.
 
 use franka_rt::session::{OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Translation3, Vector3};
 
-/// What came of one step.
+/// The figures of one step.
 #[derive(Debug)]
 struct Figures {
-    /// Distance from the target at the end, `[m]`.
+    /// The distance from the target at the end, `[m]`.
     off: f64,
-    /// Until the arm stays within 1 mm of the target, `[s]`.
+    /// The time until the arm stays within 1 mm of the target, `[s]`.
     within: f64,
-    /// Greatest distance from the arm to its reference, `[m]`.
+    /// The greatest distance from the arm to its reference, `[m]`.
     lag: f64,
-    /// Until the reference rests at the target, `[s]`.
+    /// The time until the reference rests at the target, `[s]`.
     reference: f64,
 }
 
@@ -49,12 +49,13 @@ fn step(
     figures
 }
 
-/// 5 cm from rest to rest with 0.5 m/s^2 and 20 m/s^3, neither of which lets the hand reach 0.3
-/// m/s: the time-optimal profile has four equal parts of constant acceleration with ramps.
+/// The shortest time for 5 cm from rest to rest with 0.5 m/s^2 and 20 m/s^3, `[s]`. The hand does
+/// not reach 0.3 m/s. The time-optimal profile accelerates and brakes, each with a jerk ramp at
+/// both ends.
 fn optimum() -> f64 {
     let (a, j, way) = (0.5_f64, 20.0_f64, 0.05_f64);
     let ramp = a / j;
-    // way = a T (T + ramp), T from the beginning of a push to the beginning of its end.
+    // way = a T (T + ramp), with T from the start of the ramp up to the start of the ramp down.
     let push = 0.5 * (-ramp + (ramp * ramp + 4.0 * way / a).sqrt());
     2.0 * (push + ramp)
 }
@@ -75,7 +76,7 @@ fn a_step_of_five_centimetres_is_quick_close_and_without_lag() {
                 assert!(figures.off <= 0.3e-3, "{figures:?}");
                 assert!(figures.within <= 0.90, "{figures:?}");
                 assert!(figures.lag <= 2.5e-3, "{figures:?}");
-                // The budget of the norm is shared out to the axes: 99 % of it go along the line.
+                // The budget of the norm is divided among the axes: 99 % of it are along the line.
                 assert!(figures.reference <= 1.01 * optimum() + 0.002, "{figures:?}");
             }
         }
@@ -83,7 +84,7 @@ fn a_step_of_five_centimetres_is_quick_close_and_without_lag() {
 }
 
 #[test]
-fn a_session_begins_without_a_torque_and_a_stop_at_rest_is_short() {
+fn a_session_begins_without_torque_and_a_stop_at_rest_is_short() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();

@@ -1,5 +1,4 @@
-//! Switching between goals of all kinds in mid-motion: the acceleration that is commanded never
-//! jumps.
+//! Switching between goals of all kinds in mid-motion: the commanded acceleration never jumps.
 
 use std::time::Duration;
 
@@ -10,7 +9,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// How often every pair of kinds is gone through.
+/// Repetitions of every pair of kinds.
 const ROUNDS: usize = 3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,12 +39,12 @@ struct Switching {
     engaged: GoalId,
     home: Isometry3<f64>,
     jerk: [f64; 7],
-    /// Of the cycle before, and when that was.
+    /// The acceleration in the previous cycle, and the time of that cycle.
     last: (u64, [f64; 7]),
-    /// Largest jump of the acceleration so far, as a share of what the jerk limit allows in a
+    /// The largest jump of the acceleration so far, as a share of what the jerk limit allows per
     /// cycle.
     worst: f64,
-    /// Cycles in which the arm moved.
+    /// The number of cycles in which the arm moved.
     moving: u64,
 }
 
@@ -99,7 +98,7 @@ impl Switching {
         }
     }
 
-    /// Until a random instant, mostly in mid-motion.
+    /// Runs until a random instant, mostly in mid-motion.
     fn run(&mut self, kind: Kind, goal: Option<GoalId>) {
         let mut next = 0;
         for time in 0..self.random.random_range(20..500) {

@@ -1,4 +1,4 @@
-//! What happens when a goal, a stop or a failure comes while the arm moves, and how it is let go.
+//! A goal, a stop or a failure that comes while the arm moves, and how motions end.
 
 use franka_model::READY;
 use franka_proto::{RobotError, RobotMode};
@@ -27,7 +27,7 @@ fn fastest(lockstep: &Lockstep) -> f64 {
 }
 
 #[test]
-fn a_goal_that_comes_while_the_arm_is_let_go_may_take_its_time() {
+fn a_goal_that_comes_while_the_motion_ends_may_be_slow() {
     let first_motion = || {
         let mut lockstep = Lockstep::ready();
         let near = Translation3::new(0.0, 0.0, 0.01) * lockstep.true_pose();
@@ -39,7 +39,7 @@ fn a_goal_that_comes_while_the_arm_is_let_go_may_take_its_time() {
         rehearsal.tick();
         assert!(rehearsal.now() < 4000, "the motion comes to its end");
     }
-    // The arm is let go over the last tenth of a second before the finish.
+    // Torques fade out over the last tenth of a second before the finish.
     let (mut lockstep, first) = first_motion();
     lockstep.run(rehearsal.now() - lockstep.now() - 50);
     let target = Translation3::new(0.0, 0.1, 0.0) * lockstep.true_pose();
@@ -51,7 +51,7 @@ fn a_goal_that_comes_while_the_arm_is_let_go_may_take_its_time() {
 }
 
 #[test]
-fn an_arm_whose_motion_is_given_up_brakes() {
+fn an_arm_brakes_when_its_motion_is_aborted() {
     for how in 0..2 {
         let mut lockstep = Lockstep::ready();
         let target = Translation3::new(0.0, 0.0, 0.3) * lockstep.true_pose();
@@ -77,7 +77,7 @@ fn an_arm_whose_motion_is_given_up_brakes() {
 }
 
 #[test]
-fn a_slow_goal_over_the_joints_takes_over_a_fast_one_without_running_on() {
+fn a_slow_joint_goal_supersedes_a_fast_one_without_overrunning() {
     for after in [30, 120, 250, 600, 900] {
         let mut lockstep = Lockstep::ready();
         submit_at(&mut lockstep, Target::Joints(ready_turned(0, 0.6)), 1.5);
@@ -98,7 +98,7 @@ fn a_slow_goal_over_the_joints_takes_over_a_fast_one_without_running_on() {
 }
 
 #[test]
-fn a_slow_pose_takes_over_any_fast_motion_without_running_on() {
+fn a_slow_pose_supersedes_any_fast_motion_without_overrunning() {
     for (kind, after) in [(0, 100), (0, 500), (1, 50), (1, 350)] {
         let mut lockstep = Lockstep::ready();
         let start = lockstep.true_pose();
@@ -121,7 +121,7 @@ fn a_slow_pose_takes_over_any_fast_motion_without_running_on() {
 }
 
 #[test]
-fn a_stop_is_quick_however_slow_the_goal_is() {
+fn a_stop_is_quick_for_any_speed_of_the_goal() {
     for speed in [0.05, 0.3, 1.0, 1.4] {
         for target in [
             Target::Joints(ready_turned(1, 0.5)),
@@ -144,7 +144,7 @@ fn a_stop_is_quick_however_slow_the_goal_is() {
 }
 
 #[test]
-fn what_was_on_its_way_for_a_goal_that_was_taken_back_moves_nothing() {
+fn pending_updates_of_a_cancelled_goal_move_nothing() {
     let mut lockstep = Lockstep::ready();
     let start = lockstep.true_pose();
     let goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
@@ -160,7 +160,7 @@ fn what_was_on_its_way_for_a_goal_that_was_taken_back_moves_nothing() {
 }
 
 #[test]
-fn a_stop_or_a_cancel_while_a_motion_ends_starts_no_other() {
+fn a_stop_or_a_cancel_while_a_motion_ends_starts_no_new_one() {
     for after in 0..20 {
         for cancelled in [false, true] {
             let mut lockstep = Lockstep::ready();
@@ -204,7 +204,7 @@ fn a_stop_or_a_cancel_while_a_motion_ends_starts_no_other() {
 }
 
 #[test]
-fn a_reflex_before_the_first_cycle_is_a_reflex() {
+fn a_reflex_before_the_first_cycle_is_reported_as_one() {
     let mut seen = 0;
     for after in 0..8 {
         let mut lockstep = Lockstep::ready();

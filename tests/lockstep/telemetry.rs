@@ -1,4 +1,4 @@
-//! What a report says of the link is what the link did.
+//! The link statistics of a report match what the link did.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -10,8 +10,8 @@ use franka_rt::session::Target;
 use franka_tests::lockstep::{Link, Lockstep, Outcome};
 use nalgebra::Translation3;
 
-/// Runs until `goal` resolves or `most` milliseconds are over; returns the outcome, and the success
-/// rates of the states that arrived while the motion ran.
+/// Runs until `goal` resolves, for at most `most` milliseconds. Returns the outcome, and the
+/// success rates of the states that arrived while the motion ran.
 fn watch(
     lockstep: &mut Lockstep,
     goal: franka_rt::session::GoalId,
@@ -33,7 +33,7 @@ fn watch(
     panic!("goal {goal:?} is unresolved after {most} ms");
 }
 
-/// Holds the arm by doing nothing for so many milliseconds of the robot's time.
+/// A program that commands zero torques for so many milliseconds of the robot's time.
 fn nothing_for(milliseconds: u64) -> (Program, franka_proto::MoveRequest) {
     let mut time = Duration::ZERO;
     let callback = Callback::torques(Version::V10, move |_, step| {
@@ -45,7 +45,7 @@ fn nothing_for(milliseconds: u64) -> (Program, franka_proto::MoveRequest) {
 }
 
 #[test]
-fn the_states_that_the_link_drops_are_the_states_that_the_report_counts() {
+fn the_report_counts_the_states_that_the_link_drops() {
     let mut lockstep = Lockstep::ready();
     let (program, request) = nothing_for(800);
     let id = lockstep
@@ -63,7 +63,7 @@ fn the_states_that_the_link_drops_are_the_states_that_the_report_counts() {
     let report = outcome.expect("the robot bridges such gaps");
     assert_eq!((report.lost_states, report.skipped_states), (dropped, 0));
     assert!(report.success_rate_min < 1.0, "{report:?}");
-    // Times are those of a world in which nothing takes any.
+    // In virtual time, work takes no time.
     assert_eq!(report.overruns, 0);
     let interval = report.interval.expect("states came");
     assert_eq!(interval.max, Duration::from_millis(8));
@@ -96,15 +96,15 @@ fn the_success_rate_of_the_report_is_that_of_the_states() {
 }
 
 #[test]
-fn states_that_give_way_to_a_newer_one_count_as_skipped() {
+fn states_superseded_by_a_newer_one_count_as_skipped() {
     let mut lockstep = Lockstep::ready();
     let (program, request) = nothing_for(400);
     let id = lockstep
         .control(program, request)
         .expect("nothing else runs");
     lockstep.run(100);
-    // As the control thread does that finds three states and takes the newest; of five missing, two
-    // never came.
+    // As when the control thread finds three states and answers the newest: of five missing states,
+    // two never arrived.
     let mut told = VecDeque::from([(5, 3), (2, 2), (1, 0)]);
     let (mut lost, mut skipped) = (0, 0);
     while let Some((missing, came)) = told.pop_front() {

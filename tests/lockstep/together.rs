@@ -1,4 +1,4 @@
-//! Two robots whose motions begin together: both in one thread, millisecond by millisecond.
+//! Two robots whose motions begin together, both in one thread, millisecond by millisecond.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -41,7 +41,7 @@ impl Two {
         }
     }
 
-    /// Runs until both are resolved.
+    /// Runs until both goals are resolved.
     fn until_resolved(
         &mut self,
         (left, right): (GoalId, GoalId),
@@ -69,13 +69,13 @@ fn submit(robot: &mut Lockstep, target: Target, ticket: StartTicket) -> GoalId {
     robot.submit_together(goal, ticket).expect("it is free")
 }
 
-/// How far the joints are from where they began, `[rad]`.
+/// The distance of the joints from where they began, `[rad]`.
 fn moved(robot: &Lockstep) -> f64 {
     (robot.robot.q() - READY).amax()
 }
 
 #[test]
-fn goals_begin_in_the_same_millisecond_however_late_the_second_comes() {
+fn goals_begin_in_the_same_millisecond_for_any_delay_of_the_second() {
     for late in [0, 1, 137, 4000] {
         let mut two = Two::new();
         let [left, right] = StartBarrier::new().tickets();
@@ -111,14 +111,14 @@ fn goals_begin_in_the_same_millisecond_however_late_the_second_comes() {
         let duration = report.as_ref().expect("it arrived").duration;
         assert!(
             duration < Duration::from_secs(4),
-            "the wait is none of it: {duration:?}"
+            "the wait does not count: {duration:?}"
         );
         assert!(moved(&two.right) > 0.09);
     }
 }
 
 #[test]
-fn one_that_never_begins_lets_the_other_go_at_rest_with_its_number() {
+fn a_robot_that_never_begins_ends_the_others_motion_at_rest_and_is_named() {
     type Taking = fn(&mut Two, StartTicket);
     let ways: [(&str, Taking, StartFault); 3] = [
         (
@@ -159,7 +159,7 @@ fn one_that_never_begins_lets_the_other_go_at_rest_with_its_number() {
         let outcome = two.left.until_resolved(goal, 2000);
         assert_eq!(outcome.map(drop), Err(MotionError::Start(fault)), "{way}");
         assert!(moved(&two.left) < 1e-6, "{way}: {}", moved(&two.left));
-        // And the robot is ready for more.
+        // The robot is ready for the next motion.
         let again = two.left.begin(turned(0.1));
         let outcome = two.left.until_resolved(again, 10_000);
         outcome.unwrap_or_else(|error| panic!("{way}: {error}"));
@@ -167,7 +167,7 @@ fn one_that_never_begins_lets_the_other_go_at_rest_with_its_number() {
 }
 
 #[test]
-fn one_that_leaves_while_it_waits_lets_the_other_go() {
+fn a_robot_that_leaves_while_waiting_ends_the_others_motion() {
     let member = 0;
     type Leaving = fn(&mut Lockstep, GoalId);
     let ways: [(&str, Leaving, StartFault); 5] = [
@@ -215,10 +215,10 @@ fn one_that_leaves_while_it_waits_lets_the_other_go() {
         assert_eq!(right, Err(MotionError::Start(fault)), "{way}");
         assert!(
             left.is_err() && left != right,
-            "its own error says why: {left:?}"
+            "its own error names the cause: {left:?}"
         );
         assert!(moved(&two.right) < 1e-6, "{way}: {}", moved(&two.right));
-        // Whoever comes after that is refused at once.
+        // A robot that joins after that is refused at once.
         two.right.until_idle(2000);
         let goal = two.right.goal(turned(0.1), OnArrival::ReportAndFinish);
         let refused = two.right.submit_together(goal, third);
@@ -263,7 +263,7 @@ fn a_motion_with_a_ticket_supersedes_nothing() {
 }
 
 #[test]
-fn a_target_that_moves_while_it_waits_is_followed_from_the_start() {
+fn a_target_that_moves_during_the_wait_is_followed_from_the_start() {
     let mut two = Two::new();
     let [left, mut right] = StartBarrier::new().tickets();
     let goal = two.left.goal(turned(0.1), OnArrival::Hold);
@@ -281,7 +281,7 @@ fn a_target_that_moves_while_it_waits_is_followed_from_the_start() {
 }
 
 #[test]
-fn a_wait_for_the_others_is_no_silence_of_a_stream() {
+fn waiting_for_the_others_does_not_time_out_a_stream() {
     let mut two = Two::new();
     let [left, mut right] = StartBarrier::new().tickets();
     let goal = Goal {
@@ -299,7 +299,7 @@ fn a_wait_for_the_others_is_no_silence_of_a_stream() {
     assert_eq!(two.left.client.record.goal, goal.0, "it has begun");
 }
 
-/// A control function of each kind that swings a little for half a second, and notes when it was
+/// A control function of each kind that swings a little for half a second, and records when it was
 /// first called.
 fn functions(version: Version, called: &Arc<AtomicU64>) -> Vec<(&'static str, Callback)> {
     let swing = |time: f64| {
@@ -365,7 +365,7 @@ fn functions(version: Version, called: &Arc<AtomicU64>) -> Vec<(&'static str, Ca
 }
 
 #[test]
-fn a_control_function_is_not_called_before_the_others_are_there() {
+fn a_control_function_is_not_called_before_the_others_have_joined() {
     for kind in RobotKind::ALL {
         for nth in 0..4 {
             let called = Arc::new(AtomicU64::new(0));
@@ -397,7 +397,7 @@ fn a_control_function_is_not_called_before_the_others_are_there() {
 }
 
 #[test]
-fn a_control_function_whose_others_do_not_come_is_never_called_and_ends_well() {
+fn a_control_function_is_never_called_if_the_others_do_not_join() {
     for kind in RobotKind::ALL {
         for nth in 0..4 {
             let called = Arc::new(AtomicU64::new(0));
@@ -419,7 +419,7 @@ fn a_control_function_whose_others_do_not_come_is_never_called_and_ends_well() {
                 "{kind:?}, {name}"
             );
             assert_eq!(called.load(Ordering::Relaxed), 0, "{name} was not called");
-            // A request that a robot with an error would refuse.
+            // A robot with an error would refuse this request.
             lockstep.request(&Request::AutomaticErrorRecovery);
             lockstep.run(50);
             assert_eq!(lockstep.robot.state().robot_mode, RobotMode::Idle, "{name}");

@@ -79,7 +79,7 @@ fn assert_clean(threads: &[Calls]) {
 #[test]
 fn a_thread_without_a_motion_only_receives_and_notifies_with_and_without_states() {
     trace(
-        a_thread_that_watches_and_one_that_hears_nothing_only_receive_and_ring,
+        a_thread_without_a_motion_only_receives_and_notifies_with_and_without_states,
         &[CONTROL],
         scenarios::watching(),
         assert_clean,
@@ -89,7 +89,7 @@ fn a_thread_without_a_motion_only_receives_and_notifies_with_and_without_states(
 #[test]
 fn targets_are_followed_with_allowed_calls_only() {
     trace(
-        targets_are_followed_with_the_calls_of_a_cycle_alone,
+        targets_are_followed_with_allowed_calls_only,
         &[CONTROL],
         scenarios::targets(),
         assert_clean,
@@ -99,7 +99,7 @@ fn targets_are_followed_with_allowed_calls_only() {
 #[test]
 fn an_engaged_session_makes_allowed_calls_only() {
     trace(
-        an_engaged_session_takes_the_calls_of_a_cycle_alone,
+        an_engaged_session_makes_allowed_calls_only,
         &[CONTROL],
         scenarios::engaged(),
         assert_clean,
@@ -109,7 +109,7 @@ fn an_engaged_session_makes_allowed_calls_only() {
 #[test]
 fn control_functions_and_reflexes_make_allowed_calls_only() {
     trace(
-        control_functions_and_reflexes_take_the_calls_of_a_cycle_alone,
+        control_functions_and_reflexes_make_allowed_calls_only,
         &[CONTROL],
         scenarios::functions(),
         assert_clean,
@@ -119,7 +119,7 @@ fn control_functions_and_reflexes_make_allowed_calls_only() {
 #[test]
 fn asynchronous_targets_make_allowed_calls_only() {
     trace(
-        asynchronous_targets_take_the_calls_of_a_cycle_alone,
+        asynchronous_targets_make_allowed_calls_only,
         &[CONTROL],
         scenarios::asynchronous(),
         assert_clean,
@@ -130,7 +130,7 @@ fn asynchronous_targets_make_allowed_calls_only() {
 fn a_users_thread_makes_allowed_calls_only_while_it_is_the_cycle() {
     let names = [CONTROL, scenarios::ACTIVE];
     trace(
-        a_thread_of_the_users_makes_the_same_calls_while_it_is_the_cycle,
+        a_users_thread_makes_allowed_calls_only_while_it_is_the_cycle,
         &names,
         scenarios::active(),
         |threads| {
@@ -148,7 +148,7 @@ fn a_users_thread_makes_allowed_calls_only_while_it_is_the_cycle() {
 #[test]
 fn any_other_call_is_detected() {
     trace(
-        any_other_call_is_seen,
+        any_other_call_is_detected,
         &[CONTROL],
         scenarios::asking(),
         |threads| {
@@ -162,7 +162,7 @@ fn any_other_call_is_detected() {
 #[test]
 fn a_write_to_anything_but_the_eventfd_is_detected() {
     trace(
-        a_write_to_anything_but_the_bell_is_seen,
+        a_write_to_anything_but_the_eventfd_is_detected,
         &[CONTROL],
         scenarios::writing(),
         |threads| {

@@ -1,4 +1,4 @@
-//! What the arm met: hands, limits, singular postures.
+//! Reflexes caused by pushes, limits and singular postures.
 
 use super::{begin, diagnosis, found, limit, velocities};
 use franka_diagnosis::{Advice, Axis, Bound, Cause, Diagnose, Origin, Quantity, Subject};
@@ -23,8 +23,8 @@ fn a_push_names_axis_force_and_threshold() {
             Callback::motion(version, |_, _| JointVelocities([0.0; 7])),
         );
         lockstep.run(100);
-        // The robot tells what it does to its surroundings: against a push in y, a force in -y. The
-        // hand points downwards, so that y of the stiffness frame is the other way round.
+        // The robot reports the force that it exerts: against a push in y, a force in -y. The hand
+        // points downwards, so y of the stiffness frame is reversed.
         lockstep.robot.touch(Touch::over_time(|t| {
             franka_model::Wrench::new(0.0, (400.0 * t).min(60.0), 0.0, 0.0, 0.0, 0.0)
         }));
@@ -54,7 +54,7 @@ fn a_push_names_axis_force_and_threshold() {
             panic!("{:?}", diagnosis.causes)
         };
         assert_eq!((felt, value), (subject, finding.value));
-        // From 10 N to 25 N by 0.4 N a millisecond, give or take the filter.
+        // From 10 N to 25 N by 0.4 N per millisecond, apart from the filter's delay.
         let led = diagnosis.end.unwrap() - since;
         assert!((25..=45).contains(&led), "{led}");
         assert_eq!(diagnosis.advice, [Advice::Thresholds]);
@@ -91,7 +91,7 @@ fn a_push_on_a_joint_names_it() {
 }
 
 #[test]
-fn a_way_into_the_stretched_arm_is_named_singular() {
+fn a_path_into_the_stretched_arm_is_named_singular() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let mut time = 0.0;
@@ -110,7 +110,7 @@ fn a_way_into_the_stretched_arm_is_named_singular() {
         let (_, subject, _, origin) = found(&diagnosis);
         assert!(matches!(subject, Subject::Joint(_)), "{subject}");
         assert_eq!(origin, Origin::Desired);
-        // At the limit, as well as states of single precision tell.
+        // At the limit, within the single precision of the states.
         let finding = diagnosis.finding.unwrap();
         assert!(
             finding.times().is_some_and(|times| times > 0.95),
@@ -129,7 +129,7 @@ fn a_way_into_the_stretched_arm_is_named_singular() {
 }
 
 #[test]
-fn a_joint_that_runs_into_its_limit_is_named_with_what_was_left() {
+fn a_joint_that_runs_into_its_limit_is_named_with_its_margin() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let work = velocities(&mut lockstep, move |cycle| {
@@ -148,7 +148,7 @@ fn a_joint_that_runs_into_its_limit_is_named_with_what_was_left() {
         else {
             panic!("{:?}", diagnosis.causes)
         };
-        // The range ends in a wall on the one, and behind an envelope on the other.
+        // One robot limits the position alone, the other also the velocity near the limit.
         match lockstep.robot.config().kind {
             RobotKind::Fer => assert!(distance.abs() < 0.001, "{distance}"),
             _ => assert!((0.05..0.2).contains(distance), "{distance}"),
@@ -158,7 +158,7 @@ fn a_joint_that_runs_into_its_limit_is_named_with_what_was_left() {
 }
 
 #[test]
-fn an_arm_that_is_driven_too_fast_by_torques_is_named_by_its_joint() {
+fn torques_that_drive_a_joint_too_fast_name_the_joint() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let patient = CollisionBehavior::uniform([500.0; 7], [500.0; 7], [500.0; 6], [500.0; 6]);

@@ -1,4 +1,4 @@
-//! Packets that were lost, and cycles that were not noted.
+//! Lost packets, and a log without cycles.
 
 use super::{begin, diagnosis, found, stepping, velocities};
 use franka_diagnosis::{Advice, Bound, Cause, Diagnosis, Quantity, Subject};
@@ -71,11 +71,11 @@ fn commands_that_did_not_arrive_are_counted() {
 }
 
 #[test]
-fn a_leap_after_a_loss_is_laid_to_the_loss() {
+fn a_jump_after_a_loss_is_attributed_to_the_loss() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        // Accelerates, so that what the robot makes up for the lost cycles goes on accelerating;
-        // the function does not know, and lets the velocity swing.
+        // Accelerates, so that the robot's extrapolation over the lost cycles goes on accelerating,
+        // while the function's velocity swings back.
         let work = velocities(&mut lockstep, move |cycle| {
             let mut dq = [0.0; 7];
             dq[0] = 0.2 * (0.03 * f64::from(cycle)).sin() * (f64::from(cycle) / 500.0).min(1.0);
@@ -85,7 +85,7 @@ fn a_leap_after_a_loss_is_laid_to_the_loss() {
         lockstep.link.drop_commands(12);
         let diagnosis = diagnosis(&mut lockstep, work);
         assert_eq!(found(&diagnosis).1, Subject::Joint(1));
-        // The robot has judged the first command after the loss, and none of those that were lost.
+        // The robot judges the first command after the loss, and none of the lost ones.
         assert_eq!(diagnosis.cycles_before_end(), Some(1));
         assert!(
             matches!(

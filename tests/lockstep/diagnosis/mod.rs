@@ -1,4 +1,4 @@
-//! Reflexes of the simulated robot, and what the error says of how they came about.
+//! Reflexes of the simulated robot, and the diagnosis of their causes.
 
 mod arm;
 mod losses;
@@ -12,11 +12,11 @@ use franka_rt::session::GoalId;
 use franka_rt::shaping::Shaper;
 use franka_tests::lockstep::Lockstep;
 
-/// Cycles before something happens: enough for a success rate over a hundred of them, and for a log
-/// that has turned over.
+/// Cycles before the fault: enough for a success rate over a hundred of them, and for a log that
+/// has wrapped around.
 const QUIET: u32 = 150;
 
-/// Begins a motion under `callback`, whose commands are sent as they are.
+/// Begins a motion under `callback`, whose commands are sent without filter and limiter.
 pub(crate) fn begin(lockstep: &mut Lockstep, callback: Callback) -> GoalId {
     let version = lockstep.client.version();
     let callback = callback.with_shaper(Shaper::new(version, false, 1000.0));
@@ -25,8 +25,8 @@ pub(crate) fn begin(lockstep: &mut Lockstep, callback: Callback) -> GoalId {
     lockstep.control(program, request).expect("nothing moves")
 }
 
-/// The same under a function that returns the joint velocities, `[rad/s]`, of each cycle, which
-/// count from 1.
+/// Begins a motion under a function that returns the joint velocities, `[rad/s]`, of each cycle,
+/// counted from 1.
 fn velocities(
     lockstep: &mut Lockstep,
     mut at: impl FnMut(u32) -> [f64; 7] + Send + 'static,
@@ -39,10 +39,10 @@ fn velocities(
     begin(lockstep, callback)
 }
 
-/// Runs until a reflex ends the motion; prints what is said of it, and checks its shape.
+/// Runs until a reflex ends the motion; prints the diagnosis and checks its form.
 fn diagnosis(lockstep: &mut Lockstep, work: GoalId) -> Diagnosis {
     let error = lockstep.until_resolved(work, 8000).expect_err("a reflex");
-    let diagnosis = error.diagnose().expect("the robot's doing");
+    let diagnosis = error.diagnose().expect("ended by the robot");
     println!("{diagnosis}\n");
     let text = diagnosis.to_string();
     assert!(text.lines().count() <= 6, "{text}");
@@ -53,7 +53,7 @@ fn diagnosis(lockstep: &mut Lockstep, work: GoalId) -> Diagnosis {
     diagnosis
 }
 
-/// What was found: error, subject, quantity and origin.
+/// The finding: error, subject, quantity and origin.
 fn found(diagnosis: &Diagnosis) -> (RobotError, Subject, Quantity, Origin) {
     let finding = diagnosis.finding.expect("it is visible");
     assert_eq!(diagnosis.error, Some(finding.error));
@@ -65,7 +65,7 @@ fn found(diagnosis: &Diagnosis) -> (RobotError, Subject, Quantity, Origin) {
     )
 }
 
-/// The limit that was exceeded, which the value has to be beyond.
+/// The exceeded limit; asserts that the value is beyond it.
 fn limit(diagnosis: &Diagnosis) -> f64 {
     let finding = diagnosis.finding.expect("it is visible");
     let Some(limit) = finding.bound.limit() else {

@@ -1,4 +1,4 @@
-//! Commands that step.
+//! Reflexes caused by steps in the commands.
 
 use super::{QUIET, begin, diagnosis, found, limit, stepping, velocities};
 use franka_diagnosis::{Advice, Axis, Cause, Origin, Quantity, Subject};
@@ -83,7 +83,7 @@ fn a_step_in_joint_positions_names_joint_acceleration_and_size() {
 }
 
 #[test]
-fn a_velocity_that_steps_names_the_joint_and_what_it_was_asked_for() {
+fn a_velocity_that_steps_names_the_joint_and_the_commanded_acceleration() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let mut dq = stepping(6, 0.2);
@@ -115,7 +115,7 @@ fn a_velocity_that_steps_names_the_joint_and_what_it_was_asked_for() {
 fn a_jerk_alone_names_the_step_in_acceleration() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        // 0.007 rad/s more in every cycle are 7 rad/s², less than any joint may have, at once.
+        // 0.007 rad/s more in every cycle are 7 rad/s² at once, less than the limit of any joint.
         let work = velocities(&mut lockstep, move |cycle| {
             let mut dq = [0.0; 7];
             dq[1] = 0.007 * f64::from(cycle.max(QUIET) - QUIET);
@@ -203,7 +203,7 @@ fn a_first_command_elsewhere_is_named_as_such() {
 }
 
 #[test]
-fn a_motion_that_is_finished_at_speed_is_told_to_come_to_rest() {
+fn a_motion_finished_at_speed_is_advised_to_come_to_rest() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let mut cycle = 0;

@@ -1,4 +1,4 @@
-//! Sessions whose setpoints the robot's own controller takes, and observers.
+//! Sessions under the robot's own controller, and observers.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
 #[test]
-fn the_robot_controller_takes_joints_through_every_kind_of_goal() {
+fn the_robot_controller_follows_joints_through_every_kind_of_goal() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage_with(Engagement {
@@ -51,7 +51,7 @@ fn the_robot_controller_takes_joints_through_every_kind_of_goal() {
 }
 
 #[test]
-fn the_robot_controller_takes_poses() {
+fn the_robot_controller_follows_poses() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage_with(Engagement {
@@ -80,7 +80,7 @@ fn the_robot_controller_takes_poses() {
 }
 
 #[test]
-fn poses_with_their_elbow_move_the_joints_of_the_robot_as_the_reference() {
+fn poses_with_an_elbow_move_the_robots_joints_like_the_reference() {
     for_each_robot(|ready| {
         for lost in [0, 1, 2, 5, 12] {
             let mut lockstep = ready();
@@ -107,14 +107,14 @@ fn poses_with_their_elbow_move_the_joints_of_the_robot_as_the_reference() {
                 }
                 sent = lockstep.client.record.q_ref;
             }
-            // What a robot's state is rounded by.
+            // The rounding of a robot's state.
             assert!(off < 3e-7, "{off} rad");
             lockstep.until_resolved(goal, 6000).unwrap();
         }
     });
 }
 
-/// The robot's controller, once for each kind of setpoint.
+/// The robot's controller with each kind of setpoint.
 const CONTROLLERS: [Backend; 2] = [
     Backend::RobotController(Setpoints::Joints),
     Backend::RobotController(Setpoints::Poses),
@@ -168,10 +168,10 @@ fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
     });
 }
 
-/// On the way, an arm is pushed hard enough to meet the force cap, the leash and the deviation of
-/// the session's own law.
+/// During the motion the arm is pushed, hard enough for the force cap, the leash and the deviation
+/// guard of the session's own law to bind.
 #[test]
-fn only_the_guards_that_a_backend_has_bind_when_the_arm_is_pushed() {
+fn only_guards_of_the_backend_bind_when_the_arm_is_pushed() {
     for_each_robot(|ready| {
         for backend in [Backend::Torques].into_iter().chain(CONTROLLERS) {
             let mut lockstep = ready();
@@ -236,7 +236,7 @@ fn poses_are_refused_to_a_stretched_arm() {
 }
 
 #[test]
-fn a_setpoint_goes_on_from_where_the_robot_went_without_commands() {
+fn setpoints_continue_from_the_robots_own_extrapolation() {
     for_each_robot(|ready| {
         for lost in [1, 2, 5, 12] {
             let mut lockstep = ready();
@@ -258,7 +258,7 @@ fn a_setpoint_goes_on_from_where_the_robot_went_without_commands() {
 }
 
 #[test]
-fn an_observer_sees_every_cycle_and_its_panic_is_its_own() {
+fn an_observer_sees_every_cycle_and_its_panic_ends_nothing_else() {
     for_each_robot(|ready| {
         let (seen, cycles) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let mut lockstep = ready();

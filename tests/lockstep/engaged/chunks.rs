@@ -1,5 +1,5 @@
-//! What ends chunks: a goal that is taken back or given up follows none any more, and one that is
-//! followed goes through its points.
+//! The end of chunks: a cancelled or aborted goal follows no chunk any more, and a followed chunk
+//! passes through its points.
 
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ fn give(lockstep: &mut Lockstep, engaged: GoalId, goal: Goal, chunk: Chunk) -> G
 }
 
 #[test]
-fn a_chunk_that_waits_for_its_time_is_taken_back_with_the_one_before_it() {
+fn a_chunk_that_waits_for_its_time_is_cancelled_with_the_previous_one() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -40,7 +40,7 @@ fn a_chunk_that_waits_for_its_time_is_taken_back_with_the_one_before_it() {
 }
 
 #[test]
-fn a_chunk_that_is_followed_to_its_end_after_silence_still_needs_its_deadman() {
+fn a_chunk_followed_to_its_end_after_a_timeout_still_needs_its_deadman() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
         let goal = watched(&mut lockstep, Target::Rest, 100, OnTimeout::Hold);
@@ -60,13 +60,13 @@ fn a_chunk_that_is_followed_to_its_end_after_silence_still_needs_its_deadman() {
 }
 
 #[test]
-fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
+fn a_chunk_that_arrives_after_its_goal_is_held_does_not_move_the_arm() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let goal = watched(&mut lockstep, Target::Rest, 50, OnTimeout::Hold);
         let goal = give(&mut lockstep, engaged, goal, chunk(0.0, 0.05));
-        // It settles, and the next chunk leaves before that is known.
+        // The goal settles, and the next chunk is sent before the lifecycle knows.
         lockstep.client.lifecycle_is_paused = true;
         lockstep.run(2000);
         lockstep.chunk(engaged, chunk(0.05, 0.2)).unwrap();
@@ -75,7 +75,7 @@ fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
         let outcome = lockstep.until_resolved(goal, 10);
         assert!(matches!(outcome, Err(MotionError::Held(_))), "{outcome:?}");
         assert!((lockstep.robot.q()[0] - turned_q(0.05)[0]).abs() < 2e-3);
-        // The one after it is followed.
+        // The chunk after that is followed.
         lockstep.chunk(engaged, chunk(0.05, 0.1)).unwrap();
         lockstep.run(2000);
         assert!((lockstep.robot.q()[0] - turned_q(0.1)[0]).abs() < 2e-3);
@@ -83,7 +83,7 @@ fn a_chunk_that_comes_when_its_goal_is_said_to_be_held_does_not_move_the_arm() {
 }
 
 #[test]
-fn a_first_point_far_in_the_future_does_not_let_the_arm_run_on_until_then() {
+fn an_arm_brakes_before_a_first_point_far_in_the_future() {
     for_each_robot(|ready| {
         for joints in [true, false] {
             let mut lockstep = ready();
@@ -120,7 +120,7 @@ fn lost_commands_do_not_lead_past_the_points_of_a_chunk() {
                 ..Engagement::default()
             });
             let start = lockstep.reference_pose();
-            // There and back: the end alone leads nowhere.
+            // There and back, since the last point alone would not move the arm.
             let there = |k: u32| 0.06 * (1.0 - (f64::from(k) * 0.3).cos());
             let count = 0..=21;
             let apart = Duration::from_millis(100);
@@ -150,7 +150,7 @@ fn lost_commands_do_not_lead_past_the_points_of_a_chunk() {
 }
 
 #[test]
-fn points_that_no_arm_could_mean_are_refused() {
+fn points_too_large_to_plan_are_refused() {
     let lockstep = Lockstep::ready();
     let start = lockstep.true_pose();
     let apart = Duration::from_millis(50);

@@ -1,5 +1,5 @@
-//! Corners of sessions that go from goal to goal: what meets a goal that was taken back, and what a
-//! session without its deadman makes of its end.
+//! Corner cases of sessions: orders that meet a cancelled goal, and the end of a session without
+//! its deadman.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ fn give_chunk(lockstep: &mut Lockstep, engaged: GoalId, from: f64, to: f64) -> G
 }
 
 #[test]
-fn a_chunk_after_chunks_that_were_taken_back_is_a_goal_of_its_own() {
+fn a_chunk_after_cancelled_chunks_is_a_new_goal() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -35,7 +35,7 @@ fn a_chunk_after_chunks_that_were_taken_back_is_a_goal_of_its_own() {
 }
 
 #[test]
-fn a_session_is_tuned_also_while_a_goal_is_taken_back() {
+fn a_session_can_be_tuned_while_a_goal_is_cancelled() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -60,7 +60,7 @@ fn a_session_is_tuned_also_while_a_goal_is_taken_back() {
 }
 
 #[test]
-fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
+fn a_session_continues_after_a_stream_whose_end_would_end_a_motion() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -85,7 +85,7 @@ fn a_session_goes_on_after_a_stream_that_was_to_end_a_motion() {
 }
 
 #[test]
-fn a_stop_and_the_end_of_a_session_come_well_without_its_deadman() {
+fn a_session_can_be_stopped_and_ended_without_its_deadman() {
     for_each_robot(|ready| {
         for stops in [true, false] {
             let (mut lockstep, engaged, token) = guarded(ready, 50);
@@ -105,7 +105,7 @@ fn a_stop_and_the_end_of_a_session_come_well_without_its_deadman() {
 }
 
 #[test]
-fn a_session_that_is_to_end_ends_though_its_last_goal_is_taken_back() {
+fn a_session_ends_as_asked_even_if_its_last_goal_is_cancelled() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -127,10 +127,10 @@ fn a_session_that_is_to_end_ends_though_its_last_goal_is_taken_back() {
 }
 
 #[test]
-fn a_stop_that_comes_too_late_for_a_session_ends_it_nevertheless() {
+fn a_stop_that_arrives_while_a_session_ends_still_resolves_everything() {
     for_each_robot(|ready| {
         let mut late = 0;
-        // While the arm is being let go: with its states lost, the stop is not seen before the end.
+        // While the motion ends: its states are lost, so that the stop is not seen before the end.
         for wait in 0..150 {
             let mut lockstep = ready();
             let engaged = lockstep.engage();
@@ -173,7 +173,7 @@ fn a_chunk_goes_on_when_its_budget_is_tuned() {
         lockstep.run(150);
         let dq = lockstep.client.record.dq_ref[0];
         assert!(dq > 0.9 * most && dq < 1.05 * most, "{dq} of {most} rad/s");
-        // Also on its way to where it ended.
+        // The velocity holds, so the last point is reached later.
         lockstep.run(250);
         assert!(lockstep.robot.q()[0] < turned_q(0.19)[0], "it is late");
         assert_eq!(lockstep.tune(engaged, budget(slow.scaled(1.5))), Ok(()));
@@ -183,13 +183,13 @@ fn a_chunk_goes_on_when_its_budget_is_tuned() {
 }
 
 #[test]
-fn a_goal_that_was_given_up_and_rests_is_not_taken_up_again() {
+fn an_aborted_goal_at_rest_is_not_resumed() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
         let goal = watched(&mut lockstep, turned(0.05), 50, OnTimeout::Hold);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
-        // It settles, and the next target leaves before that is known.
+        // The goal settles, and the next target is sent before the lifecycle knows.
         lockstep.client.lifecycle_is_paused = true;
         lockstep.run(2000);
         let next = turned(0.2);
@@ -203,7 +203,7 @@ fn a_goal_that_was_given_up_and_rests_is_not_taken_up_again() {
 }
 
 #[test]
-fn a_hand_that_leads_to_no_last_target_is_braked_and_says_so() {
+fn guiding_that_times_out_is_braked_and_reported() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();

@@ -1,4 +1,4 @@
-//! Goals that are given up: their stream is silent, or the deadman is.
+//! Goals aborted because their stream or the deadman timed out.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use franka_rt::lifecycle::{MotionError, Tuning};
 use franka_rt::session::{Free, GoalId, Guard, Lapse, OnArrival, OnTimeout, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
-/// A session that follows a stream which falls silent, and how that ends.
+/// Runs a session whose stream times out, and returns it with the stream's outcome.
 fn silent_stream(
     ready: &dyn Fn() -> Lockstep,
     on_timeout: OnTimeout,
@@ -30,7 +30,7 @@ fn silent_stream(
 }
 
 #[test]
-fn a_stream_that_falls_silent_is_held_or_braked_and_the_outcome_says_which() {
+fn a_stream_that_times_out_is_held_or_braked_and_the_outcome_says_which() {
     for_each_robot(|ready| {
         let silence = Duration::from_millis(100);
         let lapse = Lapse::Silent { silence };
@@ -48,7 +48,7 @@ fn a_stream_that_falls_silent_is_held_or_braked_and_the_outcome_says_which() {
         assert_eq!(error, MotionError::Braked(lapse));
         assert!((lockstep.robot.q()[0] - last).abs() > 0.02, "short of it");
         assert_stays(&mut lockstep, engaged);
-        // The session is as good as before.
+        // The session still accepts goals.
         let goal = lockstep
             .within(engaged, turned(0.0), OnArrival::ReportAndHold)
             .unwrap();
@@ -57,7 +57,7 @@ fn a_stream_that_falls_silent_is_held_or_braked_and_the_outcome_says_which() {
 }
 
 #[test]
-fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
+fn a_deadman_timeout_holds_the_arm_until_the_deadman_is_kept_alive_again() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
         let goal = lockstep
@@ -95,7 +95,7 @@ fn a_silent_deadman_holds_the_arm_until_it_lives_again() {
 }
 
 #[test]
-fn a_stream_does_not_outlive_the_deadman_however_often_its_targets_come() {
+fn a_deadman_timeout_ends_a_stream_with_targets_at_any_rate() {
     for_each_robot(|ready| {
         for period in [1, 20, 90] {
             let (mut lockstep, engaged, token) = guarded(ready, 50);
@@ -124,7 +124,7 @@ fn a_stream_does_not_outlive_the_deadman_however_often_its_targets_come() {
     });
 }
 
-/// As stiff as ever, and as fast: what a program that tunes all the time sends.
+/// Tunes the session to its present gains and budget, as a program does that tunes all the time.
 fn same_again(lockstep: &mut Lockstep, engaged: GoalId, budget: f64) {
     let goal = lockstep.goal(turned(0.0), OnArrival::Hold);
     let tuning = Tuning {
@@ -136,7 +136,7 @@ fn same_again(lockstep: &mut Lockstep, engaged: GoalId, budget: f64) {
 }
 
 #[test]
-fn who_tunes_does_not_stand_in_for_a_stream_that_is_silent() {
+fn tuning_does_not_keep_a_silent_stream_alive() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -144,7 +144,7 @@ fn who_tunes_does_not_stand_in_for_a_stream_that_is_silent() {
         let goal = watched(&mut lockstep, turned(0.8), 100, OnTimeout::Brake);
         let goal = lockstep.submit_within(engaged, goal).unwrap();
         let mut tuned = 0;
-        // Also while the arm brakes, when the stream is given up already.
+        // Also while the arm brakes, after the stream is aborted.
         while lockstep.client.outcome(goal).is_none() {
             lockstep.run(20);
             tuned += 1;
@@ -158,7 +158,7 @@ fn who_tunes_does_not_stand_in_for_a_stream_that_is_silent() {
 }
 
 #[test]
-fn who_tunes_does_not_send_the_arm_on_to_what_was_given_up() {
+fn tuning_does_not_resume_an_aborted_goal() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, error) = silent_stream(ready, OnTimeout::Brake);
         assert!(matches!(error, MotionError::Braked(_)));
@@ -172,8 +172,7 @@ fn who_tunes_does_not_send_the_arm_on_to_what_was_given_up() {
     });
 }
 
-/// Holds the end effector firmly against a push of 8 N, which the light damping of a guided arm
-/// does not.
+/// Asserts that the arm resists a push of 8 N, which the light damping of a guided arm does not.
 fn assert_firm(lockstep: &mut Lockstep) {
     let before = lockstep.true_pose();
     let push = Wrench::new(0.0, 8.0, 0.0, 0.0, 0.0, 0.0);
@@ -184,7 +183,7 @@ fn assert_firm(lockstep: &mut Lockstep) {
 }
 
 #[test]
-fn an_arm_that_was_guided_is_held_firmly_once_its_deadman_is_dropped() {
+fn a_guided_arm_is_held_firmly_once_its_deadman_is_dropped() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 5000);
         let guided = Target::Guide(Free::ALL);
@@ -199,7 +198,7 @@ fn an_arm_that_was_guided_is_held_firmly_once_its_deadman_is_dropped() {
 }
 
 #[test]
-fn a_stream_that_guides_does_not_soften_the_hold_of_its_silent_deadman() {
+fn a_guiding_stream_does_not_soften_the_hold_after_a_deadman_timeout() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
         let guided = Target::Guide(Free::ALL);
@@ -222,7 +221,7 @@ fn a_stream_that_guides_does_not_soften_the_hold_of_its_silent_deadman() {
 }
 
 #[test]
-fn tuning_does_not_soften_the_hold_of_a_silent_guide() {
+fn tuning_does_not_soften_the_hold_after_guiding_timed_out() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();

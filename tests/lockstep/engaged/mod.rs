@@ -1,9 +1,11 @@
 //! Sessions that go from goal to goal.
 //!
-//! * `lapses`: silent streams and deadmen. `options`: gains, force cap and regions. `backends`: the
-//!   robot's own controller, and observers. `chunks`: what ends them. `corners`: what meets a goal
-//!   that was taken back, and a session without its deadman. `waiting`: sessions that begin while
-//!   the arm is let go.
+//! * `lapses`: timeouts of streams and deadmen.
+//! * `options`: gains, force cap and regions.
+//! * `backends`: the robot's own controller, and observers.
+//! * `chunks`: the end of chunks.
+//! * `corners`: orders that meet a cancelled goal, and sessions without their deadman.
+//! * `waiting`: sessions that are requested while the previous motion ends.
 
 mod backends;
 mod chunks;
@@ -38,7 +40,7 @@ fn turned_q(by: f64) -> [f64; 7] {
     q
 }
 
-/// Eleven points from one angle of joint 1 to another, in half a second.
+/// Eleven points between two angles of joint 1, in half a second.
 fn chunk(from: f64, to: f64) -> Chunk {
     let point = |k: u32| {
         let way = from + (to - from) * f64::from(k) / 10.0;
@@ -47,7 +49,7 @@ fn chunk(from: f64, to: f64) -> Chunk {
     Chunk::joints((0..=10).map(point)).expect("points 50 ms apart")
 }
 
-/// A goal that is to be held, and may be silent for so many milliseconds.
+/// Submits a held goal whose stream times out after so many milliseconds.
 fn watched(
     lockstep: &mut Lockstep,
     target: Target,
@@ -63,8 +65,7 @@ fn watched(
     }
 }
 
-/// An arm engaged by a session that is bound to a deadman, which may be silent for so many
-/// milliseconds.
+/// Returns an arm with a session bound to a deadman that times out after so many milliseconds.
 fn guarded(ready: &dyn Fn() -> Lockstep, milliseconds: u64) -> (Lockstep, GoalId, Deadman) {
     let (token, monitor) = Deadman::new(Duration::from_millis(milliseconds));
     let mut lockstep = ready();
@@ -84,7 +85,7 @@ fn assert_stays(lockstep: &mut Lockstep, engaged: GoalId) {
 }
 
 #[test]
-fn goals_come_to_their_ends_and_the_session_goes_on_until_it_is_ended() {
+fn goals_resolve_and_the_session_continues_until_it_is_ended() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -98,7 +99,7 @@ fn goals_come_to_their_ends_and_the_session_goes_on_until_it_is_ended() {
             assert_stays(&mut lockstep, engaged);
         }
         lockstep.disengage(engaged);
-        // A motion that comes meanwhile waits for the session to end.
+        // A motion requested meanwhile waits for the session to end.
         let next = lockstep.begin(turned(0.05));
         lockstep.until_resolved(engaged, 1000).unwrap();
         lockstep.until_resolved(next, 6000).unwrap();
@@ -109,7 +110,7 @@ fn goals_come_to_their_ends_and_the_session_goes_on_until_it_is_ended() {
 }
 
 #[test]
-fn a_goal_of_another_kind_takes_over_in_mid_motion() {
+fn a_goal_of_another_kind_supersedes_in_mid_motion() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -137,7 +138,7 @@ fn a_goal_of_another_kind_takes_over_in_mid_motion() {
 }
 
 #[test]
-fn nobody_else_gets_the_arm_meanwhile_but_anybody_can_stop_it() {
+fn a_session_excludes_other_motions_but_any_handle_can_stop_it() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -159,7 +160,7 @@ fn nobody_else_gets_the_arm_meanwhile_but_anybody_can_stop_it() {
 }
 
 #[test]
-fn a_goal_that_is_taken_back_leaves_the_arm_held() {
+fn a_cancelled_goal_leaves_the_arm_held() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -171,14 +172,14 @@ fn a_goal_that_is_taken_back_leaves_the_arm_held() {
         let outcome = lockstep.until_resolved(goal, 2000);
         assert_eq!(outcome, Err(MotionError::Stopped));
         assert_stays(&mut lockstep, engaged);
-        // Dropping the session itself lets the arm go.
+        // Dropping the session itself ends the motion.
         lockstep.cancel(engaged);
         lockstep.until_resolved(engaged, 1000).unwrap();
     });
 }
 
 #[test]
-fn a_reflex_is_what_every_goal_hears_that_comes_after_it() {
+fn every_goal_after_a_reflex_fails_with_that_reflex() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -198,7 +199,7 @@ fn a_reflex_is_what_every_goal_hears_that_comes_after_it() {
 }
 
 #[test]
-fn a_goal_that_comes_while_the_session_is_ending_hears_how_it_ended() {
+fn a_goal_submitted_while_the_session_ends_gets_the_sessions_outcome() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -240,7 +241,7 @@ fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
         assert!(moved.x.abs() < 0.01 && moved.z.abs() < 0.01, "{moved}");
         let turned = PoseError::between(&lockstep.true_pose(), &start).rotation;
         assert!(turned < 0.05, "{turned} rad");
-        // Taken over while the hand still moves it.
+        // Superseded while the hand still moves the arm.
         let hold = lockstep
             .within(engaged, Target::Rest, OnArrival::ReportAndHold)
             .unwrap();
@@ -249,7 +250,7 @@ fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
     });
 }
 
-/// A policy that predicts a sine of joint 1 at 10 Hz, from observations that are 150 ms old: 16
+/// A policy that predicts a sine of joint 1 ten times a second, from observations 150 ms old: 16
 /// points, 50 ms apart.
 #[test]
 fn chunks_of_a_slow_policy_become_one_smooth_motion() {
@@ -284,7 +285,7 @@ fn chunks_of_a_slow_policy_become_one_smooth_motion() {
         }
         println!("off by {worst} rad at most");
         assert!(worst < 4e-3, "{worst} rad");
-        // A pose takes over from the last chunk.
+        // A pose supersedes the last chunk.
         let pose = up(&lockstep, 0.05);
         let goal = lockstep
             .within(engaged, Target::Pose(pose), OnArrival::ReportAndHold)

@@ -1,4 +1,4 @@
-//! What a session is tuned to, and what is refused.
+//! Tuning of a session, and options that are refused.
 
 use super::{turned, up};
 use franka_model::Wrench;
@@ -9,7 +9,7 @@ use franka_rt::session::{ForceCap, Free, Goal, GoalError, Guard, Lapse, OnArriva
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 #[test]
-fn gains_are_tuned_without_a_step_and_only_within_their_bounds() {
+fn tuning_gains_does_not_step_the_torque_and_keeps_their_bounds() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -60,7 +60,7 @@ fn gains_are_tuned_without_a_step_and_only_within_their_bounds() {
 }
 
 #[test]
-fn gains_that_do_not_hold_for_a_guiding_hand_are_checked_for_what_comes_after() {
+fn gains_unused_while_guiding_are_checked_for_the_goal_after_it() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -104,8 +104,8 @@ fn a_force_cap_is_tuned_within_its_bounds() {
                 "{outcome:?}"
             );
         }
-        // 12 N of push hold against the default cap, and not against one of 8 N, until it is taken
-        // away.
+        // The arm resists a push of 12 N under the default cap, and not under one of 8 N, until
+        // that is removed.
         lockstep
             .robot
             .push_end_effector(Wrench::new(0.0, 12.0, 0.0, 0.0, 0.0, 0.0), 1_000_000);
@@ -122,7 +122,7 @@ fn a_force_cap_is_tuned_within_its_bounds() {
 }
 
 #[test]
-fn a_session_keeps_out_of_its_regions_and_refuses_what_is_none() {
+fn a_session_keeps_out_of_its_regions_and_refuses_invalid_ones() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let floor = Obstacle::floor(lockstep.true_pose().translation.z - 0.1);
@@ -153,7 +153,7 @@ fn a_session_keeps_out_of_its_regions_and_refuses_what_is_none() {
 }
 
 #[test]
-fn gains_that_would_not_hold_the_arm_are_refused() {
+fn gains_too_weak_to_hold_the_arm_are_refused() {
     let mut lockstep = Lockstep::ready();
     for gains in [
         Gains {

@@ -1,4 +1,4 @@
-//! Sessions that begin while the motion before them lets go of the arm.
+//! Sessions that are requested while the previous motion ends.
 
 use super::{assert_stays, turned};
 use franka_proto::MoveControllerMode;
@@ -12,7 +12,7 @@ fn ask(lockstep: &mut Lockstep) -> Result<GoalId, MotionError> {
     lockstep.try_engage(Engagement::default())
 }
 
-/// An arm on its way, and the goal of its motion: of a session's own if it is to be engaged.
+/// Returns a moving arm and the goal of its motion; with `engaged`, the goal is the session.
 fn moving(ready: &dyn Fn() -> Lockstep, engaged: bool) -> (Lockstep, GoalId) {
     let mut lockstep = ready();
     let motion = if engaged {
@@ -29,14 +29,14 @@ fn moving(ready: &dyn Fn() -> Lockstep, engaged: bool) -> (Lockstep, GoalId) {
 }
 
 #[test]
-fn a_session_waits_for_the_end_of_what_was_dropped() {
+fn a_session_waits_for_the_end_of_a_dropped_motion() {
     for_each_robot(|ready| {
         for engaged in [false, true] {
             let (mut lockstep, motion) = moving(ready, engaged);
             assert_eq!(ask(&mut lockstep), Err(MotionError::Busy), "it moves");
             lockstep.cancel(motion);
             let session = ask(&mut lockstep).expect("the arm is let go");
-            // It has the arm already, as far as others are concerned.
+            // Other motions are refused already.
             assert_eq!(ask(&mut lockstep), Err(MotionError::Busy));
             let goal = lockstep.goal(turned(0.0), OnArrival::ReportAndFinish);
             assert_eq!(lockstep.submit(goal), Err(MotionError::Busy));
@@ -51,7 +51,7 @@ fn a_session_waits_for_the_end_of_what_was_dropped() {
 }
 
 #[test]
-fn a_session_that_waits_can_be_taken_back_and_stopped() {
+fn a_waiting_session_can_be_cancelled_and_stopped() {
     for_each_robot(|ready| {
         for engaged in [false, true] {
             for stopped in [false, true] {
@@ -74,7 +74,7 @@ fn a_session_that_waits_can_be_taken_back_and_stopped() {
 }
 
 #[test]
-fn a_session_is_refused_while_a_stop_is_awaited() {
+fn a_session_is_refused_during_a_stop() {
     for_each_robot(|ready| {
         let (mut lockstep, _) = moving(ready, false);
         let stop = lockstep.stop().expect("it moves");
@@ -87,7 +87,7 @@ fn a_session_is_refused_while_a_stop_is_awaited() {
 }
 
 #[test]
-fn a_stream_that_ends_while_it_waits_for_the_end_of_a_session_ends_its_own_motion() {
+fn a_stream_that_ends_while_it_waits_for_a_session_ends_its_own_motion() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -102,7 +102,7 @@ fn a_stream_that_ends_while_it_waits_for_the_end_of_a_session_ends_its_own_motio
 }
 
 #[test]
-fn a_session_that_waits_for_the_end_of_a_program_is_stopped_with_it() {
+fn a_session_that_waits_for_a_program_is_stopped_with_it() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let version = lockstep.client.version();

@@ -1,4 +1,4 @@
-//! What a faultless program commands: a short, smooth motion that begins and ends at rest.
+//! The commands of a faultless program: a short, smooth motion that begins and ends at rest.
 
 use franka_proto::{MoveGeneratorMode, RobotState};
 use franka_rt::control::{
@@ -42,7 +42,7 @@ pub(crate) fn share(ms: u64) -> f64 {
     }
 }
 
-/// Full speed of a generator's commands.
+/// The full speed of a generator's commands.
 pub(crate) fn full_speed(generator: MoveGeneratorMode) -> f64 {
     match generator {
         MoveGeneratorMode::JointPosition | MoveGeneratorMode::JointVelocity => JOINT_SPEED,
@@ -53,8 +53,8 @@ pub(crate) fn full_speed(generator: MoveGeneratorMode) -> f64 {
     }
 }
 
-/// Way made at full speed 1 until `ms`, `[s]`: the sum over the cycles, as the robot takes
-/// differences.
+/// The distance covered until `ms` at a full speed of 1, `[s]`: a sum over the cycles, since the
+/// robot takes differences.
 pub(crate) fn way(ms: u64) -> f64 {
     (1..=ms.min(END)).map(share).sum::<f64>() * 1e-3
 }
@@ -93,8 +93,8 @@ pub(crate) fn cartesian_velocities(_: &RobotState, ms: u64) -> CartesianVelociti
     }
 }
 
-/// Torque on the joint, `[N m]`: one way for half of the time and the other way for the rest, so that
-/// the arm ends at rest. In the middle it is fastest.
+/// Torque on the joint, `[N m]`: one period of a sine, so that the arm ends at rest. It is fastest in
+/// the middle.
 pub(crate) fn torque(ms: u64) -> f64 {
     let duration = END - 2 * REST;
     match ms {
@@ -103,7 +103,7 @@ pub(crate) fn torque(ms: u64) -> f64 {
     }
 }
 
-/// Torques of a motion that has nothing else.
+/// Torques of a motion without a generator.
 pub(crate) fn torques(_: &RobotState, ms: u64) -> Torques {
     let mut tau = [0.0; 7];
     tau[JOINT] = torque(ms);

@@ -1,4 +1,4 @@
-//! Connections that end, and robots that say nothing or nonsense.
+//! Connections that end, and robots that send nothing or invalid messages.
 
 use franka_proto::framing::Header;
 use franka_proto::{MoveStatus, RobotError};
@@ -7,7 +7,7 @@ use franka_rt::lifecycle::{CloseReason, END_TIMEOUT, MotionError, START_TIMEOUT}
 use franka_tests::lockstep::Outcome;
 
 use crate::faults::expect::Expect;
-use crate::faults::program::Deed;
+use crate::faults::program::Misbehaviour;
 use crate::faults::trial::{Moment, Trial};
 use crate::faults::variant::Variant;
 use crate::faults::{Matrix, course};
@@ -30,12 +30,13 @@ fn protocol(what: &str) -> Expect {
     Expect::Other(protocol, what.to_owned())
 }
 
-/// How it turned out, if it has.
+/// The outcome so far, if resolved.
 fn so_far(trial: &Trial) -> Option<Outcome> {
     trial.lockstep.client.outcome(trial.work).cloned()
 }
 
-/// It has turned out as expected, nothing more starts, and everything works on a new connection.
+/// Asserts that the outcome is the expected one, that no motion starts any more, and that the next
+/// motion works on a new connection.
 fn starts_over(mut trial: Trial, expected: &Expect) {
     let outcome = so_far(&trial).expect("resolved at once");
     expected.check(&trial, &outcome);
@@ -53,24 +54,23 @@ fn a_robot_that_closes_the_connection_ends_everything() {
     for variant in Variant::all() {
         for moment in MOMENTS {
             matrix.case(format_args!("{variant}/{moment:?}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 trial.lockstep.robot.disconnect();
                 trial.lockstep.client.close(CloseReason::ClosedByPeer);
                 starts_over(trial, &closed(REASON));
             });
-            // The robot takes requests and commands, and sends states, until the client has closed
-            // its own side.
+            // The robot accepts requests and commands, and sends states, until the client has
+            // closed its side.
             matrix.case(format_args!("{variant}/{moment:?}/half"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 trial.lockstep.client.close(CloseReason::ClosedByPeer);
                 for _ in 0..5 {
                     trial.lockstep.tick();
                     let activity = trial.lockstep.client.record.activity;
                     let commanded = matches!(activity, Activity::Running | Activity::Finishing);
-                    // Nobody is in charge of a program any more; an arm that follows goals is
-                    // braked.
+                    // A program is dropped at once; an arm that follows goals is braked.
                     assert!(!commanded || variant.is_target(), "{activity:?}");
                 }
                 trial.lockstep.robot.disconnect();
@@ -81,14 +81,14 @@ fn a_robot_that_closes_the_connection_ends_everything() {
     matrix.finish();
 }
 
-/// A message that cannot be cut out of the stream leaves nothing to be read after it.
+/// After a message of invalid size, the rest of the stream cannot be read.
 #[test]
-fn bytes_that_are_no_message_end_the_connection() {
+fn an_invalid_message_ends_the_connection() {
     let mut matrix = Matrix::new("garbage");
     for variant in Variant::all() {
         for moment in MOMENTS {
             matrix.case(format_args!("{variant}/{moment:?}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 trial.lockstep.client.on_bytes(&[0; Header::SIZE]);
                 trial.lockstep.robot.disconnect();
@@ -99,9 +99,9 @@ fn bytes_that_are_no_message_end_the_connection() {
     matrix.finish();
 }
 
-/// The reply is lost on its way: the robot is told to stop, and the connection serves on.
+/// The reply is unreadable: the robot is told to stop, and the connection stays open.
 #[test]
-fn a_reply_that_means_nothing_ends_the_motion() {
+fn an_invalid_reply_ends_the_motion() {
     let mut matrix = Matrix::new("nonsense");
     let texts = [
         (
@@ -117,7 +117,7 @@ fn a_reply_that_means_nothing_ends_the_motion() {
         for moment in MOMENTS {
             for (status, text) in texts {
                 matrix.case(format_args!("{variant}/{moment:?}/{status}"), || {
-                    let mut trial = Trial::begin(variant, Deed::Faultless);
+                    let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                     trial.until(moment);
                     let (id, _) = trial.lockstep.client.newest_motion();
                     let header = Header {
@@ -132,7 +132,7 @@ fn a_reply_that_means_nothing_ends_the_motion() {
                     let violation =
                         |error: &MotionError| matches!(error, MotionError::Violation(_));
                     Expect::Other(violation, text.to_owned()).check(&trial, &outcome);
-                    // Nobody awaits it any more, but it is stopped.
+                    // The motion is resolved, but still has to be stopped.
                     let unchanged = trial.outcome();
                     assert_eq!(unchanged, outcome);
                     trial.works_again();
@@ -143,13 +143,13 @@ fn a_reply_that_means_nothing_ends_the_motion() {
     matrix.finish();
 }
 
-/// libfranka waits for ever.
+/// libfranka waits forever.
 #[test]
-fn a_move_that_never_arrives_is_given_up() {
+fn a_move_that_never_arrives_times_out() {
     let mut matrix = Matrix::new("no-move");
     for variant in Variant::all() {
         matrix.case(variant, || {
-            let mut trial = Trial::begin(variant, Deed::Faultless);
+            let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
             trial.lockstep.link.requests = false;
             trial.tick();
             trial.lockstep.link.requests = true;
@@ -165,13 +165,13 @@ fn a_move_that_never_arrives_is_given_up() {
     matrix.finish();
 }
 
-/// libfranka waits for ever.
+/// libfranka waits forever.
 #[test]
-fn a_motion_whose_replies_are_lost_is_given_up_once_it_has_ended() {
+fn a_motion_whose_replies_are_lost_times_out_once_it_has_ended() {
     let mut matrix = Matrix::new("no-reply");
     for variant in Variant::all() {
         matrix.case(variant, || {
-            let mut trial = Trial::begin(variant, Deed::Faultless);
+            let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
             trial.lockstep.link.replies = false;
             while !trial.has_ended() {
                 trial.tick();
@@ -189,18 +189,18 @@ fn a_motion_whose_replies_are_lost_is_given_up_once_it_has_ended() {
     matrix.finish();
 }
 
-/// The robot, which gets no commands either, stops itself meanwhile.
+/// The robot gets no commands either, and stops itself meanwhile.
 #[test]
-fn a_robot_that_falls_silent_is_lost_after_the_timeout_and_not_before() {
+fn the_link_to_a_silent_robot_is_lost_after_the_timeout_and_not_before() {
     let mut matrix = Matrix::new("silent");
     for variant in Variant::all() {
         for moment in MOMENTS {
             matrix.case(format_args!("{variant}/{moment:?}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 trial.lockstep.link.drop_states(u64::MAX);
                 trial.lockstep.link.drop_commands(u64::MAX);
-                // While it is armed, it has heard nothing before either.
+                // While armed, the client has received no state before either.
                 let heard = match moment {
                     Moment::Armed(milliseconds) => milliseconds,
                     _ => 0,
@@ -222,14 +222,14 @@ fn a_robot_that_falls_silent_is_lost_after_the_timeout_and_not_before() {
     matrix.finish();
 }
 
-/// States go on to come, and the robot goes on to wait for what answers them.
+/// States keep arriving, and the robot keeps waiting for the commands that answer them.
 #[test]
 fn commands_that_never_arrive_end_the_motion_where_it_has_begun() {
     let mut matrix = Matrix::new("no-command");
     for (variant, _) in Variant::cyclic() {
         for cycle in [1, course::REST + course::RAMP, course::END - 1] {
             matrix.case(format_args!("{variant}/{cycle}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(Moment::Cycle(cycle));
                 trial.lockstep.link.drop_commands(u64::MAX);
                 let outcome = trial.outcome();
@@ -238,9 +238,9 @@ fn commands_that_never_arrive_end_the_motion_where_it_has_begun() {
                 trial.works_again();
             });
         }
-        // Before the first command the robot waits, and libfranka repeats the last one for ever.
+        // Before the first command the robot waits, and libfranka repeats the last one forever.
         matrix.case(format_args!("{variant}/first"), || {
-            let mut trial = Trial::begin(variant, Deed::Faultless);
+            let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
             trial.lockstep.link.drop_commands(u64::MAX);
             trial.until(Moment::Finishing(30));
             trial.lockstep.jump(END_TIMEOUT.as_millis() as u64 - 32);

@@ -1,4 +1,4 @@
-//! How a motion has to turn out, in the words of the reference client where it has any.
+//! Expected outcomes of a motion, with the texts of the reference client where it has them.
 
 use franka_proto::{Errors, MoveStatus, RobotError, Status};
 use franka_rt::lifecycle::MotionError;
@@ -6,26 +6,26 @@ use franka_tests::lockstep::Outcome;
 
 use crate::faults::trial::Trial;
 
-/// How a motion turns out.
+/// The expected outcome of a motion.
 #[derive(Clone, Debug)]
 pub(crate) enum Expect {
-    /// Well.
+    /// Success.
     Done,
-    /// Stopped as asked.
+    /// Stopped on request.
     Stopped,
-    /// The robot did not begin, being in the mode of this name.
+    /// Rejected by the robot, which was in the mode of this name.
     Refused(&'static str),
     /// The robot stopped itself, for all of the `certain` reasons and perhaps some of the
     /// `possible` ones.
     Reflex { certain: Errors, possible: Errors },
-    /// The robot was stopped by hand.
+    /// Ended by the user stop.
     UserStop,
-    /// Something else, in these words, that the function recognises.
+    /// Another error with this text, which the function recognises.
     Other(fn(&MotionError) -> bool, String),
 }
 
 impl Expect {
-    /// A reflex for exactly these reasons.
+    /// Returns a reflex for exactly these reasons.
     pub(crate) fn reflex(errors: impl IntoIterator<Item = RobotError>) -> Self {
         let errors: Errors = errors.into_iter().collect();
         Self::Reflex {
@@ -34,7 +34,7 @@ impl Expect {
         }
     }
 
-    /// Holds an outcome of the trial against this.
+    /// Checks an outcome of the trial.
     pub(crate) fn check(&self, trial: &Trial, outcome: &Outcome) {
         let error = match (self, outcome) {
             (Self::Done, Ok(_)) => return,
@@ -65,7 +65,7 @@ impl Expect {
                 reflex_text(trial, errors)
             }
             Self::UserStop => {
-                let control = error.control().expect("the robot's doing");
+                let control = error.control().expect("ended by the robot");
                 assert!(!control.is_reflex(), "{error:?}");
                 "libfranka: Move command aborted: User Stop pressed!".to_owned()
             }
@@ -78,7 +78,7 @@ impl Expect {
     }
 }
 
-/// Why the robot stopped itself.
+/// The reasons of a reflex.
 fn reflex_reasons(error: &MotionError) -> Errors {
     let control = error.control().unwrap_or_else(|| panic!("{error:?}"));
     assert!(control.is_reflex(), "{error:?}");

@@ -1,19 +1,19 @@
-//! Motions that come to their end, and those whose end the robot refuses.
+//! Motions that finish, and those whose finish the robot answers with a reflex.
 
 use franka_proto::{MoveGeneratorMode, RobotError as E};
 
 use crate::faults::expect::Expect;
-use crate::faults::program::Deed;
+use crate::faults::program::Misbehaviour;
 use crate::faults::trial::Trial;
 use crate::faults::variant::Variant;
 use crate::faults::{Matrix, course};
 
 #[test]
-fn every_way_comes_to_its_end_when_nothing_intervenes() {
+fn every_way_finishes_without_faults() {
     let mut matrix = Matrix::new("nothing");
     for variant in Variant::all() {
         matrix.case(variant, || {
-            let mut trial = Trial::begin(variant, Deed::Faultless);
+            let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
             let outcome = trial.outcome();
             Expect::Done.check(&trial, &outcome);
             if variant.channel().is_some() {
@@ -30,7 +30,7 @@ fn a_motion_may_finish_in_its_first_cycle() {
     let mut matrix = Matrix::new("first");
     for (variant, _) in Variant::cyclic() {
         matrix.case(variant, || {
-            let mut trial = Trial::begin(variant, Deed::FinishesAt(0));
+            let mut trial = Trial::begin(variant, Misbehaviour::FinishesAt(0));
             let outcome = trial.outcome();
             Expect::Done.check(&trial, &outcome);
             assert_eq!((trial.cycles, trial.finishing), (0, 1));
@@ -41,8 +41,8 @@ fn a_motion_may_finish_in_its_first_cycle() {
 }
 
 /// The command stands still from the finish on: its velocity drops to zero within a millisecond,
-/// which breaks every bound from the first derivative of what is commanded upwards. Of torques the
-/// measured velocity counts.
+/// which violates every limit from the first derivative of the command upwards. For torques alone,
+/// the measured velocity counts.
 #[test]
 fn a_finish_on_a_moving_command_is_a_reflex() {
     let mut matrix = Matrix::new("moving");
@@ -71,7 +71,7 @@ fn a_finish_on_a_moving_command_is_a_reflex() {
         };
         matrix.case(variant, || {
             let middle = course::REST + course::RAMP + course::CRUISE / 2;
-            let mut trial = Trial::begin(variant, Deed::FinishesAt(middle));
+            let mut trial = Trial::begin(variant, Misbehaviour::FinishesAt(middle));
             let outcome = trial.outcome();
             expected.check(&trial, &outcome);
             trial.works_again();

@@ -1,13 +1,11 @@
-//! States and commands that are lost in a row.
-//!
-//! To the robot it is the same which of the two was lost: a state that does not arrive is not
-//! answered.
+//! States and commands that are lost in a row. Both look the same to the robot: a state that does
+//! not arrive is not answered.
 
 use franka_model::Model;
 use franka_proto::{MoveGeneratorMode, RobotError};
 
 use crate::faults::expect::Expect;
-use crate::faults::program::Deed;
+use crate::faults::program::Misbehaviour;
 use crate::faults::rules::{LOST_LIMIT, errors_after_loss};
 use crate::faults::trial::{Moment, Trial};
 use crate::faults::variant::{Channel, Variant, Way};
@@ -39,9 +37,10 @@ fn expected(errors: franka_proto::Errors) -> Expect {
     }
 }
 
-/// Joint positions over the way of a Cartesian motion, `[rad/m]`, from one without a fault.
+/// Change of the joint positions per distance of a Cartesian motion, `[rad/m]`, measured without a
+/// fault.
 fn joints_per_way(variant: Variant, channel: Channel) -> [f64; 7] {
-    let mut trial = Trial::begin(variant, Deed::Faultless);
+    let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
     let before = trial.lockstep.client.state.q_d;
     trial.until(Moment::Cycle(course::END));
     let after = trial.lockstep.client.state.q_d;
@@ -49,7 +48,7 @@ fn joints_per_way(variant: Variant, channel: Channel) -> [f64; 7] {
     core::array::from_fn(|i| (after[i] - before[i]) / way)
 }
 
-/// Up to nineteen are bridged, if what the robot makes up for them runs into what comes after.
+/// Up to nineteen losses are bridged, if the robot's extrapolation fits the commands after them.
 #[test]
 fn losses_in_mid_motion_are_bridged_or_named() {
     let mut matrix = Matrix::new("lost");
@@ -64,7 +63,7 @@ fn losses_in_mid_motion_are_bridged_or_named() {
                     let name = format!("{variant}/{count}-{lost:?}-from-{first}");
                     matrix.case(name, || {
                         let errors = errors_after_loss(model, channel, &joints, first, count);
-                        let mut trial = Trial::begin(variant, Deed::Faultless);
+                        let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                         trial.until(Moment::Cycle(first));
                         lost.lose(&mut trial, count);
                         let outcome = trial.outcome();
@@ -82,10 +81,10 @@ fn losses_in_mid_motion_are_bridged_or_named() {
     matrix.finish();
 }
 
-/// Before the first command the robot waits and counts nothing. A client that has heard nothing has
-/// not begun; one whose commands get lost has, and goes on without the robot.
+/// Before the first command the robot waits and counts no losses. A client without states has not
+/// begun. A client whose commands are lost has begun, and its program runs ahead of the robot.
 #[test]
-fn losses_at_the_start_are_no_cycles_for_the_robot() {
+fn the_robot_counts_no_losses_before_the_first_command() {
     let mut matrix = Matrix::new("lost-first");
     for variant in Variant::all() {
         let joints = match variant.channel() {
@@ -95,7 +94,7 @@ fn losses_at_the_start_are_no_cycles_for_the_robot() {
         for count in 1..=30 {
             for lost in Lost::ALL {
                 matrix.case(format_args!("{variant}/{count}-{lost:?}"), || {
-                    let mut trial = Trial::begin(variant, Deed::Faultless);
+                    let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                     lost.lose(&mut trial, count);
                     let outcome = trial.outcome();
                     let expected = match (variant.channel(), lost) {
@@ -114,16 +113,16 @@ fn losses_at_the_start_are_no_cycles_for_the_robot() {
     matrix.finish();
 }
 
-/// The finishing command is repeated until the robot shows that it has taken it. States that are
-/// lost meanwhile make no difference to a robot that has it.
+/// The finishing command is repeated until a state shows that the robot has received it. States
+/// that are lost after that make no difference.
 #[test]
-fn losses_at_the_finish_are_repeated_until_the_robot_gives_up() {
+fn a_lost_finish_is_repeated_until_the_robot_stops_by_itself() {
     let mut matrix = Matrix::new("lost-last");
     for variant in Variant::all() {
         for count in 1..=30 {
             for lost in Lost::ALL {
                 matrix.case(format_args!("{variant}/{count}-{lost:?}"), || {
-                    let mut trial = Trial::begin(variant, Deed::Faultless);
+                    let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                     match lost {
                         Lost::Commands => trial.lockstep.link.drop_finishing(count),
                         Lost::States => {
@@ -133,8 +132,7 @@ fn losses_at_the_finish_are_repeated_until_the_robot_gives_up() {
                     }
                     let outcome = trial.outcome();
                     let expected = match lost {
-                        // A motion between sparse targets has no command per cycle that could be
-                        // missed.
+                        // A motion between sparse targets needs no command per cycle.
                         Lost::Commands
                             if count >= LOST_LIMIT && variant.way != Way::Asynchronous =>
                         {
@@ -151,8 +149,8 @@ fn losses_at_the_finish_are_repeated_until_the_robot_gives_up() {
     matrix.finish();
 }
 
-/// Torques that are lost are repeated, and those of target control are limited against what the
-/// robot has.
+/// The robot repeats the last torques when commands are lost, and target control limits its torques
+/// against those.
 #[test]
 fn target_control_goes_on_after_all_losses_that_the_robot_bridges() {
     let mut matrix = Matrix::new("lost-target");
@@ -162,7 +160,7 @@ fn target_control_goes_on_after_all_losses_that_the_robot_bridges() {
                 for lost in Lost::ALL {
                     let name = format!("{variant}/{count}-{lost:?}-from-{first}");
                     matrix.case(name, || {
-                        let mut trial = Trial::begin(variant, Deed::Faultless);
+                        let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                         trial.until(Moment::Cycle(first));
                         lost.lose(&mut trial, count);
                         let outcome = trial.outcome();
@@ -181,7 +179,7 @@ fn target_control_goes_on_after_all_losses_that_the_robot_bridges() {
     matrix.finish();
 }
 
-/// The robot plans between sparse targets, and moves on by itself.
+/// The robot plans between sparse targets and keeps moving by itself.
 #[test]
 fn sparse_targets_need_no_command_per_cycle() {
     let mut matrix = Matrix::new("lost-asynchronous");
@@ -189,7 +187,7 @@ fn sparse_targets_need_no_command_per_cycle() {
         for count in [1, 19, 20, 30, 70] {
             for lost in Lost::ALL {
                 matrix.case(format_args!("{variant}/{count}-{lost:?}"), || {
-                    let mut trial = Trial::begin(variant, Deed::Faultless);
+                    let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                     trial.until(Moment::Cycle(course::REST + 2));
                     lost.lose(&mut trial, count);
                     let outcome = trial.outcome();

@@ -1,4 +1,4 @@
-//! Functions that panic, and commands that are none.
+//! Functions that panic, and invalid commands.
 
 use franka_proto::MoveGeneratorMode;
 use franka_rt::control::{AsynchronousTarget, WriteError};
@@ -8,30 +8,29 @@ use franka_rt::shaping::{FilterFault, InvalidCommand, Shaper, Signal};
 use franka_tests::lockstep::Lockstep;
 
 use crate::faults::expect::Expect;
-use crate::faults::program::{Deed, LAST_WORDS};
+use crate::faults::program::{Misbehaviour, PANIC_MESSAGE};
 use crate::faults::trial::{Moment, Trial};
 use crate::faults::variant::{Gesture, Variant, Way};
 use crate::faults::{Matrix, course};
 
-/// Calls in which a function does what it should not: the first, the second, one in mid motion, the
-/// last.
+/// The calls in which a function misbehaves: the first, the second, one in mid-motion, the last.
 const CALLS: [u64; 4] = [0, 1, 47, course::END];
 
 #[test]
-fn a_function_that_panics_in_any_cycle_is_told_and_the_robot_stopped() {
+fn a_panic_in_any_cycle_is_reported_and_the_robot_stopped() {
     let mut matrix = Matrix::new("panic");
     for (variant, channel) in Variant::cyclic() {
         if variant.way != Way::Callback(channel) {
             continue; // Under active control a panic is the caller's own, and drops the handle.
         }
         let beside = channel.is_external() && channel.generator != MoveGeneratorMode::None;
-        let beside = beside.then_some(Deed::TorquesPanicIn(47));
-        for deed in CALLS.map(Deed::PanicsIn).into_iter().chain(beside) {
-            matrix.case(format_args!("{variant}/{deed:?}"), || {
-                let mut trial = Trial::begin(variant, deed);
+        let beside = beside.then_some(Misbehaviour::TorquesPanicIn(47));
+        for misbehaviour in CALLS.map(Misbehaviour::PanicsIn).into_iter().chain(beside) {
+            matrix.case(format_args!("{variant}/{misbehaviour:?}"), || {
+                let mut trial = Trial::begin(variant, misbehaviour);
                 let outcome = trial.outcome();
                 let panicked = |error: &MotionError| matches!(error, MotionError::Panicked { .. });
-                let text = format!("the control function panicked: {LAST_WORDS}");
+                let text = format!("the control function panicked: {PANIC_MESSAGE}");
                 Expect::Other(panicked, text).check(&trial, &outcome);
                 trial.works_again();
             });
@@ -43,18 +42,18 @@ fn a_function_that_panics_in_any_cycle_is_told_and_the_robot_stopped() {
 /// How commands are shaped.
 #[derive(Clone, Copy, Debug)]
 enum Shaping {
-    /// Not at all.
+    /// Neither filter nor limiter.
     Plain,
-    /// By the limiter.
+    /// Limiter only.
     Limited,
-    /// By filter and limiter.
+    /// Filter and limiter.
     Filtered,
 }
 
 impl Shaping {
     const ALL: [Self; 3] = [Self::Plain, Self::Limited, Self::Filtered];
 
-    /// Who finds what is no number first, and in which words.
+    /// The error of the first check that finds a non-finite value.
     fn finds(self, generator: MoveGeneratorMode) -> InvalidCommand {
         use InvalidCommand as I;
         match (self, generator) {
@@ -75,7 +74,7 @@ impl Shaping {
 }
 
 #[test]
-fn a_function_that_commands_nan_in_any_cycle_is_told_and_the_robot_stopped() {
+fn a_nan_in_any_cycle_is_reported_and_the_robot_stopped() {
     let mut matrix = Matrix::new("nan");
     for (variant, channel) in Variant::cyclic() {
         if variant.way != Way::Callback(channel) {
@@ -91,8 +90,8 @@ fn a_function_that_commands_nan_in_any_cycle_is_told_and_the_robot_stopped() {
                         Shaping::Limited => Shaper::new(version, true, 1000.0),
                         Shaping::Filtered => Shaper::new(version, true, 100.0),
                     };
-                    let deed = Deed::CommandsNanIn(call);
-                    let mut trial = Trial::begin_shaped(lockstep, variant, deed, shaper);
+                    let misbehaviour = Misbehaviour::CommandsNanIn(call);
+                    let mut trial = Trial::begin_shaped(lockstep, variant, misbehaviour, shaper);
                     let outcome = trial.outcome();
                     let invalid = |error: &MotionError| matches!(error, MotionError::Invalid(_));
                     let text = shaping.finds(channel.generator).to_string();
@@ -105,10 +104,10 @@ fn a_function_that_commands_nan_in_any_cycle_is_told_and_the_robot_stopped() {
     matrix.finish();
 }
 
-/// What is not sent is a lost command: the motion goes on, as `writeOnce` leaves it to whoever
-/// called it.
+/// The refused command counts as lost and the motion continues, since `writeOnce` leaves the
+/// decision to its caller.
 #[test]
-fn a_nan_that_is_written_is_refused_and_the_motion_goes_on() {
+fn writing_a_nan_is_refused_and_the_motion_continues() {
     let mut matrix = Matrix::new("written-nan");
     for (variant, channel) in Variant::cyclic() {
         if variant.way != Way::Active(channel) {
@@ -116,7 +115,7 @@ fn a_nan_that_is_written_is_refused_and_the_motion_goes_on() {
         }
         for call in [0, 1, 47] {
             matrix.case(format_args!("{variant}/{call}"), || {
-                let mut trial = Trial::begin(variant, Deed::CommandsNanIn(call));
+                let mut trial = Trial::begin(variant, Misbehaviour::CommandsNanIn(call));
                 let outcome = trial.outcome();
                 Expect::Done.check(&trial, &outcome);
                 let refused = WriteError::Invalid(InvalidCommand::NotFinite);
@@ -129,14 +128,15 @@ fn a_nan_that_is_written_is_refused_and_the_motion_goes_on() {
     matrix.finish();
 }
 
-/// Targets are checked where they are given. One that passes all the same, the robot refuses.
+/// Targets are checked where they are set. The robot refuses an invalid one that gets past that
+/// check.
 #[test]
-fn a_sparse_target_that_is_none_ends_the_motion() {
+fn an_invalid_sparse_target_ends_the_motion() {
     let mut matrix = Matrix::new("sparse-nan");
     for variant in Variant::all().filter(|variant| variant.way == Way::Asynchronous) {
         for cycle in [1, 20, 60] {
             matrix.case(format_args!("{variant}/{cycle}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(Moment::Cycle(cycle));
                 let q = [f64::NAN; 7];
                 let finished = false;
@@ -153,7 +153,7 @@ fn a_sparse_target_that_is_none_ends_the_motion() {
 }
 
 #[test]
-fn a_goal_that_is_none_is_refused_and_the_motion_goes_on() {
+fn an_invalid_goal_is_refused_and_the_motion_continues() {
     let mut matrix = Matrix::new("goal-nan");
     for variant in Variant::all().filter(|variant| variant.is_target()) {
         for moment in [
@@ -163,7 +163,7 @@ fn a_goal_that_is_none_is_refused_and_the_motion_goes_on() {
             Moment::Finishing(1),
         ] {
             matrix.case(format_args!("{variant}/{moment:?}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 let none = Target::Joints([f64::NAN; 7]);
                 let goal = trial.lockstep.goal(none, OnArrival::ReportAndFinish);

@@ -5,14 +5,14 @@
 //! ```
 //!
 //! A case begins a motion of a [`Variant`](variant::Variant), runs it up to a
-//! [`Moment`](trial::Moment), does what its test is about, and holds the outcome against an
-//! [`Expect`](expect::Expect). Whatever the fault: everything resolves, once, in the words of the
-//! reference client where it has any; the thread is back to watching; and the next motion works,
-//! after a recovery or on a new connection if need be.
+//! [`Moment`](trial::Moment), injects its fault, and checks the outcome against an
+//! [`Expect`](expect::Expect). For every fault: everything resolves, once, with the text of the
+//! reference client where it has one; the thread is back to watching; and the next motion works,
+//! after a recovery or on a new connection if necessary.
 //!
-//! All failing cases of a test are told at its end. `FRANKA_FAULT=<name>` runs the cases whose
-//! names contain that text, and `FRANKA_FAULT_SEED=<number>` draws other cycles beside the fixed
-//! ones.
+//! All failing cases of a test are listed at its end. `FRANKA_FAULT=<name>` runs the cases whose
+//! names contain that text, and `FRANKA_FAULT_SEED=<number>` draws other random cycles in addition
+//! to the fixed ones.
 
 mod course;
 mod cutting;
@@ -58,14 +58,14 @@ impl Matrix {
         }
     }
 
-    /// Runs a case, unless another one is asked for.
+    /// Runs a case, unless `FRANKA_FAULT` excludes it.
     fn case(&mut self, name: impl std::fmt::Display, case: impl FnOnce()) {
         let name = format!("{}/{name}", self.test);
         if (self.filter.as_ref()).is_some_and(|filter| !name.contains(filter)) {
             return;
         }
         self.run += 1;
-        // Each case has a robot of its own, so none can see what another has left half done.
+        // Each case has its own robot, so a panic in one cannot affect another.
         if let Err(panic) = catch_unwind(AssertUnwindSafe(case)) {
             let said = panic.downcast_ref::<String>().map(String::as_str);
             let said = said.or_else(|| panic.downcast_ref().copied()).unwrap_or("");
@@ -73,12 +73,12 @@ impl Matrix {
         }
     }
 
-    /// A cycle from the first answered to the last of a motion along the course.
+    /// A random cycle, from the first answered to the last of a motion along the course.
     fn any_cycle(&mut self) -> Moment {
         Moment::Cycle(self.random.random_range(1..=course::END))
     }
 
-    /// The ends of each phase, and some cycles of each motion in between.
+    /// The first and last moments of each phase, and some random cycles in between.
     fn moments(&mut self) -> Vec<Moment> {
         let mut moments = vec![
             Moment::Armed(0),
@@ -96,7 +96,7 @@ impl Matrix {
         moments
     }
 
-    /// Tells what has failed.
+    /// Panics with the failing cases, if any.
     fn finish(self) {
         let Self {
             test,

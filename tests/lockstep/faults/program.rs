@@ -1,4 +1,4 @@
-//! Programs that follow the course, and those that leave it.
+//! Programs that follow the course, and those that misbehave.
 
 use std::time::Duration;
 
@@ -13,10 +13,10 @@ use crate::faults::course::{
 };
 use crate::faults::variant::Channel;
 
-/// What a program does other than to follow the course to its end.
+/// How a program departs from the course.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Deed {
-    /// Nothing.
+pub(crate) enum Misbehaviour {
+    /// It follows the course to its end.
     Faultless,
     /// It finishes so many milliseconds after its first command.
     FinishesAt(u64),
@@ -24,34 +24,34 @@ pub(crate) enum Deed {
     PanicsIn(u64),
     /// The function that commands torques beside it panics in the call of this number.
     TorquesPanicIn(u64),
-    /// In the call of this number it commands what is no number.
+    /// It commands a NaN in the call of this number.
     CommandsNanIn(u64),
 }
 
-/// What a function that panics says.
-pub(crate) const LAST_WORDS: &str = "the pilot has left";
+/// The message of a function's panic.
+pub(crate) const PANIC_MESSAGE: &str = "a panic on purpose";
 
-/// One function's way along the course.
+/// The progress of one function along the course.
 #[derive(Clone, Debug)]
-pub(crate) struct Pilot {
-    deed: Deed,
+pub(crate) struct CourseFollower {
+    misbehaviour: Misbehaviour,
     calls: u64,
     /// The robot's time since the first call, `[ms]`.
     elapsed: u64,
     start: Option<Box<RobotState>>,
 }
 
-impl Pilot {
-    pub(crate) fn new(deed: Deed) -> Self {
+impl CourseFollower {
+    pub(crate) fn new(misbehaviour: Misbehaviour) -> Self {
         Self {
-            deed,
+            misbehaviour,
             calls: 0,
             elapsed: 0,
             start: None,
         }
     }
 
-    fn next<C: Spoil + Finish>(
+    fn next<C: WithNan + Finish>(
         &mut self,
         state: &RobotState,
         step: Duration,
@@ -62,16 +62,17 @@ impl Pilot {
         self.elapsed += step.as_millis() as u64;
         let start = self.start.get_or_insert_with(|| Box::new(*state));
         let command = command(start, self.elapsed);
-        match self.deed {
-            Deed::PanicsIn(cycle) if call == cycle => panic!("{LAST_WORDS}"),
-            Deed::CommandsNanIn(cycle) if call == cycle => command.spoilt().into(),
-            Deed::FinishesAt(end) if self.elapsed >= end => command.finish(),
+        match self.misbehaviour {
+            Misbehaviour::PanicsIn(cycle) if call == cycle => panic!("{PANIC_MESSAGE}"),
+            Misbehaviour::CommandsNanIn(cycle) if call == cycle => command.with_nan().into(),
+            Misbehaviour::FinishesAt(end) if self.elapsed >= end => command.finish(),
             _ if self.elapsed >= course::END => command.finish(),
             _ => command.into(),
         }
     }
 
-    /// The command that answers `state`, `step` after the one before, and whether it is the last.
+    /// Returns the command that answers `state`, `step` after the previous one, and whether it is
+    /// the last.
     pub(crate) fn command(
         &mut self,
         version: Version,
@@ -101,25 +102,26 @@ impl Pilot {
     }
 }
 
-/// The functions of a channel, of which the one that leads does the deed.
-pub(crate) fn callback(version: Version, channel: Channel, deed: Deed) -> Callback {
-    let mut pilot = Pilot::new(deed);
+/// The functions of a channel. The one that commands the generator, or else the torques,
+/// misbehaves.
+pub(crate) fn callback(version: Version, channel: Channel, misbehaviour: Misbehaviour) -> Callback {
+    let mut follower = CourseFollower::new(misbehaviour);
     let callback = match channel.generator {
-        MoveGeneratorMode::JointPosition => leading(version, pilot, joint_positions),
-        MoveGeneratorMode::JointVelocity => leading(version, pilot, joint_velocities),
-        MoveGeneratorMode::CartesianPosition => leading(version, pilot, cartesian_pose),
-        MoveGeneratorMode::CartesianVelocity => leading(version, pilot, cartesian_velocities),
+        MoveGeneratorMode::JointPosition => leading(version, follower, joint_positions),
+        MoveGeneratorMode::JointVelocity => leading(version, follower, joint_velocities),
+        MoveGeneratorMode::CartesianPosition => leading(version, follower, cartesian_pose),
+        MoveGeneratorMode::CartesianVelocity => leading(version, follower, cartesian_velocities),
         MoveGeneratorMode::None => {
             return Callback::torques(version, move |state, step| {
-                pilot.next(state, step, course::torques)
+                follower.next(state, step, course::torques)
             });
         }
     };
     if channel.is_external() {
         let mut calls = 0;
         callback.with_torques(move |_, _| {
-            if deed == Deed::TorquesPanicIn(calls) {
-                panic!("{LAST_WORDS}");
+            if misbehaviour == Misbehaviour::TorquesPanicIn(calls) {
+                panic!("{PANIC_MESSAGE}");
             }
             calls += 1;
             Torques([0.0; 7])
@@ -129,56 +131,58 @@ pub(crate) fn callback(version: Version, channel: Channel, deed: Deed) -> Callba
     }
 }
 
-fn leading<C: GeneratorCommand + Spoil + Finish>(
+fn leading<C: GeneratorCommand + WithNan + Finish>(
     version: Version,
-    mut pilot: Pilot,
+    mut follower: CourseFollower,
     command: fn(&RobotState, u64) -> C,
 ) -> Callback {
-    Callback::motion::<C, _>(version, move |state, step| pilot.next(state, step, command))
+    Callback::motion::<C, _>(version, move |state, step| {
+        follower.next(state, step, command)
+    })
 }
 
-/// A command to a generator, with torques where they are wanted.
+/// A command to a generator, with torques if there are any.
 fn motion<C: GeneratorCommand>(next: Next<C>, torques: Option<Torques>) -> (Command, bool) {
     let (motion, finished) = next.into_parts();
     let motion = Some(motion.into());
     (Command { motion, torques }, finished)
 }
 
-/// A command with a number in it that is none.
-trait Spoil: Sized {
-    fn spoilt(self) -> Self;
+/// Commands that can hold a NaN.
+trait WithNan: Sized {
+    fn with_nan(self) -> Self;
 }
 
-impl Spoil for Torques {
-    fn spoilt(mut self) -> Self {
+impl WithNan for Torques {
+    fn with_nan(mut self) -> Self {
         self.0[6] = f64::NAN;
         self
     }
 }
 
-impl Spoil for JointPositions {
-    fn spoilt(mut self) -> Self {
+impl WithNan for JointPositions {
+    fn with_nan(mut self) -> Self {
         self.0[6] = f64::NAN;
         self
     }
 }
 
-impl Spoil for JointVelocities {
-    fn spoilt(mut self) -> Self {
+impl WithNan for JointVelocities {
+    fn with_nan(mut self) -> Self {
         self.0[6] = f64::NAN;
         self
     }
 }
 
-impl Spoil for CartesianPose {
-    fn spoilt(mut self) -> Self {
+impl WithNan for CartesianPose {
+    fn with_nan(mut self) -> Self {
         self.O_T_EE[13] = f64::NAN;
         self
     }
 }
 
-impl Spoil for CartesianVelocities {
-    fn spoilt(mut self) -> Self {
+impl WithNan for CartesianVelocities {
+    fn with_nan(mut self) -> Self {
         self.O_dP_EE[5] = f64::NAN;
         self
     }

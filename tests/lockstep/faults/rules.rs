@@ -1,10 +1,10 @@
-//! What a robot does when commands are lost, worked out on one number: the share of the course that
-//! has been made.
+//! What a robot does when commands are lost, computed on one number: the share of the course that
+//! is done.
 //!
-//! Source: FCI documentation, control parameters and "handling of packet losses". A lost command of
-//! a generator continues with the acceleration of the last; twenty in a row end the motion; and
-//! derivatives are backward differences, over what was continued as well. Lost torques are
-//! repeated.
+//! Source: FCI documentation, control parameters and "handling of packet losses". The robot
+//! extrapolates a lost command of a generator with the acceleration of the last. Twenty losses in a
+//! row end the motion. Derivatives are backward differences, which include the extrapolated
+//! commands. Lost torques are replaced by the last ones.
 
 use franka_model::Model;
 use franka_model::limits::MotionLimits;
@@ -19,17 +19,17 @@ pub(crate) const LOST_LIMIT: u64 = 20;
 /// Length of a cycle, `[s]`.
 const CYCLE: f64 = 1e-3;
 
-/// How far each quantity stays away from its limit, on either side, in cases that are told apart
-/// here: a robot judges by what it publishes, in single precision, and the joints of a Cartesian
-/// motion are worked out from its beginning and its end.
+/// The distance that each quantity has to keep from its limit, on either side, for a clear verdict:
+/// a robot judges by what it publishes, in single precision, and the joints of a Cartesian motion
+/// are computed from its beginning and its end.
 const MARGIN: f64 = 0.005;
 
-/// Why the robot stops a motion along the course whose commands from `first` on, `[ms]`, are lost,
-/// `lost` of them; nothing if it goes on. `joints_per_way` are the joint positions of a Cartesian
-/// motion over its way, `[rad/m]`.
+/// Returns the reasons for which the robot stops a motion along the course when `lost` commands
+/// from `first` `[ms]` on are lost; empty if it continues. `joints_per_way` is the change of the
+/// joint positions per distance of a Cartesian motion, `[rad/m]`.
 ///
 /// # Panics
-/// If it is a near thing.
+/// If a quantity is too close to its limit for a verdict.
 pub(crate) fn errors_after_loss(
     model: &Model,
     channel: Channel,
@@ -108,7 +108,7 @@ impl Signal {
     }
 }
 
-/// The limits of the course's quantities, each with the error that stands for it.
+/// The limits of the course's quantities, each with its error.
 struct Bounds(Vec<(MotionLimits, [E; 3])>);
 
 impl Bounds {
@@ -155,7 +155,7 @@ impl Bounds {
                 let ratio = value.abs() / limit;
                 assert!(
                     (ratio - 1.0).abs() > MARGIN,
-                    "{error}: a near thing: {ratio}"
+                    "{error}: too close to the limit: {ratio}"
                 );
                 if ratio > 1.0 {
                     broken.insert(*error);
@@ -166,7 +166,7 @@ impl Bounds {
     }
 }
 
-/// What a velocity, an acceleration and a jerk beyond the limit are called; a rate for torques.
+/// The errors for velocity, acceleration and jerk beyond the limit; for torques, for the rate.
 fn own_errors(generator: MoveGeneratorMode) -> [E; 3] {
     match generator {
         MoveGeneratorMode::None => [E::ControllerTorqueDiscontinuity; 3],
@@ -193,7 +193,7 @@ fn own_errors(generator: MoveGeneratorMode) -> [E; 3] {
     }
 }
 
-/// The same of the joints that a Cartesian command is made of.
+/// The same errors for the joints of a Cartesian motion.
 fn joint_errors(generator: MoveGeneratorMode) -> Option<[E; 3]> {
     let acceleration = match generator {
         MoveGeneratorMode::CartesianPosition => {

@@ -1,13 +1,13 @@
-//! Stops from elsewhere, and handles that are dropped.
+//! Stops from another handle, and dropped handles.
 
 use crate::faults::Matrix;
 use crate::faults::expect::Expect;
-use crate::faults::program::Deed;
+use crate::faults::program::Misbehaviour;
 use crate::faults::trial::{Moment, Trial};
 use crate::faults::variant::Variant;
 
-/// A goal that the finishing command is out for was reached. A program's motion that the robot says
-/// it has stopped, it has not finished.
+/// A goal whose finishing command has been sent was reached. A program's motion counts as stopped
+/// if the robot reports it stopped.
 fn expected(variant: Variant, moment: Moment) -> Expect {
     match moment {
         Moment::Finishing(_) if variant.is_target() => Expect::Done,
@@ -16,12 +16,12 @@ fn expected(variant: Variant, moment: Moment) -> Expect {
 }
 
 #[test]
-fn a_stop_at_any_moment_resolves_for_both() {
+fn a_stop_at_any_moment_resolves_itself_and_the_motion() {
     let mut matrix = Matrix::new("stop");
     for variant in Variant::all() {
         for moment in matrix.moments() {
             matrix.case(format_args!("{variant}/{moment:?}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 let stop = trial.lockstep.stop().expect("something moves");
                 let outcome = trial.outcome();
@@ -37,12 +37,12 @@ fn a_stop_at_any_moment_resolves_for_both() {
 }
 
 #[test]
-fn a_handle_that_is_dropped_at_any_moment_ends_the_motion() {
+fn a_handle_dropped_at_any_moment_ends_the_motion() {
     let mut matrix = Matrix::new("drop");
     for variant in Variant::all() {
         for moment in matrix.moments() {
             matrix.case(format_args!("{variant}/{moment:?}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 trial.lockstep.cancel(trial.work);
                 let outcome = trial.outcome();

@@ -1,4 +1,4 @@
-//! One motion in one way, with whatever befalls it.
+//! One motion in one way, and the faults that it meets.
 
 use std::time::Duration;
 
@@ -13,84 +13,88 @@ use franka_tests::lockstep::{Link, Lockstep, Outcome};
 use nalgebra::{Isometry3, Translation3};
 
 use crate::faults::course;
-use crate::faults::program::{Deed, Pilot, callback};
+use crate::faults::program::{CourseFollower, Misbehaviour, callback};
 use crate::faults::variant::{Channel, Gesture, Variant, Way};
 
-/// A moment in the life of a motion.
+/// A moment of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Moment {
-    /// So many milliseconds after it was begun, of which the client has heard nothing.
+    /// So many milliseconds after the start, before the client has seen the motion in a state.
     Armed(u64),
     /// This many states have been answered.
     Cycle(u64),
-    /// The finishing command is out for as many milliseconds, and has been lost each time; with 0
-    /// it is on its way.
+    /// The finishing command has been sent for so many milliseconds and lost each time; with 0 it
+    /// has just been sent.
     Finishing(u64),
 }
 
-/// A motion under way, and what is done to it.
+/// An active motion, and what acts on it.
 pub(crate) struct Trial {
     pub(crate) lockstep: Lockstep,
-    /// Whom it resolves for.
+    /// The id under which the motion resolves.
     pub(crate) work: GoalId,
     pub(crate) variant: Variant,
     /// States answered before the finish.
     pub(crate) cycles: u64,
     /// States answered with the finishing command.
     pub(crate) finishing: u64,
-    /// Refusals of what was written under active control.
+    /// Errors of commands written under active control.
     pub(crate) refused: Vec<WriteError>,
-    hand: Hand,
+    external: ExternalControl,
     /// `message_id` and success rate of the last two states of the motion, the newer one last.
     seen: [Option<(u64, f64)>; 2],
     ended: bool,
 }
 
-/// What acts on the motion from outside the thread.
-enum Hand {
+/// What controls the motion from outside the real-time thread.
+enum ExternalControl {
     /// Nothing.
     None,
-    /// Somebody who reads states and writes commands.
+    /// Active control: states are read and commands written.
     Writer {
         channel: Channel,
-        pilot: Pilot,
+        follower: CourseFollower,
         previous: Option<u64>,
     },
-    /// Somebody who gives one target and then finishes there.
+    /// One sparse target, and a finish there.
     Targets {
         slot: SlotWriter<AsynchronousTarget>,
         q: [f64; 7],
     },
-    /// Somebody who leads a goal that is held, from where it began.
+    /// A held goal whose target moves, from its start.
     Leader { start: Isometry3<f64> },
 }
 
 impl Trial {
-    /// A motion along the course, of which the robot has not heard yet.
-    pub(crate) fn begin(variant: Variant, deed: Deed) -> Self {
-        Self::begin_on(Lockstep::ready_of(variant.kind), variant, deed)
+    /// Begins a motion along the course; the robot has not received the request yet.
+    pub(crate) fn begin(variant: Variant, misbehaviour: Misbehaviour) -> Self {
+        Self::begin_on(Lockstep::ready_of(variant.kind), variant, misbehaviour)
     }
 
-    /// The same on a robot that something has been done to.
-    pub(crate) fn begin_on(lockstep: Lockstep, variant: Variant, deed: Deed) -> Self {
+    /// Like [`Self::begin`], on a robot prepared by the test.
+    pub(crate) fn begin_on(
+        lockstep: Lockstep,
+        variant: Variant,
+        misbehaviour: Misbehaviour,
+    ) -> Self {
         let shaper = Shaper::new(lockstep.client.version(), false, 1000.0);
-        Self::begin_shaped(lockstep, variant, deed, shaper)
+        Self::begin_shaped(lockstep, variant, misbehaviour, shaper)
     }
 
-    /// The same with what control functions command shaped by `shaper`.
+    /// Like [`Self::begin_on`], with the commands of control functions shaped by `shaper`.
     pub(crate) fn begin_shaped(
         mut lockstep: Lockstep,
         variant: Variant,
-        deed: Deed,
+        misbehaviour: Misbehaviour,
         shaper: Shaper,
     ) -> Self {
         let version = lockstep.client.version();
-        let (work, hand) = match variant.way {
+        let (work, external) = match variant.way {
             Way::Callback(channel) => {
-                let callback = callback(version, channel, deed).with_shaper(shaper);
+                let callback = callback(version, channel, misbehaviour).with_shaper(shaper);
                 let request = callback.request(version, channel.controller);
                 let program = Program::Callback(Box::new(callback));
-                (lockstep.control(program, request), Hand::None)
+                (lockstep.control(program, request), ExternalControl::None)
             }
             Way::Active(channel) => {
                 let request = match channel.generator {
@@ -99,14 +103,14 @@ impl Trial {
                     }
                     generator => MoveRequest::new(channel.controller, generator),
                 };
-                let hand = Hand::Writer {
+                let external = ExternalControl::Writer {
                     channel,
-                    pilot: Pilot::new(deed),
+                    follower: CourseFollower::new(misbehaviour),
                     previous: None,
                 };
                 (
                     lockstep.control(Program::Active(ActiveControl), request),
-                    hand,
+                    external,
                 )
             }
             Way::Asynchronous => {
@@ -114,30 +118,38 @@ impl Trial {
                 let request = AsynchronousPositions::request([0.655; 7]);
                 let mut q: [f64; 7] = READY.into();
                 q[course::JOINT] += 0.003;
-                let hand = Hand::Targets { slot, q };
+                let external = ExternalControl::Targets { slot, q };
                 (
                     lockstep.control(Program::Asynchronous(program), request),
-                    hand,
+                    external,
                 )
             }
             Way::Target(gesture) => {
                 let start = lockstep.true_pose();
                 let mut q: [f64; 7] = READY.into();
                 q[course::JOINT] += 0.02;
-                let (target, on_arrival, hand) = match gesture {
+                let (target, on_arrival, external) = match gesture {
                     Gesture::MoveTo => {
                         let up = Translation3::new(0.0, 0.0, 0.01) * start;
-                        (Target::Pose(up), OnArrival::ReportAndFinish, Hand::None)
+                        (
+                            Target::Pose(up),
+                            OnArrival::ReportAndFinish,
+                            ExternalControl::None,
+                        )
                     }
-                    Gesture::MoveJoints => {
-                        (Target::Joints(q), OnArrival::ReportAndFinish, Hand::None)
-                    }
-                    Gesture::Follow => {
-                        (Target::Pose(start), OnArrival::Hold, Hand::Leader { start })
-                    }
+                    Gesture::MoveJoints => (
+                        Target::Joints(q),
+                        OnArrival::ReportAndFinish,
+                        ExternalControl::None,
+                    ),
+                    Gesture::Follow => (
+                        Target::Pose(start),
+                        OnArrival::Hold,
+                        ExternalControl::Leader { start },
+                    ),
                 };
                 let goal = lockstep.goal(target, on_arrival);
-                (lockstep.submit(goal), hand)
+                (lockstep.submit(goal), external)
             }
         };
         Self {
@@ -147,13 +159,13 @@ impl Trial {
             cycles: 0,
             finishing: 0,
             refused: Vec::new(),
-            hand,
+            external,
             seen: [None; 2],
             ended: false,
         }
     }
 
-    /// One millisecond.
+    /// Advances by one millisecond.
     pub(crate) fn tick(&mut self) {
         let newest = self.lockstep.client.state.message_id;
         self.lockstep.tick();
@@ -182,15 +194,15 @@ impl Trial {
     fn act(&mut self) {
         let Self {
             lockstep,
-            hand,
+            external,
             cycles,
             ..
         } = self;
-        match hand {
-            Hand::None => {}
-            Hand::Writer {
+        match external {
+            ExternalControl::None => {}
+            ExternalControl::Writer {
                 channel,
-                pilot,
+                follower,
                 previous,
             } => {
                 let state = lockstep.client.state;
@@ -198,10 +210,10 @@ impl Trial {
                 let step = state.message_id - previous.unwrap_or(state.message_id);
                 let version = lockstep.client.version();
                 let step = Duration::from_millis(step);
-                let (command, finished) = pilot.command(version, *channel, &state, step);
+                let (command, finished) = follower.command(version, *channel, &state, step);
                 match lockstep.write(&command, finished) {
                     Ok(()) if finished => {
-                        // The state was read before anybody knew that it is the last.
+                        // The state was read before it was known to be the last.
                         *cycles -= 1;
                         self.finishing += 1;
                     }
@@ -209,7 +221,7 @@ impl Trial {
                     Err(error) => self.refused.push(error),
                 }
             }
-            Hand::Targets { slot, q } => {
+            ExternalControl::Targets { slot, q } => {
                 let finished = match *cycles {
                     course::REST => false,
                     course::END => true,
@@ -217,7 +229,7 @@ impl Trial {
                 };
                 slot.write(&AsynchronousTarget { q: *q, finished });
             }
-            Hand::Leader { start } => {
+            ExternalControl::Leader { start } => {
                 let goal = self.work;
                 if *cycles == course::END {
                     lockstep.client.lifecycle.close(goal);
@@ -230,9 +242,9 @@ impl Trial {
         }
     }
 
-    /// Gives the robot another sparse target.
+    /// Sets another sparse target.
     pub(crate) fn give_target(&mut self, target: &AsynchronousTarget) {
-        let Hand::Targets { slot, .. } = &mut self.hand else {
+        let ExternalControl::Targets { slot, .. } = &mut self.external else {
             panic!("{} has no sparse targets", self.variant);
         };
         slot.write(target);
@@ -261,12 +273,12 @@ impl Trial {
         panic!("{moment:?} does not come");
     }
 
-    /// Whether it has run and does so no more, as far as the thread knows.
+    /// Whether the motion has run and ended, as far as the thread knows.
     pub(crate) fn has_ended(&self) -> bool {
         self.ended
     }
 
-    /// How it turns out, everything having come to its end.
+    /// Runs until everything has ended, and returns the outcome.
     pub(crate) fn outcome(&mut self) -> Outcome {
         for _ in 0..MOST {
             let Lockstep { client, .. } = &self.lockstep;
@@ -280,8 +292,8 @@ impl Trial {
         panic!("it does not end: {lifecycle:?}");
     }
 
-    /// What libfranka appends to the text of a reflex: the rate of the last state but one, lowered
-    /// by what was lost after it.
+    /// The text that libfranka appends to a reflex: the rate of the last state but one, lowered by
+    /// the losses after it.
     pub(crate) fn success_rate(&self) -> String {
         let [Some((before, rate)), Some((last, _))] = self.seen else {
             return String::new();
@@ -295,8 +307,8 @@ impl Trial {
         text
     }
 
-    /// Whatever happened, the next motion works, after a recovery if need be. No request is left
-    /// without an answer.
+    /// Asserts that the next motion works, after a recovery if necessary, and that every request
+    /// was answered.
     pub(crate) fn works_again(mut self) {
         let lockstep = &mut self.lockstep;
         let resolved = lockstep.client.resolved();
@@ -320,7 +332,7 @@ impl Trial {
             way,
             ..self.variant
         };
-        let mut next = Self::begin_on(self.lockstep, variant, Deed::FinishesAt(2));
+        let mut next = Self::begin_on(self.lockstep, variant, Misbehaviour::FinishesAt(2));
         let outcome = next.outcome();
         assert!(outcome.is_ok(), "the next motion: {outcome:?}");
         let Lockstep { client, .. } = &next.lockstep;
@@ -330,6 +342,5 @@ impl Trial {
     }
 }
 
-/// Milliseconds in which whatever ends has ended: letting go of an arm that was led takes half a
-/// second.
+/// Milliseconds in which every motion has ended; the end of a followed goal takes half a second.
 const MOST: u64 = 3000;

@@ -7,7 +7,7 @@ use franka_tests::lockstep::Lockstep;
 
 use crate::faults::Matrix;
 use crate::faults::expect::Expect;
-use crate::faults::program::Deed;
+use crate::faults::program::Misbehaviour;
 use crate::faults::trial::{Moment, Trial};
 use crate::faults::variant::Variant;
 
@@ -17,7 +17,7 @@ fn a_reflex_at_any_moment_is_named() {
     for variant in Variant::all() {
         for moment in matrix.moments() {
             matrix.case(format_args!("{variant}/{moment:?}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 trial.lockstep.robot.trip(RobotError::CartesianReflex);
                 let outcome = trial.outcome();
@@ -34,12 +34,12 @@ fn a_reflex_at_any_moment_is_named() {
 }
 
 #[test]
-fn the_user_stop_at_any_moment_is_told() {
+fn the_user_stop_at_any_moment_is_reported() {
     let mut matrix = Matrix::new("user-stop");
     for variant in Variant::all() {
         for moment in matrix.moments() {
             matrix.case(format_args!("{variant}/{moment:?}"), || {
-                let mut trial = Trial::begin(variant, Deed::Faultless);
+                let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
                 trial.until(moment);
                 trial.lockstep.robot.press_user_stop(true);
                 let outcome = trial.outcome();
@@ -55,8 +55,8 @@ fn the_user_stop_at_any_moment_is_told() {
     matrix.finish();
 }
 
-/// The refusal comes after the robot has said that the motion has started, and no state ever shows
-/// it.
+/// The refusal comes after the robot has reported the start of the motion, and no state ever shows
+/// the motion.
 #[test]
 fn a_cartesian_motion_does_not_begin_where_the_arm_is_singular() {
     let mut matrix = Matrix::new("singular");
@@ -71,7 +71,7 @@ fn a_cartesian_motion_does_not_begin_where_the_arm_is_singular() {
             let mut lockstep = Lockstep::ready_of(variant.kind);
             lockstep.robot.place(&STRETCHED.into());
             lockstep.run(2);
-            let mut trial = Trial::begin_on(lockstep, variant, Deed::Faultless);
+            let mut trial = Trial::begin_on(lockstep, variant, Misbehaviour::Faultless);
             let outcome = trial.outcome();
             let rejected = |error: &MotionError| matches!(error, MotionError::Rejected(_));
             let text = "libfranka: Move command rejected: cannot start at singular pose!";

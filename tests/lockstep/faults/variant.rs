@@ -12,9 +12,9 @@ pub(crate) struct Variant {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Way {
-    /// Functions that are called with every state.
+    /// Control functions, called with every state.
     Callback(Channel),
-    /// Commands that are written from outside.
+    /// Active control: commands are written from outside.
     Active(Channel),
     /// Sparse targets, between which the robot plans.
     Asynchronous,
@@ -22,8 +22,8 @@ pub(crate) enum Way {
     Target(Gesture),
 }
 
-/// What is commanded, and who turns it into torques. No generator, and an external controller, are
-/// torques alone.
+/// What is commanded, and which controller turns it into torques. No generator with an external
+/// controller means torques alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Channel {
     pub(crate) generator: MoveGeneratorMode,
@@ -73,7 +73,7 @@ impl Channel {
 }
 
 impl Variant {
-    /// Every way of every robot.
+    /// Returns every way of every robot.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         RobotKind::ALL.into_iter().flat_map(|kind| {
             let goals = [Gesture::MoveTo, Gesture::MoveJoints, Gesture::Follow];
@@ -87,7 +87,7 @@ impl Variant {
         })
     }
 
-    /// Those with a program that commands something in every cycle.
+    /// Returns the variants with a command in every cycle.
     pub(crate) fn cyclic() -> impl Iterator<Item = (Self, Channel)> {
         Self::all().filter_map(|variant| variant.channel().map(|channel| (variant, channel)))
     }
@@ -100,13 +100,13 @@ impl Variant {
         }
     }
 
-    /// Whether goals are set, rather than commands given.
+    /// Whether goals are set instead of commands.
     pub(crate) fn is_target(self) -> bool {
         matches!(self.way, Way::Target(_))
     }
 }
 
-/// As in the names of cases: `fr3/callback/CartesianPosition/JointImpedance`.
+/// Formats the name of a case: `fr3/callback/CartesianPosition/JointImpedance`.
 impl std::fmt::Display for Variant {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let kind = format!("{:?}", self.kind).to_lowercase();

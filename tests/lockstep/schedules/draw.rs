@@ -9,7 +9,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::Rng;
 use rand::rngs::SmallRng;
 
-/// A pose within so many metres and radians of another one, along each axis.
+/// A pose within `way` metres and `turn` radians of `near`, along each axis.
 pub(super) fn pose(random: &mut SmallRng, near: &Isometry3<f64>, way: f64, turn: f64) -> Target {
     let mut vector = |most: f64| Vector3::from_fn(|_, _| random.random_range(-most..most));
     let (way, turn) = (vector(way), vector(turn));
@@ -19,12 +19,12 @@ pub(super) fn pose(random: &mut SmallRng, near: &Isometry3<f64>, way: f64, turn:
     ))
 }
 
-/// Joint positions within so many radians of the ready pose.
+/// Joint positions within `most` radians of the ready pose.
 pub(super) fn joints(random: &mut SmallRng, most: f64) -> [f64; 7] {
     core::array::from_fn(|i| READY[i] + random.random_range(-most..most))
 }
 
-/// Gains of either law, up to twice as stiff as the presets and down to half.
+/// Gains of either law, with half to twice the stiffness of the presets.
 pub(super) fn gains(random: &mut SmallRng) -> Gains {
     let mut gains = match random.random_range(0..4) {
         0 => Gains::joint(),
@@ -46,7 +46,7 @@ pub(super) fn gains(random: &mut SmallRng) -> Gains {
     gains
 }
 
-/// A chunk from about here to a target nearby, of either kind.
+/// A chunk of either kind, from about the present position to a target nearby.
 pub(super) fn chunk(random: &mut SmallRng, q: &[f64; 7], pose: &Isometry3<f64>, now: u64) -> Chunk {
     let points = random.random_range(2..16);
     let spacing = Duration::from_millis(random.random_range(10..60));

@@ -1,35 +1,36 @@
 //! Random schedules of goals, stops and faults, each replayable from its seed.
 //!
-//! Every fourth schedule or more is calm: nothing goes wrong, so nothing may be reported as wrong.
-//! The others lose datagrams, push the arm, trip the robot and press its user stop. Whatever
-//! happens, every goal resolves once and fittingly, the arm comes to rest, and the next motion
-//! works. The harness holds every command and its reference against the limits meanwhile.
+//! At least every fourth schedule is calm: it has no faults, so no error may be reported. The
+//! others lose datagrams, push the arm, trip the robot and press its user stop. In all of them
+//! every goal resolves once, with an outcome that its events explain, the arm comes to rest, and
+//! the next motion works. The harness checks every command and its reference against the limits
+//! meanwhile.
 //!
-//! Ten thousand of them take minutes with an optimised build, with an arm of MuJoCo some four times
-//! as long; each test is one thread. `FRANKA_SCHEDULE_SEED` is the first seed and
+//! Ten thousand schedules take minutes with an optimised build, and some four times as long with
+//! the MuJoCo plant. Each test is one thread. `FRANKA_SCHEDULE_SEED` is the first seed and
 //! `FRANKA_SCHEDULES` how many follow:
 //!
 //! ```text
 //! FRANKA_SCHEDULE_SEED=1 FRANKA_SCHEDULES=10000 cargo test --release --package franka-tests --test lockstep \
 //!     every_schedule_of_a_session -- --nocapture
 //! FRANKA_SCHEDULE_SEED=1 FRANKA_SCHEDULES=1000 cargo test --release --package franka-tests --features mujoco \
-//!     --test lockstep arm_of_mujoco -- --nocapture
+//!     --test lockstep mujoco_plant -- --nocapture
 //! ```
 //!
 //! `every_schedule_ends` are the motions. A schedule that fails prints its seed, which replays it
 //! with the same build.
 //!
 //! * `motions`: motions that supersede one another, each with an end of its own.
-//! * `sessions`: sessions that go from goal to goal, of all kinds, with both backends. `given`:
+//! * `sessions`: sessions that go from goal to goal, of all kinds, with both backends. `submission`:
 //!   what each goal may come to.
 //! * `causes`: what was done from outside, and what a robot owes to it.
 //! * `draw`: random goals.
 
 mod causes;
 mod draw;
-mod given;
 mod motions;
 mod sessions;
+mod submission;
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -41,13 +42,13 @@ use franka_tests::lockstep::{Lockstep, Outcome};
 use motions::Motions;
 use sessions::Sessions;
 
-/// Schedules of one run; each takes some five seconds of the robot's time,
+/// Schedules of motions in one run; each takes some five seconds of the robot's time.
 const MOTIONS: u64 = 120;
 
-/// and each of these some two.
+/// Schedules of sessions in one run; each takes some two seconds of the robot's time.
 const SESSIONS: u64 = 200;
 
-/// How schedules turned out: so many goals in each way, and the robot's time.
+/// The number of goals with each outcome, and the robot's time.
 #[derive(Debug, Default)]
 struct OutcomeCounts {
     outcomes: BTreeMap<&'static str, u64>,
@@ -79,7 +80,7 @@ fn every_schedule_of_a_session_ends_with_all_goals_resolved_and_the_arm_at_rest(
 
 #[cfg(feature = "mujoco")]
 #[test]
-fn schedules_of_sessions_end_as_well_with_an_arm_of_mujoco() {
+fn schedules_of_sessions_also_end_with_the_mujoco_plant() {
     use franka_model::RobotKind;
     use franka_sim::Robot;
     use franka_sim::plant::{MujocoArm, Scene};
@@ -94,8 +95,7 @@ fn schedules_of_sessions_end_as_well_with_an_arm_of_mujoco() {
     });
 }
 
-/// Plays so many schedules, or as many as the environment says: `FRANKA_SCHEDULES` from
-/// `FRANKA_SCHEDULE_SEED` on.
+/// Runs `count` schedules, or `FRANKA_SCHEDULES` of them from seed `FRANKA_SCHEDULE_SEED` on.
 fn run(count: u64, mut play: impl FnMut(u64, &mut OutcomeCounts)) {
     let number = |name| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let first: u64 = number("FRANKA_SCHEDULE_SEED").unwrap_or(1);
@@ -103,7 +103,7 @@ fn run(count: u64, mut play: impl FnMut(u64, &mut OutcomeCounts)) {
     let mut counts = OutcomeCounts::default();
     let mut failed = Vec::new();
     for seed in first..first + count {
-        // What a schedule that failed has counted stays: the counts is a count, and nothing else.
+        // A panic cannot leave the counts inconsistent, so they may be used after one.
         let played = catch_unwind(AssertUnwindSafe(|| play(seed, &mut counts)));
         if played.is_err() {
             eprintln!("replay with FRANKA_SCHEDULE_SEED={seed} FRANKA_SCHEDULES=1");

@@ -1,4 +1,4 @@
-//! Motions that supersede one another, each with an end of its own.
+//! Motions that supersede one another, each with its own end.
 
 use franka_model::{READY, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotError, RobotMode};
@@ -13,8 +13,8 @@ use rand::{Rng, SeedableRng};
 use super::causes::Causes;
 use super::{OutcomeCounts, draw, kind};
 
-/// Largest torque of a session's first command at rest, `[N m]`, for budgets up to the default:
-/// what the reference's own first millisecond asks of the dampers.
+/// The largest torque of a session's first command at rest, `[N m]`, for budgets up to the default.
+/// The dampers command it for the reference's first millisecond.
 const FIRST_TORQUE: f64 = 0.02;
 
 /// One schedule.
@@ -25,9 +25,9 @@ pub(super) struct Motions {
     calm: bool,
     causes: Causes,
     goals: Vec<GoalId>,
-    /// Those faster than the default.
+    /// The goals faster than the default.
     hasty: Vec<u64>,
-    /// The newest goal, if it is held.
+    /// The newest goal, if it is held and can be updated.
     held: Option<GoalId>,
     running: bool,
 }
@@ -97,7 +97,7 @@ impl Motions {
             9 => {
                 if !self.goals.is_empty() {
                     let which = self.random.random_range(0..self.goals.len());
-                    // Mostly the newest: the others have been superseded.
+                    // Mostly the newest, since the others have been superseded.
                     let which = which.max(self.goals.len().saturating_sub(2));
                     let goal = self.goals[which];
                     self.held = self.held.filter(|&held| held != goal);
@@ -114,7 +114,7 @@ impl Motions {
                 self.causes.lose(self.lockstep.now(), count);
                 self.lockstep.link.drop_commands(count);
             }
-            // Only while torques are ours: how stiffly the robot itself holds is not what is tested
+            // Only under our own torques: the stiffness of the robot's own controller is not tested
             // here.
             12..=13 if self.running => {
                 self.causes.push();
@@ -165,7 +165,7 @@ impl Motions {
                 }
                 Some(id)
             }
-            // From where the arm is, the search may not find a way to a pose.
+            // From the arm's position, the search may find no path to a pose.
             Err(MotionError::Goal(_)) => None,
             Err(error) => panic!("{error:?}"),
         }
@@ -230,7 +230,7 @@ impl Motions {
         }
     }
 
-    /// Lets everything come to its end, checks it, and counts how the goals turned out.
+    /// Runs until everything has ended, checks it, and counts the outcomes.
     pub(super) fn finish(&mut self, counts: &mut OutcomeCounts) {
         let deadline = self.lockstep.now() + 60_000;
         while !self.lockstep.client.lifecycle.is_idle() {
@@ -257,7 +257,7 @@ impl Motions {
         assert_eq!(outcomes.len(), self.lockstep.client.resolved());
         for (goal, outcome) in &outcomes {
             let fits = match outcome {
-                Err(MotionError::Control(error)) => self.causes.excuse(error),
+                Err(MotionError::Control(error)) => self.causes.explains(error),
                 outcome => match kind(outcome) {
                     "ok" | "superseded" | "stopped" | "short" | "blocked" => true,
                     _ => !self.calm,
@@ -265,7 +265,7 @@ impl Motions {
             };
             assert!(fits, "{goal:?}: {outcome:?}");
         }
-        // Whatever happened, the next motion works.
+        // After any event the next motion works.
         if self.lockstep.client.state.robot_mode != RobotMode::Idle {
             assert!(!self.calm);
             self.lockstep.request(&Request::AutomaticErrorRecovery);

@@ -1,4 +1,4 @@
-//! The end of a session, of a schedule, and what comes after a reflex.
+//! The end of a session, the end of a schedule, and the recovery from a reflex.
 
 use franka_model::READY;
 use franka_proto::{Request, RobotMode};
@@ -7,11 +7,11 @@ use franka_rt::session::{GoalId, Lapse, OnArrival, Target};
 use franka_tests::lockstep::Link;
 use rand::Rng;
 
-use super::super::given::{Given, Work};
-use super::{PATIENCE, Sessions};
+use super::super::submission::{Submission, Work};
+use super::{Sessions, TIME_MAX};
 
 impl Sessions<'_> {
-    /// Ends the session in one of the ways that there are.
+    /// Ends the session in a random way.
     pub(super) fn end(&mut self) {
         let Some(session) = &mut self.session else {
             return;
@@ -22,10 +22,10 @@ impl Sessions<'_> {
         if way == 2 {
             if let Some(stop) = self.lockstep.stop() {
                 let now = self.lockstep.now();
-                for given in &mut self.open {
-                    given.stopped = true;
+                for submission in &mut self.open {
+                    submission.stopped = true;
                 }
-                self.add(Given::new(
+                self.add(Submission::new(
                     stop,
                     Work::Stop,
                     OnArrival::ReportAndFinish,
@@ -35,9 +35,9 @@ impl Sessions<'_> {
             return;
         }
         if !over {
-            for given in &mut self.open {
-                given.released = true;
-                given.stopped |= given.id != id;
+            for submission in &mut self.open {
+                submission.released = true;
+                submission.stopped |= submission.id != id;
             }
         }
         match way {
@@ -49,10 +49,10 @@ impl Sessions<'_> {
     pub(super) fn end_by_stop(&mut self) {
         let now = self.lockstep.now();
         if let Some(stop) = self.lockstep.stop() {
-            for given in &mut self.open {
-                given.stopped = true;
+            for submission in &mut self.open {
+                submission.stopped = true;
             }
-            self.add(Given::new(
+            self.add(Submission::new(
                 stop,
                 Work::Stop,
                 OnArrival::ReportAndFinish,
@@ -61,7 +61,7 @@ impl Sessions<'_> {
         }
     }
 
-    /// Lets everything come to its end, and checks it.
+    /// Runs until everything has ended, and checks it.
     pub(super) fn finish(&mut self) {
         self.lockstep.robot.press_user_stop(false);
         if self.random.random_bool(0.8) {
@@ -70,25 +70,25 @@ impl Sessions<'_> {
         let begin = self.lockstep.now();
         while !self.lockstep.client.lifecycle.is_idle() {
             let waited = self.lockstep.now() - begin;
-            // Nobody ends it who was to.
+            // A session that nothing has ended yet is ended here.
             if waited == 1000 {
                 self.end_by_stop();
             }
-            assert!(waited < PATIENCE, "{:?}", self.lockstep.client.lifecycle);
+            assert!(waited < TIME_MAX, "{:?}", self.lockstep.client.lifecycle);
             self.tick();
         }
         self.tick();
         assert!(self.open.is_empty(), "{:?}", self.open);
         let late = |id: &&GoalId| self.lockstep.client.outcome(**id).is_some();
         let late = self.chunks.iter().filter(late).count();
-        assert_eq!(self.given + late, self.lockstep.client.resolved());
+        assert_eq!(self.submitted + late, self.lockstep.client.resolved());
         self.lockstep.robot.let_go();
         self.lockstep.link = Link::perfect();
         self.run(400);
         let dq = self.lockstep.robot.dq();
         assert!(dq.amax() < 0.02, "the arm still moves: {dq}");
         assert!(self.lockstep.client.driver.is_watching());
-        // Whatever happened, the next motion works.
+        // After any event the next motion works.
         let stopped_itself = self.lockstep.client.state.robot_mode != RobotMode::Idle;
         if stopped_itself {
             assert!(!self.calm);
@@ -96,8 +96,8 @@ impl Sessions<'_> {
         }
         if stopped_itself || self.random.random_bool(0.2) {
             let again = self.lockstep.begin(Target::Joints(READY.into()));
-            let outcome = self.lockstep.until_resolved(again, PATIENCE);
-            // An arm that was pushed into itself has no way out that begins there.
+            let outcome = self.lockstep.until_resolved(again, TIME_MAX);
+            // An arm that was pushed into itself may find no path from there.
             let pushed_together =
                 self.causes.pushed() && outcome == Err(MotionError::Braked(Lapse::Blocked));
             assert!(outcome.is_ok() || pushed_together, "{outcome:?}");

@@ -1,15 +1,15 @@
-//! Goals that are given, changed and taken back.
+//! Goals that are submitted, changed and cancelled.
 
 use franka_rt::lifecycle::{MotionError, Tuning};
 use franka_rt::session::{Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target};
 use rand::Rng;
 
 use super::super::draw;
-use super::super::given::{Given, Work};
-use super::{PATIENCE, Sessions};
+use super::super::submission::{Submission, Work};
+use super::{Sessions, TIME_MAX};
 
 impl Sessions<'_> {
-    /// Gives the session a goal of any kind.
+    /// Submits a goal of any kind to the session.
     pub(super) fn give(&mut self) {
         let backend = self.session.as_ref().map(|session| session.backend);
         let kinds = match backend {
@@ -33,7 +33,7 @@ impl Sessions<'_> {
         self.submit(target, on_arrival);
     }
 
-    /// Submits a goal that goes about it in any way. Returns whether it was taken.
+    /// Submits a goal with random options. Returns whether it was accepted.
     pub(super) fn submit(&mut self, target: Target, on_arrival: OnArrival) -> bool {
         let mut goal = self.lockstep.goal(target, on_arrival);
         goal.budget = self.budget();
@@ -46,7 +46,7 @@ impl Sessions<'_> {
             goal.force_cap = ForceCap::Newtons(self.random.random_range(10.0..100.0));
             soft = true;
         }
-        // Nothing streams to a hand.
+        // Guiding gets no stream of targets.
         let streams = on_arrival == OnArrival::Hold && !matches!(target, Target::Guide(_));
         if streams && self.random.random_bool(0.5) {
             goal.watchdog = Some(self.watchdog());
@@ -58,7 +58,7 @@ impl Sessions<'_> {
         self.note(goal, Work::Goal(target), soft, taken)
     }
 
-    /// Takes note of a goal that was submitted.
+    /// Records a submitted goal.
     pub(super) fn note(
         &mut self,
         goal: Goal,
@@ -77,23 +77,23 @@ impl Sessions<'_> {
                 session.over = goal.on_arrival == OnArrival::ReportAndFinish;
                 let before = session.current.replace(id);
                 let current = session.id;
-                for given in &mut self.open {
-                    if Some(given.id) == before {
-                        given.superseded = true;
-                        let told = self.lockstep.client.outcome(given.id).is_some();
-                        // Of a session that is ending, everybody hears its end.
-                        assert!(told || causes, "{given:?} is superseded");
+                for submission in &mut self.open {
+                    if Some(submission.id) == before {
+                        submission.superseded = true;
+                        let told = self.lockstep.client.outcome(submission.id).is_some();
+                        // All goals of a session that is ending get its outcome.
+                        assert!(told || causes, "{submission:?} is superseded");
                     }
-                    given.finishing |=
-                        given.id == current && goal.on_arrival == OnArrival::ReportAndFinish;
+                    submission.finishing |=
+                        submission.id == current && goal.on_arrival == OnArrival::ReportAndFinish;
                 }
-                let mut given = Given::new(id, work, goal.on_arrival, now);
-                given.watchdog = goal.watchdog;
-                given.soft = soft;
-                self.add(given);
+                let mut submission = Submission::new(id, work, goal.on_arrival, now);
+                submission.watchdog = goal.watchdog;
+                submission.soft = soft;
+                self.add(submission);
                 true
             }
-            // From where the arm is, the search may not find a way to a pose.
+            // From the arm's position, the search may find no path to a pose.
             Err(MotionError::Goal(_)) => false,
             Err(error) => {
                 let ended = self.lockstep.client.outcome(session.id);
@@ -133,8 +133,8 @@ impl Sessions<'_> {
         let tuned = self.lockstep.tune(id, Tuning { budget, ..tuning });
         match tuned {
             Ok(()) => {
-                for given in &mut self.open {
-                    given.soft = true;
+                for submission in &mut self.open {
+                    submission.soft = true;
                 }
             }
             Err(MotionError::Goal(_)) => {}
@@ -147,10 +147,11 @@ impl Sessions<'_> {
     }
 
     pub(super) fn cancel(&mut self) {
-        let sessions = |given: &&mut Given| matches!(given.work, Work::Goal(_) | Work::Chunks);
-        if let Some(given) = self.open.iter_mut().rev().find(sessions) {
-            given.cancelled = true;
-            let id = given.id;
+        let sessions =
+            |submission: &&mut Submission| matches!(submission.work, Work::Goal(_) | Work::Chunks);
+        if let Some(submission) = self.open.iter_mut().rev().find(sessions) {
+            submission.cancelled = true;
+            let id = submission.id;
             self.lockstep.cancel(id);
         }
     }
@@ -158,26 +159,26 @@ impl Sessions<'_> {
     pub(super) fn close(&mut self) {
         if let Some(id) = self.held() {
             self.lockstep.client.lifecycle.close(id);
-            let given = self.open.iter_mut().find(|given| given.id == id);
-            given.expect("it is open").on_arrival = OnArrival::ReportAndHold;
+            let submission = self.open.iter_mut().find(|submission| submission.id == id);
+            submission.expect("it is open").on_arrival = OnArrival::ReportAndHold;
         }
     }
 
-    /// Until the newest goal has come to its end, if it has one.
+    /// Runs until the newest goal is resolved, if it ends by itself.
     pub(super) fn wait(&mut self) {
         let Some(current) = self.session.as_ref().and_then(|session| session.current) else {
             return;
         };
         let begin = self.lockstep.now();
-        let ends = |given: &Given| {
-            let watched = given.watchdog.is_some() && given.on_arrival == OnArrival::Hold;
-            given.id == current
-                && (given.on_arrival != OnArrival::Hold || given.cancelled || watched)
+        let ends = |submission: &Submission| {
+            let watched = submission.watchdog.is_some() && submission.on_arrival == OnArrival::Hold;
+            submission.id == current
+                && (submission.on_arrival != OnArrival::Hold || submission.cancelled || watched)
         };
         while self.open.iter().any(ends) {
             self.run(1);
             let waited = self.lockstep.now() - begin;
-            assert!(waited < PATIENCE, "{:?}", self.lockstep.client.lifecycle);
+            assert!(waited < TIME_MAX, "{:?}", self.lockstep.client.lifecycle);
         }
     }
 }

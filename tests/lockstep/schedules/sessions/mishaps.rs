@@ -1,4 +1,4 @@
-//! What befalls a session from outside.
+//! Disturbances of a session from outside.
 
 use franka_model::Wrench;
 use franka_proto::RobotError;
@@ -11,33 +11,36 @@ use rand::Rng;
 use super::Sessions;
 
 impl Sessions<'_> {
-    /// The hand on the deadman keeps still.
+    /// Stops feeding the deadman for a while, or drops it.
     pub(super) fn fall_silent(&mut self) {
         let now = self.lockstep.now();
         let pause = self.random.random_range(20..300);
         let for_good = self.random.random_bool(0.1);
-        let Some(hand) = self
+        let Some(feed) = self
             .session
             .as_mut()
             .and_then(|session| session.deadman.as_mut())
         else {
             return;
         };
-        hand.silent = now + pause;
+        feed.silent = now + pause;
         if for_good {
-            hand.token = None;
+            feed.token = None;
         }
         self.run(pause);
     }
 
-    /// Somebody else wants the arm.
+    /// Submits a motion from another handle.
     pub(super) fn interfere(&mut self) {
         let goal = self.lockstep.goal(Target::Rest, OnArrival::ReportAndFinish);
         let has_it = self.session.as_ref().is_some_and(|session| {
             let ended = self.lockstep.client.outcome(session.id).is_some();
-            let of_it = self.open.iter().find(|given| given.id == session.id);
-            // One that lets go lets others wait for the arm.
-            let lets_go = of_it.is_none_or(|given| given.released || given.stopped);
+            let of_it = self
+                .open
+                .iter()
+                .find(|submission| submission.id == session.id);
+            // While a session is ending, other motions may wait for the arm.
+            let lets_go = of_it.is_none_or(|submission| submission.released || submission.stopped);
             !(ended || lets_go || session.over)
         });
         if has_it {
@@ -61,7 +64,8 @@ impl Sessions<'_> {
         }
     }
 
-    /// Only while torques are ours: how stiffly the robot itself holds is not what is tested here.
+    /// Pushes the arm, only under our own torques: the stiffness of the robot's own controller is
+    /// not tested here.
     pub(super) fn push(&mut self) {
         let ours = self
             .session

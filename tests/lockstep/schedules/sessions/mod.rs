@@ -1,7 +1,7 @@
-//! Sessions that go from goal to goal, and all that can happen to them.
+//! Sessions that go from goal to goal, and disturbances of all kinds.
 //!
-//! What is done next is drawn here, and here time passes. `goals` and `streams` do it to the
-//! session, `mishaps` from outside, and `ends` sees to the end.
+//! This module draws the next action and advances time. `goals` and `streams` act on the session,
+//! `mishaps` disturbs it from outside, and `ends` ends it.
 
 mod ends;
 mod goals;
@@ -21,13 +21,13 @@ use rand::{Rng, SeedableRng};
 
 use super::OutcomeCounts;
 use super::causes::Causes;
-use super::given::{Given, Work};
+use super::submission::{Submission, Work};
 
-/// How often a deadman is kept alive, `[ms]`.
+/// Period in which a deadman is kept alive, `[ms]`.
 const BEAT: u64 = 10;
 
-/// The longest that anything that comes to its end may take, `[ms]`.
-const PATIENCE: u64 = 20_000;
+/// The longest time that any work may take to end, `[ms]`.
+const TIME_MAX: u64 = 20_000;
 
 /// One schedule.
 pub(super) struct Sessions<'a> {
@@ -35,14 +35,14 @@ pub(super) struct Sessions<'a> {
     random: SmallRng,
     counts: &'a mut OutcomeCounts,
     home: Isometry3<f64>,
-    /// Nothing comes from outside.
+    /// Whether there are no disturbances from outside.
     calm: bool,
     causes: Causes,
     session: Option<Session>,
-    /// What has not been resolved yet, the oldest first.
-    open: Vec<Given>,
-    given: usize,
-    /// Chunks that have gone on from others; one that comes too late resolves like a goal.
+    /// Unresolved work, the oldest first.
+    open: Vec<Submission>,
+    submitted: usize,
+    /// Chunks that continue others; one that comes too late resolves like a goal.
     chunks: Vec<GoalId>,
 }
 
@@ -50,25 +50,25 @@ pub(super) struct Sessions<'a> {
 struct Session {
     id: GoalId,
     backend: Backend,
-    deadman: Option<Hand>,
+    deadman: Option<DeadmanFeed>,
     /// The newest goal.
     current: Option<GoalId>,
-    /// Goals are refused from now on.
+    /// Whether goals are refused from now on.
     over: bool,
 }
 
-/// The hand on a deadman.
-struct Hand {
+/// What keeps a deadman alive.
+struct DeadmanFeed {
     token: Option<Deadman>,
     silence: u64,
-    /// When it showed life last.
+    /// The time of the last sign of life.
     beat: u64,
-    /// Until when it does not.
+    /// The time until which it gives none.
     silent: u64,
 }
 
 impl<'a> Sessions<'a> {
-    /// Plays the schedule of that seed with a robot from `robot`.
+    /// Runs the schedule of this seed with a robot from `robot`.
     pub(super) fn play(
         seed: u64,
         robot: impl FnOnce(RobotKind) -> Lockstep,
@@ -97,7 +97,7 @@ impl<'a> Sessions<'a> {
             causes: Causes::default(),
             session: None,
             open: Vec::new(),
-            given: 0,
+            submitted: 0,
             chunks: Vec::new(),
         };
         this.engage();
@@ -131,7 +131,7 @@ impl<'a> Sessions<'a> {
         self.session = Some(Session {
             id,
             backend,
-            deadman: bound.then_some(Hand {
+            deadman: bound.then_some(DeadmanFeed {
                 token: Some(token),
                 silence,
                 beat: now,
@@ -140,9 +140,9 @@ impl<'a> Sessions<'a> {
             current: None,
             over: false,
         });
-        self.add(Given::new(id, Work::Session, OnArrival::Hold, now));
-        // It holds the arm, or the robot has refused: one that was pushed may trip after it has
-        // shown itself idle.
+        self.add(Submission::new(id, Work::Session, OnArrival::Hold, now));
+        // The session holds the arm, or the robot has refused: after a push, a robot may trip
+        // although it was idle.
         while self.lockstep.client.record.goal != id.0 && self.lockstep.client.outcome(id).is_none()
         {
             self.tick();
@@ -151,9 +151,9 @@ impl<'a> Sessions<'a> {
         }
     }
 
-    fn add(&mut self, given: Given) {
-        self.open.push(given);
-        self.given += 1;
+    fn add(&mut self, submission: Submission) {
+        self.open.push(submission);
+        self.submitted += 1;
     }
 
     fn act(&mut self) {
@@ -161,7 +161,7 @@ impl<'a> Sessions<'a> {
         match self.random.random_range(0..if self.calm { 18 } else { 25 }) {
             0..=3 => self.give(),
             4 => {
-                // The first of them is superseded before anybody has seen it.
+                // The first of them is superseded before it takes effect.
                 self.give();
                 self.give();
             }
@@ -181,7 +181,7 @@ impl<'a> Sessions<'a> {
         }
     }
 
-    /// Begins another session after the last, perhaps.
+    /// Begins another session after the last, at random.
     fn begin_anew(&mut self) {
         let ended = |session: &Session| self.lockstep.client.outcome(session.id).is_some();
         if !self.session.as_ref().is_some_and(ended) || self.random.random_bool(0.3) {
@@ -210,16 +210,16 @@ impl<'a> Sessions<'a> {
         self.lockstep.tick();
         let record = &self.lockstep.client.record;
         let now = self.lockstep.now();
-        let hand = self
+        let feed = self
             .session
             .as_ref()
             .and_then(|session| session.deadman.as_ref());
-        // A gap in the states makes it seem longer.
+        // A gap in the states makes the silence seem longer.
         let silent =
-            hand.is_some_and(|hand| now + 40 >= hand.beat + hand.silence && hand.beat + BEAT < now);
-        for given in &mut self.open {
-            given.observe(record);
-            given.deadman |= silent;
+            feed.is_some_and(|feed| now + 40 >= feed.beat + feed.silence && feed.beat + BEAT < now);
+        for submission in &mut self.open {
+            submission.observe(record);
+            submission.deadman |= silent;
         }
         let Self {
             lockstep,
@@ -228,9 +228,9 @@ impl<'a> Sessions<'a> {
             ..
         } = self;
         self.open
-            .retain(|given| match lockstep.client.outcome(given.id) {
+            .retain(|submission| match lockstep.client.outcome(submission.id) {
                 Some(outcome) => {
-                    given.judge(outcome, lockstep, causes);
+                    submission.judge(outcome, lockstep, causes);
                     counts.count(outcome);
                     false
                 }
@@ -245,15 +245,15 @@ impl<'a> Sessions<'a> {
     fn keep_alive(&mut self) {
         let now = self.lockstep.now();
         if let Some(Session {
-            deadman: Some(hand),
+            deadman: Some(feed),
             ..
         }) = &mut self.session
-            && let Some(token) = &hand.token
-            && now >= hand.silent
-            && now >= hand.beat + BEAT
+            && let Some(token) = &feed.token
+            && now >= feed.silent
+            && now >= feed.beat + BEAT
         {
             token.keep_alive();
-            hand.beat = now;
+            feed.beat = now;
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Goals that are fed: targets that move, and chunks.
+//! Streamed goals: targets that move, and chunks.
 
 use std::time::Duration;
 
@@ -6,11 +6,11 @@ use franka_rt::session::{GoalId, OnArrival, OnTimeout, Target, Watchdog};
 use rand::Rng;
 
 use super::super::draw;
-use super::super::given::{Given, Work};
+use super::super::submission::{Submission, Work};
 use super::Sessions;
 
 impl Sessions<'_> {
-    /// Moves the target of a goal that is held, at a random rate, and then perhaps never again.
+    /// Moves the target of a held goal at a random rate, and then may stop doing so.
     pub(super) fn stream(&mut self) {
         if self.held().is_none() {
             let target = draw::pose(&mut self.random, &self.lockstep.true_pose(), 0.02, 0.05);
@@ -29,19 +29,21 @@ impl Sessions<'_> {
             };
             let now = self.lockstep.now();
             let updated = self.lockstep.update(id, target);
-            let given = self.open.iter_mut().find(|given| given.id == id);
-            match (updated, given) {
-                (Ok(true), Some(given)) => {
-                    given.work = Work::Goal(target);
-                    given.heard = now;
+            let submission = self.open.iter_mut().find(|submission| submission.id == id);
+            match (updated, submission) {
+                (Ok(true), Some(submission)) => {
+                    submission.work = Work::Goal(target);
+                    submission.heard = now;
                 }
-                (Ok(false), given) => {
+                (Ok(false), submission) => {
                     let told = self.lockstep.client.outcome(id).is_some();
-                    let lost = |given: &mut Given| told || given.cancelled || self.causes.any();
-                    assert!(given.is_none_or(lost), "it is followed");
+                    let lost = |submission: &mut Submission| {
+                        told || submission.cancelled || self.causes.any()
+                    };
+                    assert!(submission.is_none_or(lost), "it is followed");
                     return;
                 }
-                (Ok(true), None) => panic!("nobody is told twice"),
+                (Ok(true), None) => panic!("the goal was resolved before"),
                 (Err(_), _) => {}
             }
             let pause = self.random.random_range(1..most);
@@ -52,13 +54,16 @@ impl Sessions<'_> {
     /// The newest goal, if it is held and still open.
     pub(super) fn held(&self) -> Option<GoalId> {
         let current = self.session.as_ref()?.current?;
-        let given = self.open.iter().find(|given| given.id == current)?;
-        let guided = matches!(given.work, Work::Goal(Target::Guide(_)) | Work::Chunks);
-        (given.on_arrival == OnArrival::Hold && !given.cancelled && !guided).then_some(current)
+        let submission = self
+            .open
+            .iter()
+            .find(|submission| submission.id == current)?;
+        let guided = matches!(submission.work, Work::Goal(Target::Guide(_)) | Work::Chunks);
+        (submission.on_arrival == OnArrival::Hold && !submission.cancelled && !guided)
+            .then_some(current)
     }
 
-    /// Some chunks one after the other, as of a policy: most come before the one before them has
-    /// ended.
+    /// Sends successive chunks, like a policy: most arrive before the previous one has ended.
     pub(super) fn chunk(&mut self) {
         for _ in 0..self.random.random_range(1..6) {
             let Some(session) = &self.session else {
@@ -79,12 +84,14 @@ impl Sessions<'_> {
             let before = self.session.as_ref().and_then(|session| session.current);
             let taken = self.lockstep.submit_chunk(id, goal, chunk);
             let heard = self.lockstep.now();
-            let goes_on = self.open.iter_mut().find(|given| {
-                Some(given.id) == before && given.work == Work::Chunks && !given.cancelled
+            let goes_on = self.open.iter_mut().find(|submission| {
+                Some(submission.id) == before
+                    && submission.work == Work::Chunks
+                    && !submission.cancelled
             });
             match (goes_on, &taken) {
-                (Some(given), Ok(_)) => {
-                    given.heard = heard;
+                (Some(submission), Ok(_)) => {
+                    submission.heard = heard;
                     self.chunks.push(goal.id);
                 }
                 _ => {

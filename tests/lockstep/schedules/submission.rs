@@ -1,4 +1,4 @@
-//! What was given to a session, and what it may come to.
+//! Work submitted to a session, and the outcomes that it may have.
 
 use std::time::Duration;
 
@@ -26,43 +26,43 @@ const HINDRANCES: [Guard; 9] = [
     Guard::TorqueRate,
 ];
 
-/// What resolves, apart from goals.
+/// The kinds of work that resolve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Work {
     Goal(Target),
-    /// Chunks, one after the other.
+    /// Successive chunks.
     Chunks,
     Session,
     Stop,
 }
 
-/// Something that resolves, and all that happened to it.
+/// Submitted work, and all events that may affect its outcome.
 #[derive(Clone, Debug)]
-pub(super) struct Given {
+pub(super) struct Submission {
     pub(super) id: GoalId,
     pub(super) work: Work,
     pub(super) on_arrival: OnArrival,
     pub(super) watchdog: Option<Watchdog>,
-    /// Its newest sign of life, `[ms]`.
+    /// The time of its newest update, `[ms]`.
     pub(super) heard: u64,
     pub(super) superseded: bool,
-    /// Taken back by its owner.
+    /// Cancelled by its owner.
     pub(super) cancelled: bool,
-    /// Something else was stopped that it is part of.
+    /// Stopped as part of something else.
     pub(super) stopped: bool,
     /// Of a session: its end was asked for. Of a goal: its session was ending.
     pub(super) released: bool,
-    /// A goal was to end the session.
+    /// Ended by a goal that was to end the session.
     pub(super) finishing: bool,
-    /// Its deadman was silent.
+    /// Its deadman timed out.
     pub(super) deadman: bool,
-    /// The springs may be too soft to get it there.
+    /// The springs may be too soft to reach the target.
     pub(super) soft: bool,
-    /// Something was in its way.
+    /// A guard kept the arm from the target.
     hindered: bool,
 }
 
-impl Given {
+impl Submission {
     pub(super) fn new(id: GoalId, work: Work, on_arrival: OnArrival, now: u64) -> Self {
         Self {
             id,
@@ -81,17 +81,17 @@ impl Given {
         }
     }
 
-    /// One more cycle under way.
+    /// Records one more cycle.
     pub(super) fn observe(&mut self, record: &Record) {
         self.hindered |= HINDRANCES
             .into_iter()
             .any(|guard| record.bindings.contains(guard));
     }
 
-    /// Holds how it turned out at `now` against what happened.
+    /// Checks its outcome against the recorded events.
     ///
     /// # Panics
-    /// If nothing did that this may come of.
+    /// If no event explains the outcome.
     pub(super) fn judge(&self, outcome: &Outcome, lockstep: &Lockstep, causes: &Causes) {
         let fits = match outcome {
             Ok(report) => self.may_be_ok() && self.is_there(report, lockstep),
@@ -106,7 +106,7 @@ impl Given {
 
     fn may_be_ok(&self) -> bool {
         match self.work {
-            // The arm that a goal lets go has reached it, whatever comes after that.
+            // A goal whose motion is ending was reached, whatever comes after that.
             Work::Goal(_) if self.on_arrival == OnArrival::ReportAndFinish && self.stopped => true,
             Work::Goal(_) | Work::Chunks => {
                 self.on_arrival != OnArrival::Hold
@@ -119,7 +119,7 @@ impl Given {
         }
     }
 
-    /// Whether the arm is where the report says that it is, and that is where it was to go.
+    /// Whether the arm is where the report says, and that is the target.
     fn is_there(&self, report: &MotionReport, lockstep: &Lockstep) -> bool {
         let target = match self.work {
             Work::Goal(Target::Pose(pose)) => pose,
@@ -138,7 +138,7 @@ impl Given {
         };
         let off = PoseError::between(&lockstep.true_pose(), &target);
         let most = Tolerance::default();
-        // It swings on a little after it was measured.
+        // The arm swings on a little after the measurement.
         reported.translation <= most.translation
             && reported.rotation <= most.rotation
             && off.translation <= most.translation + 1e-3
@@ -167,7 +167,7 @@ impl Given {
             }
             MotionError::Braked(Lapse::Displaced) => causes.pushed,
             MotionError::Braked(Lapse::Blocked) => self.hindered,
-            MotionError::Control(error) => causes.excuse(error),
+            MotionError::Control(error) => causes.explains(error),
             MotionError::Rejected(_) => causes.any(),
             _ => false,
         }
@@ -182,7 +182,7 @@ impl Given {
         else {
             return false;
         };
-        // A gap in the states makes it longer, but not as long as it now is.
+        // A gap in the states makes the silence longer, but not longer than it is now.
         let since = Duration::from_millis(now + 1 - self.heard);
         on_timeout == how && reported >= silence && reported <= since
     }
