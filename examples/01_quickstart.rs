@@ -1,5 +1,5 @@
-//! Connects, prints the state, moves the hand 5 cm up and back, then the joints. Exit code 0 only
-//! if all arrived.
+//! Connects, prints the state, moves the hand 5 cm up and back, then the joints. The exit code is 0
+//! only if all motions arrived.
 //!
 //! `cargo run --release --example quickstart [ADDRESS]`
 

@@ -19,8 +19,8 @@ async fn main() -> anyhow::Result<()> {
     let start = robot.pose();
     let (sender, targets) = watch::channel(start);
 
-    // A planner, a policy, a person: whatever has a target now and then. This one walks a circle of
-    // 8 cm.
+    // Targets may come from a planner, a policy or a person. Here they walk along a circle of 8 cm
+    // radius.
     let planner = tokio::spawn(async move {
         let mut clock = tokio::time::interval(Duration::from_millis(100));
         for step in 0..=60 {

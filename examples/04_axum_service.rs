@@ -50,8 +50,8 @@ async fn main() -> anyhow::Result<()> {
     Ok(serving.await?)
 }
 
-/// Takes a step along the axes of the base, `[m]`, and answers when the arm has arrived. A client
-/// that hangs up drops the motion, which brakes the arm.
+/// Moves the hand by this much along the axes of the base, `[m]`, and answers when the arm has
+/// arrived. A client that disconnects drops the motion, which brakes the arm.
 async fn move_to(robot: State<Robot>, Json([x, y, z]): Json<[f64; 3]>) -> Result<String, Refused> {
     let moving = robot.move_to(Pose::translation(x, y, z) * robot.pose());
     let report = moving.await.map_err(refuse)?;

@@ -1,4 +1,5 @@
-//! Draws what the trajectory generator makes of a stepped, bursty and stalling target, as an SVG.
+//! Plots the response of the trajectory generator to a stepped, bursty and stalling target, as an
+//! SVG.
 //!
 //! `cargo run --release --example generator_plot [FILE]`
 
@@ -31,8 +32,8 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What a program asks for in a cycle, if it does: steps, then bursts of noisy targets, then
-/// something that moves and whose last sight is followed by silence.
+/// The new target in a cycle, if there is one: steps, then bursts of noisy targets, then a moving
+/// target whose updates stop.
 fn target(cycle: usize) -> Option<State<1>> {
     let t = cycle as f64 * CYCLE;
     let at = |position: f64, velocity: f64| State {
@@ -102,12 +103,11 @@ fn draw(rows: &[[f64; 5]]) -> String {
 const VELOCITY: f64 = 1.0;
 const ACCELERATION: f64 = 8.0;
 const JERK: f64 = 200.0;
-/// Seconds that are drawn.
+/// Length of the plot, `[s]`.
 const END: f64 = 3.8;
 /// Height of a panel.
 const PANEL: f64 = 120.0;
-/// Title, columns to draw and the value at the upper line, which for all but the position is the
-/// limit.
+/// Title, columns to draw and the value at the upper line: the limit, except for the position.
 const PANELS: [(&str, &[usize], f64); 4] = [
     ("position, m", &[1, 0], 0.8),
     ("velocity, m/s", &[2], VELOCITY),

@@ -1,4 +1,5 @@
-//! Picks a block up and puts it back: arm and hand, each awaited, neither waiting for the other.
+//! Picks a block up and puts it back, with arm and hand. Each is awaited; they can move at the same
+//! time.
 //!
 //! `cargo run --release --example pick [ADDRESS]`; on a robot, with the block between the fingers.
 
@@ -20,10 +21,10 @@ async fn main() -> anyhow::Result<()> {
     let table = robot.pose();
     let above = Pose::translation(0.0, 0.0, 0.08) * table;
 
-    // Homing finds out how far the fingers open; the arm may move meanwhile.
+    // Homing measures how far the fingers open; the arm may move meanwhile.
     let (homed, moved) = tokio::join!(gripper.homing(), robot.move_to(above));
     moved?;
-    ensure!(homed?, "the fingers did not find their ends");
+    ensure!(homed?, "homing failed: the fingers did not find their ends");
     robot.move_to(table).speed(0.5).await?;
 
     let grasped = gripper.grasp(Grasp::new(BLOCK, 0.05, 40.0)).await?;

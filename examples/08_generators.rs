@@ -26,7 +26,7 @@ enum Generator {
     CartesianVelocities,
 }
 
-/// Of the way there and back, `[s]`.
+/// Duration of the motion there and back, `[s]`.
 const DURATION: f64 = 4.0;
 
 #[tokio::main]
@@ -41,8 +41,8 @@ async fn main() -> anyhow::Result<()> {
     let what = format!("{what}, and back");
     let (robot, _sim) = arguments.connection.open_ready(&what).await?;
     let start = robot.pose();
-    // Where commands get lost, the robot goes on as before, and the next one may not fit on: the
-    // limiter makes it fit.
+    // The robot extrapolates lost commands, and the next command may then be too far away: the
+    // limiter moves it within the limits.
     let report = begin(&robot).limit_rate(true).await?;
     let moved = robot.pose().translation.vector - start.translation.vector;
     robot.shutdown().await;
@@ -55,7 +55,7 @@ fn joint_positions(robot: &Robot) -> Control {
     let (mut time, mut start) = (0.0, None);
     robot.control_joint_positions(move |state, step| {
         time += step.as_secs_f64(); // zero with the first state
-        // The way begins where the robot's own reference is, not where the joints are measured.
+        // The motion begins at the robot's own reference, not at the measured joint positions.
         let mut q = *start.get_or_insert(state.q_d);
         for joint in [3, 4, 6] {
             q[joint] += 0.2 * Ease::there_and_back(DURATION, time).value;
@@ -88,8 +88,7 @@ fn cartesian_pose(robot: &Robot) -> Control {
         };
         command.finish_if(time >= DURATION)
     });
-    // Which of the robot's own controllers follows is a choice with every generator; here the one
-    // that is stiff in space.
+    // Every generator can run with either controller of the robot; here with Cartesian impedance.
     control.controller(MoveControllerMode::CartesianImpedance)
 }
 

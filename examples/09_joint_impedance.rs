@@ -1,6 +1,6 @@
-//! A joint impedance law of one's own: the robot's generator turns a circle of the hand into joint
-//! references, and a second control function turns these into torques, in the place of the robot's
-//! own controller.
+//! A custom joint impedance law: the robot's generator turns a circle of the hand into joint
+//! references, and a second control function turns these into torques, instead of the robot's own
+//! controller.
 //!
 //! `cargo run --release --example joint_impedance -- [ADDRESS]`
 
@@ -13,14 +13,13 @@ use franka_model::JointVector;
 
 /// Radius of the circle, `[m]`.
 const RADIUS: f64 = 0.05;
-/// Of one turn, `[s]`.
+/// Duration of one turn, `[s]`.
 const DURATION: f64 = 5.0;
 
-/// Springs of the joints, `[N m/rad]`: stiff enough for some millimetres at the hand, soft enough
-/// to be pushed aside.
+/// Stiffness of the joints, `[N m/rad]`: enough for errors of some millimetres at the hand, and
+/// soft enough to push the arm aside.
 const STIFFNESS: [f64; 7] = [400.0, 400.0, 400.0, 400.0, 150.0, 100.0, 40.0];
-/// Dampers of the joints, `[N m s/rad]`: about as much as makes each joint's own inertia return
-/// without swinging.
+/// Damping of the joints, `[N m s/rad]`: about critical for each joint's own inertia.
 const DAMPING: [f64; 7] = [40.0, 40.0, 40.0, 35.0, 12.0, 8.0, 4.0];
 
 #[tokio::main]
@@ -47,7 +46,7 @@ async fn main() -> anyhow::Result<()> {
     let (model, version) = (robot.model().clone(), robot.version());
     let circle = circle.with_torques(move |state, _| {
         let coriolis = dynamics(&model, version, state).coriolis;
-        // Gravity and friction are the robot's business; what is commanded comes on top.
+        // The robot compensates gravity and friction; the commanded torques are added to that.
         let torques = JointVector::from_fn(|i, _| {
             STIFFNESS[i] * (state.q_d[i] - state.q[i]) + DAMPING[i] * (state.dq_d[i] - state.dq[i])
         });

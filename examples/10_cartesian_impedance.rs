@@ -1,6 +1,6 @@
-//! A Cartesian impedance law of one's own: the hand hangs on springs at the place where it is, and
-//! can be pushed aside. The same law as a control function, and on a thread of this program that
-//! reads states and writes commands itself.
+//! A custom Cartesian impedance law: springs hold the hand where it is, and it can be pushed aside.
+//! The same law runs as a control function, or on a thread of this program that reads states and
+//! writes commands itself.
 //!
 //! `cargo run --release --example cartesian_impedance -- callback [ADDRESS] [--seconds 10]`,
 //! likewise `active`
@@ -29,7 +29,7 @@ struct Arguments {
 enum Way {
     /// A function that the real-time thread calls with every state
     Callback,
-    /// A thread of this program's own
+    /// A thread of this program
     Active,
 }
 
@@ -64,24 +64,24 @@ async fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Springs and dampers between the hand and a place in the room.
+/// Springs and dampers between the hand and a fixed pose.
 struct Springs {
     model: Model,
     version: Version,
     place: Pose,
 }
 
-/// Of the springs, `[N/m]` and `[N m/rad]`, along and about the axes of the base.
+/// Stiffness of the springs, `[N/m]` and `[N m/rad]`, along and about the axes of the base.
 const STIFFNESS: [f64; 6] = [300.0, 300.0, 300.0, 20.0, 20.0, 20.0];
-/// Of the dampers, `[N s/m]` and `[N m s/rad]`: close to critical for the 3 to 8 kg that the hand
-/// feels like.
+/// Damping of the hand, `[N s/m]` and `[N m s/rad]`: close to critical for its effective mass of 3
+/// to 8 kg.
 const DAMPING: [f64; 6] = [60.0, 60.0, 80.0, 3.0, 3.0, 3.0];
-/// Of the joints, `[N m s/rad]`, so that the elbow, which no spring holds, comes to rest too.
+/// Damping of the joints, `[N m s/rad]`, which brings the elbow to rest, too: no spring holds it.
 const JOINT_DAMPING: f64 = 1.0;
 
 impl Springs {
-    /// What the springs answer a state with: `J' (K e - D J dq)`, a damper at each joint, and the
-    /// Coriolis torques.
+    /// The torques for a state: `J' (K e - D J dq)`, a damper at each joint, and the Coriolis
+    /// torques.
     fn torques(&self, state: &RobotState) -> Torques {
         let dynamics = dynamics(&self.model, self.version, state);
         let pose = transform::isometry(&dynamics.pose).unwrap_or(self.place);
@@ -109,14 +109,14 @@ async fn callback(
         time += step.as_secs_f64();
         springs.torques(state).finish_if(time >= seconds)
     });
-    // After lost commands the torques may be further away than the robot takes in one millisecond:
-    // the limiter goes there in steps.
+    // After lost commands the torques may have changed by more than the robot accepts in a
+    // millisecond: the limiter spreads the change over several cycles.
     holding.limit_rate(true).await
 }
 
-/// The law on a thread of this program: it asks for the states, answers each, and is the control
-/// cycle meanwhile. How it is scheduled is up to this program as well; commands pass no filter and
-/// no limiter.
+/// The law on a thread of this program, which reads each state, answers it, and is the control
+/// cycle meanwhile. This program also decides how the thread is scheduled. Commands pass no filter
+/// and no limiter.
 async fn active(
     robot: &Robot,
     springs: Springs,
@@ -126,7 +126,7 @@ async fn active(
     let (robot, runtime) = (robot.clone(), Handle::current());
     let (done, ended) = oneshot::channel();
     std::thread::spawn(move || {
-        // Fails only if nobody waits any more.
+        // Fails only if the receiver was dropped.
         let _ = done.send(hold(&robot, &springs, seconds, &scheduling, &runtime));
     });
     ended.await?
@@ -140,8 +140,7 @@ fn hold(
     runtime: &Handle,
 ) -> anyhow::Result<MotionReport> {
     scheduling.enter()?;
-    // The robot waits for the first command once the motion runs, so it begins on the thread that
-    // is ready to write it.
+    // A running motion waits for its first command, so it is started on the thread that writes it.
     let mut control = runtime.block_on(robot.active_torques())?;
     let mut time = 0.0;
     loop {

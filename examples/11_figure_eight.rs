@@ -24,7 +24,7 @@ struct Arguments {
 const WIDTH: f64 = 0.08;
 /// Half its height, `[m]`.
 const HEIGHT: f64 = 0.04;
-/// Of one figure, `[s]`.
+/// Duration of one figure, `[s]`.
 const LAP: f64 = 4.0;
 
 #[tokio::main]

@@ -1,6 +1,6 @@
-//! The hand is free to be led about, above a floor that is not there: a spring and a damper that
-//! only push upwards. The elbow is drawn back to its posture by springs that the hand does not
-//! feel.
+//! The hand can be guided freely above a virtual floor: a spring and a damper that only push
+//! upwards. Springs in the nullspace, which the hand does not feel, pull the elbow back to its
+//! posture.
 //!
 //! `cargo run --release --example virtual_floor -- [ADDRESS] [--below 0.05] [--seconds 20]`
 
@@ -18,7 +18,7 @@ struct Arguments {
     /// How far below the ready pose the floor is, `[m]`.
     #[arg(long, default_value_t = 0.05)]
     below: f64,
-    /// How long the hand is free, `[s]`.
+    /// How long the hand can be guided, `[s]`.
     #[arg(long, default_value_t = 20.0)]
     seconds: f64,
 }
@@ -57,16 +57,14 @@ struct Law {
     floor: f64,
 }
 
-/// Of the floor's spring, `[N/m]`.
+/// Stiffness of the floor, `[N/m]`.
 const STIFFNESS: f64 = 2000.0;
-/// Of the floor's damper, `[s/m]`: the share of its spring by which the floor gets stiffer per
-/// velocity of the hand into it. A damper that grows with depth takes hold without a step (Hunt and
-/// Crossley, 1975).
+/// Damping of the floor, `[s/m]`: the relative increase of its stiffness per velocity of the hand
+/// into it. Damping that grows with depth starts without a step (Hunt and Crossley, 1975).
 const DAMPING: f64 = 5.0;
-/// What slows the hand wherever it is, `[N s/m]` and `[N m s/rad]`: like oil, so that it stops when
-/// it is let go.
+/// Damping of the hand everywhere, `[N s/m]` and `[N m s/rad]`, which stops it when it is released.
 const OIL: [f64; 6] = [20.0, 20.0, 20.0, 1.5, 1.5, 1.5];
-/// Springs and dampers of the posture, `[N m/rad]` and `[N m s/rad]`.
+/// Stiffness and damping of the posture, `[N m/rad]` and `[N m s/rad]`.
 const POSTURE: (f64, f64) = (20.0, 4.0);
 
 impl Law {
@@ -84,16 +82,16 @@ impl Law {
     }
 }
 
-/// Force of the floor on a hand `depth` below it that moves upwards at `velocity`, `[N]`: never
-/// downwards, so that the floor does not hold what leaves it.
+/// Force of the floor on a hand `depth` below it that moves upwards at `velocity`, `[N]`. Never
+/// downwards, so that the floor does not hold a hand that leaves it.
 fn push_of_the_floor(depth: f64, velocity: f64) -> f64 {
     STIFFNESS * depth.max(0.0) * (1.0 - DAMPING * velocity).max(0.0)
 }
 
-/// The part of `torques` that does not accelerate the hand: `(1 - J' L J M^-1) torques` with
-/// `L = (J M^-1 J')^-1`, the inertia that the hand feels like (Khatib, A unified approach for
-/// motion and force control of robot manipulators, 1987). Nothing where the hand cannot move in
-/// every direction, and no such part can be told.
+/// The part of `torques` that does not accelerate the hand: `(1 - J' L J M^-1) torques` with `L =
+/// (J M^-1 J')^-1`, the effective inertia of the hand (Khatib, A unified approach for motion and
+/// force control of robot manipulators, 1987). Zero where the hand cannot move in every direction,
+/// since no such part is defined there.
 fn unfelt(dynamics: &Dynamics, torques: &JointVector) -> JointVector {
     let Some(hand) = dynamics.operational_space() else {
         return JointVector::zeros();

@@ -1,14 +1,13 @@
-//! Tests the network, and this computer, for control at 1 kHz: zero torques for some seconds, which
-//! holds the arm where it is since the robot makes up for gravity, and counts of what got lost and
-//! of how long everything took.
+//! Tests the network and this computer for control at 1 kHz. It commands zero torques for some
+//! seconds, under which the arm stays where it is, since the robot compensates gravity. It counts
+//! losses and measures times.
 //!
 //! ```text
 //! cargo run --release --example communication_test -- \
 //!     [ADDRESS] [--seconds 10] [--good 0.95] [--usable 0.9]
 //! ```
-//!
-//! Exit code 0: the average success rate is at least `--good`; 3: it is below, and at least
-//! `--usable`; 4: it is below that too; 1: the test did not run to its end. 2 is a mistake on the
+//! Exit code 0: the average success rate is at least `--good`; 3: it is lower, but at least
+//! `--usable`; 4: it is below `--usable`; 1: the test did not run to its end; 2: an error on the
 //! command line.
 
 use std::process::ExitCode;
@@ -70,7 +69,7 @@ async fn main() -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(code))
 }
 
-/// Says what gets lost when it does; returns the highest success rate that the robot has reported.
+/// Prints losses when they occur; returns the highest success rate that the robot has reported.
 async fn watch(mut records: broadcast::Receiver<Record>) -> f64 {
     let mut best: f64 = 0.0;
     loop {
@@ -82,7 +81,7 @@ async fn watch(mut records: broadcast::Receiver<Record>) -> f64 {
                 }
             }
             Ok(_) => {}
-            Err(RecvError::Lagged(missed)) => println!("{missed} cycles went unwatched"),
+            Err(RecvError::Lagged(missed)) => println!("{missed} records were missed"),
             Err(RecvError::Closed) => return best,
         }
     }

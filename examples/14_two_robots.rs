@@ -1,5 +1,5 @@
-//! Two arms at once from one program: both go to their ready pose, then swing like in a mirror.
-//! Whatever ends the motion of one has the other stop.
+//! Two arms at once from one program: both go to their ready pose, then swing in mirror image. When
+//! the motion of one fails, the other stops.
 //!
 //! `cargo run --release --example two_robots -- [ADDRESS OTHER]`
 
@@ -18,7 +18,7 @@ struct Arguments {
     other: Option<String>,
 }
 
-/// Of the way there and back, `[s]`.
+/// Duration of the motion there and back, `[s]`.
 const DURATION: f64 = 4.0;
 
 #[tokio::main]
@@ -32,8 +32,8 @@ async fn main() -> anyhow::Result<()> {
     connection.ask("and the other one go to their ready poses, and swing aside by 0.3 rad")?;
     tokio::try_join!(make_ready(&left), make_ready(&right))?;
 
-    // Neither begins before both can, and then both do, within a millisecond. Dropped unfinished, a
-    // motion has its robot stop: which is what `try_join` does to one when the other has failed.
+    // Both begin within a millisecond, once both are ready. When one motion fails, `try_join` drops
+    // the other, which stops its robot.
     let [first, second] = StartBarrier::new().tickets();
     let both = tokio::try_join!(
         swing(&left, 0.3).start_with(first),

@@ -1,5 +1,5 @@
-//! Provokes a reflex, shows what the robot says of it, recovers and goes on: what a program does
-//! that is to outlive an error which nobody has to look at.
+//! Causes a reflex, prints the robot's report of it, recovers and continues, as an unattended
+//! program does.
 //!
 //! `cargo run --release --example recovery -- [ADDRESS] [--log FILE.csv]`
 
@@ -26,19 +26,19 @@ async fn main() -> anyhow::Result<()> {
     let what = "stops itself with a reflex (a jerk and the click of its brakes), and turns its hand by 0.3 rad";
     let (robot, _sim) = connection.open_ready(what).await?;
 
-    // From standstill to 0.2 rad/s within a millisecond is more acceleration than the robot takes
-    // from anybody.
+    // From standstill to 0.2 rad/s within a millisecond is more acceleration than the robot
+    // accepts.
     let mut cycle = 0;
     let step = robot.control_joint_velocities(move |_, _| {
         cycle += 1;
         let speed = if cycle < 100 { 0.0 } else { 0.2 };
         JointVelocities([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, speed]).finish_if(cycle > 1000)
     });
-    // Filter and limiter would have made an acceptable command of it.
+    // Filter and limiter would have turned this into an acceptable command.
     let error = match step.limit_rate(false).cutoff_frequency(1000.0).await {
         Err(MotionError::Control(error)) if error.is_reflex() => error,
-        Err(error) => return Err(error).context("ended otherwise than by a reflex"),
-        Ok(_) => bail!("the robot took a step in velocity"),
+        Err(error) => return Err(error).context("the motion did not end by a reflex"),
+        Ok(_) => bail!("the robot accepted a step in velocity"),
     };
     println!("{error}");
     if let Some(diagnosis) = error.diagnose() {

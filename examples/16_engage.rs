@@ -28,8 +28,8 @@ async fn main() -> anyhow::Result<()> {
 }
 
 async fn run(robot: &Robot) -> Result<(), MotionError> {
-    // Whoever holds the token has to show life; here a task does, as a remote front end would with
-    // every message.
+    // The holder of the token has to keep it alive. Here a task does so; a remote front end would
+    // with every message.
     let (token, monitor) = Deadman::new(Duration::from_millis(500));
     let alive = tokio::spawn(async move {
         let mut clock = tokio::time::interval(Duration::from_millis(50));
@@ -44,7 +44,7 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
 
     arm.move_to(Pose::translation(0.0, 0.0, 0.05) * start)
         .await?;
-    // The next goal may come in mid-motion, and be of another kind.
+    // The next goal may come in mid-motion and be of another kind.
     arm.set(Pose::translation(0.0, 0.1, 0.05) * start).await?;
     tokio::time::sleep(Duration::from_millis(300)).await;
     arm.move_joints(ready).await?;
@@ -57,7 +57,7 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
     };
     arm.tune(tuning).await?;
 
-    // A stream that falls silent is named, and the arm holds.
+    // When a stream times out, the error says so, and the arm is held.
     let (sender, targets) = watch::channel(start);
     let silence = Duration::from_millis(200);
     let follow = arm.follow(targets).watchdog(silence, OnTimeout::Hold);
@@ -89,7 +89,7 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
 }
 
 /// What a policy would predict from an observation: here, a second of motion of the first joint
-/// towards the others' place.
+/// towards the ready pose.
 fn predict(observation: &RobotState, ready: &[f64; 7]) -> Chunk {
     let points = (1..=10_u32).map(|step| {
         let share = f64::from(step) / 10.0;

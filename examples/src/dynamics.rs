@@ -1,13 +1,12 @@
-//! What a torque law needs of the model.
+//! The quantities of the model that a torque law needs.
 
 use franka_async::model::Model;
 use franka_async::{RobotState, Version};
 use franka_model::{Dynamics, EndEffector, Load};
 
 /// The model at a state: pose, Jacobian, mass, Coriolis and gravity torques, with the end effector
-/// and the load that the robot has been told of.
-///
-/// One pass over the arm, and no allocation: made to be called in a control function.
+/// and the load that are set on the robot. One pass over the arm without allocation, so it can be
+/// called in a control function.
 pub fn dynamics(model: &Model, version: Version, state: &RobotState) -> Dynamics {
     let load = state.total_load(version);
     model.dynamics(

@@ -1,21 +1,21 @@
 //! References that begin and end at rest.
 
-/// How far something is on its way from 0 to 1, and how fast.
+/// A smooth transition from 0 to 1: value and rate.
 ///
-/// The way is the polynomial of fifth degree whose velocity and acceleration vanish at both ends
-/// (the minimum-jerk course of Flash and Hogan, 1985): what a motion generator is given from the
-/// first command on must be that smooth, since the robot takes no steps in acceleration.
+/// The transition is the polynomial of fifth degree whose velocity and acceleration vanish at both
+/// ends (the minimum-jerk trajectory of Flash and Hogan, 1985). Commands to a motion generator must
+/// be that smooth from the first one on, since the robot accepts no steps in acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ease {
-    /// Share of the way.
+    /// The value, from 0 to 1.
     pub value: f64,
     /// Its derivative, `[1/s]`.
     pub rate: f64,
 }
 
 impl Ease {
-    /// The way within `duration` seconds, `time` seconds after its beginning; before and after it,
-    /// its ends.
+    /// The transition within `duration` seconds, at `time` seconds after its beginning; constant
+    /// before and after.
     pub fn over(duration: f64, time: f64) -> Self {
         let s = (time / duration).clamp(0.0, 1.0);
         Self {
@@ -24,7 +24,7 @@ impl Ease {
         }
     }
 
-    /// There in the first half of `duration`, and back in the second.
+    /// From 0 to 1 in the first half of `duration`, and back in the second.
     pub fn there_and_back(duration: f64, time: f64) -> Self {
         let half = 0.5 * duration;
         if time < half {

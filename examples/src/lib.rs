@@ -27,19 +27,19 @@ pub struct Connection {
     /// Address of a robot or simulator, `host` or `host:port`; without it a simulator starts in
     /// this process.
     pub address: Option<String>,
-    /// Which robot to simulate. A real one says itself which it is.
+    /// Which robot to simulate. A real robot reports its own kind.
     #[arg(long, value_enum, default_value_t = Simulated::Fr3, conflicts_with = "address")]
     pub sim: Simulated,
     /// Whether the control thread may go without real-time scheduling; for a simulator in this
     /// process it always may.
     #[arg(long, value_enum, default_value_t = Realtime::Enforce)]
     pub realtime: Realtime,
-    /// Move at once, without asking whether somebody is at the user stop.
+    /// Move at once, without asking for confirmation.
     #[arg(long)]
     pub yes: bool,
 }
 
-/// What to do where the host grants no real-time scheduling, see [`franka_async::Realtime`].
+/// What to do if the host does not grant real-time scheduling, see [`franka_async::Realtime`].
 #[derive(ValueEnum, Clone, Copy, Debug)]
 pub enum Realtime {
     /// Do not connect
@@ -104,7 +104,7 @@ impl Connection {
         Ok((robot, Some(sim)))
     }
 
-    /// How to schedule a thread that controls what [`Self::open`] connects to.
+    /// The scheduling of a thread that controls the robot of [`Self::open`].
     pub fn scheduling(&self) -> Scheduling {
         Scheduling {
             realtime: match self.address {
@@ -127,8 +127,8 @@ impl Connection {
         Ok((robot, sim))
     }
 
-    /// Says what the arm is about to do and waits for the enter key, unless it is simulated in this
-    /// process or `--yes` was given.
+    /// Prints what the arm is about to do and waits for the enter key, unless the arm is simulated
+    /// in this process or `--yes` was given.
     ///
     /// # Errors
     /// If the input ends first.
@@ -137,10 +137,13 @@ impl Connection {
             return Ok(());
         }
         println!("The arm {what}. Clear its way, and keep the user stop at hand.");
-        print!("Enter to go on, Ctrl-C to leave it: ");
+        print!("Enter to continue, Ctrl-C to cancel: ");
         std::io::stdout().flush()?;
         let read = std::io::stdin().lock().read_line(&mut String::new())?;
-        ensure!(read > 0, "nobody said that the arm may move (--yes does)");
+        ensure!(
+            read > 0,
+            "no confirmation that the arm may move: the input has ended (--yes confirms)"
+        );
         Ok(())
     }
 
@@ -161,11 +164,11 @@ impl Connection {
     }
 }
 
-/// Moves the joints to [`READY`] at half speed, with thresholds that let the arm be pushed at: 20 N
-/// m and 20 N are a contact, 60 N m and 60 N a collision that stops it.
+/// Moves the joints to [`READY`] at half speed, and sets thresholds that tolerate pushes: 20 N m
+/// and 20 N are a contact, 60 N m and 60 N a collision that stops the arm.
 ///
 /// # Errors
-/// What kept the arm from its pose.
+/// Those of the motion.
 pub async fn make_ready(robot: &Robot) -> anyhow::Result<()> {
     let behavior = CollisionBehavior::uniform([20.0; 7], [60.0; 7], [20.0; 6], [60.0; 6]);
     robot.set_collision_behavior(behavior).await?;
@@ -188,8 +191,7 @@ pub fn report_hand(robot: &Robot) -> JoinHandle<()> {
     })
 }
 
-/// Has somebody push the hand of a simulated robot with `force`, in base axes `[N]`, for the next
-/// two seconds.
+/// Pushes the hand of a simulated robot with `force`, in base axes `[N]`, for the next two seconds.
 ///
 /// # Errors
 /// If the simulation has ended.

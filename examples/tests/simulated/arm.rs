@@ -1,5 +1,5 @@
-//! A simulated robot in the process of the test, which watches it and lays hands on it while a
-//! program drives it.
+//! A simulated robot in the process of the test, which observes and disturbs it while a program
+//! controls it.
 
 use std::sync::mpsc;
 use std::thread::JoinHandle;
@@ -11,34 +11,33 @@ use franka_rt::sched::Scheduling;
 use franka_sim::{Sim, Tool};
 use tokio::sync::oneshot;
 
-/// What a robot is like when the program begins, and what happens to it while the program moves it.
+/// The initial state of a robot, and the events while a program moves it.
 #[derive(Clone)]
 pub(crate) struct Scene {
-    /// Where it starts, `[rad]`.
+    /// The joint positions at the start, `[rad]`.
     pub(crate) q: JointVector,
-    /// What happens while it moves, one after the other.
+    /// The events while it moves, in order.
     pub(crate) events: Vec<(When, Event)>,
     /// Whether lost commands end a motion.
     pub(crate) strict: bool,
 }
 
-/// Whether it is time for what comes next: from the state, and the milliseconds that a motion has
-/// gone on for.
+/// Whether the next event is due, from the state and the milliseconds since the motion began.
 pub(crate) type When = fn(&RobotState, u64) -> bool;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Event {
-    /// Somebody pushes the hand with this force, `[N]`, for so many milliseconds.
+    /// The hand is pushed with this force, `[N]`, for so many milliseconds.
     PushHand([f64; 3], u64),
-    /// Somebody swings the elbow and hardly moves the hand: joint 3 feels this torque, `[N m]`, for
-    /// so many milliseconds.
+    /// The elbow is swung, which hardly moves the hand: joint 3 gets this torque, `[N m]`, for so
+    /// many milliseconds.
     SwingElbow(f64, u64),
     /// The robot stops itself.
     Trip(RobotError),
 }
 
 impl Default for Scene {
-    /// In the ready pose, undisturbed, as strict as a robot.
+    /// In the ready pose, without disturbances, as strict as a real robot.
     fn default() -> Self {
         Self {
             q: READY,
@@ -48,14 +47,14 @@ impl Default for Scene {
     }
 }
 
-/// A simulated robot that runs.
+/// A running simulated robot.
 pub(crate) struct Arm {
     pub(crate) address: String,
     end: oneshot::Sender<()>,
     watching: JoinHandle<Course>,
 }
 
-/// What the simulator said every few milliseconds.
+/// The simulator's states, every few milliseconds.
 pub(crate) struct Course(Vec<Moment>);
 
 struct Moment {
@@ -76,9 +75,8 @@ impl Arm {
         let (started, address) = mpsc::channel();
         let (end, ended) = oneshot::channel();
         let watching = std::thread::spawn(move || {
-            // The simulator's thread inherits what this one is granted. Where that is real-time
-            // scheduling, other work on this machine costs no cycles; a robot's clock does not wait
-            // for it either.
+            // The simulator's thread inherits the scheduling of this one. With real-time
+            // scheduling, other work on this machine costs no cycles, as on a real robot.
             let scheduling = Scheduling {
                 realtime: Realtime::Ignore,
                 priority: Some(10),
@@ -121,7 +119,7 @@ async fn watch(
     let mut moments = Vec::new();
     let mut events = events.iter();
     let mut next = events.next();
-    // Since when it has been in the motion that it is in, in its own time.
+    // The beginning of the present motion, in the robot's time.
     let mut moving = None;
     loop {
         let state = sim.state().await.expect("the simulator runs");
@@ -158,7 +156,7 @@ async fn watch(
     }
     assert!(
         next.is_none(),
-        "the motion was too short for what was to happen in it"
+        "the motion ended before all events were due"
     );
     Course(moments)
 }
@@ -180,7 +178,7 @@ impl Course {
         &self.0.last().expect("there is one at least").state
     }
 
-    /// Least and greatest of a number.
+    /// The smallest and the greatest value of a quantity.
     pub(crate) fn extent(&self, of: impl Fn(&RobotState) -> f64) -> (f64, f64) {
         let values = self.0.iter().map(|moment| of(&moment.state));
         values.fold(
@@ -189,23 +187,23 @@ impl Course {
         )
     }
 
-    /// How far the hand was from where it began, along an axis of the base `[m]`: least, greatest,
-    /// and in the end.
+    /// The displacement of the hand from its start along an axis of the base, `[m]`: smallest,
+    /// greatest, and last.
     pub(crate) fn hand(&self, axis: usize) -> (f64, f64, f64) {
         let of = |state: &RobotState| state.O_T_EE[12 + axis] - self.0[0].state.O_T_EE[12 + axis];
         let (least, most) = self.extent(of);
         (least, most, of(self.last()))
     }
 
-    /// How far a joint was from where it began, `[rad]`: least, greatest, and in the end.
+    /// The displacement of a joint from its start, `[rad]`: smallest, greatest, and last.
     pub(crate) fn joint(&self, joint: usize) -> (f64, f64, f64) {
         let of = |state: &RobotState| state.q[joint] - self.0[0].state.q[joint];
         let (least, most) = self.extent(of);
         (least, most, of(self.last()))
     }
 
-    /// How far the joints were from the ready pose along their [`self_motion`], `[rad]`: least,
-    /// greatest, and in the end.
+    /// The displacement of the joints from the ready pose along their [`self_motion`], `[rad]`:
+    /// smallest, greatest, and last.
     pub(crate) fn elbow(&self) -> (f64, f64, f64) {
         let of = |state: &RobotState| {
             let q = JointVector::from(state.q);
@@ -215,7 +213,7 @@ impl Course {
         (least, most, of(self.last()))
     }
 
-    /// When something was first so.
+    /// The first time at which a condition held.
     pub(crate) fn first(&self, so: impl Fn(&RobotState) -> bool) -> Option<Instant> {
         let moment = self.0.iter().find(|moment| so(&moment.state));
         moment.map(|moment| moment.at)

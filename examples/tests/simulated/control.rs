@@ -1,4 +1,5 @@
-//! What the arm does under each example of control at 1 kHz, as the simulator in the test sees it.
+//! The motion of the arm under each example of control at 1 kHz, as recorded by the simulator in
+//! the test.
 
 use franka_async::{RobotError, RobotMode};
 use franka_model::READY;
@@ -6,7 +7,7 @@ use franka_model::READY;
 use crate::arm::{Arm, Course, Event, Scene};
 use crate::program::{Said, alone, on_both, run};
 
-/// Asserts that a program has succeeded, and that nothing made the robot stop itself meanwhile.
+/// Asserts that a program has succeeded, and that the robot has not stopped itself meanwhile.
 fn succeeded(robot: &str, said: &Said, course: &Course) {
     assert_eq!(said.code, Some(0), "{robot}: {said:?}");
     let erred = course.first(|state| !state.errors.is_empty());
@@ -14,7 +15,7 @@ fn succeeded(robot: &str, said: &Said, course: &Course) {
     assert_eq!(course.last().robot_mode, RobotMode::Idle, "{robot}");
 }
 
-/// Asserts that least, greatest and last value are as expected.
+/// Asserts that smallest, greatest and last value are as expected.
 fn is_about(what: &str, got: (f64, f64, f64), expected: (f64, f64, f64), tolerance: f64) {
     let off = [got.0 - expected.0, got.1 - expected.1, got.2 - expected.2];
     assert!(
@@ -84,7 +85,7 @@ fn joint_impedance_follows_the_circle() {
         &Scene::default(),
         |robot, said, course| {
             succeeded(robot, said, course);
-            // The springs are soft: what friction is left takes some millimetres.
+            // The springs are soft: the remaining friction causes errors of some millimetres.
             is_about(robot, course.hand(0), (0.0, 0.0, 0.0), 5e-3);
             is_about(robot, course.hand(1), (-0.05, 0.05, 0.0), 5e-3);
             is_about(robot, course.hand(2), (0.0, 0.1, 0.0), 5e-3);
@@ -93,7 +94,7 @@ fn joint_impedance_follows_the_circle() {
 }
 
 #[test]
-fn cartesian_impedance_gives_way_as_its_spring_says_both_ways() {
+fn cartesian_impedance_yields_by_its_stiffness_in_both_ways() {
     let scene = Scene {
         events: vec![(|_, time| time > 500, Event::PushHand([0.0, 9.0, 0.0], 1500))],
         ..Scene::default()
@@ -116,7 +117,7 @@ fn cartesian_impedance_gives_way_as_its_spring_says_both_ways() {
 }
 
 #[test]
-fn figure_eight_is_as_large_as_it_says_and_begins_and_ends_at_rest() {
+fn figure_eight_has_its_stated_size_and_begins_and_ends_at_rest() {
     let scene = Scene::default();
     on_both(
         "figure_eight",
@@ -132,7 +133,7 @@ fn figure_eight_is_as_large_as_it_says_and_begins_and_ends_at_rest() {
 }
 
 #[test]
-fn virtual_floor_holds_the_hand_up_lets_it_go_and_keeps_the_elbow() {
+fn virtual_floor_stops_the_hand_releases_it_and_keeps_the_elbow() {
     let scene = Scene {
         events: vec![
             (|_, time| time > 500, Event::SwingElbow(4.0, 500)),
@@ -173,7 +174,7 @@ fn virtual_floor_holds_the_hand_up_lets_it_go_and_keeps_the_elbow() {
 }
 
 #[test]
-fn communication_test_tells_by_its_exit_code() {
+fn communication_test_reports_by_its_exit_code() {
     for (good, usable, code) in [("0", "0", 0), ("1.01", "0", 3), ("1.01", "1.01", 4)] {
         let arguments = ["--seconds", "1.5", "--good", good, "--usable", usable];
         let scene = Scene::default();
@@ -196,7 +197,7 @@ fn communication_test_tells_by_its_exit_code() {
 }
 
 #[test]
-fn recovery_goes_on_after_a_reflex() {
+fn recovery_continues_after_a_reflex() {
     on_both("recovery", &[], &Scene::default(), |robot, said, course| {
         assert_eq!(said.code, Some(0), "{robot}: {said:?}");
         assert!(
@@ -210,7 +211,7 @@ fn recovery_goes_on_after_a_reflex() {
     });
 }
 
-/// Runs the example on a robot of each kind together, the first of which has this scene.
+/// Runs the example with a robot of each kind, the first of which has this scene.
 fn two_robots(first: Scene) -> (Said, [Course; 2]) {
     let arms = [
         Arm::start("fr3", first),
@@ -238,12 +239,12 @@ fn two_robots_swing_at_the_same_time() {
         panic!("they have swung");
     };
     let apart = one.max(other) - one.min(other);
-    // Looked at every 5 ms.
+    // Sampled every 5 ms.
     assert!(apart.as_millis() < 30, "{apart:?} apart");
 }
 
 #[test]
-fn neither_of_two_robots_goes_on_without_the_other() {
+fn neither_of_two_robots_continues_without_the_other() {
     let _alone = alone();
     let (said, [one, other]) = two_robots(Scene {
         events: vec![(
@@ -255,7 +256,7 @@ fn neither_of_two_robots_goes_on_without_the_other() {
     assert_eq!(said.code, Some(1), "{said:?}");
     assert!(said.stderr.contains("cartesian_reflex"), "{said:?}");
     assert_eq!(one.last().robot_mode, RobotMode::Reflex);
-    // Half of the way there, at 0.28 rad/s, when the other one tripped.
+    // Halfway, at 0.28 rad/s, when the other robot tripped.
     assert_eq!(other.last().robot_mode, RobotMode::Idle);
     let (farthest, _, left) = other.joint(0);
     assert!((-0.25..-0.12).contains(&left), "stopped at {left}");
@@ -266,7 +267,7 @@ fn neither_of_two_robots_goes_on_without_the_other() {
 }
 
 #[test]
-fn with_an_address_nothing_moves_before_somebody_says_so() {
+fn with_an_address_nothing_moves_before_the_confirmation() {
     let _alone = alone();
     let elsewhere = || {
         let mut scene = Scene::default();

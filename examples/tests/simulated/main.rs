@@ -1,5 +1,5 @@
-//! The examples as programs: against a simulator of each kind in their own process, and, where it
-//! matters what the arm does, against one in the process of the test.
+//! The examples as programs: with a simulator of each kind in their own process, and, to check what
+//! the arm does, with a simulator in the process of the test.
 
 mod arm;
 mod control;
@@ -10,7 +10,7 @@ use std::process::{Child, Stdio};
 
 use program::{ROBOTS, alone, example};
 
-/// Runs an example against its own simulator, and returns what it said.
+/// Runs an example with its own simulator, and returns its output.
 fn run(name: &str, robot: &str) -> String {
     let _alone = alone();
     let said = program::run(name, &["--sim", robot], "");
@@ -54,12 +54,12 @@ fn pick_holds_the_block_and_puts_it_down() {
     }
 }
 
-/// Ends a service whatever becomes of the test.
+/// A service that is killed at the end of the test, also when the test fails.
 struct Service(Child);
 
 impl Drop for Service {
     fn drop(&mut self) {
-        // Fails only if it has ended by itself.
+        // Fails only if the service has ended by itself.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -96,7 +96,7 @@ fn the_web_service_moves_the_arm() {
     }
 }
 
-/// Position of joint 2 in what the service says of the state.
+/// The position of joint 2 in the service's answer.
 fn joint_2(mut answer: ureq::http::Response<ureq::Body>) -> f64 {
     let state: serde_json::Value = answer.body_mut().read_json().unwrap();
     state["q"][1].as_f64().expect("joint positions")

@@ -1,4 +1,4 @@
-//! The examples as programs, with an end whatever they do.
+//! Runs the examples as programs, with a time limit.
 
 use std::io::{Read, Write};
 use std::path::PathBuf;
@@ -8,17 +8,17 @@ use std::time::{Duration, Instant};
 
 use crate::arm::{Arm, Course, Scene};
 
-/// Both robots, as the option of the examples names them.
+/// Both robots, by their names in the option of the examples.
 pub(crate) const ROBOTS: [&str; 2] = ["fr3", "fer"];
 
-/// Held by each test, so that no more than two robots share this machine.
+/// Held by each test, so that at most two robots share this machine.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
 pub(crate) fn alone() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The program of an example. Cargo builds examples with the tests, beside them.
+/// Returns the command for an example. Cargo builds examples with the tests, beside them.
 pub(crate) fn example(name: &str) -> Command {
     let mut path: PathBuf = std::env::current_exe().expect("a test has a path");
     path.pop();
@@ -31,7 +31,7 @@ pub(crate) fn example(name: &str) -> Command {
     command
 }
 
-/// What a program has said, and how it ended.
+/// The output of a program, and its exit code.
 #[derive(Debug)]
 pub(crate) struct Said {
     /// `None` if it was killed.
@@ -41,8 +41,8 @@ pub(crate) struct Said {
 }
 
 impl Said {
-    /// Whether the robot ended a motion after more than one in twenty of its last commands had not
-    /// come in time: that says nothing but that this machine was busy.
+    /// Whether the robot ended a motion after more than one in twenty of its last commands were
+    /// late: that only means that this machine was busy.
     fn was_starved(&self) -> bool {
         let rate = self.stderr.split("control_command_success_rate: ").nth(1);
         let rate = rate.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
@@ -50,7 +50,7 @@ impl Said {
     }
 }
 
-/// Runs an example on `input` until it ends, or is ended after a minute.
+/// Runs an example on `input` until it ends, and kills it after a minute.
 pub(crate) fn run(name: &str, arguments: &[&str], input: &str) -> Said {
     let mut child = example(name)
         .args(arguments)
@@ -60,7 +60,7 @@ pub(crate) fn run(name: &str, arguments: &[&str], input: &str) -> Said {
         .spawn()
         .expect("it starts");
     let mut stdin = child.stdin.take().expect("it is piped");
-    // A program that does not read its input may be gone already.
+    // A program that does not read its input may have ended already.
     let _ = stdin.write_all(input.as_bytes());
     drop(stdin);
     let stdout = collect(child.stdout.take().expect("it is piped"));
@@ -90,8 +90,8 @@ fn collect(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<Stri
     })
 }
 
-/// Runs an example on each robot, both at once, and has `check` judge what it said and what its arm
-/// did.
+/// Runs an example on each robot, both at once, and passes its output and the motion of its arm to
+/// `check`.
 ///
 /// A program that ended while [its commands came late](Said::was_starved) is run again.
 pub(crate) fn on_both(
