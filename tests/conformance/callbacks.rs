@@ -27,8 +27,8 @@ fn one_command(version: Version) -> (Program, MoveRequest) {
     torques(version, |_, _| Torques([0.0; 7]).finish())
 }
 
-/// Asserts that a function that failed in the cycle before gets no more states, that the robot is
-/// told to stop, and that the motion resolves when it has; then that the next motion runs.
+/// Asserts that a function that failed in the previous cycle gets no more states, that the robot is
+/// told to stop, that the motion resolves when it has stopped, and that the next motion runs.
 fn assert_stopped(pair: &mut Pair, motion: &Running) -> MotionError {
     assert_eq!(pair.client.record.activity, Activity::Silent);
     assert_eq!(pair.step(), None);
@@ -45,7 +45,7 @@ fn assert_stopped(pair: &mut Pair, motion: &Running) -> MotionError {
     error
 }
 
-/// A panic cannot pass from the control thread to the caller as it is; its message does.
+/// A panic itself cannot pass from the control thread to the caller; its message can.
 #[test]
 fn scenario_15_a_panic_in_a_control_function_stops_the_robot() {
     for_each_version(|version| {
@@ -66,9 +66,9 @@ fn scenario_15_a_panic_in_a_control_function_stops_the_robot() {
     });
 }
 
-/// What is told in the end is the panic, from which everything else followed.
+/// The outcome is the panic, which caused everything else.
 #[test]
-fn scenario_15_a_panic_is_told_even_if_the_robot_does_not_stop() {
+fn scenario_15_a_panic_is_reported_even_if_the_robot_does_not_stop() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let (program, request) = torques(version, |_, _| -> Torques { panic!("no more ideas") });
@@ -86,9 +86,9 @@ fn scenario_15_a_panic_is_told_even_if_the_robot_does_not_stop() {
     });
 }
 
-/// The vendor's control loops throw it to the caller as well.
+/// The vendor's control loops throw this error, too.
 #[test]
-fn scenario_15_a_command_that_is_no_number_stops_the_robot() {
+fn scenario_15_a_non_finite_command_stops_the_robot() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let callback = Callback::motion(version, |state, _| {
@@ -119,7 +119,7 @@ fn scenario_15_a_motion_may_finish_with_its_first_command() {
         let motion = pair.begin(program, request);
         let first = motion.first.expect("an answer");
         assert!(first.motion_generation_finished || first.torque_command_finished);
-        // The one state that it saw, however often the command is repeated.
+        // The function saw one state, although the command is repeated.
         let again = pair.step().expect("an answer");
         assert_eq!(again.message_id, first.message_id + 1);
         pair.succeed(&motion);

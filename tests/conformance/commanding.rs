@@ -1,4 +1,4 @@
-//! Commands that the motion takes, and those that it does not.
+//! Commands that the motion accepts, and those that it refuses.
 
 use franka_proto::framing::next_message;
 use franka_proto::{
@@ -33,7 +33,7 @@ fn active(
     let mut pair = Pair::connected(version);
     let request = MoveRequest::new(controller, generator);
     let motion = pair.begin(Program::Active(ActiveControl), request);
-    assert_eq!(motion.first, None, "nobody has written a command");
+    assert_eq!(motion.first, None, "no command was written");
     (pair, motion, Modes::of(&request))
 }
 
@@ -46,7 +46,7 @@ const NO_CONTROLLER: &str =
 const PARTIAL: &str = "libfranka robot: Trying to send partial robot command!";
 
 #[test]
-fn scenario_4_a_robot_that_controls_itself_takes_no_torques() {
+fn scenario_4_torques_are_refused_under_the_robots_own_controller() {
     for_each_version(|version| {
         for controller in [
             MoveControllerMode::JointImpedance,
@@ -99,10 +99,10 @@ fn scenario_4_a_command_of_another_kind_is_refused() {
     });
 }
 
-/// A motion command without its torques is refused in the words of `writeOnce`, which come first in
-/// libfranka too.
+/// A motion command without its torques is refused with the text of `writeOnce`, which libfranka
+/// checks first, too.
 #[test]
-fn scenario_5_a_generator_beside_torques_takes_both_or_none() {
+fn scenario_5_a_generator_with_torques_needs_both_commands() {
     for_each_version(|version| {
         let (mut pair, motion, modes) = active(
             version,
@@ -165,8 +165,8 @@ fn scenario_6_torques_alone() {
     pair.succeed(&motion);
 }
 
-/// Protocol 5 has no such motion: it cannot be asked for, and a generator that stands still runs
-/// beside torques.
+/// Protocol 5 has no such motion: it cannot be requested, and torques run beside a generator that
+/// stands still.
 #[test]
 fn scenario_6_torques_alone_are_beside_a_standing_generator_in_protocol_5() {
     let version = Version::V5;

@@ -9,15 +9,15 @@ use franka_proto::{Version, client, server};
 
 use crate::for_each_version;
 
-/// Over a real socket, since that is what there is to it; more of the kind in
-/// `tests/live/connecting.rs`.
+/// Over a real socket, which refuses the connection. `tests/live/connecting.rs` has more such
+/// cases.
 #[tokio::test]
-async fn scenario_17_nobody_listens() {
+async fn scenario_17_no_server_listens() {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
     let address = listener.local_addr().expect("bound");
     drop(listener);
     let connected = Robot::builder(address).realtime(Realtime::Ignore).connect();
-    let error = connected.await.expect_err("nobody listens");
+    let error = connected.await.expect_err("no server listens");
     assert!(matches!(error, ConnectError::Refused), "{error:?}");
     assert_eq!(
         error.to_string(),

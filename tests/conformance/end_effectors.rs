@@ -4,7 +4,7 @@ use franka_proto::gripper::{self, Grasp, Reply, Status, next_message};
 use franka_proto::vacuum::{self, Profile, Vacuum};
 use franka_proto::{Outgoing, Protocol, ServiceCommand, client, server};
 
-/// Two sessions that have shaken hands, and what goes between them.
+/// Two sessions after their handshake, and the messages between them.
 struct Connection<P: Protocol> {
     client: client::Session<P>,
     device: server::Session<P>,
@@ -42,7 +42,7 @@ impl<P: for<'a> Protocol<Reply<'a> = Reply>> Connection<P> {
         event.expect("the device keeps to the protocol")
     }
 
-    /// What a caller hears of a request that the device answers so.
+    /// The result of a request that the device answers with `status`.
     fn answered(&mut self, request: &P::Request, status: Status) -> Result<bool, String> {
         let sent = self.client.request(request).expect("the session takes it");
         let event = self.at_device(&sent);
@@ -85,8 +85,8 @@ impl<P: for<'a> Protocol<Reply<'a> = Reply>> Connection<P> {
     }
 }
 
-/// `tests/live/hands.rs` asks the same of the async client, over sockets, and of a status that does
-/// not exist.
+/// `tests/live/hands.rs` tests the same of the async client, over sockets, and also an unknown
+/// status.
 #[test]
 fn scenario_18_every_answer_to_every_command_of_the_hand() {
     assert_eq!(gripper::Command::SERVICE, "libfranka gripper");

@@ -1,4 +1,4 @@
-//! The ways out of a motion.
+//! The ends of a motion.
 
 use franka_proto::{
     ControllerMode, MotionGeneratorMode, MoveControllerMode, MoveRequest, MoveStatus, Reply,
@@ -15,7 +15,7 @@ use crate::pair::Pair;
 const DQ: JointVelocities = JointVelocities([0.125; 7]);
 const TAU: Torques = Torques([0.5; 7]);
 
-/// A motion at a constant velocity, with or without torques of our own, for so many cycles.
+/// A motion at a constant velocity, with or without our own torques, for so many cycles.
 fn moving(version: Version, external: bool, cycles: u32) -> (Program, MoveRequest) {
     let mut cycle = 0;
     let callback = Callback::motion::<JointVelocities, _>(version, move |_, _| {
@@ -39,14 +39,14 @@ fn moving(version: Version, external: bool, cycles: u32) -> (Program, MoveReques
 #[test]
 fn scenario_9_a_finished_motion_succeeds() {
     for_each_version(|version| {
-        // What the robot says of it may come before or after its states show it.
+        // The robot's reply may come before or after its states show the end.
         for said_first in [false, true] {
             let mut pair = Pair::connected(version);
             let (program, request) = moving(version, false, 3);
             let motion = pair.begin(program, request);
             assert!(!motion.first.expect("an answer").motion_generation_finished);
             assert!(!pair.step().expect("an answer").motion_generation_finished);
-            // The last command is repeated, each time for the newest state, while the robot shows
+            // The last command is repeated, each time for the newest state, while the states show
             // the motion.
             for _ in 0..4 {
                 let last = pair.step().expect("an answer");
@@ -119,7 +119,7 @@ fn scenario_9_a_motion_that_is_finished_at_speed() {
 }
 
 #[test]
-fn scenario_10_a_motion_beside_torques_has_finished_when_its_modes_have_gone() {
+fn scenario_10_a_motion_with_torques_has_finished_when_its_modes_are_no_longer_shown() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let (program, request) = moving(version, true, 2);
@@ -153,10 +153,10 @@ fn scenario_11_a_cancelled_motion_is_stopped() {
     });
 }
 
-/// Whoever asks for the stop hears that the arm rests; whoever awaited the motion, that it was
-/// stopped. The answer to the `Move` may come late.
+/// The stop resolves when the arm rests, and the motion resolves as stopped. The answer to the
+/// `Move` may come late.
 #[test]
-fn scenario_11_a_stop_resolves_for_both() {
+fn scenario_11_a_stop_resolves_itself_and_the_motion() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let (program, request) = moving(version, false, 100);
@@ -180,9 +180,9 @@ fn scenario_11_a_stop_resolves_for_both() {
     });
 }
 
-/// libfranka throws when the stop is refused, and leaves the motion to itself. This driver goes by
-/// whether the motion ends: it asks once more, leaves the robot without commands, and then says
-/// that it neither ran nor stopped.
+/// libfranka throws when the stop is refused, and abandons the motion. This driver waits for the
+/// end of the motion: it requests the stop once more, sends no more commands, and then reports that
+/// the robot neither ran nor stopped the motion.
 #[test]
 fn scenario_11_a_stop_that_is_refused() {
     for_each_version(|version| {
@@ -210,7 +210,7 @@ fn scenario_11_a_stop_that_is_refused() {
         let what = "the robot neither ran the motion nor stopped it";
         assert_eq!(pair.error(motion.work), MotionError::Protocol { what });
 
-        // Left without commands it ends the motion after all, and takes the next.
+        // Without commands the robot ends the motion after all, and accepts the next.
         pair.robot.reply_move(motion.id, MoveStatus::ReflexAborted);
         pair.robot.rest();
         pair.step();

@@ -9,8 +9,8 @@ use franka_rt::shaping::Shaper;
 use crate::for_each_version;
 use crate::pair::Pair;
 
-/// A motion of so many cycles whose commands all differ, ended by a reflex in the last: the error,
-/// and the commands as the robot got them.
+/// Runs a motion of so many cycles whose commands all differ, and which a reflex ends in the last.
+/// Returns the error, and the commands as the robot received them.
 fn reflex_after(
     pair: &mut Pair,
     version: Version,
@@ -38,8 +38,8 @@ fn reflex_after(
     (error, commands)
 }
 
-/// Asserts that the log pairs each state with the command that left for the one before; `commands`
-/// are the last ones.
+/// Asserts that the log pairs each state with the command sent for the previous one; `commands` are
+/// the last ones.
 fn assert_paired(error: &ControlError, last_state: u64, commands: &[RobotCommand]) {
     assert_eq!(error.log.len(), commands.len());
     let first = last_state + 1 - commands.len() as u64;

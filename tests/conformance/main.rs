@@ -1,21 +1,21 @@
-//! How libfranka's client behaves, scenario by scenario, after the tests that it is held to itself:
-//! beside a robot that follows a script, for both versions of the protocol.
+//! The behaviour of libfranka's client, scenario by scenario, after libfranka's own tests: beside a
+//! scripted robot, for both versions of the protocol.
 //!
 //! | module | scenarios |
 //! |---|---|
-//! | [`receiving`] | 1, 2, 7: which state counts, and when there is none |
-//! | [`starting`] | 3, 8, 13, 16: the way into a motion, the next one, and two at once |
-//! | [`commanding`] | 4, 5, 6: commands that the motion takes, and those that it does not |
-//! | [`ending`] | 9, 10, 11, 12: the ways out of a motion |
+//! | [`receiving`] | 1, 2, 7: which state counts, and what happens without one |
+//! | [`starting`] | 3, 8, 13, 16: the start of a motion, the next one, and two at once |
+//! | [`commanding`] | 4, 5, 6: commands that the motion accepts, and those that it refuses |
+//! | [`ending`] | 9, 10, 11, 12: the ends of a motion |
 //! | [`log`] | 14: the last cycles of a motion |
 //! | [`callbacks`] | 15: control functions |
 //! | [`connecting`] | 17: no robot, or one of another version |
 //! | [`end_effectors`] | 18: the Hand and the vacuum gripper |
 //!
-//! Client and robot share one thread and a counted clock, see [`pair::Pair`]. Everything between
-//! them is bytes: messages go through the sessions of both sides, datagrams over loopback through
-//! the socket code of the control thread. Where this driver answers otherwise than libfranka, on
-//! purpose, the test says so.
+//! Client and robot share one thread and a counted clock, see [`pair::Pair`]. They exchange bytes
+//! only: messages go through the sessions of both sides, datagrams over loopback through the socket
+//! code of the control thread. Where this driver differs from libfranka on purpose, the test says
+//! so.
 
 mod callbacks;
 mod commanding;

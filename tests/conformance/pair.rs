@@ -1,4 +1,4 @@
-//! The client beside a robot that follows a script, in one thread.
+//! The client beside a scripted robot, in one thread.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
@@ -28,22 +28,22 @@ pub(crate) struct Pair {
 
 /// A motion that the robot has started.
 pub(crate) struct Running {
-    /// Whom it resolves for.
+    /// The id under which the motion resolves.
     pub(crate) work: GoalId,
-    /// The robot's name for it.
+    /// The id of the `Move` request.
     pub(crate) id: CommandId,
-    /// What answered the first state that showed its modes.
+    /// The command that answered the first state with its modes.
     pub(crate) first: Option<RobotCommand>,
 }
 
 impl Pair {
-    /// Connected as the scenarios have it: the handshake, a state with the id 1, then the robot's
-    /// model where the version has one.
+    /// Returns a connected pair: after the handshake, a state with the id 1, and the robot's model
+    /// where the version has one.
     pub(crate) fn connected(version: Version) -> Self {
         Self::with_log_size(version, ControlLog::DEFAULT_CAPACITY)
     }
 
-    /// The same, with so many cycles in the log of a motion.
+    /// Like [`Self::connected`], with so many cycles in the log of a motion.
     pub(crate) fn with_log_size(version: Version, cycles: usize) -> Self {
         let robot = IpAddr::from(Ipv4Addr::LOCALHOST);
         let socket = exchange::bind(robot).expect("a free port");
@@ -69,8 +69,8 @@ impl Pair {
         pair
     }
 
-    /// One wake-up of the control thread, for which a datagram has to be waiting; then whatever was
-    /// said over TCP arrives. It takes a millisecond.
+    /// One wake-up of the control thread, which takes a millisecond and needs a waiting datagram.
+    /// Then all messages over TCP arrive.
     pub(crate) fn cycle(&mut self) -> Reception {
         let reception = self.exchange.receive();
         if reception.fresh {
@@ -87,7 +87,7 @@ impl Pair {
         reception
     }
 
-    /// The robot's next state, and the command that answers it.
+    /// Sends the robot's next state, and returns the command that answers it.
     pub(crate) fn step(&mut self) -> Option<RobotCommand> {
         self.robot.send_next();
         self.cycle();
@@ -96,7 +96,7 @@ impl Pair {
         command
     }
 
-    /// Everything said over TCP arrives, in both directions, until nobody says anything more.
+    /// Delivers all messages over TCP, in both directions, until there are no more.
     pub(crate) fn settle(&mut self) {
         loop {
             let mut silent = !self.client.settle();
@@ -112,7 +112,7 @@ impl Pair {
         }
     }
 
-    /// So many milliseconds in which no state comes.
+    /// Lets so many milliseconds pass without a state.
     pub(crate) fn silence(&mut self, milliseconds: std::ops::RangeInclusive<u64>) {
         for silent in milliseconds {
             self.client.now += Duration::from_millis(1);
@@ -121,7 +121,7 @@ impl Pair {
         }
     }
 
-    /// Starts a motion: the robot says that it has, and shows its modes in one state, which is
+    /// Starts a motion: the robot confirms the start, and shows its modes in one state, which is
     /// answered.
     pub(crate) fn begin(&mut self, program: Program, request: MoveRequest) -> Running {
         let (work, id) = self.ask(program, request);
@@ -132,7 +132,7 @@ impl Pair {
         Running { work, id, first }
     }
 
-    /// Asks for a motion; the robot has not answered yet.
+    /// Requests a motion; the robot has not answered yet.
     pub(crate) fn ask(&mut self, program: Program, request: MoveRequest) -> (GoalId, CommandId) {
         let begun = self.client.control(program, request);
         let work = begun.expect("nothing else controls the arm");
@@ -142,7 +142,7 @@ impl Pair {
         (work, id)
     }
 
-    /// Writes a command from outside, and returns it as the robot got it.
+    /// Writes a command from outside, and returns it as the robot received it.
     pub(crate) fn write(
         &mut self,
         command: Command,
@@ -160,8 +160,8 @@ impl Pair {
         written.map(|_| arrived.expect("just so"))
     }
 
-    /// Has the robot end a motion well: its states show rest, and it says that the motion
-    /// succeeded.
+    /// Lets the robot end a motion with success: its states show rest, and it replies that the
+    /// motion succeeded.
     pub(crate) fn succeed(&mut self, motion: &Running) {
         self.robot.rest();
         self.robot.reply_move(motion.id, MoveStatus::Success);
@@ -170,18 +170,18 @@ impl Pair {
         self.assert_idle();
     }
 
-    /// How some work turned out, which has to be known.
+    /// The outcome of work that has been resolved.
     pub(crate) fn outcome(&self, work: GoalId) -> Outcome {
         let outcome = self.client.outcome(work);
         outcome.expect("it has been resolved").clone()
     }
 
-    /// Why some work failed.
+    /// The error of work that has failed.
     pub(crate) fn error(&self, work: GoalId) -> MotionError {
         self.outcome(work).expect_err("it has failed")
     }
 
-    /// What the robot said when it ended a motion.
+    /// The error with which the robot ended a motion.
     pub(crate) fn control_error(&self, work: GoalId) -> ControlError {
         match self.error(work) {
             MotionError::Control(error) => *error,
@@ -189,7 +189,7 @@ impl Pair {
         }
     }
 
-    /// Asserts that nothing moves, nobody waits, and the robot has been asked for nothing more.
+    /// Asserts that no motion is active, no work is pending, and no more requests were sent.
     pub(crate) fn assert_idle(&mut self) {
         assert!(self.client.lifecycle.is_idle());
         assert!(self.client.driver.is_watching());
@@ -198,7 +198,7 @@ impl Pair {
     }
 }
 
-/// The model of the robot that speaks `version`.
+/// The model of the robot with protocol `version`.
 pub(crate) fn model(version: Version) -> &'static Model {
     Model::of(match version {
         Version::V5 => RobotKind::Fer,

@@ -1,4 +1,4 @@
-//! Which state counts, and when there is none.
+//! Which state counts, and what happens without one.
 
 use std::time::Duration;
 
@@ -29,7 +29,7 @@ fn scenario_1_the_newest_of_the_states_that_wait_counts() {
     });
 }
 
-/// libfranka says `libfranka: UDP receive: Timeout`; this driver adds how long it waited.
+/// The text of libfranka is `libfranka: UDP receive: Timeout`; this driver adds how long it waited.
 #[test]
 fn scenario_2_a_second_without_a_state_loses_the_link() {
     for_each_version(|version| {
@@ -55,9 +55,9 @@ fn scenario_2_a_second_without_a_state_loses_the_link() {
     });
 }
 
-/// A driver that has lost its connection refuses the torques of a motion in the words for one that
-/// has ended; libfranka names the connection once more. `tests/live/ending.rs` closes real sockets
-/// in every phase of a motion.
+/// After the loss of its connection, the driver refuses the torques of a motion with the text for
+/// an ended motion; libfranka names the connection once more. `tests/live/ending.rs` closes real
+/// sockets in every phase of a motion.
 #[test]
 fn scenario_2_a_closed_connection_ends_the_motion_and_refuses_torques() {
     let closed = "libfranka: server closed connection";
@@ -87,10 +87,10 @@ fn scenario_2_a_closed_connection_ends_the_motion_and_refuses_torques() {
     });
 }
 
-/// States may go on when the stream has ended. A control function that nobody can stop any more
-/// gets none of them.
+/// States may continue after the end of the stream. A control function, which can no longer be
+/// stopped, gets none of them.
 #[test]
-fn scenario_2_a_closed_connection_silences_a_control_function() {
+fn scenario_2_a_control_function_gets_no_states_after_the_connection_closed() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let callback = Callback::torques(version, |_, _| TORQUES);
@@ -116,7 +116,7 @@ fn scenario_7_a_command_echoes_the_id_of_the_state_that_it_answers() {
         pair.begin(Program::Callback(Box::new(callback)), request);
         pair.robot.send(682);
         pair.cycle();
-        // The robot is a cycle further before it looks for the answer.
+        // The robot is one cycle further when it checks for the answer.
         pair.robot.send(683);
         let command = pair.robot.take_command().expect("an answer");
         assert_eq!(command.message_id, 682);
@@ -125,7 +125,7 @@ fn scenario_7_a_command_echoes_the_id_of_the_state_that_it_answers() {
         let command = pair.robot.take_command().expect("an answer");
         assert_eq!(command.message_id, 683);
 
-        // With both waiting there is one answer, to the newer.
+        // With both states waiting there is one answer, to the newer.
         pair.robot.send(684);
         pair.robot.send(685);
         pair.cycle();

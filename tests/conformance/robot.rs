@@ -1,4 +1,4 @@
-//! A robot that does what a test says, and nothing else.
+//! A robot that is scripted by a test.
 
 use std::collections::VecDeque;
 use std::io::ErrorKind;
@@ -13,7 +13,7 @@ use franka_proto::{
 
 /// The robot's side of the protocol, and a state that the test fills in.
 pub(crate) struct ScriptedRobot {
-    /// What the next state says; its id goes up by one with every state sent.
+    /// The next state; its id increases by one with every state sent.
     pub(crate) state: RobotState,
     session: Session,
     udp: UdpSocket,
@@ -41,7 +41,7 @@ impl ScriptedRobot {
         robot
     }
 
-    /// Takes bytes of the client's stream.
+    /// Processes bytes of the client's stream.
     pub(crate) fn on_bytes(&mut self, bytes: &[u8]) {
         self.received.extend_from_slice(bytes);
         while let Some(message) = next_message(&self.received).expect("whole messages") {
@@ -60,7 +60,7 @@ impl ScriptedRobot {
         }
     }
 
-    /// What the stream to the client has to carry.
+    /// The bytes to send to the client.
     pub(crate) fn take_bytes(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.to_client)
     }
@@ -71,12 +71,12 @@ impl ScriptedRobot {
         self.to_client.extend_from_slice(reply.as_bytes());
     }
 
-    /// Answers a `Move`, or says how it ended.
+    /// Answers a `Move`, or reports its end.
     pub(crate) fn reply_move(&mut self, id: CommandId, status: MoveStatus) {
         self.reply(id, Reply::Move(status));
     }
 
-    /// Hands out the model that the client has asked for.
+    /// Answers the client's request for the model.
     pub(crate) fn reply_model(&mut self, id: CommandId, text: &str) {
         let header = self.session.model_header(id, text.len());
         let header = header.expect("a fitting answer");
@@ -84,12 +84,12 @@ impl ScriptedRobot {
         self.to_client.extend_from_slice(text.as_bytes());
     }
 
-    /// The oldest request that nobody has looked at.
+    /// Returns the oldest unread request.
     pub(crate) fn take_request(&mut self) -> Option<(CommandId, Request)> {
         self.requests.pop_front()
     }
 
-    /// The `Move` that has to be there.
+    /// Returns the `Move` that has to be the next request.
     pub(crate) fn expect_move(&mut self) -> (CommandId, MoveRequest) {
         match self.take_request() {
             Some((id, Request::Move(request))) => (id, request),
@@ -97,7 +97,7 @@ impl ScriptedRobot {
         }
     }
 
-    /// The `StopMove` that has to be there.
+    /// Returns the id of the `StopMove` that has to be the next request.
     pub(crate) fn expect_stop(&mut self) -> CommandId {
         match self.take_request() {
             Some((id, Request::StopMove)) => id,
@@ -105,8 +105,8 @@ impl ScriptedRobot {
         }
     }
 
-    /// Answers the `StopMove` that has to be there, and says that the motion `id` was preempted by
-    /// it; states show rest.
+    /// Answers the `StopMove` that has to be the next request, and reports that it preempted the
+    /// motion `id`; states show rest.
     pub(crate) fn obey_stop(&mut self, id: CommandId) {
         let stop = self.expect_stop();
         self.reply(stop, Reply::StopMove(StopStatus::Success));
@@ -114,14 +114,14 @@ impl ScriptedRobot {
         self.rest();
     }
 
-    /// States show the modes of a motion from now on.
+    /// Lets states show the modes of a motion from now on.
     pub(crate) fn run(&mut self, request: &MoveRequest) {
         self.state.motion_generator_mode = request.generator.in_state();
         self.state.controller_mode = request.controller.in_state();
         self.state.robot_mode = RobotMode::Move;
     }
 
-    /// States show a robot at rest from now on.
+    /// Lets states show a robot at rest from now on.
     pub(crate) fn rest(&mut self) {
         self.state.motion_generator_mode = MotionGeneratorMode::Idle;
         self.state.controller_mode = ControllerMode::JointImpedance;
@@ -145,7 +145,7 @@ impl ScriptedRobot {
             .expect("loopback");
     }
 
-    /// The oldest command that nobody has looked at.
+    /// Returns the oldest unread command.
     pub(crate) fn take_command(&mut self) -> Option<RobotCommand> {
         let version = self.session.version();
         let mut datagram = [0; 2 * RobotCommand::MAX_SIZE];

@@ -1,4 +1,4 @@
-//! The way into a motion, the next one, and two at once.
+//! The start of a motion, the next one, and two at once.
 
 use franka_model::READY;
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus, Version};
@@ -13,7 +13,7 @@ use crate::pair::{self, Pair};
 const BUSY: &str = "libfranka robot: Cannot perform this operation while another control or read \
                     operation is running.";
 
-/// Every motion that a version has.
+/// Every kind of motion of a version.
 fn requests(version: Version) -> impl Iterator<Item = MoveRequest> {
     let controllers = [
         MoveControllerMode::JointImpedance,
@@ -68,9 +68,9 @@ fn to_ready(pair: &mut Pair) -> Goal {
     )
 }
 
-/// A second start is refused before anything is sent, as of a motion that another caller runs.
-/// libfranka 0.21 has the words `Attempted to start multiple motions!` for callers who get around
-/// its lock; here nobody can.
+/// A second start is refused before anything is sent, with the same error as beside a motion of
+/// another caller. libfranka 0.21 has the text `Attempted to start multiple motions!` for callers
+/// that bypass its lock; here that is not possible.
 #[test]
 fn scenario_3_a_motion_runs_when_the_modes_are_there_already_and_no_second_starts() {
     for_each_version(|version| {
@@ -93,7 +93,7 @@ fn scenario_3_a_motion_runs_when_the_modes_are_there_already_and_no_second_start
     });
 }
 
-/// The robot may say so before or after its states do.
+/// The robot's reply may come before or after its states show the modes.
 #[test]
 fn scenario_3_the_first_state_with_the_modes_is_answered_whatever_came_before() {
     for_each_version(|version| {
@@ -105,7 +105,7 @@ fn scenario_3_the_first_state_with_the_modes_is_answered_whatever_came_before() 
                 pair.robot.reply_move(id, MoveStatus::MotionStarted);
                 pair.settle();
             }
-            assert_eq!(pair.step(), None, "the modes are not there");
+            assert_eq!(pair.step(), None, "the modes are not shown");
             pair.robot.run(&request);
             let command = pair.step().expect("an answer at once");
             assert_eq!(command.message_id, pair.robot.state.message_id);
@@ -120,9 +120,9 @@ fn scenario_3_the_first_state_with_the_modes_is_answered_whatever_came_before() 
 }
 
 /// libfranka throws a `CommandException` for a refusal in the first answer and a `ControlException`
-/// for one in the second; here both are [`MotionError::Rejected`], with its text.
+/// for one in the second. Here both are [`MotionError::Rejected`], with libfranka's text.
 #[test]
-fn scenario_8_a_refusal_after_the_motion_was_said_to_start() {
+fn scenario_8_a_refusal_after_the_start_was_reported() {
     for_each_version(|version| {
         for (started, status, text) in [
             (
@@ -201,10 +201,10 @@ fn scenario_13_three_motions_in_a_row() {
     });
 }
 
-/// Callers share the state machine that is asked here, whatever threads they are on. States are
-/// free for all at any time, in both versions: reading one takes no lock.
+/// Callers on all threads share the state machine under test. States can be read at any time, in
+/// both versions: reading one takes no lock.
 #[test]
-fn scenario_16_whoever_comes_second_is_told_that_another_is_at_it() {
+fn scenario_16_the_second_caller_is_refused_while_a_motion_runs() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let (program, request) = standing(version, 100);
@@ -220,7 +220,7 @@ fn scenario_16_whoever_comes_second_is_told_that_another_is_at_it() {
         pair.settle();
         assert_eq!(pair.robot.take_request(), None);
 
-        // The first goes on, and its states are read.
+        // The first motion continues, and its states can be read.
         assert!(pair.step().is_some());
         let newest = pair.robot.state.message_id;
         assert_eq!(pair.client.state.message_id, newest);
@@ -228,9 +228,9 @@ fn scenario_16_whoever_comes_second_is_told_that_another_is_at_it() {
     });
 }
 
-/// A goal gives way to a newer goal, but not to a control function.
+/// A newer goal supersedes a goal; a control function does not.
 #[test]
-fn scenario_16_a_goal_does_not_give_way_to_a_control_function() {
+fn scenario_16_a_control_function_does_not_supersede_a_goal() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         pair.robot.state.q = READY.into();

@@ -10,19 +10,19 @@ use franka_sim::{Config, Sim};
 
 use crate::connected;
 
-/// What the simulated FR3 serves.
+/// The description that the simulated FR3 serves.
 fn served() -> String {
     let robot = franka_sim::Robot::new(Config::default());
     robot.description().expect("an FR3 describes itself").into()
 }
 
 #[test]
-fn the_description_that_the_simulator_serves_gives_the_constant_model_to_the_last_bit() {
+fn the_simulators_description_equals_the_constant_model_to_the_last_bit() {
     let model = Model::from_urdf(&served()).expect("a description");
     assert_eq!(&model, Model::fr3());
 }
 
-/// The same with another number in place of one that occurs once.
+/// The same description with `other` in place of `number`, which occurs once.
 fn served_with(number: &str, other: &str) -> String {
     let text = served();
     assert_eq!(text.matches(number).count(), 1, "{number}");
@@ -37,7 +37,7 @@ async fn an_fr3_is_asked_for_its_model_over_the_network() {
 }
 
 #[tokio::test]
-async fn an_arm_with_other_numbers_has_a_model_with_those_numbers() {
+async fn other_numbers_in_the_description_change_the_model() {
     let mass = format!("mass value=\"{}\"", Model::fr3().links()[6].mass);
     let (robot, _sim) = connected(Sim::fr3().urdf(served_with(&mass, "mass value=\"0.75\""))).await;
     assert_eq!(robot.model().links()[6].mass, 0.75);
@@ -45,8 +45,8 @@ async fn an_arm_with_other_numbers_has_a_model_with_those_numbers() {
     robot.shutdown().await;
 }
 
-/// The description of an arm whose first joint is slow at its end, and stops short of the
-/// documented one: the range of newer systems.
+/// The description of an arm whose first joint has a smaller range than documented, and is slow at
+/// its ends, as in newer systems.
 fn narrower() -> String {
     served_with("upper=\"2.7501\"", "upper=\"2.7437\"")
 }
@@ -72,8 +72,8 @@ async fn goals_keep_the_range_that_the_description_gives() {
 
 #[tokio::test]
 async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
-    // The range ends 1.25 rad short of the vendor's: where the constants would still allow full
-    // speed, the arm has to brake.
+    // The range is 1.25 rad smaller than the vendor's: the arm has to brake where the constants
+    // would still allow full speed.
     let mut start = READY;
     start[0] = 1.2;
     let text = served_with("upper=\"2.7501\"", "upper=\"1.5\"");
@@ -96,9 +96,9 @@ async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
         })
         .limit_rate(true)
         .await;
-    ended.expect("nothing that the robot refuses");
+    ended.expect("the robot accepts the motion");
     let (worst, end) = hear.recv().expect("an end");
-    // The bound is that of the position a cycle before, from where it falls by 6 mrad/s.
+    // The limit is that of the previous cycle's position; it falls by 6 mrad/s per cycle.
     assert!(worst.abs() < 0.01, "it binds and holds: {worst}");
     assert!(1.48 < end && end < 1.5, "{end}");
     robot.shutdown().await;
@@ -117,13 +117,13 @@ async fn a_description_of_something_else_is_refused_unless_the_constants_are_cho
         ),
         "{error}"
     );
-    // libfranka's text for this case.
+    // The text of libfranka.
     let text = "libfranka: loadModel() is not available for mobile robots. \
                 Use franka::MobileModel with the URDF from getRobotModel() instead.";
     assert!(error.to_string().contains(text), "{error}");
 
     let chosen = builder().nominal_model(true).connect().await;
-    let robot = chosen.expect("the seat is free again");
+    let robot = chosen.expect("the robot accepts a new client");
     assert_eq!(robot.model(), Model::fr3());
     assert!(robot.urdf().await.is_ok());
     robot.shutdown().await;

@@ -1,4 +1,5 @@
-//! The model library of an FER, from the robot to its numbers, with a stand-in for the vendor's.
+//! The model library of an FER, from its download to its results, with a stand-in for the vendor's
+//! library.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -13,7 +14,7 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use crate::connected;
 
-/// Compiles the stand-in and gives its bytes.
+/// Compiles the stand-in and returns its bytes.
 fn stand_in(name: &str, flags: &[&str]) -> Vec<u8> {
     let manifest = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let output = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
@@ -36,7 +37,7 @@ fn stand_in(name: &str, flags: &[&str]) -> Vec<u8> {
     bytes
 }
 
-/// The number that the stand-in puts at `place` of what its function `tag` gives.
+/// The number at `place` of the result of the stand-in's function `tag`.
 fn expected(tag: u32, place: usize, inputs: &[&[f64]]) -> f64 {
     let weighted = inputs.iter().copied().flatten().zip(1_u32..);
     let sum: f64 = weighted.map(|(x, weight)| x * f64::from(weight)).sum();
@@ -52,7 +53,7 @@ fn assert_numbers(got: &[f64], tag: u32, inputs: &[&[f64]]) {
 }
 
 #[tokio::test]
-async fn every_function_of_a_library_from_the_robot_gets_its_inputs() {
+async fn every_function_of_a_downloaded_library_gets_its_inputs() {
     let bytes = stand_in("whole", &[]);
     let (robot, _sim) = connected(Sim::fer().model_library(bytes.clone())).await;
     let downloaded = robot.load_model_library(Architecture::X64, System::Linux);
@@ -77,7 +78,7 @@ async fn every_function_of_a_library_from_the_robot_gets_its_inputs() {
     let gravity_earth = Vector3::new(0.5, -1.0, -9.81);
 
     for (frame, number) in Frame::ALL.into_iter().zip(1..) {
-        // Both frames of the user are the ninth, at the place that the user gave them.
+        // Both user frames are evaluated as frame 9, at the pose given by the user.
         let stiffness = ee.f_t_ee * ee.ee_t_k;
         let (number, placed): (u32, &[f64]) = match frame {
             Frame::EndEffector => (9, ee.f_t_ee.as_slice()),
@@ -109,7 +110,7 @@ async fn every_function_of_a_library_from_the_robot_gets_its_inputs() {
 }
 
 #[tokio::test]
-async fn a_robot_without_a_library_refuses_in_the_vendors_words() {
+async fn a_robot_without_a_library_refuses_with_the_vendors_text() {
     let (robot, _sim) = connected(Sim::fer()).await;
     let refused = robot.load_model_library(Architecture::Arm64, System::Linux);
     let error = refused.await.expect_err("a refusal");
@@ -117,7 +118,7 @@ async fn a_robot_without_a_library_refuses_in_the_vendors_words() {
         error.to_string(),
         "libfranka: Server reports error when loading model library."
     );
-    // SAFETY: nothing is loaded: there is nothing to load.
+    // SAFETY: the robot has no library, so nothing is loaded.
     let error = unsafe { robot.model_library() }
         .await
         .expect_err("a refusal");
@@ -129,7 +130,7 @@ async fn a_robot_without_a_library_refuses_in_the_vendors_words() {
 }
 
 #[tokio::test]
-async fn an_fr3_is_not_even_asked() {
+async fn no_request_is_sent_to_an_fr3() {
     let (robot, _sim) = connected(Sim::fr3()).await;
     let refused = robot.load_model_library(Architecture::X64, System::Linux);
     let error = refused.await.expect_err("no such command");
@@ -144,8 +145,8 @@ async fn an_fr3_is_not_even_asked() {
 }
 
 #[test]
-fn what_is_no_library_is_refused_in_the_vendors_words() {
-    // SAFETY: these bytes are no library, so none of their code can run.
+fn invalid_libraries_are_refused_with_the_vendors_text() {
+    // SAFETY: these bytes are not a library, so none of their code can run.
     let error = unsafe { ModelLibrary::load(b"no library") }.expect_err("no library");
     assert!(matches!(error, LibraryError::Load { .. }));
     let text = error.to_string();

@@ -1,4 +1,4 @@
-//! Models that come from the robot: from its description, and its own library.
+//! Models from the robot: from its description, and from its own library.
 
 mod described;
 #[cfg(target_os = "linux")]

@@ -1,12 +1,12 @@
-//! A library with the functions of the vendor's, as a robot could send it, whose numbers are easily
-//! recognised: each is made of the function's own number, its place, and every input with a weight
-//! of its own.
+//! A library with the functions of the vendor's, as a robot could send it, with easily recognised
+//! results: each number is a sum of the function's tag, the number's place, and all inputs, each
+//! with a different weight.
 //!
 //! Compiled by the tests, as a `cdylib`; with `--cfg lacking`, one function is missing.
 
 use std::slice::from_raw_parts;
 
-/// The number at `place` of what function `tag` gives.
+/// The number at `place` of the result of function `tag`.
 fn number(tag: u32, place: usize, inputs: &[&[f64]]) -> f64 {
     let weighted = inputs.iter().copied().flatten().zip(1_u32..);
     let sum: f64 = weighted.map(|(x, weight)| x * f64::from(weight)).sum();
@@ -81,7 +81,7 @@ macro_rules! of_frame {
     )* };
 }
 
-/// Functions of nothing.
+/// Functions without inputs.
 macro_rules! of_nothing {
     ($size:expr; $($function:ident $name:literal $tag:expr),*) => { $(
         #[unsafe(export_name = $name)]

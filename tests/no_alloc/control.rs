@@ -30,7 +30,7 @@ fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
     }
     assert!(
         wander.lockstep.client.record.goal > 100,
-        "the arm was sent about"
+        "the arm has moved"
     );
     assert_eq!(
         calls, 0,
@@ -38,8 +38,8 @@ fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
     );
 }
 
-/// Arrivals, landings and the ends of motions, with a goal of the other kind in the middle of every
-/// third.
+/// Arrivals, fade-outs and ends of motions, with a goal of the other kind in the middle of every
+/// third motion.
 #[test]
 fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothing() {
     let mut lockstep = Lockstep::ready();
@@ -78,8 +78,8 @@ fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothi
     assert_eq!(calls, 0, "calls of the allocator in {cycles} cycles");
 }
 
-/// Has `program` answer states of the motion that `request` asks for; counts the calls of the
-/// allocator meanwhile. `before` is called ahead of each state, from outside the cycle.
+/// Lets `program` answer states of the motion of `request`, and returns the number of calls of the
+/// allocator meanwhile. `before` is called ahead of each state, outside the cycle.
 fn calls_of(
     version: Version,
     program: Program,

@@ -1,4 +1,4 @@
-//! Motions that begin and end in every way, with somebody who listens and without.
+//! Motions that begin and end in every way, with and without a reader of their events.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -34,9 +34,9 @@ enum End {
     /// The program finishes, and the robot goes to rest.
     Finished,
     Reflex,
-    /// Its program returns what is no number.
+    /// Its program returns a non-finite value.
     Failed,
-    /// Nobody is in charge of it any more.
+    /// Its owner has dropped it.
     LeftAlone,
     LinkLost,
 }
@@ -50,8 +50,8 @@ const ENDS: [End; 6] = [
     End::LinkLost,
 ];
 
-/// Events and endings that they come to, in alphabetical order.
-const TOLD: [&str; 8] = [
+/// The events and endings of all motions, in alphabetical order.
+const ALL_EVENTS: [&str; 8] = [
     "Aborted",
     "Disarmed",
     "Failed",
@@ -96,21 +96,21 @@ fn programs(end: End) -> [Program; 3] {
     ]
 }
 
-/// A driver, and the calls of the allocator in all that the thread does with it.
+/// A driver, and the number of calls of the allocator in the thread's work.
 struct Counted {
     driver: Driver,
     motion: u64,
-    /// Of the next motion that is armed.
+    /// The id of the next motion.
     ticket: Option<StartTicket>,
     time: u64,
     calls: u64,
-    /// What has been told, by name.
+    /// The names of the events so far.
     told: BTreeSet<String>,
-    listens: bool,
+    reads_events: bool,
 }
 
 impl Counted {
-    fn new(listens: bool) -> Self {
+    fn new(reads_events: bool) -> Self {
         Self {
             driver: Driver::new(VERSION),
             motion: 0,
@@ -118,7 +118,7 @@ impl Counted {
             time: 0,
             calls: 0,
             told: BTreeSet::new(),
-            listens,
+            reads_events,
         }
     }
 
@@ -139,7 +139,7 @@ impl Counted {
         self.order(order);
     }
 
-    /// One cycle of this mode.
+    /// One cycle with a state of this mode.
     fn state(&mut self, robot_mode: RobotMode) {
         let moves = robot_mode == RobotMode::Move;
         self.time += 1;
@@ -166,17 +166,17 @@ impl Counted {
             let sent = self.driver.on_state(&state).map(|_| &times);
             self.driver.after_send(&state, &Arrival::default(), sent);
             self.driver.note_cycle(&times);
-            // Refused by all programs but one.
+            // Only one kind of program accepts this order.
             let _ = self.driver.write(&command, false);
         });
         self.hear();
     }
 
     fn hear(&mut self) {
-        while self.listens {
+        while self.reads_events {
             let mut event = None;
             self.calls += calls_during(|| event = self.driver.take_event());
-            // What it carries is freed here, outside.
+            // The event's content is freed here, outside the cycle.
             let Some(event) = event else { return };
             let name = match event {
                 Event::Ended(ended) => format!("{:?}", ended.ending),
@@ -201,7 +201,7 @@ impl Counted {
         for _ in 0..=RUNNING {
             self.state(RobotMode::Move);
         }
-        // One that comes while another runs is given back.
+        // A program that comes while another runs is returned.
         self.arm(Program::Active(ActiveControl));
         if let End::LeftAlone = end {
             self.order(Order::Silence { motion });
@@ -225,8 +225,8 @@ impl Counted {
     }
 }
 
-fn calls_of_motions(listens: bool, cycles: u64) -> u64 {
-    let mut counted = Counted::new(listens);
+fn calls_of_motions(reads_events: bool, cycles: u64) -> u64 {
+    let mut counted = Counted::new(reads_events);
     while counted.time < cycles {
         for end in ENDS {
             for program in programs(end) {
@@ -235,7 +235,7 @@ fn calls_of_motions(listens: bool, cycles: u64) -> u64 {
         }
     }
     let told = counted.told.iter().map(String::as_str);
-    let expected: &[_] = if listens { &TOLD } else { &[] };
+    let expected: &[_] = if reads_events { &ALL_EVENTS } else { &[] };
     assert_eq!(told.collect::<Vec<_>>(), expected);
     counted.calls
 }
@@ -275,6 +275,6 @@ fn motions_that_wait_for_others_allocate_and_free_nothing() {
 }
 
 #[test]
-fn motions_whose_events_nobody_takes_allocate_and_free_nothing() {
+fn motions_with_unread_events_allocate_and_free_nothing() {
     assert_eq!(calls_of_motions(false, 20_000), 0);
 }

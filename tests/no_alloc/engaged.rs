@@ -1,8 +1,6 @@
-//! Sessions that go from goal to goal: every kind of goal under every guard, and what their owners
-//! do to them.
-//!
-//! That an observer panics is not among it: what a panic takes, the machinery of panics allocates
-//! before anybody catches it.
+//! Sessions that go from goal to goal: every kind of goal under every guard, and every order of
+//! their owners. A panic of an observer is not included: the runtime allocates for a panic before
+//! it can be caught.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -69,12 +67,12 @@ fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
     }
 }
 
-/// A session, and the calls of the allocator in all that the thread does in it.
+/// A session, and the number of calls of the allocator in the thread's work.
 struct Engaged {
     lockstep: Lockstep,
     id: GoalId,
     calls: u64,
-    /// Cycles that the observer has seen.
+    /// The number of cycles that the observer has seen.
     seen: Arc<AtomicU64>,
     token: Option<Deadman>,
 }
@@ -103,7 +101,7 @@ impl Engaged {
         }
     }
 
-    /// So many milliseconds in which the deadman shows life.
+    /// Runs for so many milliseconds, in which the deadman is kept alive.
     fn run(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             if let Some(token) = &self.token {
@@ -122,7 +120,7 @@ impl Engaged {
 
     fn go(&mut self, target: Target, on_arrival: OnArrival) -> GoalId {
         let goal = self.lockstep.within(self.id, target, on_arrival);
-        goal.expect("the session takes it")
+        goal.expect("the session accepts it")
     }
 
     fn binds(&self, guard: Guard) -> bool {
@@ -137,7 +135,7 @@ fn turned(by: f64) -> Target {
 }
 
 #[test]
-fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
+fn sessions_under_every_order_of_their_owners_allocate_and_free_nothing() {
     for backend in [
         Backend::Torques,
         Backend::RobotController(Setpoints::Joints),
@@ -165,8 +163,8 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
             engaged.lockstep.robot.push_end_effector(push, 300);
             engaged.run(500);
         }
-        // Chunks of poses through the robot's own inverse kinematics are left out: their joints may
-        // come to its jerk limit.
+        // Chunks of poses through the robot's own inverse kinematics are left out: they may reach a
+        // jerk limit of the joints.
         if !poses {
             let q = engaged.lockstep.client.record.q_ref;
             for way in [0.05, -0.05] {
@@ -176,12 +174,12 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
                 });
                 let chunk = Chunk::joints(points).expect("finite points");
                 let taken = engaged.lockstep.chunk(engaged.id, chunk);
-                taken.expect("the session takes it");
+                taken.expect("the session accepts it");
                 engaged.run(300);
             }
             engaged.run(1500);
         }
-        // Tuned on its way.
+        // Tuned in mid-motion.
         engaged.go(up, OnArrival::Hold);
         engaged.run(100);
         let tuning = Tuning {
@@ -196,7 +194,7 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
         tuned.expect("gains within their bounds");
         engaged.run(500);
 
-        // A stream that falls silent, both ways.
+        // A stream that times out, with both reactions.
         for on_timeout in [OnTimeout::Hold, OnTimeout::Brake] {
             let goal = Goal {
                 watchdog: Some(Watchdog {
@@ -207,12 +205,12 @@ fn sessions_through_all_that_their_owners_do_allocate_and_free_nothing() {
             };
             let id = engaged.id;
             let goal = engaged.lockstep.submit_within(id, goal);
-            goal.expect("the session takes it");
+            goal.expect("the session accepts it");
             engaged.run(400);
             assert!(engaged.binds(Guard::Watchdog));
         }
 
-        // A deadman that falls silent, lives again, and is gone.
+        // A deadman that times out, is kept alive again, and is dropped.
         engaged.go(up, OnArrival::Hold);
         for _ in 0..300 {
             engaged.tick();

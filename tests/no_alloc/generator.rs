@@ -1,10 +1,10 @@
-//! The trajectory generator, whatever it is asked for.
+//! The trajectory generator, for targets of all kinds.
 
 use std::hint::black_box;
 
 use franka_otg::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// A number in -1..1 that looks random (an LCG with the constants of MMIX).
+/// A pseudo-random number in -1..1 (an LCG with the constants of MMIX).
 fn next(seed: &mut u64) -> f64 {
     *seed = seed
         .wrapping_mul(6_364_136_223_846_793_005)

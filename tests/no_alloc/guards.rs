@@ -1,4 +1,4 @@
-//! The guards that act on the way of the reference, while they bind.
+//! The guards that act on the reference, while they bind.
 
 use franka_model::collision::Obstacle;
 use franka_model::{READY, Wrench};
@@ -8,7 +8,8 @@ use franka_tests::lockstep::{Lockstep, Part};
 
 use super::calls_during;
 
-/// Ticks, and returns how often the driver called the allocator; marks which of `guards` bound.
+/// Advances by one tick and returns how often the driver called the allocator; marks which of
+/// `guards` bound.
 fn count(
     lockstep: &mut Lockstep,
     milliseconds: u64,
@@ -45,7 +46,7 @@ fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
     lockstep.client.lifecycle.keep_out_of(regions);
     lockstep.run(5);
 
-    // Into itself, with the target drawn nearer as long as it is fresh.
+    // A target inside the arm itself, which the lead limits as long as updates arrive.
     let mut q: [f64; 7] = READY.into();
     q[1] += 1.9;
     let mut goal = lockstep.goal(Target::Joints(q), OnArrival::Hold);
@@ -66,7 +67,7 @@ fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
     });
     assert_eq!((calls, bound), (0, [true, true, false]));
 
-    // Away from there, and pulled aside.
+    // Away from there, and then pulled aside.
     let back = lockstep.begin(Target::Joints(READY.into()));
     lockstep.until_resolved(back, 20_000).expect("a way out");
     let home = lockstep.true_pose();

@@ -1,4 +1,4 @@
-//! What runs on the real-time thread neither allocates nor frees: an allocator counts, thread by
+//! Code on the real-time thread neither allocates nor frees: an allocator counts the calls of each
 //! thread.
 
 mod control;
@@ -17,12 +17,12 @@ thread_local! {
 
 struct Counting;
 
-/// How often this thread has called the allocator so far.
+/// The number of calls of the allocator by this thread so far.
 fn calls() -> u64 {
     CALLS.get()
 }
 
-/// Calls of the allocator while `work` runs.
+/// The number of calls of the allocator while `work` runs.
 fn calls_during(work: impl FnOnce()) -> u64 {
     let before = calls();
     work();

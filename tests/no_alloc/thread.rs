@@ -1,7 +1,6 @@
-//! The running thread, whatever comes over its socket and queues.
-//!
-//! The core, which runs on the real-time thread, reads the count of that thread. A thread that has
-//! borrowed the cycle counts for itself.
+//! The running thread, with all kinds of input on its socket and queues. The core runs on the
+//! real-time thread and reads the count of that thread. A thread that has borrowed the cycle reads
+//! its own count.
 
 use std::hint::black_box;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
@@ -24,14 +23,13 @@ use franka_rt::thread::{self, Core, Handle, Notice, ThreadConfig};
 
 const VERSION: Version = Version::V10;
 
-/// A driver whose every state is answered, and that tells how often its thread has called the
-/// allocator.
+/// A driver that answers every state, and reports how often its thread has called the allocator.
 struct Watched {
     driver: Driver,
     statistics: MotionStatistics,
     first: Option<u64>,
     calls: Arc<AtomicU64>,
-    /// The order that makes it allocate, to show that this would be seen.
+    /// The order that makes it allocate, to prove that this is detected.
     allocates_on: u64,
 }
 
@@ -80,7 +78,7 @@ impl Core for Watched {
         self.driver.note_cycle(cycle);
     }
 
-    /// Some in every cycle, so that they are shown.
+    /// Present in every cycle, so that they are published.
     fn statistics(&self) -> Option<&MotionStatistics> {
         Some(&self.statistics)
     }
@@ -111,7 +109,7 @@ fn start<C: Core>(core: C) -> (Handle<C>, u16) {
     (handle.expect("nothing is enforced"), port)
 }
 
-/// Somebody at 127.0.0.`last` who sends to `port`.
+/// A socket at 127.0.0.`last` that sends to `port`.
 fn peer(last: u8, port: u16) -> UdpSocket {
     let socket = UdpSocket::bind((Ipv4Addr::new(127, 0, 0, last), 0)).expect("a free port");
     let connected = socket.connect((Ipv4Addr::LOCALHOST, port));
@@ -119,8 +117,8 @@ fn peer(last: u8, port: u16) -> UdpSocket {
     socket
 }
 
-/// Runs a thread for about two seconds of everything that can come, with one order `order` among
-/// it, and returns the thread's calls of the allocator and the number of its cycles.
+/// Runs a thread for about two seconds with all kinds of input, among them one order `order`.
+/// Returns the thread's calls of the allocator and the number of its cycles.
 fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
     let calls = Arc::new(AtomicU64::new(0));
     let timeout = LinkTimeout::new(Duration::from_millis(50)).expect("in range");
@@ -166,12 +164,15 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
         std::thread::sleep(Duration::from_millis(1));
     }
     thread.join().map(drop).expect("nothing panics");
-    assert!(losses >= 4, "each pause was told: {losses}");
+    assert!(losses >= 4, "each pause was reported: {losses}");
     assert!(
         stats.commands.get() > 500 && stats.foreign.get() == 4 && stats.malformed.get() == 4,
         "{stats:?}"
     );
-    assert!(stats.states_lost.get() > 0, "nobody takes the states");
+    assert!(
+        stats.states_lost.get() > 0,
+        "unread states are counted as lost"
+    );
     assert!(stats.worst_cycle().is_some() && stats.motion().is_some());
     (calls.load(Ordering::Relaxed), stats.states.get())
 }
@@ -181,12 +182,12 @@ fn the_running_thread_neither_allocates_nor_frees() {
     let (calls, states) = calls_of_a_busy_thread(1);
     assert_eq!(calls, 0, "calls of the allocator in {states} cycles");
     let (calls, _) = calls_of_a_busy_thread(7);
-    assert_eq!(calls, 8, "four boxes made and freed on purpose are seen");
+    assert_eq!(calls, 8, "four boxes made and freed on purpose are counted");
 }
 
-/// Nobody reads what the turns leave behind: the queues are full for most of the time.
+/// The output of the turns is not read: the queues are full for most of the time.
 #[test]
-fn turns_and_writes_in_the_hands_of_another_thread_neither_allocate_nor_free() {
+fn turns_and_writes_on_a_borrowing_thread_neither_allocate_nor_free() {
     const TURNS: u64 = 100_000;
     let modes = Modes {
         generator: MotionGeneratorMode::None,
@@ -215,7 +216,7 @@ fn turns_and_writes_in_the_hands_of_another_thread_neither_allocate_nor_free() {
         torques: Some(Torques([0.1; 7])),
     };
     let mut bytes = vec![0; RobotState::MAX_SIZE];
-    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let mut lease = handle.lender.borrow().expect("the cycle is not lent");
     let (mut calls, mut read, mut written) = (0, 0, 0);
     for message_id in 1..=TURNS {
         state.message_id = message_id;
@@ -226,7 +227,7 @@ fn turns_and_writes_in_the_hands_of_another_thread_neither_allocate_nor_free() {
             written += u64::from(lease.write(&command, false).is_ok());
         });
     }
-    // It holds no more than it is long, and each state leaves a record.
+    // The ring is full: each state leaves a record.
     assert!(handle.stats.records_lost.get() > TURNS / 2);
     drop(lease);
     handle.thread.join().map(drop).expect("nothing panics");

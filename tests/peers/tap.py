@@ -1,4 +1,4 @@
-"""A relay between a client and a robot, in a process of its own, which sees what the client keeps to itself.
+"""A relay between a client and a robot, in a process of its own, which records what the client does not show.
 
 The client's state has neither the mode of the motion generator nor that of the controller. The relay passes everything
 on as it is, but for the port to which states are to go, and notes the modes of the states and the motions requested.
@@ -49,7 +49,7 @@ def serve(listener, robot, here, notes):
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     except OSError:
         pass  # As it is for the simulator: late on a busy machine.
-    # Without a client by then there will be none: who made the relay has gone.
+    # Without a client by then, the process that made the relay has ended.
     listener.settimeout(CLIENT_TIME_MAX)
     client, _ = listener.accept()
     client.settimeout(None)

@@ -148,7 +148,7 @@ fn a_joint_that_runs_into_its_limit_is_named_with_its_margin() {
         else {
             panic!("{:?}", diagnosis.causes)
         };
-        // One robot limits the position alone, the other also the velocity near the limit.
+        // An FER limits the position alone, an FR3 also the velocity towards the end of the range.
         match lockstep.robot.config().kind {
             RobotKind::Fer => assert!(distance.abs() < 0.001, "{distance}"),
             _ => assert!((0.05..0.2).contains(distance), "{distance}"),

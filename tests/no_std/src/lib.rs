@@ -1,10 +1,8 @@
 //! Builds only if none of `franka-proto`, `franka-model` and `franka-otg`, nor anything they depend
-//! on, uses the standard library or an allocator.
-//!
-//! The standard library defines a panic handler, and a program may have one: whoever brings it in
-//! collides with the one below, on every target. Whoever brings in `alloc` needs a global
-//! allocator, and there is none. A bare target proves the first by not having a standard library at
-//! all.
+//! on, uses the standard library or an allocator. A program may have only one panic handler. The
+//! standard library defines one, so a crate that uses it conflicts with the handler below, on every
+//! target. A crate that uses `alloc` needs a global allocator, and there is none. On a bare target
+//! there is no standard library at all.
 
 #![no_std]
 

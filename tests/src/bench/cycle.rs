@@ -12,8 +12,8 @@ use super::timed;
 use crate::bench::{Benchmark, Statistic};
 use crate::lockstep::{Part, Wander};
 
-/// A state decoded, answered by target control and the answer encoded; what the driver does after
-/// that; the same as the first under a control function that does nothing.
+/// Benchmarks: a state decoded, answered by target control and the answer encoded; the driver's
+/// work after that; and the first under a control function that does nothing.
 pub fn all() -> Vec<Benchmark> {
     vec![
         target(
@@ -26,7 +26,7 @@ pub fn all() -> Vec<Benchmark> {
     ]
 }
 
-/// One part of the cycle of an arm sent about.
+/// One part of the cycle of an arm that moves to random targets.
 fn target(key: &'static str, part: Part, statistics: &'static [Statistic]) -> Benchmark {
     let mut wander = Wander::new(1);
     Benchmark {
@@ -48,8 +48,8 @@ fn target(key: &'static str, part: Part, statistics: &'static [Statistic]) -> Be
     }
 }
 
-/// A function that returns the same torques whatever the state, and passes them through the
-/// limiter: what is left is what the driver does for any function.
+/// A function that returns constant torques, which pass the limiter: this is the driver's work for
+/// any function.
 fn callback() -> Benchmark {
     let mut motion = Running::new();
     Benchmark {
@@ -119,7 +119,7 @@ impl Running {
 
 const VERSION: Version = Version::V10;
 
-/// Cycles in a round: ten seconds of an arm sent about.
+/// Cycles in a round: ten seconds of an arm that moves to random targets.
 const CYCLES: usize = 10_000;
 const SAMPLES: usize = 400;
 const BATCH: u32 = 32;

@@ -1,8 +1,6 @@
-//! The cycle of target control with every guard on, for every kind of goal.
-//!
-//! A session is simulated in episodes from seeds, and an episode goes the same way each time: its
-//! cycle number n always has the same work before it. So a cycle can be measured again, in the
-//! state that its session had.
+//! The cycle of target control with every guard on, for every kind of goal. A session is simulated
+//! in episodes from seeds. An episode is deterministic: cycle number n always has the same history,
+//! so it can be measured again in the same state.
 
 use std::cell::RefCell;
 use std::cmp::Reverse;
@@ -13,7 +11,8 @@ use std::time::Instant;
 use super::{Benchmark, Statistic, Subject};
 use crate::lockstep::{Guarded, Part, Workload};
 
-/// All kinds of goals mixed, each kind, and the longest cycle, as it came and measured again.
+/// Benchmarks of all kinds of goals mixed, of each kind, and of the longest cycle, as first
+/// measured and measured again.
 pub fn all() -> Vec<Benchmark> {
     let survey = Rc::new(RefCell::new(Survey::default()));
     let again = survey.clone();
@@ -49,8 +48,8 @@ pub fn all() -> Vec<Benchmark> {
     benchmarks
 }
 
-/// The mix, for counting instructions: a millisecond of one kind of goal after the other, of which
-/// only the cycle counts.
+/// The mix, for counting instructions: one millisecond of each kind of goal in turn, of which only
+/// the cycle counts.
 pub fn subjects() -> Vec<Subject> {
     let mut arms: Option<Vec<Guarded>> = None;
     let mut turn = 0;
@@ -72,7 +71,7 @@ pub fn subjects() -> Vec<Subject> {
     }]
 }
 
-/// Each round has an episode of its own of each of these kinds.
+/// Samples of one episode of each of these kinds per round.
 fn sampled(
     key: &'static str,
     workloads: &'static [Workload],
@@ -101,8 +100,7 @@ struct Episode {
     seed: u64,
 }
 
-/// Runs so many cycles of an episode, and tells of each which it was and the nanoseconds that it
-/// took.
+/// Runs `cycles` cycles of an episode, and passes the number and the nanoseconds of each to `each`.
 fn run(episode: Episode, cycles: usize, mut each: impl FnMut(usize, u64)) {
     let mut arm = Guarded::new(episode.workload, episode.seed);
     let mut cycle = 0;
@@ -122,20 +120,20 @@ fn run(episode: Episode, cycles: usize, mut each: impl FnMut(usize, u64)) {
 /// The longest of 10⁶ cycles.
 #[derive(Debug, Default)]
 struct Survey {
-    /// As they came the first time.
+    /// The times as first measured.
     longest: u64,
-    /// By episode and number in it, the shortest time that each of the suspects has taken so far.
+    /// The shortest time so far of each suspect, by episode and cycle number.
     suspects: BTreeMap<Episode, BTreeMap<usize, u64>>,
 }
 
 impl Survey {
-    /// The longest time of a cycle that is measured once.
+    /// The longest time of any cycle, each measured once.
     fn longest(&mut self) -> u64 {
         self.survey();
         self.longest
     }
 
-    /// Runs the episodes of the suspects again, and gives the shortest time of each.
+    /// Runs the episodes of the suspects again, and returns the shortest time of each.
     fn measure_again(&mut self) -> Vec<u64> {
         self.survey();
         for (episode, suspects) in &mut self.suspects {
@@ -150,8 +148,8 @@ impl Survey {
         all.copied().collect()
     }
 
-    /// Goes through all cycles, in each episode more than once, so that few are suspected only
-    /// because something else ran.
+    /// Measures all cycles, in each episode more than once, so that few become suspects only
+    /// because of an interruption.
     fn survey(&mut self) {
         if !self.suspects.is_empty() {
             return;
@@ -187,7 +185,8 @@ impl Survey {
 
 const SEED: u64 = 100;
 
-/// Cycles of an episode: ten seconds. Tests run a round of each benchmark, and not for its figures.
+/// Cycles of an episode: ten seconds. Tests run a short round of each benchmark and ignore its
+/// figures.
 const EPISODE: usize = if cfg!(debug_assertions) { 200 } else { 10_000 };
 
 /// Episodes of each kind of goal, which come to 10⁶ cycles.
@@ -201,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_episode_goes_the_same_way_each_time() {
+    fn an_episode_is_deterministic() {
         for workload in Workload::ALL {
             let commanded = || {
                 let mut arm = Guarded::new(workload, 3);

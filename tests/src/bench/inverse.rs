@@ -11,15 +11,15 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Inputs, Statistic, Subject};
 
-/// All postures for a pose and a parameter of each kind, and the velocity problem with pinned
-/// joints.
+/// Benchmarks: all postures for a pose and a redundancy parameter of each kind, and the velocity
+/// problem with joints at their bounds.
 pub fn all() -> Vec<Benchmark> {
     let mut benchmarks: Vec<_> = subjects().into_iter().map(Subject::p50).collect();
     benchmarks.push(worst_pinned());
     benchmarks
 }
 
-/// What is measured.
+/// The calls to measure.
 pub fn subjects() -> Vec<Subject> {
     let (model, ee) = (Model::fr3(), EndEffector::default());
     let solve = |key, parameter: fn(&JointVector) -> Redundancy| {
@@ -46,8 +46,8 @@ pub fn subjects() -> Vec<Subject> {
     ]
 }
 
-/// Each state for itself, not knowing which bounds bind, so that the worst of them shows: the least
-/// of some repetitions of each, since a repetition may be interrupted.
+/// Measures each state alone, without knowledge of the active bounds, so that the worst state
+/// shows. Takes the shortest of several repetitions of each, since a repetition may be interrupted.
 fn worst_pinned() -> Benchmark {
     let states = pinned();
     let time = |state: &Pinned| {
@@ -65,9 +65,9 @@ fn worst_pinned() -> Benchmark {
     }
 }
 
-/// A velocity problem in whose answer joints are on their bounds.
+/// A velocity problem whose solution has joints at their bounds.
 struct Pinned {
-    /// What bound a millisecond before.
+    /// The active bounds of the previous millisecond.
     start: [Side; 7],
     jacobian: Jacobian,
     twist: Twist,
@@ -116,7 +116,7 @@ fn pinned() -> Vec<Pinned> {
     all.filter(bound).take(STATES).collect()
 }
 
-/// Poses of postures inside the limits, with the parameter that they have.
+/// Poses of postures inside the limits, with their redundancy parameter.
 fn poses(parameter: fn(&JointVector) -> Redundancy) -> Inputs<(Isometry3<f64>, Redundancy)> {
     let mut random = SmallRng::seed_from_u64(SEED);
     Inputs::new((0..POSTURES).map(move |_| {
@@ -132,7 +132,7 @@ fn posture(random: &mut SmallRng) -> JointVector {
     JointVector::from_fn(|i, _| random.random_range(limits.lower[i]..limits.upper[i]))
 }
 
-/// Nothing known.
+/// No bound known to be active.
 const COLD: [Side; 7] = [Side::Free; 7];
 /// `[s]`.
 const CYCLE: f64 = 1e-3;

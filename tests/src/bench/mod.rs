@@ -5,11 +5,10 @@
 //! round 2: decode, encode, cycle, ...   -> percentiles of each
 //!   ...                                 -> median over the rounds -> flat keys
 //! ```
-//!
-//! Every round runs every benchmark once. What disturbs the machine for a while then disturbs one
-//! round of all benchmarks instead of one benchmark, and the median over the rounds leaves it out.
-//! Inputs are seeded and vary from call to call, so that a branch predictor that learns one input
-//! by heart gains nothing.
+//! Every round runs every benchmark once. A temporary disturbance of the machine then affects one
+//! round of all benchmarks instead of one benchmark, and the median over the rounds excludes it.
+//! Inputs are seeded and vary from call to call, so that the branch predictor cannot learn one
+//! input.
 //!
 //! | module | measures |
 //! |---|---|
@@ -46,11 +45,11 @@ pub struct Benchmark {
     pub key: &'static str,
     /// What to report of a round.
     pub statistics: &'static [Statistic],
-    /// Runs one round and gives the nanoseconds that each call took; never none.
+    /// Runs one round and returns the nanoseconds of each call; never empty.
     pub round: Box<dyn FnMut() -> Vec<u64>>,
 }
 
-/// What is reported of the samples of one round.
+/// A statistic of the samples of one round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Statistic {
     /// Median.
@@ -59,7 +58,7 @@ pub enum Statistic {
     P99,
     /// The largest sample.
     Max,
-    /// How often the median of what simulates a millisecond fits into one.
+    /// How often the median time to simulate a millisecond fits into a millisecond.
     RealTime,
 }
 
@@ -104,7 +103,7 @@ pub fn all() -> Vec<Benchmark> {
     .collect()
 }
 
-/// The calls whose instructions can be counted too: those of the model, and the guarded cycle.
+/// The calls whose instructions can be counted: those of the model, and the guarded cycle.
 pub fn subjects() -> Vec<Subject> {
     let mut subjects = model::subjects();
     subjects.extend(inverse::subjects());
@@ -112,7 +111,7 @@ pub fn subjects() -> Vec<Subject> {
     subjects
 }
 
-/// Runs `rounds` interleaved rounds, at least one, and gives the median of each statistic over
+/// Runs `rounds` interleaved rounds, at least one, and returns the median of each statistic over
 /// them.
 pub fn measure(benchmarks: &mut [Benchmark], rounds: usize) -> BTreeMap<String, u64> {
     let mut values: BTreeMap<String, Vec<u64>> = BTreeMap::new();
@@ -136,10 +135,9 @@ pub fn measure(benchmarks: &mut [Benchmark], rounds: usize) -> BTreeMap<String, 
         .collect()
 }
 
-/// Times `samples` batches of `batch` calls each and gives the mean of each batch, in nanoseconds.
-///
-/// Reading the clock costs about as much as writing a command: what takes less than a microsecond
-/// needs a batch to be seen, and gives up its percentiles above the median for it.
+/// Times `samples` batches of `batch` calls each and returns the mean of each batch, in
+/// nanoseconds. Reading the clock costs about as much as encoding a command. Calls below a
+/// microsecond need a batch, whose percentiles above the median then mean little.
 pub fn timed(samples: usize, batch: u32, mut call: impl FnMut()) -> Vec<u64> {
     let sample = |_| {
         let start = Instant::now();
@@ -152,7 +150,7 @@ pub fn timed(samples: usize, batch: u32, mut call: impl FnMut()) -> Vec<u64> {
     (0..samples).map(sample).collect()
 }
 
-/// Inputs for a benchmark, one after the other and from the start again; at least one.
+/// Inputs for a benchmark, used in turn and cyclically; at least one.
 struct Inputs<T> {
     list: Vec<T>,
     next: usize,
@@ -195,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn every_benchmark_gives_samples_and_keys_of_its_own() {
+    fn every_benchmark_has_samples_and_unique_keys() {
         let mut benchmarks = all();
         let values = measure(&mut benchmarks, 1);
         let keys: usize = benchmarks.iter().map(|b| b.statistics.len()).sum();

@@ -1,10 +1,10 @@
-//! A new target for axes that are moving, and the first step towards it: the most that the
-//! generator does in one cycle.
+//! A new target for moving axes, and the first step towards it: the most expensive cycle of the
+//! generator.
 //!
 //! States are taken from random motions. Each sweep of a round measures every state once, so that
-//! no predictor learns a state by heart, and a state counts with its shortest time over the sweeps:
-//! the longer ones are those in which something else ran. What reading the clock takes is
-//! subtracted; for one axis it would be a third of the figure.
+//! the branch predictor cannot learn a state. A state counts with its shortest time over the
+//! sweeps, since longer ones include interruptions. The time of reading the clock is subtracted;
+//! for one axis it would be a third of the figure.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -16,8 +16,8 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Statistic};
 
-/// One, three and seven axes with the limits of an arm, seven with limits over decades, and the
-/// worst of many states.
+/// Benchmarks of one, three and seven axes with the limits of an arm, of seven with limits over
+/// decades, and of the worst of many states.
 ///
 /// One and seven axes are joints of the FR3, three the translation of the end effector in the
 /// default budget. The axes are synchronised in time only, which costs more than a straight line.
@@ -75,8 +75,7 @@ fn replan<const N: usize>(
     }
 }
 
-/// The first round goes through all states. It and all others measure those again that took
-/// longest, alone.
+/// The first round measures all states. Every round then measures the slowest of them again, alone.
 fn worst(
     key: &'static str,
     limits: impl Fn(usize, &mut SmallRng) -> AxisLimits + 'static,
@@ -115,7 +114,7 @@ struct Case<const N: usize> {
 }
 
 impl<const N: usize> Case<N> {
-    /// Nanoseconds, without the `clock`'s own.
+    /// The nanoseconds of planning, less those of reading the `clock`.
     fn measure(&self, clock: u64) -> u64 {
         let mut generator = self.generator.clone();
         let start = Instant::now();
@@ -130,7 +129,7 @@ impl<const N: usize> Case<N> {
     }
 }
 
-/// Nanoseconds between two readings of the clock with nothing in between, at the median.
+/// The median nanoseconds between two consecutive readings of the clock.
 fn clock() -> u64 {
     let mut readings = [0; 1001].map(|_: u64| {
         let start = Instant::now();
@@ -195,9 +194,9 @@ const SEED: u64 = 3;
 const STATES: usize = 2000;
 const SWEEPS: usize = 5;
 const TARGETS: usize = 100;
-/// Seconds into a motion at which a new target comes at the latest.
+/// The latest time of a new target in a motion, `[s]`.
 const MOTION_MAX: f64 = 2.0;
-/// Tests run a round of each benchmark, and not for its figures.
+/// Tests run a short round of each benchmark and ignore its figures.
 const MANY_STATES: usize = if cfg!(debug_assertions) {
     10_000
 } else {

@@ -1,5 +1,4 @@
-//! What a control loop does to a returned command: filter, limiter and check of torques and of a
-//! pose.
+//! The processing of a returned command: filter, limiter and check of torques and of a pose.
 
 use std::hint::black_box;
 
@@ -12,7 +11,7 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Inputs, Statistic, timed};
 
-/// Torques, and a pose with an elbow, against states as protocol 10 tells them.
+/// Benchmarks with torques, and with a pose with an elbow, on states of protocol 10.
 pub fn all() -> Vec<Benchmark> {
     vec![torques(), pose()]
 }
@@ -21,7 +20,7 @@ fn torques() -> Benchmark {
     let mut random = SmallRng::seed_from_u64(SEED);
     let mut cases = Inputs::new((0..CASES).map(|_| {
         let last: [f64; 7] = std::array::from_fn(|_| as_f32(random.random_range(-40.0..40.0)));
-        // From within the rate limit to some times beyond.
+        // From within the rate limit to several times beyond.
         let command = last.map(|last| last + random.random_range(-5.0..5.0));
         (Torques(command), last)
     }));
@@ -47,7 +46,7 @@ fn pose() -> Benchmark {
     let mut cases = Inputs::new((0..CASES).map(|_| {
         let mut vector = |scale: f64| Vector3::from_fn(|_, _| random.random_range(-scale..scale));
         let last = Isometry3::new(vector(0.5), vector(1.5));
-        // A few times as far as the limits allow in a cycle.
+        // A few times the change that the limits allow in a cycle.
         let step = Isometry3::new(vector(0.01), vector(0.01));
         let command = CartesianPose {
             O_T_EE: transform::array(&(step * last)),
@@ -78,7 +77,7 @@ fn pose() -> Benchmark {
                 state.O_dP_EE_c = *twist;
                 state.O_ddP_EE_c = *acceleration;
                 let shaped = black_box(&shaper).cartesian_pose(command, black_box(&state), false);
-                black_box(shaped).expect("the pose is a pose");
+                black_box(shaped).expect("the pose is valid");
             })
         }),
     }

@@ -1,7 +1,5 @@
-//! The simulated robot under target control in virtual time: how much faster than a robot.
-//!
-//! What counts is the processor's time: a second of robot time takes long enough for other programs
-//! to have a share of it.
+//! The simulated robot under target control in virtual time: how much faster than a robot. Measured
+//! in processor time: a second of robot time takes long enough for other programs to run meanwhile.
 
 use std::time::Duration;
 
@@ -32,7 +30,7 @@ fn config() -> Config {
     }
 }
 
-/// On a table that it does not touch.
+/// The same arm in MuJoCo, on a table that it does not touch.
 #[cfg(feature = "mujoco")]
 fn mujoco() -> Robot {
     use franka_sim::plant::{MujocoArm, Scene};
@@ -58,7 +56,7 @@ fn lockstep(key: &'static str, robot: Robot) -> Benchmark {
     }
 }
 
-/// What this thread has had of a processor.
+/// The processor time of this thread.
 fn processor_time() -> Duration {
     let clock = ClockId::CLOCK_THREAD_CPUTIME_ID;
     Duration::from(clock_gettime(clock).expect("every thread has this clock"))

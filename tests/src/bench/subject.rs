@@ -4,18 +4,19 @@ use std::hint::black_box;
 
 use super::{Benchmark, Inputs, Statistic, timed};
 
-/// A call, with the next of its inputs every time.
+/// A call to measure, with its next input each time.
 pub struct Subject {
-    /// As that of [`Benchmark`].
+    /// The key, as in [`Benchmark`].
     pub key: &'static str,
-    /// The function, a pattern of callgrind's, whose instructions count; without one all do.
+    /// The function whose instructions count, as a pattern of callgrind; `None` counts all
+    /// instructions.
     pub within: Option<&'static str>,
     /// Makes one call.
     pub call: Box<dyn FnMut()>,
 }
 
 impl Subject {
-    /// Calls `function` with `inputs`, one after the other and from the start again.
+    /// Calls `function` with `inputs`, in turn and cyclically.
     pub(super) fn new<T: 'static, Output>(
         key: &'static str,
         mut inputs: Inputs<T>,

@@ -1,10 +1,10 @@
-//! franka-rs with its default options, on the orders of whoever runs this: one line each on the
-//! standard input, answered by one line on the standard output.
+//! franka-rs with its default options. It reads orders from the standard input, one line each, and
+//! answers each with one line on the standard output.
 //!
 //! | order | what it does | answer |
 //! |---|---|---|
 //! | | connects to the argument, `HOST:PORT`, and holds the arm where it is | `ready` |
-//! | `step X Y Z SECONDS` | moves the target by X Y Z, `[m]`, base frame, and watches for that long of the robot's time | `within SECONDS off METRES lag METRES` |
+//! | `step X Y Z SECONDS` | moves the target by X Y Z, `[m]`, base frame, and records the arm for that long of the robot's time | `within SECONDS off METRES lag METRES` |
 //! | `end` | comes to rest and ends | `ended` |
 
 use std::error::Error;
@@ -16,10 +16,10 @@ use std::time::Duration;
 use franka::robot::target_control::{CartesianSent, CartesianTargetControl, TargetControlOptions};
 use franka::{RealtimeConfig, Robot, RobotState};
 
-/// What one cycle knew.
+/// The record of one cycle.
 #[derive(Clone, Copy)]
 struct Cycle {
-    /// Robot's time, `[s]`.
+    /// The robot's time, `[s]`.
     time: f64,
     measured: [f64; 3],
     commanded: [f64; 3],
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .nth(1)
         .ok_or("usage: franka-rs-peer HOST:PORT")?;
     let robot = Arc::new(Robot::new(&address, RealtimeConfig::Ignore)?);
-    // Anybody may push.
+    // Pushes must not trigger a reflex.
     let (joints, forces) = ([100.0; 7], [500.0; 6]);
     robot.set_collision_behavior(
         joints, joints, joints, joints, forces, forces, forces, forces,
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Steps the target, and tells how the arm came there.
+/// Steps the target, and returns the answer with the result of the step.
 fn step(
     control: &CartesianTargetControl,
     cycles: &Mutex<Vec<Cycle>>,
@@ -106,7 +106,7 @@ fn step(
     Ok(format!("within {within} off {off} lag {lag}"))
 }
 
-/// Of a column-major pose.
+/// The translation of a column-major pose.
 fn translation(pose: &[f64; 16]) -> [f64; 3] {
     [pose[12], pose[13], pose[14]]
 }

@@ -1,8 +1,7 @@
 //! Our target control beside that of franka-rs, each with its defaults, on the same simulated
-//! robots: `beside_franka_rs PROGRAM`, where `PROGRAM` is that of `tests/peers/franka_rs`.
-//!
-//! A step of 5 cm, and a hand that pushes an arm which is to stay where it is. One line each says
-//! what came out.
+//! robots: `beside_franka_rs PROGRAM`, where `PROGRAM` is that of `tests/peers/franka_rs`. A step
+//! of 5 cm, and a hand that pushes an arm that holds its pose. Prints the result of each in one
+//! line.
 
 mod ours;
 mod theirs;
@@ -31,15 +30,15 @@ struct Arguments {
 /// Makes a simulated robot of a kind.
 type Kind = fn() -> Sim;
 
-/// How a step came out.
+/// The result of a step.
 #[derive(Clone, Copy, Debug)]
 struct Stepped {
-    /// When the arm was within 1 mm of the target for good, `[s]` from the first cycle that knew of
-    /// it.
+    /// The time from which the arm stayed within 1 mm of the target, `[s]` from the first cycle
+    /// with that target.
     within: f64,
-    /// How far off it was in the end, `[m]`.
+    /// The distance from the target in the end, `[m]`.
     off: f64,
-    /// The greatest distance from what was commanded, `[m]`.
+    /// The greatest distance from the commanded position, `[m]`.
     lag: f64,
 }
 
@@ -49,11 +48,11 @@ const WATCHED: f64 = 2.5;
 /// The step, `[m]`, base frame.
 const STEP: [f64; 3] = [0.0, 0.0, 0.05];
 
-/// Time of the hand at its pace that is left out of what it feels, `[ms]`: contact and arm still
-/// swing then.
+/// The time at constant velocity that is left out of the mean force, `[ms]`: contact and arm still
+/// oscillate then.
 const SWING: u64 = 100;
 
-/// How long a client may take for anything.
+/// The longest time that a client may take for any operation.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 #[tokio::main]
@@ -85,7 +84,7 @@ async fn run(arguments: Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints what came of a step; tells whether it passed.
+/// Prints the result of a step, and returns whether it passed.
 fn told(name: &str, start: Instant, outcome: anyhow::Result<String>) -> bool {
     match outcome {
         Ok(summary) => {
@@ -100,8 +99,8 @@ fn told(name: &str, start: Instant, outcome: anyhow::Result<String>) -> bool {
     }
 }
 
-/// A robot whose time goes on as its client answers: no command is late, however busy the machine
-/// is.
+/// A robot in virtual time, which advances as its client answers: no command is late on a busy
+/// machine.
 async fn simulated(kind: Kind) -> anyhow::Result<Running> {
     let sim = kind().tool(Tool::hand()).virtual_time(PATIENCE);
     Ok(sim.start().await?)
@@ -154,8 +153,8 @@ async fn push(kind: Kind, way: Vector3<f64>, arguments: &Arguments) -> anyhow::R
     Ok(summary)
 }
 
-/// The force that a hand meets at its pace, `[N]`, along `way`: the mean, to which what accelerates
-/// the arm adds nothing.
+/// The mean force on a hand that moves at constant velocity along `way`, `[N]`: no part of it
+/// accelerates the arm.
 async fn felt(sim: &Running, way: Vector3<f64>) -> anyhow::Result<f64> {
     let begin = sim.state().await?;
     let pose = begin.O_T_EE;

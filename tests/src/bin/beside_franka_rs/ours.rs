@@ -1,4 +1,4 @@
-//! Our own client.
+//! The client of this project.
 
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,10 +11,10 @@ use nalgebra::Translation3;
 
 use crate::Stepped;
 
-/// What one cycle knew.
+/// The record of one cycle.
 #[derive(Clone, Copy)]
 struct Cycle {
-    /// Robot's time, `[ms]`.
+    /// The robot's time, `[ms]`.
     time: u64,
     goal: u64,
     q: [f64; 7],
@@ -36,13 +36,13 @@ impl Ours {
     pub(crate) async fn hold(robot: SocketAddr) -> anyhow::Result<Self> {
         let builder = Robot::builder(robot).realtime(Realtime::Ignore);
         let robot = builder.connect().await?;
-        // Anybody may push.
+        // Pushes must not trigger a reflex.
         let (joints, forces) = ([100.0; 7], [500.0; 6]);
         let behavior = CollisionBehavior::uniform(joints, joints, forces, forces);
         robot.set_collision_behavior(behavior).await?;
         let cycles = Arc::new(Mutex::new(Vec::with_capacity(CYCLES)));
         let recorded = cycles.clone();
-        // A lock is for a robot whose time waits: see the rules of an observer.
+        // An observer must not lock; here it may, since the robot's virtual time waits.
         let engage = Engage::default().observer(move |record, _| {
             let mut cycles = recorded.lock().unwrap_or_else(PoisonError::into_inner);
             if cycles.len() < CYCLES {
@@ -58,7 +58,7 @@ impl Ours {
         Ok(Self { robot, arm, cycles })
     }
 
-    /// Steps the target, `[m]`, and watches for so many seconds.
+    /// Steps the target, `[m]`, and records the arm for `seconds`.
     pub(crate) async fn step(&self, by: [f64; 3], seconds: f64) -> anyhow::Result<Stepped> {
         let target: Pose = Translation3::from(by) * self.robot.pose();
         let recorded = || self.cycles.lock().unwrap_or_else(PoisonError::into_inner);
@@ -93,7 +93,7 @@ impl Ours {
         Ok(stepped)
     }
 
-    /// Lets go and disconnects.
+    /// Ends the session and disconnects.
     pub(crate) async fn end(self) -> anyhow::Result<()> {
         self.arm.disengage().await?;
         self.robot.shutdown().await;

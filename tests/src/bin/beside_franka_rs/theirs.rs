@@ -1,4 +1,4 @@
-//! The other client: a program that takes orders.
+//! The client of franka-rs: a program that reads orders.
 
 use std::io::{BufRead as _, BufReader, Lines, Write as _};
 use std::net::SocketAddr;
@@ -9,7 +9,7 @@ use anyhow::{Context as _, bail, ensure};
 
 use crate::Stepped;
 
-/// franka-rs, which holds the arm. Ends with this value.
+/// franka-rs, which holds the arm. Killed when this is dropped.
 pub(crate) struct Theirs {
     program: Child,
     orders: ChildStdin,
@@ -37,7 +37,7 @@ impl Theirs {
         Ok(this)
     }
 
-    /// Steps the target, `[m]`, and watches for so many seconds.
+    /// Steps the target, `[m]`, and records the arm for `seconds`.
     pub(crate) fn step(&mut self, by: [f64; 3], seconds: f64) -> anyhow::Result<Stepped> {
         let [x, y, z] = by;
         writeln!(self.orders, "step {x} {y} {z} {seconds}")?;
@@ -52,7 +52,7 @@ impl Theirs {
         }
     }
 
-    /// Has it come to rest and end.
+    /// Brings the arm to rest and ends the program.
     pub(crate) fn end(mut self) -> anyhow::Result<()> {
         writeln!(self.orders, "end")?;
         let answer = self.answer()?;
@@ -70,7 +70,7 @@ impl Theirs {
 
 impl Drop for Theirs {
     fn drop(&mut self) {
-        // One that has ended is as good.
+        // An error means that the program has ended.
         let _ = self.program.kill();
         let _ = self.program.wait();
     }

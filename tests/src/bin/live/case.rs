@@ -1,4 +1,4 @@
-//! One client measured.
+//! The measurement of one client.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -13,55 +13,55 @@ use crate::relay::Relay;
 use crate::stamp;
 use crate::trace::Summary;
 
-/// What controls.
+/// A client that controls the robot.
 #[derive(Clone, Debug)]
 pub(crate) enum ClientKind {
     /// One receive and one send per state.
     Echo,
-    /// Our control function.
+    /// A control function of this project.
     Torques,
-    /// Our target control.
+    /// Target control of this project.
     Targets,
-    /// The vendor's control loop, from Python. It asks for `SCHED_FIFO` by itself, always.
+    /// The vendor's control loop, from Python. It always requests `SCHED_FIFO` by itself.
     Vendor {
-        /// Has pylibfranka.
+        /// The Python interpreter with pylibfranka.
         interpreter: PathBuf,
-        /// Takes address and seconds.
+        /// The script, whose arguments are address and seconds.
         script: PathBuf,
     },
 }
 
-/// What its control thread is to ask for.
+/// The scheduling that the control thread requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scheduler {
     /// `SCHED_FIFO`, at the highest priority.
     Fifo,
-    /// Nothing.
+    /// The normal scheduler.
     Normal,
 }
 
 /// A client under a scheduler.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
-    /// What controls.
+    /// The client.
     pub(crate) client: ClientKind,
-    /// How.
+    /// Its scheduling.
     pub(crate) scheduler: Scheduler,
 }
 
-/// What came of it.
+/// The result of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Measured {
-    /// Of what passed the relay.
+    /// The summary of what passed the relay.
     pub(crate) summary: Summary,
     /// Processor time of the client's process, all threads, in percent of one core.
     pub(crate) cpu_percent: f64,
-    /// `SCHED_FIFO` priority that its control thread did have; none under the normal scheduler.
+    /// The actual `SCHED_FIFO` priority of its control thread; `None` under the normal scheduler.
     pub(crate) fifo_priority: Option<u32>,
 }
 
 impl ClientKind {
-    /// The client in words.
+    /// The name of the client.
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Echo => "echo",
@@ -73,7 +73,7 @@ impl ClientKind {
 }
 
 impl Case {
-    /// Client and scheduler in words.
+    /// The names of client and scheduler.
     pub(crate) fn name(&self) -> String {
         match self.scheduler {
             Scheduler::Fifo => self.client.name().to_owned(),
@@ -81,8 +81,8 @@ impl Case {
         }
     }
 
-    /// Measures the client for `time`, against a simulator of its own; the project's programs are
-    /// in `programs`.
+    /// Measures the client for `time`, against its own simulator; the project's programs are in
+    /// `programs`.
     pub(crate) fn measure(&self, programs: &Path, time: Duration) -> anyhow::Result<Measured> {
         let (_simulator, robot) = simulator(&programs.join("franka-sim"))?;
         let listen = SocketAddr::new(loopback_address(std::process::id()), PORT);
@@ -139,8 +139,7 @@ impl Case {
     }
 }
 
-/// The vendor's client knows one port only, so that relays side by side need addresses of their
-/// own.
+/// The vendor's client uses one fixed port, so each relay needs its own address.
 fn loopback_address(process: u32) -> IpAddr {
     // 127.2.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or
     // 255.
@@ -151,16 +150,16 @@ fn loopback_address(process: u32) -> IpAddr {
 /// The port of every FCI server.
 const PORT: u16 = 1337;
 
-/// Time that a client controls before and after what is measured.
+/// The time that a client controls before and after the measurement.
 const LEAD: Duration = Duration::from_secs(2);
 
 /// Commands after which a motion has settled: half a second.
 const SETTLED: u64 = 500;
 
-/// An interpreter takes a while to load its modules.
+/// Long enough for the interpreter to load its modules.
 const START_TIME_MAX: Duration = Duration::from_secs(20);
 
-/// Target control has the arm come to rest first.
+/// Long enough for target control to bring the arm to rest.
 const END_TIME_MAX: Duration = Duration::from_secs(20);
 
 const POLL: Duration = Duration::from_millis(10);
@@ -179,12 +178,12 @@ mod tests {
     }
 
     #[test]
-    fn every_client_hears_where_and_how_long() {
+    fn every_client_gets_address_and_duration() {
         let fifo = line(ClientKind::Torques, Scheduler::Fifo);
         assert_eq!(fifo, "/bin/live_client torques 127.2.1.1:1337 --fifo 5");
         let normal = line(ClientKind::Targets, Scheduler::Normal);
         assert_eq!(normal, "/bin/live_client targets 127.2.1.1:1337 5");
-        // Which knows the port by itself.
+        // The vendor's client has a fixed port.
         let vendor = ClientKind::Vendor {
             interpreter: "python".into(),
             script: "script.py".into(),

@@ -1,5 +1,4 @@
-//! The client that takes the least of a robot: connected, it notes when states arrive, and commands
-//! nothing.
+//! A minimal client: it connects, records when states arrive, and commands nothing.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
@@ -12,7 +11,7 @@ use franka_proto::{RobotState, Version};
 
 use crate::stamp::{self, Stamped};
 
-/// A connection to a robot, which sends its states as long as this lives.
+/// A connection to a robot, which sends states until this is dropped.
 #[derive(Debug)]
 pub(crate) struct Listener {
     socket: Stamped,
@@ -21,7 +20,7 @@ pub(crate) struct Listener {
 }
 
 impl Listener {
-    /// Connects; returns when the first state is there.
+    /// Connects, and returns when the first state has arrived.
     pub(crate) fn connect(robot: SocketAddr) -> anyhow::Result<Self> {
         let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
         socket.set_read_timeout(Some(SILENCE))?;
@@ -51,7 +50,7 @@ impl Listener {
         Ok(listener)
     }
 
-    /// The kernel's times of arrival of the states of the next `time`.
+    /// The kernel's arrival times of the states in the next `time`.
     pub(crate) fn listen(&mut self, time: Duration) -> anyhow::Result<Vec<Duration>> {
         let begin = stamp::now();
         let mut arrivals = Vec::new();
@@ -60,7 +59,7 @@ impl Listener {
             if arrived >= begin + time {
                 return Ok(arrivals);
             }
-            // Others have waited in the socket.
+            // Earlier states are still in the socket.
             if arrived >= begin {
                 arrivals.push(arrived);
             }
@@ -73,8 +72,8 @@ impl Listener {
     }
 }
 
-/// The FR3's.
+/// The protocol version of the FR3.
 const VERSION: Version = Version::V10;
 
-/// A robot that says nothing for so long is gone.
+/// The time without data after which the robot is given up.
 const SILENCE: Duration = Duration::from_secs(2);

@@ -16,13 +16,13 @@
 //!
 //! | module | what it is |
 //! |---|---|
-//! | [`relay`] | between client and robot, noting what passes and when |
-//! | [`listener`] | a client that notes when states arrive |
-//! | [`stamp`] | datagrams with the kernel's time of arrival |
-//! | [`trace`] | what passed, and the numbers that come of it |
-//! | [`process`] | simulator and clients: started, watched, ended |
-//! | [`case`] | one client measured |
-//! | [`simulator_case`] | one simulator measured |
+//! | [`relay`] | between client and robot, records what passes and when |
+//! | [`listener`] | a client that records when states arrive |
+//! | [`stamp`] | datagrams with the kernel's arrival time |
+//! | [`trace`] | what passed, and its statistics |
+//! | [`process`] | the processes of simulator and clients |
+//! | [`case`] | the measurement of one client |
+//! | [`simulator_case`] | the measurement of one simulator |
 //! | [`report`] | the tables, and the JSON |
 
 mod case;
@@ -59,7 +59,7 @@ enum What {
     Clients {
         #[command(flatten)]
         common: Common,
-        /// Measure pylibfranka too: the interpreter that has it, and the script to run.
+        /// Measure pylibfranka too: the interpreter with that package, and the script to run.
         #[arg(long, num_args = 2, value_names = ["INTERPRETER", "SCRIPT"])]
         python: Option<Vec<PathBuf>>,
     },
@@ -67,7 +67,7 @@ enum What {
     Simulator {
         #[command(flatten)]
         common: Common,
-        /// Measure the MuJoCo plant too, with which the simulator has to be built.
+        /// Measure the MuJoCo plant too; the simulator has to be built with it.
         #[arg(long)]
         mujoco: bool,
     },
@@ -77,7 +77,7 @@ enum What {
 struct Common {
     /// Where to write the values.
     output: PathBuf,
-    /// How long to measure each.
+    /// How long to measure each case.
     #[arg(long, default_value_t = 30)]
     seconds: u32,
 }

@@ -1,4 +1,4 @@
-//! Simulator and clients: started, watched, ended.
+//! The processes of simulator and clients: start, figures, end.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader};
@@ -11,7 +11,7 @@ use anyhow::{Context as _, bail};
 use nix::time::{clock_getcpuclockid, clock_gettime};
 use nix::unistd::Pid;
 
-/// A process of this program, which ends with this value at the latest.
+/// A child process, which is killed at the latest when this is dropped.
 #[derive(Debug)]
 pub(crate) struct Process {
     child: Child,
@@ -19,7 +19,7 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    /// Starts it.
+    /// Starts the process.
     pub(crate) fn start(command: &mut Command) -> anyhow::Result<Self> {
         let name = command.get_program().display().to_string();
         let child = command
@@ -28,7 +28,7 @@ impl Process {
         Ok(Self { child, name })
     }
 
-    /// Processor time that it has used, by all of its threads, ended ones included.
+    /// The processor time used by all its threads, ended ones included.
     pub(crate) fn cpu_time(&self) -> anyhow::Result<Duration> {
         let clock = clock_getcpuclockid(self.pid()?)?;
         Ok(clock_gettime(clock)?.into())
@@ -47,13 +47,13 @@ impl Process {
         Ok(highest)
     }
 
-    /// The most memory that it has had at a time, `[KiB]`: `VmHWM` of proc_pid_status(5).
+    /// The peak memory, `[KiB]`: `VmHWM` of proc_pid_status(5).
     pub(crate) fn memory_max(&self) -> anyhow::Result<u64> {
         let status = fs::read_to_string(format!("/proc/{}/status", self.child.id()))?;
         memory_max(&status).context("no VmHWM in the status")
     }
 
-    /// Fails if it has ended.
+    /// Fails if the process has ended.
     pub(crate) fn expect_running(&mut self) -> anyhow::Result<()> {
         match self.child.try_wait()? {
             None => Ok(()),
@@ -61,7 +61,7 @@ impl Process {
         }
     }
 
-    /// Waits for its end, which has to be a success and come in time.
+    /// Waits for the end of the process, which has to succeed within `time_max`.
     pub(crate) fn finish(mut self, time_max: Duration) -> anyhow::Result<()> {
         let deadline = Instant::now() + time_max;
         while Instant::now() < deadline {
@@ -82,24 +82,24 @@ impl Process {
 impl Drop for Process {
     fn drop(&mut self) {
         if matches!(self.child.try_wait(), Ok(None)) {
-            // It may end by itself meanwhile, which is as good.
+            // An error means that the process has ended by itself.
             let _ = self.child.kill();
             let _ = self.child.wait();
         }
     }
 }
 
-/// The simulator that clients are measured against; a robot sends its states whatever else the
-/// machine does, so it is preferred too.
+/// Starts the simulator that clients are measured against, with real-time priority: a robot's
+/// states do not depend on the load of this machine.
 pub(crate) fn simulator(program: &Path) -> anyhow::Result<(Process, SocketAddr)> {
     let mut command = under_fifo(SIMULATOR_PRIORITY, program);
     ready(command.args(["--port", "0", "--no-gripper"]))
 }
 
-/// Starts a simulator; returns when it serves, with its robot's address.
+/// Starts a simulator, and returns with its robot's address when it serves.
 pub(crate) fn ready(command: &mut Command) -> anyhow::Result<(Process, SocketAddr)> {
     let mut process = Process::start(command.stdout(Stdio::piped()))?;
-    // Stays open: the program may have more to say.
+    // Stays open: the program may write more.
     let output = process.child.stdout.as_mut().context("it is piped")?;
     let mut line = String::new();
     BufReader::new(output).read_line(&mut line)?;
@@ -135,7 +135,7 @@ fn memory_max(status: &str) -> Option<u64> {
 
 const POLL: Duration = Duration::from_millis(20);
 
-/// Below that of the relay and of the client.
+/// Below the priorities of the relay and of the client.
 const SIMULATOR_PRIORITY: u32 = 10;
 
 #[cfg(test)]
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn how_a_process_ends_is_told() {
+    fn the_end_of_a_process_is_reported() {
         sleep("0").finish(Duration::from_secs(20)).unwrap();
         let failed = Process::start(&mut Command::new("false")).unwrap();
         let error = failed.finish(Duration::from_secs(20)).unwrap_err();

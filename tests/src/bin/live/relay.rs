@@ -1,9 +1,9 @@
-//! Between client and robot: passes everything on, and notes what passes and when.
+//! A relay between client and robot: it forwards everything, and records what passes and when.
 //!
-//! A relay measures every client at the same place, whatever it is written in, and needs nothing of
-//! client or robot. It costs each datagram a hop, which is not part of what is measured: a
-//! turnaround begins when the relay hands a state to the kernel, and ends with the stamp that the
-//! kernel gives the command. The relay's own scheduling is in neither.
+//! A relay measures every client at the same place, in any language, and requires no change of
+//! client or robot. Its extra hop is not part of the measurement: a turnaround begins when the
+//! relay passes a state to the kernel, and ends with the kernel's stamp on the command. The relay's
+//! own scheduling affects neither.
 //!
 //! The UDP port that a client announces in `Connect` is replaced by the relay's own; the rest of
 //! the stream passes as it is.
@@ -25,7 +25,7 @@ use zerocopy::FromBytes as _;
 use crate::stamp::{self, Stamped};
 use crate::trace::{Answer, Departure, Trace};
 
-/// A relay for one connection of one client. Dropping it waits for the client to go.
+/// A relay for one connection of one client. Dropping it waits until the client has disconnected.
 #[derive(Debug)]
 pub(crate) struct Relay {
     shared: Arc<Shared>,
@@ -56,13 +56,13 @@ impl Relay {
         })
     }
 
-    /// Commands that have passed so far.
+    /// The number of commands that have passed so far.
     pub(crate) fn commands(&self) -> u64 {
-        // Relaxed: the number stands for itself.
+        // Relaxed: the number guards no other data.
         self.shared.commands.load(Ordering::Relaxed)
     }
 
-    /// What has passed. To be called when the client has gone.
+    /// Returns what has passed. To be called after the client has disconnected.
     pub(crate) fn finish(mut self) -> anyhow::Result<Trace> {
         Ok(self.join()?)
     }
@@ -78,7 +78,7 @@ impl Relay {
 
 impl Drop for Relay {
     fn drop(&mut self) {
-        // The trace of a client that failed is of no use.
+        // The trace of a failed client is not needed.
         let _ = self.join();
     }
 }
@@ -89,7 +89,7 @@ impl Shared {
     }
 }
 
-/// The client; `None` if the relay is stopped before one comes.
+/// Accepts the client; `None` if the relay is stopped before.
 fn accept(listener: TcpListener, shared: &Shared) -> io::Result<Option<TcpStream>> {
     listener.set_nonblocking(true)?;
     while !shared.stopped() {
@@ -111,7 +111,7 @@ fn serve(mut client: TcpStream, robot: SocketAddr, shared: &Arc<Shared>) -> io::
     for stream in [&client, &robot] {
         stream.set_nodelay(true)?;
     }
-    // A client takes states from the robot's address alone, which is the relay's to it.
+    // A client accepts states only from the robot's address, which for the client is the relay's.
     let to_client = UdpSocket::bind((client.local_addr()?.ip(), 0))?;
     let to_robot = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
     for socket in [&to_client, &to_robot] {
@@ -148,13 +148,13 @@ fn serve(mut client: TcpStream, robot: SocketAddr, shared: &Arc<Shared>) -> io::
     })
 }
 
-/// Passes a stream on to its end, which is then passed on too. A stream that breaks has ended.
+/// Forwards a stream and its end. A broken stream counts as ended.
 fn copy(mut from: TcpStream, mut to: TcpStream) {
     let _ = io::copy(&mut from, &mut to);
     let _ = to.shutdown(Shutdown::Write);
 }
 
-/// Starts a thread that is preferred to everything but the client's.
+/// Starts a thread with a priority just below the client's.
 fn real_time<T: Send + 'static>(
     run: impl FnOnce() -> T + Send + 'static,
 ) -> io::Result<JoinHandle<T>> {
@@ -164,13 +164,14 @@ fn real_time<T: Send + 'static>(
             priority: Some(PRIORITY),
             ..Scheduling::default()
         };
-        // Without it, states leave less regularly; what is measured from there on is the same.
+        // Without the priority, states leave less regularly; turnarounds are measured correctly all
+        // the same.
         let _ = asked.enter();
         run()
     })
 }
 
-/// States, robot to client.
+/// Forwards states, robot to client.
 fn pass_states(
     version: Version,
     from_robot: &UdpSocket,
@@ -185,7 +186,7 @@ fn pass_states(
             continue;
         };
         let left = stamp::now();
-        // A client that is about to go may have closed its port.
+        // A client that is disconnecting may have closed its port.
         let _ = to_client.send_to(&buffer[..length], client);
         robot_address.get_or_init(|| sender);
         if let Ok(state) = RobotState::decode(version, &buffer[..length]) {
@@ -199,7 +200,7 @@ fn pass_states(
     Ok(departures)
 }
 
-/// Commands, client to robot.
+/// Forwards commands, client to robot.
 fn pass_commands(
     version: Version,
     mut from_client: Stamped,
@@ -213,7 +214,7 @@ fn pass_commands(
         let Some((length, arrived)) = waited(from_client.receive(&mut buffer))? else {
             continue;
         };
-        // A command answers a state, so that its sender is known.
+        // A command answers a state, so its sender is known.
         if let Some(address) = robot_address.get() {
             let _ = to_robot.send_to(&buffer[..length], address);
         }
@@ -228,12 +229,12 @@ fn pass_commands(
     Ok(answers)
 }
 
-/// What was received; `None` if nothing was there to receive.
+/// The received data; `None` if the wait timed out.
 fn waited<T>(received: io::Result<T>) -> io::Result<Option<T>> {
     match received {
         Ok(received) => Ok(Some(received)),
         Err(error) => match error.kind() {
-            // The last is a datagram of ours that met a closed port.
+            // The last means that a datagram of ours reached a closed port.
             io::ErrorKind::WouldBlock
             | io::ErrorKind::TimedOut
             | io::ErrorKind::Interrupted
@@ -247,7 +248,7 @@ fn panicked(_: Box<dyn Any + Send>) -> io::Error {
     io::Error::other("a thread of the relay panicked")
 }
 
-/// The first message of a stream, and what may have come with it.
+/// Reads the first message of a stream, and any bytes that arrived with it.
 fn read_message(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
     let mut received = Vec::new();
     while next_message(&received).map_err(io::Error::other)?.is_none() {
@@ -276,13 +277,13 @@ fn replace_port(hello: &mut [u8], port: u16) -> io::Result<(Version, u16)> {
     Ok((version, announced))
 }
 
-/// How often the threads look whether they are to stop.
+/// How often the threads check whether to stop.
 const TICK: Duration = Duration::from_millis(20);
 
-/// Below that of a client, which has 99 unless told otherwise.
+/// Below the priority of a client, which is 99 by default.
 const PRIORITY: i32 = 50;
 
-/// Datagrams for which there is room from the outset: more than five minutes.
+/// Capacity allocated at the start, in datagrams: more than five minutes.
 const RESERVED: usize = 400_000;
 
 #[cfg(test)]
@@ -292,7 +293,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_port_of_the_client_gives_way_to_that_of_the_relay() {
+    fn the_port_of_the_client_is_replaced_by_that_of_the_relay() {
         for version in [Version::V5, Version::V10] {
             let hello = Session::new(version).connect(4711);
             let mut bytes = hello.as_bytes().to_vec();
@@ -302,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_that_begins_otherwise_is_refused() {
+    fn a_stream_without_connect_is_refused() {
         let header = Header {
             command: 2,
             command_id: 0,
@@ -313,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn a_relay_that_nobody_used_has_seen_nothing() {
+    fn an_unused_relay_has_an_empty_trace() {
         let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
         let relay = Relay::start(any, any).unwrap();
         assert_eq!(relay.commands(), 0);

@@ -1,4 +1,4 @@
-//! The table, and the JSON.
+//! The results as a table and as JSON.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,11 +10,10 @@ use crate::case::{Case, ClientKind, Measured};
 use crate::simulator_case::{Plant, SimulatorCase, SimulatorCost, Starts};
 use crate::trace::Quantiles;
 
-/// A client and what came of measuring it.
+/// A client and the result of its measurement.
 type Row = (Case, anyhow::Result<Measured>);
 
-/// Where it was measured, the table, and how the clients compare with the echo under the same
-/// scheduler.
+/// The machine, the table, and a comparison of each client with the echo under the same scheduler.
 pub(crate) fn markdown(rows: &[Row], time: Duration) -> String {
     let mut text = format!("{}; {} s each\n\n", machine(), time.as_secs());
     text += "| client | scheduler | success rate, mean / least | lost of states | interval p50 / p99 / p99.9 / max, µs | turnaround p50 / p99 / p99.9 / max, µs | times the echo's p50 / p99 | CPU, % of a core |\n";
@@ -45,7 +44,7 @@ pub(crate) fn markdown(rows: &[Row], time: Duration) -> String {
     text
 }
 
-/// All values.
+/// All values of the clients.
 pub(crate) fn json(rows: &[Row], time: Duration) -> Value {
     let rows: Vec<_> = rows
         .iter()
@@ -57,7 +56,7 @@ pub(crate) fn json(rows: &[Row], time: Duration) -> Value {
     json!({ "machine": machine(), "seconds": time.as_secs(), "clients": rows })
 }
 
-/// Where it was measured, how long the simulator takes to start, and what it costs.
+/// The machine, how long the simulator takes to start, and what it costs.
 pub(crate) fn simulator_markdown(
     starts: &[(Plant, Starts)],
     cases: &[(SimulatorCase, SimulatorCost)],
@@ -120,7 +119,7 @@ fn scheduler(fifo_priority: Option<u32>) -> String {
     }
 }
 
-/// The echo under the same scheduler.
+/// The result of the echo under the same scheduler.
 fn echo<'a>(rows: &'a [Row], case: &Case) -> Option<&'a Measured> {
     let is_floor = |(other, _): &&Row| {
         matches!(other.client, ClientKind::Echo) && other.scheduler == case.scheduler
@@ -236,7 +235,7 @@ mod tests {
         );
     }
     #[test]
-    fn a_simulator_has_intervals_where_somebody_listens() {
+    fn a_simulator_has_intervals_only_with_a_listener() {
         let starts = Starts {
             count: 3,
             p50: 12_340_000,

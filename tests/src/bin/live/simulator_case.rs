@@ -1,5 +1,4 @@
-//! What one simulated arm costs its host, and how punctual it is: the simulator measured instead of
-//! its clients.
+//! What one simulated arm costs its host, and how punctual it is: a measurement of the simulator.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,7 +10,7 @@ use crate::listener::Listener;
 use crate::process::{Process, ready};
 use crate::trace::Quantiles;
 
-/// What computes the arm's motion.
+/// The plant, which computes the arm's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Plant {
     /// Rigid bodies.
@@ -20,57 +19,57 @@ pub(crate) enum Plant {
     Mujoco,
 }
 
-/// Who is connected.
+/// The client that is connected to the simulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ConnectedClient {
-    /// Nobody.
+    /// No client.
     None,
-    /// A client that takes the states, and commands nothing.
+    /// A client that receives the states, and commands nothing.
     Listener,
-    /// Our target control, in a motion all the time.
+    /// Target control of this project, in a motion all the time.
     Targets,
 }
 
-/// A simulator, and who is connected to it.
+/// A simulator, and the client that is connected to it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SimulatorCase {
-    /// What it computes with.
+    /// Its plant.
     pub(crate) plant: Plant,
-    /// Who is there.
+    /// Its client.
     pub(crate) client: ConnectedClient,
-    /// Whether it asks for `SCHED_FIFO`.
+    /// Whether it requests `SCHED_FIFO`.
     pub(crate) realtime: bool,
 }
 
-/// What came of it.
+/// The result of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SimulatorCost {
     /// Processor time of the simulator's process, all threads, in percent of one core.
     pub(crate) cpu_percent: f64,
-    /// The most memory that it has had, `VmHWM`, in kibibytes.
+    /// The peak memory, `VmHWM`, in kibibytes.
     pub(crate) memory_kib: u64,
-    /// `SCHED_FIFO` priority that its thread did have; none under the normal scheduler.
+    /// The actual `SCHED_FIFO` priority of its thread; `None` under the normal scheduler.
     pub(crate) fifo_priority: Option<u32>,
-    /// Between arrivals of states, where there is a listener to note them.
+    /// The intervals between arrivals of states, if a listener records them.
     pub(crate) state_interval: Option<Quantiles>,
-    /// By how much these differ from a millisecond, either way.
+    /// The absolute differences of these intervals from a millisecond.
     pub(crate) state_deviation: Option<Quantiles>,
 }
 
-/// From a start of the program to a client that has connected and has its first state, over some
-/// starts, in nanoseconds.
+/// The times from the start of the program until a client has its first state, over several starts,
+/// in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Starts {
-    /// How many.
+    /// The number of starts.
     pub(crate) count: u64,
-    /// Median.
+    /// The median.
     pub(crate) p50: u64,
     /// The longest.
     pub(crate) max: u64,
 }
 
 impl Plant {
-    /// The plant in words.
+    /// The name of the plant.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Rigid => "rigid",
@@ -84,7 +83,7 @@ impl Plant {
         command
     }
 
-    /// Starts the simulator so many times.
+    /// Starts the simulator `count` times.
     pub(crate) fn start(self, programs: &Path, count: u64) -> anyhow::Result<Starts> {
         let start = || {
             let begin = Instant::now();
@@ -106,7 +105,7 @@ impl Plant {
 }
 
 impl ConnectedClient {
-    /// Who it is, in words.
+    /// The name of the client.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -117,14 +116,14 @@ impl ConnectedClient {
 }
 
 impl SimulatorCase {
-    /// What is measured, in words.
+    /// The name of the case.
     pub(crate) fn name(&self) -> String {
         let scheduler = if self.realtime { ", --realtime" } else { "" };
         let (plant, client) = (self.plant.name(), self.client.name());
         format!("{plant}, {client}{scheduler}")
     }
 
-    /// Measures a simulator of its own for `time`; the project's programs are in `programs`.
+    /// Starts a simulator and measures it for `time`; the project's programs are in `programs`.
     pub(crate) fn measure(&self, programs: &Path, time: Duration) -> anyhow::Result<SimulatorCost> {
         let mut command = self.plant.simulator(programs);
         if self.realtime {
@@ -157,7 +156,7 @@ impl SimulatorCase {
         simulator.expect_running()?;
         let (memory_kib, fifo_priority) = (simulator.memory_max()?, simulator.fifo_priority()?);
         if let Some(client) = client {
-            // It fails if its motion does.
+            // The client fails if its motion fails.
             client.finish(END_TIME_MAX)?;
         }
         let intervals = arrivals.as_deref().map(intervals);
@@ -174,19 +173,19 @@ impl SimulatorCase {
     }
 }
 
-/// From each moment to the next.
+/// The intervals between consecutive moments.
 fn intervals(moments: &[Duration]) -> Vec<Duration> {
     let gap = |pair: &[Duration]| pair[1].saturating_sub(pair[0]);
     moments.windows(2).map(gap).collect()
 }
 
-/// Between two states.
+/// The period of the states.
 const PERIOD: Duration = Duration::from_millis(1);
 
-/// Time in which a client gets to control, before what is measured and after.
+/// The time that a client controls before and after the measurement.
 const LEAD: Duration = Duration::from_secs(2);
 
-/// Target control has the arm come to rest first.
+/// Long enough for target control to bring the arm to rest.
 const END_TIME_MAX: Duration = Duration::from_secs(20);
 
 #[cfg(test)]
@@ -202,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn the_plant_is_told_to_the_program() {
+    fn the_plant_is_an_argument_of_the_program() {
         let command = Plant::Mujoco.simulator(Path::new("/bin"));
         assert_eq!(command.get_program(), "/bin/franka-sim");
         let arguments: Vec<_> = command.get_args().collect();

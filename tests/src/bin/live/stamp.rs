@@ -1,8 +1,8 @@
-//! Datagrams with the kernel's time of arrival.
+//! Datagrams with the kernel's arrival time.
 //!
-//! The kernel stamps a datagram when the network layer takes it in. On the loopback device that
-//! happens within the sender's own system call: when the receiver gets around to reading does not
-//! matter.
+//! The kernel stamps a datagram when the network layer receives it. On the loopback device that
+//! happens within the sender's system call, so the stamp does not depend on when the receiver
+//! reads.
 
 use std::io::{self, IoSliceMut};
 use std::net::UdpSocket;
@@ -20,14 +20,14 @@ pub(crate) struct Stamped {
 }
 
 impl Stamped {
-    /// Has the kernel stamp what arrives from now on.
+    /// Makes the kernel stamp the datagrams that arrive from now on.
     pub(crate) fn new(socket: UdpSocket) -> io::Result<Self> {
         setsockopt(&socket, sockopt::ReceiveTimestampns, &true)?;
         let control = nix::cmsg_space!(TimeSpec);
         Ok(Self { socket, control })
     }
 
-    /// Waits for a datagram; its length, and the time since the epoch at which it arrived.
+    /// Waits for a datagram. Returns its length, and its arrival time since the epoch.
     pub(crate) fn receive(&mut self, buffer: &mut [u8]) -> io::Result<(usize, Duration)> {
         let mut parts = [IoSliceMut::new(buffer)];
         let control = Some(&mut self.control[..]);
@@ -42,7 +42,7 @@ impl Stamped {
     }
 }
 
-/// The time now since the epoch, of the clock that the kernel stamps with.
+/// The present time since the epoch, on the clock of the kernel's stamps.
 pub(crate) fn now() -> Duration {
     SystemTime::now()
         .duration_since(UNIX_EPOCH)
@@ -54,13 +54,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_stamp_is_of_the_arrival_and_not_of_the_reading() {
+    fn the_stamp_is_the_time_of_arrival_and_not_of_reading() {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         let address = socket.local_addr().unwrap();
         let mut stamped = Stamped::new(socket).unwrap();
         let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
         let pause = Duration::from_millis(20);
-        // The kernel switches stamping on in the background.
+        // The kernel enables time stamps in the background.
         std::thread::sleep(pause);
         let before = now();
         sender.send_to(&[7; 5], address).unwrap();

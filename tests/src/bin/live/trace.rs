@@ -1,4 +1,4 @@
-//! What passed the relay, and the numbers that come of it.
+//! The datagrams that passed the relay, and their statistics.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -14,7 +14,7 @@ pub(crate) struct Departure {
     pub(crate) id: u64,
     /// When it left, since the epoch.
     pub(crate) left: Duration,
-    /// The share of commands that the robot says it received lately.
+    /// The success rate that the robot reports.
     pub(crate) success_rate: f64,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct Answer {
     pub(crate) arrived: Duration,
 }
 
-/// Everything that passed, in order.
+/// All datagrams that passed, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Trace {
     /// States.
@@ -36,44 +36,43 @@ pub(crate) struct Trace {
     pub(crate) answers: Vec<Answer>,
 }
 
-/// What a client did within some time.
+/// Statistics of a client over a time window.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Summary {
-    /// States that left for it.
+    /// The number of states sent to the client.
     pub(crate) states: u64,
-    /// Those of them that it did not answer.
+    /// The number of them that it did not answer.
     pub(crate) lost: u64,
     /// Mean of the success rate in those states.
     pub(crate) success_average: f64,
-    /// The smallest one.
+    /// The smallest success rate.
     pub(crate) success_minimum: f64,
-    /// Between states that left: how regular robot and relay were.
+    /// The intervals between departures of states: how regular robot and relay were.
     pub(crate) state_interval: Quantiles,
-    /// Between commands that arrived.
+    /// The intervals between arrivals of commands.
     pub(crate) interval: Quantiles,
-    /// From the departure of a state to the arrival of its command.
+    /// The times from the departure of a state to the arrival of its command.
     pub(crate) turnaround: Quantiles,
 }
 
-/// Durations that a share of all did not exceed, in nanoseconds, to three digits.
+/// Quantiles of durations, in nanoseconds, to three digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Quantiles {
-    /// Half of them.
+    /// The median.
     pub(crate) p50: u64,
-    /// 99 of 100.
+    /// 99 %.
     pub(crate) p99: u64,
-    /// 999 of 1000.
+    /// 99.9 %.
     pub(crate) p99_9: u64,
-    /// All.
+    /// The maximum.
     pub(crate) max: u64,
 }
 
 impl Trace {
-    /// What the client did with the states that left from `begin` on and before `end`, both since
-    /// the epoch.
+    /// Statistics over the states that left from `begin` on and before `end`, both since the epoch.
     ///
     /// # Errors
-    /// If there is not one state with an answer.
+    /// If no state was answered.
     pub(crate) fn summary(&self, begin: Duration, end: Duration) -> anyhow::Result<Summary> {
         let within = |time: Duration| begin <= time && time < end;
         // The first answer counts: a robot ignores a second one.
@@ -102,20 +101,20 @@ impl Trace {
 }
 
 impl Quantiles {
-    /// Of the times between one moment and the next.
+    /// The quantiles of the intervals between these moments.
     fn between(moments: impl Iterator<Item = Duration>) -> Self {
         let moments: Vec<Duration> = moments.collect();
         let gap = |pair: &[Duration]| pair[1].saturating_sub(pair[0]);
         Self::of(moments.windows(2).map(gap))
     }
 
-    /// Of these times.
+    /// The quantiles of these durations.
     pub(crate) fn of(durations: impl IntoIterator<Item = Duration>) -> Self {
         let mut histogram = Histogram::<u64>::new_with_bounds(1, LONGEST, DIGITS)
             .expect("these bounds and digits are representable");
         for duration in durations {
             let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
-            // What is longer counts as the longest.
+            // Longer durations count as the longest that can be recorded.
             histogram.saturating_record(nanos);
         }
         Self {
@@ -127,10 +126,10 @@ impl Quantiles {
     }
 }
 
-/// Of the values.
+/// Significant digits of the values.
 const DIGITS: u8 = 3;
 
-/// Ten seconds, in nanoseconds: a motion has ended long before.
+/// Ten seconds, in nanoseconds: longer than any gap in a motion.
 const LONGEST: u64 = 10_000_000_000;
 
 #[cfg(test)]
@@ -141,8 +140,7 @@ mod tests {
         Duration::from_micros(number)
     }
 
-    /// A hundred states, a millisecond apart; each answered after as many microseconds as it has in
-    /// its number.
+    /// A hundred states, a millisecond apart. State number n is answered after n microseconds.
     fn hundred() -> Trace {
         let numbers = 1..=100;
         Trace {
@@ -163,7 +161,7 @@ mod tests {
         }
     }
 
-    /// To the digits of the histogram.
+    /// Whether two values are equal to the digits of the histogram.
     fn near(got: u64, micros: u64) -> bool {
         got.abs_diff(1000 * micros) * 1000 <= 1000 * micros
     }
@@ -195,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_client_that_never_answered_has_no_numbers() {
+    fn a_client_that_never_answered_has_no_statistics() {
         let trace = Trace {
             answers: Vec::new(),
             ..hundred()

@@ -7,7 +7,7 @@ use franka_async::control::{Finish as _, Torques};
 use franka_async::{Pose, Realtime, Robot};
 use tokio::sync::watch;
 
-/// Controls by a function that returns no torques: all of a cycle but the user's own work.
+/// Controls with a function that returns zero torques: a cycle without any work of the user.
 #[tokio::main]
 pub(crate) async fn torques(address: &str, time: Duration, fifo: bool) -> anyhow::Result<()> {
     let robot = connect(address, fifo).await?;
@@ -26,7 +26,7 @@ pub(crate) async fn torques(address: &str, time: Duration, fifo: bool) -> anyhow
     Ok(())
 }
 
-/// Has the arm follow targets that step along a circle.
+/// Makes the arm follow targets that step along a circle.
 #[tokio::main]
 pub(crate) async fn targets(address: &str, time: Duration, fifo: bool) -> anyhow::Result<()> {
     let robot = connect(address, fifo).await?;
@@ -38,7 +38,7 @@ pub(crate) async fn targets(address: &str, time: Duration, fifo: bool) -> anyhow
         tokio::time::sleep(STEP).await;
         let angle = TAU * begun.elapsed().as_secs_f64() / ROUND.as_secs_f64();
         let (y, z) = (RADIUS * angle.sin(), RADIUS * (1.0 - angle.cos()));
-        // Without a listener the motion has ended, and says itself why.
+        // A send fails once the motion has ended; the motion returns the reason.
         let _ = sender.send(Pose::translation(0.0, y, z) * start);
     }
     drop(sender);
@@ -64,6 +64,6 @@ const NO_PRIORITY: i32 = 0;
 /// Time between targets.
 const STEP: Duration = Duration::from_millis(100);
 
-/// Time for one round, well within the arm's limits at this radius, `[m]`.
+/// The time for one round, well within the arm's limits at this radius, `[m]`.
 const ROUND: Duration = Duration::from_secs(4);
 const RADIUS: f64 = 0.05;

@@ -1,4 +1,4 @@
-//! The least that any client does: one receive and one send per state, on one thread.
+//! The minimum that any client does: one receive and one send per state, on one thread.
 //!
 //! Nothing is decoded, checked or computed. A command differs from the one before in the
 //! `message_id` that it repeats.
@@ -83,7 +83,7 @@ fn answer(socket: &UdpSocket, states: u64, command: &RobotCommand) -> anyhow::Re
     Ok(())
 }
 
-/// The FR3's.
+/// The protocol version of the FR3.
 const VERSION: Version = Version::V10;
 
 /// Both kinds of datagram begin with a `message_id` of this size.
@@ -92,5 +92,5 @@ const MESSAGE_ID: usize = size_of::<u64>();
 /// Cycles in which a motion without torques ends.
 const FINISHING: u64 = 50;
 
-/// A robot that says nothing for so long is gone.
+/// The time without data after which the robot is given up.
 const SILENCE: Duration = Duration::from_secs(2);

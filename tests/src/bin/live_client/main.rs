@@ -1,7 +1,5 @@
-//! A client of a robot for as long as it is told to: `live_client CLIENT ADDRESS SECONDS [--fifo]`.
-//!
-//! A process of its own, so that its processor time is its own too. What it does is measured from
-//! outside.
+//! A client that controls a robot for a given time: `live_client CLIENT ADDRESS SECONDS [--fifo]`.
+//! It runs as a separate process, so that its processor time can be measured from outside.
 
 mod driver;
 mod echo;
@@ -28,9 +26,9 @@ struct Arguments {
 /// The clients.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ClientKind {
-    /// Answers every datagram with one, and does nothing else.
+    /// Answers every datagram with one datagram, and does nothing else.
     Echo,
-    /// A control function that returns no torques.
+    /// A control function that returns zero torques.
     Torques,
     /// Targets for the end effector, ten times a second.
     Targets,
