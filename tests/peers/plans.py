@@ -1,7 +1,7 @@
-"""Motions that scripts command cycle by cycle, and what the robot says of them.
+"""Motions that scripts command cycle by cycle, and the robot's report of them.
 
-A robot bridges lost commands by going on with constant acceleration, and takes the next command as it comes, so every
-command here continues the setpoint that the robot reports.
+A robot extrapolates lost commands with constant acceleration, and does not smooth the next command, so every command
+here continues the setpoint that the robot reports.
 """
 
 import numpy
@@ -40,7 +40,7 @@ def follow(control, command, duration, finish=True):
 
 
 def cycles(control, command, is_over, finish):
-    """Commands until `is_over`, which gets what `command` does; the last command is of the cycle that it ends with."""
+    """Commands until `is_over`, which has the arguments of `command`; the last command is that of the final cycle."""
     t, states, over = 0.0, [], False
     while not over:
         state, step = control.readOnce()
@@ -55,7 +55,7 @@ def cycles(control, command, is_over, finish):
 
 
 def success_rate(states):
-    """The median of what the robot reports."""
+    """The median of the success rates that the robot reports."""
     rates = sorted(state.control_command_success_rate for state in states)
     return rates[len(rates) // 2]
 
@@ -106,12 +106,12 @@ def cartesian_velocities(start, translation, rotation):
 
 
 def standing_joints():
-    """Joint position commands that stay where the motion begins."""
+    """Joint position commands that hold the position at the start of the motion."""
     return standing(lambda state: joint_positions(line(state.q_d, numpy.zeros(7), 1.0)))
 
 
 def standing_pose():
-    """Poses that stay where the motion begins."""
+    """Poses that hold the pose at the start of the motion."""
 
     def begin(state):
         pose = matrix(state.O_T_EE_c)
@@ -148,7 +148,7 @@ def line(start, offset, duration):
 
 
 def steer(setpoint, velocity, plan):
-    """The setpoint and its velocity one cycle later: accelerating as planned, and back to the plan where they left it."""
+    """The setpoint and its velocity one cycle later: the planned acceleration, and a correction back to the plan."""
     setpoint, velocity = numpy.array(setpoint), numpy.array(velocity)
     planned_setpoint, planned_velocity, acceleration = plan
     acceleration = acceleration + 2.0 * RETURN * (planned_velocity - velocity)
@@ -158,7 +158,7 @@ def steer(setpoint, velocity, plan):
 
 
 def ease(x):
-    """Rises from 0 to 1 over 0 <= x <= 1, at rest at both ends; with its first and second derivative."""
+    """A function that rises from 0 to 1 over 0 <= x <= 1, at rest at both ends, and its first two derivatives."""
     x = min(max(x, 0.0), 1.0)
     return (
         x**3 * (10.0 + x * (6.0 * x - 15.0)),

@@ -1,7 +1,7 @@
 """The rules of active control with pylibfranka: pylibfranka_active.py ADDRESS
 
-The client's own loop reads a state and writes a command in turn. What it may not do it is told by exceptions; a motion
-ends with its last command, with `stop`, or with the object that stands for it.
+The client's own loop reads a state and writes a command in turn. Exceptions report violations of the rules. A motion
+ends with its last command, with `stop`, or when its control object is freed.
 """
 
 import threading
@@ -115,7 +115,7 @@ def commands_are_numbers_and_poses_are_poses(session):
         control = start()
         control.readOnce()
         refuses(ValueError, text, lambda: control.writeOnce(command))
-        # The client sends none of it; without the object the motion is over.
+        # The client sends none of these commands; the motion ends when the object is freed.
         del control
         state = session.state_at_rest()
         check(not state.current_errors and not state.last_motion_errors, "no reflex")
@@ -133,7 +133,7 @@ def nothing_follows_the_last_command(session):
     control = joint_motion(session)
     state = finish(session, control)
     refuses(ControlException, text, lambda: control.writeOnce(setpoint(state)))
-    # The next motion may start although the object is still there.
+    # The next motion may start although the object still exists.
     finish(session, joint_motion(session))
     return text
 
@@ -218,7 +218,7 @@ def stop_shows(session, start, action, repeat=False):
     """Checks that `action` ends as one of a motion that was stopped, and that the arm rests on the way."""
 
     def until_it_ends():
-        # States of before the stop may still wait in the socket.
+        # States from before the stop may still be waiting in the socket.
         for _ in range(1000 if repeat else 1):
             action()
 

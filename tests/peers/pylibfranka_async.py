@@ -1,7 +1,7 @@
 """Asynchronous joint positions with pylibfranka: pylibfranka_async.py ADDRESS
 
-The robot plans the way to each target itself; the client sends targets when it likes. Nothing is late here, so that no
-step is ever repeated.
+The robot plans the path to each target itself; the client sends targets at any time. No command can be late, so no step
+is ever repeated.
 """
 
 import gc
@@ -17,11 +17,11 @@ from pylibfranka._pylibfranka import TargetStatus
 from steps import Session, check, equal, near, refuses, script, spread
 
 OFFSET = numpy.array([0.2, -0.1, 0.1, 0.2, 0.1, 0.1, 0.3])
-# Those of the vendor's example, rad/s.
+# The velocities of the vendor's example, rad/s.
 SPEED = [0.655] * 4 + [1.315] * 3
 TOLERANCE = 1e-3
 TIME_MAX = 5.0
-# Of the joints of the Franka Research 3, rad/s².
+# The accelerations of the joints of the Franka Research 3, rad/s².
 ACCELERATION = 10.0
 ABORTED = "Control interface is in aborted state."
 BUSY = "libfranka robot: Cannot perform this operation while another control or read operation is running."
@@ -117,7 +117,7 @@ def turns_round_in_mid_motion(session):
     handler = configure(session)
     command(handler, session.home + OFFSET)
     session.fresh_state()
-    # Far enough to be fast, and not yet there.
+    # Far enough to be at full speed, and not yet at the target.
     while (state := session.robot.read_once()).q_d[6] < session.home[6] + 0.4 * OFFSET[6]:
         equal("feedback", feedback(handler, state), (TargetStatus.kExecuting, None))
     speed = state.dq_d[6]
@@ -159,7 +159,7 @@ def stops_in_mid_motion_and_is_of_no_use_after(session):
 
 
 def goes_on_at_once_after_a_stop(session):
-    """The arm still brakes when the next motion is requested, which takes its first target all the same."""
+    """The arm still brakes when the next motion is requested, which accepts its first target nevertheless."""
     turns = 5
     for turn in range(turns):
         target = session.home + (OFFSET if turn % 2 == 0 else 0.0)
@@ -183,7 +183,7 @@ def shares_the_robot_with_no_other_motion(session):
     command(handler, session.home)
     session.fresh_state()
     statuses(session, handler, session.home)
-    # Without stop_control: its end is that of the motion.
+    # Without stop_control: the motion ends when the handler is freed.
     del handler
     gc.collect()
     session.state_at_rest()
@@ -210,7 +210,7 @@ def aborts_beyond_the_range_of_the_joints(session):
         check(time.monotonic() < end, "a reflex")
     equal("errors", str(state.current_errors), '["joint_position_limits_violation"]')
     equal("by a state", feedback(handler, state), (TargetStatus.kAborted, "Control aborted due to reflex."))
-    # The second takes the client the answer to the motion, of which there is one.
+    # The second call reads the answer to the motion, of which there is only one.
     text = 'libfranka: Move command aborted: motion aborted by reflex! ["joint_position_limits_violation"]'
     equal("by the robot", feedback(handler), (TargetStatus.kAborted, text))
     busy = Handler.configure(session.robot, configuration()).error_message

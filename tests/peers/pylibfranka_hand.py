@@ -1,8 +1,8 @@
 """Drives a simulated Franka Hand with pylibfranka: pylibfranka_hand.py ADDRESS
 
-The simulator has an object of 5 cm between the fingers. The client keeps the interpreter to itself until a movement is
-over, and a hand serves one client: no movement can be interrupted from here, `stop` only releases what is held. There
-is no vacuum gripper in this client.
+The simulator has an object of 5 cm between the fingers. The client holds the interpreter lock until a movement is over,
+and a hand serves one client. So no movement can be interrupted from here, and `stop` only releases a held object. This
+client has no vacuum gripper.
 """
 
 import math
@@ -27,7 +27,7 @@ class Hand:
         self.gripper = Gripper(address)
 
     def clear(self):
-        """Best effort after a failed step."""
+        """Stops the hand after a failed step."""
         try:
             self.gripper.stop()
         except CommandException as error:
@@ -93,7 +93,7 @@ def grasps_the_object(hand):
     state = hand.gripper.read_once()
     near("width", state.width, OBJECT, 1e-6)
     equal("is_grasped", state.is_grasped, True)
-    # What is held cannot be grasped again.
+    # A held object cannot be grasped again.
     equal("a second grasp", hand.gripper.grasp(OBJECT, SPEED, FORCE), False)
     return f"{state.width} m"
 
@@ -107,7 +107,7 @@ def lets_go_of_it(hand):
 
 
 def finds_nothing_of_another_width(hand):
-    """The grasp holds what it finds, and says whether that is what was wanted."""
+    """The grasp holds any object, and reports whether its width is within the tolerance."""
     inner, outer = {"epsilon_inner": 0.03, "epsilon_outer": 0.0}, {"epsilon_inner": 0.0, "epsilon_outer": 0.03}
     cases = [
         (OBJECT - 0.02, {}, False),

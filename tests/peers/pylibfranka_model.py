@@ -2,7 +2,7 @@
 
 The binding has mass matrix, Coriolis and gravity torques, and the Jacobian of the end effector. It declares one of a
 frame of choice too, which cannot be called: the type of frames is not exported. There is no pose of a frame, and no
-body Jacobian. What there is has to agree with itself in any state, and with what the simulated arm does.
+body Jacobian. The available quantities have to be consistent with each other in any state, and with the motion of the simulated arm.
 """
 
 import numpy
@@ -19,9 +19,9 @@ POSES = 20
 SEED = 11
 # Half of a central difference, rad.
 STEP = 1e-5
-# What joint friction holds at rest and resists in motion, Nm.
+# Joint friction at rest and in motion, Nm.
 FRICTION = 1.5
-# Of differences of states in motion, ms.
+# The distance of states for finite differences in motion, ms.
 HALF_WINDOW = 10
 OFFSET = numpy.array([0.3, -0.2, 0.2, 0.3, -0.3, 0.3, 0.4])
 DURATION = 1.2
@@ -47,7 +47,7 @@ class Arm(Session):
         return numpy.array(self.model.gravity(state))
 
     def states_anywhere(self):
-        """States of the robot with joint positions and velocities of anywhere, and these two."""
+        """States of the robot with random joint positions and velocities, together with these two."""
         random = numpy.random.default_rng(SEED)
         for _ in range(POSES):
             q = MIDDLE + RANGE * random.uniform(-1.0, 1.0, 7)
@@ -72,7 +72,7 @@ def the_mass_matrix_is_one(arm):
 
 
 def coriolis_torques_do_no_work_of_their_own(arm):
-    """They take from the motion what the mass matrix gains, twice over, and grow with the square of the velocities."""
+    """Their power is half that of the changing mass matrix, and they grow with the square of the velocities."""
     worst = 0.0
     for state, q, dq in arm.states_anywhere():
         torques = arm.coriolis(state)
@@ -103,7 +103,7 @@ def gravity_is_the_slope_of_the_height(arm):
 
 
 def a_longer_tool_has_a_longer_lever(arm):
-    """The Jacobian of a point that is fixed to the end effector follows from its turns."""
+    """The Jacobian of a point fixed to the end effector follows from the rotational part."""
     state = arm.state_at_rest()
     short = arm.jacobian(state)
     lever = numpy.eye(4)
@@ -147,7 +147,7 @@ def the_moving_arm_moves_as_the_model_says(arm):
     for ms, state in by_time.items():
         before, after = by_time.get(ms - HALF_WINDOW), by_time.get(ms + HALF_WINDOW)
         if before is None or after is None:
-            continue  # Lost, or beyond the motion.
+            continue  # A lost state, or one after the motion.
         time = 2e-3 * HALF_WINDOW
         shift = (matrix(after.O_T_EE) - matrix(before.O_T_EE))[:3, 3] / time
         expected = arm.jacobian(state)[:3] @ (numpy.array(after.q) - before.q) / time

@@ -1,7 +1,7 @@
 """The modes on the wire while pylibfranka controls the arm: pylibfranka_modes.py ADDRESS
 
-The client waits for them when it starts and ends a motion, and does not show them. A relay between client and robot
-does: for each kind of motion what was requested, and that the states show just that, from idle to idle.
+The client waits for the modes when it starts and ends a motion, and does not show them. A relay between client and
+robot records them: for each kind of motion, the states have to show the requested modes, from idle to idle.
 """
 
 from pylibfranka import (
@@ -35,7 +35,7 @@ class Tapped(Session):
     def __init__(self, address):
         network, subnet, *host = address.split(".")
         here = ".".join([network, str(int(subnet) + 1), *host])
-        # Before the client: it gives its thread, and what that starts, a priority above everybody's.
+        # Before the client, which gives its thread, and threads started by it, the highest priority.
         self.tap = Tap(address, here)
         super().__init__(here)
 
@@ -123,7 +123,7 @@ def sequence(session, move, generator, controller, after=(), optional=()):
     move()
     session.state_at_rest()
     modes, motions = session.tap.seen()
-    # A request counts the generators from the first one that is one.
+    # In a request, generators are numbered from the first one; in a state, 0 means none.
     equal("motions requested", motions, [(controller, generator - 1)])
     modes = [mode for mode in modes if mode not in optional]
     want = [AT_REST, (MOVE, generator, controller), *after, AT_REST]

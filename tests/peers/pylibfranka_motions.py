@@ -24,9 +24,9 @@ from steps import Session, check, matrix, near, script, spread
 OFFSET = numpy.array([0.1, -0.05, 0.1, 0.15, -0.1, 0.1, 0.2])
 SHIFT, TURN = numpy.array([0.03, 0.03, 0.05]), numpy.array([0.1, -0.1, 0.2])
 DURATION = 1.0
-# What the motors do not follow, of joint positions, rad, and of the end effector, m.
+# The lag of the motors, in joint positions, rad, and of the end effector, m.
 JOINT_LAG, TIP_LAG = 5e-3, 2e-3
-# A twist adds up, so what was lost on the way is steered back from the pose the robot reports.
+# Twists are integrated, so errors from lost commands are corrected from the pose that the robot reports.
 TURN_TOLERANCE = 1e-3
 
 

@@ -1,7 +1,7 @@
-"""Commands that a robot stops for, and recovery, with pylibfranka: pylibfranka_reflexes.py ADDRESS
+"""Commands that cause a reflex, and recovery, with pylibfranka: pylibfranka_reflexes.py ADDRESS
 
 Every violation ends in an exception with the names of the errors, in a reflex that refuses motions, and in a recovery
-after which the arm moves again. Names belong to what is commanded: a jump in a position is one in its derivatives too.
+after which the arm moves again. Errors are named after the commanded quantity: a jump in a position is one in its derivatives too.
 """
 
 import time
@@ -36,7 +36,7 @@ from steps import LATE, Session, check, column_major, equal, matrix, near, refus
 ABORTED = "libfranka: Move command aborted: motion aborted by reflex!"
 REFUSED = 'libfranka: Move command rejected: command not possible in the current mode ("Reflex")!'
 INSENSITIVE = [100.0]
-# Cycles at rest before a violation, and after it, within which it has to have been noticed.
+# Cycles at rest before a violation, and cycles after it within which it has to be detected.
 CALM, NOTICED = 20, 50
 JOINT_1 = numpy.eye(7)[0]
 JOINT = "joint_motion_generator_"
@@ -192,10 +192,10 @@ def recovery_without_a_reflex_does_nothing(session):
 
 
 def violates(session, start, calm, violation, errors, others=None, noticed=NOTICED):
-    """Commands a violation, and checks what client and robot make of it and that a recovery clears it.
+    """Commands a violation, and checks the reaction of client and robot, and that a recovery clears it.
 
-    `calm` is commanded before, if it is there. The errors are `errors`, and besides these at most some whose names
-    begin with `others`: a motion of the end effector is checked in the joints too.
+    `calm` is commanded before, if given. The errors have to be `errors`; further ones are allowed if their names begin with
+    `others`, since a motion of the end effector is checked in the joints too.
     """
     session.state_at_rest()
     control = start()
@@ -229,14 +229,14 @@ def violates(session, start, calm, violation, errors, others=None, noticed=NOTIC
 
 
 def first_line(error, text):
-    """The text without statistics of the connection, which may follow; late commands are raised again."""
+    """The text without statistics of the connection, which may follow; raises errors of late commands again."""
     if LATE in str(error) and LATE not in text and "still moving" in text:
         raise error
     return str(error).splitlines()[0]
 
 
 def settled(session):
-    """A state of after the filters of the estimates have settled."""
+    """A state after the filters of the estimates have settled."""
     for _ in range(300):
         session.robot.read_once()
     return session.fresh_state()

@@ -1,7 +1,7 @@
 """Connections, states and parameters with pylibfranka: pylibfranka_setup.py ADDRESS
 
-The client's constructor takes one of two real-time configurations. Enforcing needs a kernel that says that it is a
-real-time one; elsewhere the client gives up once it has connected, which is checked then.
+The client's constructor takes one of two real-time configurations. Enforcing needs a kernel that reports to be a
+real-time one. Elsewhere the client fails after it has connected, and the script checks that.
 """
 
 import os
@@ -73,7 +73,7 @@ def echoes_what_is_set(session):
     robot.set_EE(column_major(lever))
     robot.set_K(column_major(lever))
     state = session.fresh_state()
-    # The load is not really there: leave it set and every torque would be wrong.
+    # The load does not exist: if it stayed set, every torque would be wrong.
     robot.set_load(0.0, [0.0] * 3, [0.0] * 9)
     for reset in (robot.set_EE, robot.set_K):
         reset(column_major(numpy.eye(4)))

@@ -1,6 +1,6 @@
 """Motions of an arm that stands in a singularity: pylibfranka_singular.py ADDRESS
 
-The robot answers a Cartesian motion twice there: that it has started, and that it cannot.
+There the robot answers a Cartesian motion twice: it reports the start, and then the rejection.
 """
 
 from pylibfranka import ControlException, ControllerMode, RobotMode

@@ -1,6 +1,6 @@
 """Torque control with pylibfranka: pylibfranka_torque_control.py ADDRESS
 
-The client commands torques, and the robot adds what holds its weight.
+The client commands torques, and the robot adds the gravity compensation.
 """
 
 import math
@@ -36,7 +36,7 @@ def torques_show_in_the_state(session):
 
     states = follow(session.robot.start_torque_control(), command, 0.6)
     session.state_at_rest()
-    # In single precision. A command that came late leaves the torques of one before, zero at first.
+    # In single precision. If a command is late, the previous torques stay, which are zero at first.
     last = 0
     for state in states[1:]:
         echoes = [n for n in range(last, len(sent)) if spread(state.tau_J_d, sent[n]) < 1e-6]
@@ -53,12 +53,12 @@ def an_impedance_leads_a_joint_out_and_back(session):
     reached = []
 
     def command(t, state):
-        # Joint 1 swings out and back: torques that do nothing would not move it.
+        # Joint 1 swings out and back, which proves that the torques have an effect.
         goal = start.copy()
         goal[0] += swing * 0.5 * (1.0 - math.cos(2.0 * math.pi * min(t / duration, 1.0)))
         reached.append(state.q[0] - start[0])
         torques = STIFFNESS * (goal - numpy.array(state.q)) - DAMPING * numpy.array(state.dq)
-        # Enters from zero and leaves to zero, as the robot asks.
+        # Begins and ends at zero, as the robot requires.
         fade = ease(min(t, duration - t) / 0.2)[0]
         return Torques((fade * torques).tolist())
 
@@ -78,7 +78,7 @@ def an_arm_that_is_led_desires_to_be_where_it_is(session):
     after = session.state_at_rest()
     travel = max(state.q[6] for state in states) - states[0].q[6]
     check(travel > 1e-2, f"joint 7 moved by {travel:.4f} rad only")
-    # The state is of the end of a millisecond, the setpoint may be of its beginning.
+    # The state is that of the end of a millisecond, the setpoint may be that of its beginning.
     fastest = max(max(map(abs, state.dq)) for state in states)
     near("q_d on the way", [state.q_d for state in states[1:]], [state.q for state in states[1:]], 2 * CYCLE * fastest)
     near("q_d afterwards", after.q_d, after.q, 5e-3)

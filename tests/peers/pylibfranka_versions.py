@@ -1,6 +1,6 @@
 """pylibfranka 0.21 before a robot of protocol 5, which it does not speak: pylibfranka_versions.py ADDRESS
 
-The client announces protocol 10, that of the Franka Research 3, and says what it thinks of another one.
+The client announces protocol 10, that of the Franka Research 3, and reports any other one as an error.
 """
 
 from pylibfranka import FrankaException, Gripper, RealtimeConfig, Robot
@@ -11,7 +11,7 @@ SERVER, LIBRARY = 5, 10
 
 
 class Address:
-    """There is no connection to share."""
+    """A session without a connection."""
 
     def __init__(self, address):
         self.address = address
@@ -21,7 +21,7 @@ class Address:
 
 
 def refuses_a_robot_of_another_protocol(robot):
-    # Twice: the robot does not keep the place of a client that it turned away.
+    # Twice, since a refused client must not keep the robot occupied.
     for _ in range(2):
         text = raises(FrankaException, lambda: Robot(robot.address, RealtimeConfig.kIgnore))
         versions = f"(server version: {SERVER}, library version: {LIBRARY})"

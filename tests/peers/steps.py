@@ -1,10 +1,10 @@
-"""What the scripts of this directory share: steps that are run, repeated and counted, and checks of what came out.
+"""Shared code of the scripts in this directory: steps that are run, repeated and counted, and checks of results.
 
-A step is a function; its name says what it shows, and what it returns is printed. Each prints one line, the last line
+A step is a function; its name says what it proves, and its return value is printed. Each prints one line, the last line
 counts them, and the exit code of a script is 0 only if none failed.
 
-Client and simulator share a machine that may be busy. Twenty commands lost in a row end any motion. That says nothing
-about the simulator: the step is then repeated, a few times at most, and the output says so.
+Client and simulator share a machine that may be busy. Twenty commands lost in a row end any motion. This is no fault of
+the simulator, so the step is then repeated, a few times at most, and the output says so.
 """
 
 import sys
@@ -22,7 +22,7 @@ REST_TIME_MAX = 3.0
 
 
 def script(steps, connect):
-    """Runs a script: its address is the command line, `connect` makes of it what the steps get. Exits."""
+    """Runs a script and exits. `connect` turns the address from the command line into the argument of the steps."""
     if len(sys.argv) != 2:
         sys.exit(f"usage: {sys.argv[0]} ADDRESS")
     sys.exit(run(steps, connect(sys.argv[1])))
@@ -43,7 +43,7 @@ def run(steps, session):
             passed += 1
             print(f"ok    {name} ({time.monotonic() - start:.1f} s): {summary}", flush=True)
             continue
-        # Here and not above: what the step started ends once nothing refers to the exception any more.
+        # Not in the handler above: objects of the step are freed only once nothing refers to the exception any more.
         session.clear()
     failed = len(steps) - passed
     print(f"{passed} passed, {failed} failed in {time.monotonic() - begin:.1f} s", flush=True)
@@ -68,7 +68,7 @@ class Session:
     def __init__(self, address):
         self.address = address
         self.connect()
-        # Joint positions to which motions are relative, so that one that is repeated ends where it would have.
+        # Joint positions to which motions are relative, so that a repeated motion ends at the same place.
         self.home = numpy.array(self.fresh_state().q_d)
 
     def connect(self):
@@ -76,7 +76,7 @@ class Session:
         self.robot = Robot(self.address, RealtimeConfig.kIgnore)
 
     def fresh_state(self):
-        """A state of now: the first read may return one that waited in the socket since the last read."""
+        """A current state: the first read may return an old one that was waiting in the socket."""
         self.robot.read_once()
         return self.robot.read_once()
 
@@ -97,7 +97,7 @@ class Session:
         return state
 
     def clear(self):
-        """Best effort after a failed step, so that the next one starts from an idle robot."""
+        """Recovers the robot after a failed step, so that the next one starts from an idle robot."""
         try:
             self.robot.automatic_error_recovery()
         except Exception as error:
@@ -105,7 +105,7 @@ class Session:
 
 
 def matrix(values):
-    """A transform, which the client has column by column."""
+    """The matrix of a transform, which the client stores in column-major order."""
     return numpy.array(values).reshape(4, 4, order="F")
 
 
@@ -132,7 +132,7 @@ def near(what, got, want, tolerance):
 
 
 def raises(kind, action):
-    """The text of the exception with which `action` ends: of this type, not of one below it."""
+    """The text of the exception that `action` raises, which has exactly this type, not a subclass."""
     try:
         action()
     except kind as error:
@@ -142,5 +142,5 @@ def raises(kind, action):
 
 
 def refuses(kind, text, action):
-    """Checks that `action` ends with an exception of this type and text."""
+    """Checks that `action` raises an exception of this type and text."""
     equal(f"text of the {kind.__name__}", raises(kind, action), text)

@@ -16,10 +16,10 @@ HEADER = struct.Struct("<III")
 CONNECT, MOVE = 0, 1
 # Version and port, in Connect; controller and generator, in Move.
 CONNECT_REQUEST, MOVE_REQUEST = struct.Struct("<HH"), struct.Struct("<II")
-# Where a state of protocol 10 has its modes.
+# Offsets of the modes in a state of protocol 10.
 GENERATOR_MODE, CONTROLLER_MODE, ROBOT_MODE = 1288, 1289, 1372
 STATE_SIZE = 1377
-# Not so much that it disturbs the client, and as much as the simulator gets.
+# Below the client, and equal to the simulator.
 PRIORITY = 10
 CLIENT_TIME_MAX = 30.0
 
@@ -44,11 +44,11 @@ class Tap:
 
 
 def serve(listener, robot, here, notes):
-    """Serves one client, until it is gone."""
+    """Serves one client until it disconnects."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     except OSError:
-        pass  # As it is for the simulator: late on a busy machine.
+        pass  # Late on a busy machine, like the simulator.
     # Without a client by then, the process that made the relay has ended.
     listener.settimeout(CLIENT_TIME_MAX)
     client, _ = listener.accept()
@@ -126,7 +126,7 @@ def udp_socket(host):
 
 
 def received(stream):
-    """Some bytes; an end is an error."""
+    """Receives some bytes; the end of the stream is an error."""
     data = stream.recv(65536)
     if not data:
         raise EOFError
