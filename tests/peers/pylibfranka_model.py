@@ -2,7 +2,8 @@
 
 The binding has mass matrix, Coriolis and gravity torques, and the Jacobian of the end effector. It declares one of a
 frame of choice too, which cannot be called: the type of frames is not exported. There is no pose of a frame, and no
-body Jacobian. The available quantities have to be consistent with each other in any state, and with the motion of the simulated arm.
+body Jacobian. The available quantities have to be consistent with each other in any state, and with the motion of the
+simulated arm.
 """
 
 import numpy

@@ -1,7 +1,8 @@
 """Commands that cause a reflex, and recovery, with pylibfranka: pylibfranka_reflexes.py ADDRESS
 
 Every violation ends in an exception with the names of the errors, in a reflex that refuses motions, and in a recovery
-after which the arm moves again. Errors are named after the commanded quantity: a jump in a position is one in its derivatives too.
+after which the arm moves again. Errors are named after the commanded quantity: a jump in a position
+is one in its derivatives too.
 """
 
 import time
@@ -194,8 +195,8 @@ def recovery_without_a_reflex_does_nothing(session):
 def violates(session, start, calm, violation, errors, others=None, noticed=NOTICED):
     """Commands a violation, and checks the reaction of client and robot, and that a recovery clears it.
 
-    `calm` is commanded before, if given. The errors have to be `errors`; further ones are allowed if their names begin with
-    `others`, since a motion of the end effector is checked in the joints too.
+    `calm` is commanded before, if given. The errors have to be `errors`; further ones are allowed if their names begin
+    with `others`, since a motion of the end effector is checked in the joints too.
     """
     session.state_at_rest()
     control = start()
