@@ -35,8 +35,11 @@ pub(super) struct Route {
     hindered: u32,
     /// The budget of the brake from which the way to rest was last seen to be clear.
     judged: Budget,
-    /// A chunk that a brake has taken the place of.
-    pub(super) left: Option<ChunkCourse>,
+    /// A chunk that another course has taken the place of. It is not freed here, but goes back in the
+    /// next cycle.
+    pub(super) retired_chunk: Option<ChunkCourse>,
+    /// Where the goal's last chunk has ended, if none runs.
+    pub(super) chunk_end: Option<Target>,
     /// Whether a plan could not be made since the last answer.
     failed: bool,
 }
@@ -65,7 +68,8 @@ impl Route {
             repaced: false,
             hindered: 0,
             judged: budget,
-            left: None,
+            retired_chunk: None,
+            chunk_end: None,
             failed: false,
         }
     }
@@ -184,17 +188,20 @@ impl Route {
         }
     }
 
-    /// A chunk is not freed here: it goes back.
-    fn lay_aside(&mut self) {
+    /// Ends the course if it follows a chunk.
+    pub(super) fn retire_chunk(&mut self) {
         if matches!(self.course, Course::Chunk(_))
             && let Course::Chunk(chunk) = core::mem::replace(&mut self.course, Course::Rest)
         {
-            self.left = Some(chunk);
+            self.retired_chunk = Some(chunk);
         }
     }
 
     fn brake(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
-        self.lay_aside();
+        if let Course::Chunk(chunk) = &self.course {
+            self.chunk_end = Some(chunk.target());
+            self.retire_chunk();
+        }
         let rest = Goal {
             target: Target::Rest,
             ..*goal
@@ -245,8 +252,8 @@ impl Route {
         let step = self
             .course
             .step(model, ee, posture, reference, arm, arm.time);
-        // A brake is clear: that was made sure of before. Whoever guides the arm by hand sees where
-        // it goes.
+        // The way of a brake was checked before the step that it begins from. A person who guides the
+        // arm sees where it goes.
         if matches!(goal.target, Target::Rest | Target::Guide(_)) {
             return step;
         }

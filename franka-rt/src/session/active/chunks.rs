@@ -2,7 +2,7 @@
 
 use franka_model::Model;
 
-use super::{Active, Stage};
+use super::{Active, Stage, Standing};
 use crate::session::chunk::ChunkReader;
 use crate::session::course::Course;
 use crate::session::{Goal, OnArrival, Target};
@@ -11,11 +11,12 @@ impl Active {
     /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is
     /// over.
     pub(super) fn follow_chunks(&mut self, model: &Model, chunks: &mut ChunkReader, now: u64) {
-        if let Some(left) = self.left.take() {
-            left.end(chunks, now);
+        if let Some(retired) = self.route.retired_chunk.take() {
+            retired.end(chunks, now);
         }
         let gone = matches!(self.stage, Stage::Releasing(_) | Stage::Finished);
-        if gone || self.taken_back || self.is_given_up_for_good() {
+        let taken_back = matches!(self.standing, Standing::TakenBack);
+        if gone || taken_back || self.is_given_up_for_good() {
             chunks.discard(self.goal.id);
             return;
         }
@@ -37,7 +38,8 @@ impl Active {
             self.aim = self.heading();
             self.planned = true;
             // A goal that had fallen silent was to be held until a newer one.
-            if self.lapse.take().is_some() {
+            if self.is_given_up() {
+                self.standing = Standing::InForce;
                 self.goal.on_arrival = OnArrival::Hold;
             }
             self.heard = now;
@@ -45,7 +47,7 @@ impl Active {
         } else if over && let Course::Chunk(chunk) = &self.route.course {
             let target = chunk.target();
             self.turn_to(model, target);
-            self.chunk_end = Some(target);
+            self.route.chunk_end = Some(target);
         }
     }
 
@@ -53,7 +55,7 @@ impl Active {
     pub(super) fn heading(&self) -> Target {
         match &self.route.course {
             Course::Chunk(chunk) => chunk.target(),
-            _ => self.chunk_end.unwrap_or(self.goal.target),
+            _ => self.route.chunk_end.unwrap_or(self.goal.target),
         }
     }
 }

@@ -12,8 +12,8 @@ use crate::control::Torques;
 use crate::session::reference::Reference;
 
 use super::backend::Backend;
-use super::chunk::{ChunkCourse, ChunkReader};
-use super::course::{self, Course};
+use super::chunk::ChunkReader;
+use super::course;
 use super::effort::Effort;
 use super::goal::{Goal, OnArrival, Target};
 use super::guard::clearance::{Clearance, KeepOut};
@@ -51,17 +51,20 @@ pub(super) struct Active {
     stage: Stage,
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
-    /// Why the goal was given up, and what the arm does since.
-    lapse: Option<(OnTimeout, Lapse)>,
-    /// Whether the goal was changed to one of coming to rest: chunks that waited for their time are
-    /// none of it.
-    taken_back: bool,
+    standing: Standing,
     /// Cycles in which the course was held back, less those since in which it was not.
     held_back: u64,
-    /// Where the goal's last chunk has ended, if none runs.
-    chunk_end: Option<Target>,
-    /// A chunk that another course has taken the place of: it goes back in the next cycle.
-    left: Option<ChunkCourse>,
+}
+
+/// How the goal stands.
+#[derive(Clone, Copy, Debug)]
+enum Standing {
+    /// It is pursued.
+    InForce,
+    /// It was changed to one of coming to rest. Chunks that wait for their time are discarded.
+    TakenBack,
+    /// It was given up for `cause`: the arm holds the last target, or brakes.
+    GivenUp { action: OnTimeout, cause: Lapse },
 }
 
 /// What follows the reference.
@@ -124,10 +127,7 @@ impl Active {
             stayed: false,
             since: state.message_id,
             heard: state.message_id,
-            lapse: None,
-            taken_back: false,
-            chunk_end: None,
-            left: None,
+            standing: Standing::InForce,
             posture: q,
             reference,
             goal,
@@ -152,7 +152,7 @@ impl Active {
         }
         self.heard = now;
         let same = named
-            && self.lapse.is_none()
+            && !self.is_given_up()
             && goal.target == self.goal.target
             && goal.on_arrival == self.goal.on_arrival;
         if same && !matches!(self.stage, Stage::Releasing(_)) {
@@ -163,8 +163,11 @@ impl Active {
         }
         self.goal = goal;
         self.fade_gains();
-        self.lapse = None;
-        self.taken_back = named && taken_back;
+        self.standing = if named && taken_back {
+            Standing::TakenBack
+        } else {
+            Standing::InForce
+        };
         self.set_out(model);
     }
 
@@ -207,16 +210,12 @@ impl Active {
     fn set_out(&mut self, model: &Model) {
         self.stage = Stage::UnderWay;
         self.held_back = 0;
-        self.chunk_end = None;
+        self.route.chunk_end = None;
         self.turn_to(model, self.goal.target);
     }
 
     fn turn_to(&mut self, model: &Model, target: Target) {
-        if matches!(self.route.course, Course::Chunk(_))
-            && let Course::Chunk(chunk) = core::mem::replace(&mut self.route.course, Course::Rest)
-        {
-            self.left = Some(chunk);
-        }
+        self.route.retire_chunk();
         self.aim = target;
         let goal = Goal {
             target,
@@ -226,7 +225,7 @@ impl Active {
         self.planned |= matches!(target, Target::Pose(_) | Target::Joints(_));
     }
 
-    /// Answers one state; `alive` is whether nobody has let go of the deadman that it is bound to.
+    /// Answers one state; `alive` is false once the deadman of the session is silent or dropped.
     pub(super) fn step(
         &mut self,
         model: &Model,
@@ -252,7 +251,13 @@ impl Active {
         bindings.set(Guard::Deadman, !alive);
         bindings.set(
             Guard::Watchdog,
-            matches!(self.lapse, Some((_, Lapse::Silent { .. }))),
+            matches!(
+                self.standing,
+                Standing::GivenUp {
+                    cause: Lapse::Silent { .. },
+                    ..
+                }
+            ),
         );
 
         self.reanchor(model, state);
@@ -278,10 +283,6 @@ impl Active {
             self.route
                 .step(model, &self.ee, &self.posture, &self.reference, &arm, &aim)
         };
-        if let Some(chunk) = self.route.left.take() {
-            self.chunk_end = Some(chunk.target());
-            self.left = Some(chunk);
-        }
         self.reference = reference;
         bindings.set(Guard::Clearance, self.route.is_bound());
         bindings.set(Guard::InverseKinematics, bounds.acceleration);

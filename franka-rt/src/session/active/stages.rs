@@ -2,7 +2,7 @@
 
 use franka_model::{Frame, Model};
 
-use super::{Active, Drive, Measured};
+use super::{Active, Drive, Measured, Standing};
 use crate::session::landing::{Landing, Release, Verdict};
 use crate::session::reference::Reference;
 use crate::session::{
@@ -50,7 +50,7 @@ impl Active {
                     }
                     let target = match heading {
                         // Wherever it stands, it counts as held.
-                        _ if self.lapse.is_some() => None,
+                        _ if self.is_given_up() => None,
                         Target::Rest | Target::Guide(_) => None,
                         Target::Pose(pose) => Some(pose),
                         Target::Joints(q) => {
@@ -85,13 +85,15 @@ impl Active {
                 };
                 Some(SessionEvent::Settled {
                     goal: self.goal.id,
-                    settlement: match self.lapse {
-                        Some((OnTimeout::Hold, lapse)) => Settlement::Held(lapse),
-                        Some((OnTimeout::Brake, Lapse::Deadman)) => {
-                            Settlement::Held(Lapse::Deadman)
+                    settlement: match self.standing {
+                        Standing::GivenUp { action, cause } => {
+                            if action == OnTimeout::Hold || cause == Lapse::Deadman {
+                                Settlement::Held(cause)
+                            } else {
+                                Settlement::Braked(cause)
+                            }
                         }
-                        Some((OnTimeout::Brake, lapse)) => Settlement::Braked(lapse),
-                        None => settlement,
+                        Standing::InForce | Standing::TakenBack => settlement,
                     },
                     duration_ms: (now - self.since).saturating_sub(held),
                 })

@@ -1,11 +1,11 @@
-//! Who watches over a goal: the lead of its target, the deviation of the arm, its watchdog and the
-//! deadman.
+//! What draws the target of a goal nearer, or gives the goal up: the lead of its target, the
+//! deviation of the arm, its watchdog and the deadman.
 
 use core::time::Duration;
 
 use franka_model::Model;
 
-use super::{Active, Measured, Stage};
+use super::{Active, Measured, Stage, Standing};
 use crate::session::course::Course;
 use crate::session::guard::lead::LEAD_FRESH_MS;
 use crate::session::{Lapse, OnArrival, OnTimeout, Target};
@@ -16,7 +16,8 @@ impl Active {
         let Some(lead) = self.goal.lead else {
             return false;
         };
-        let chunks = matches!(self.route.course, Course::Chunk(_)) || self.chunk_end.is_some();
+        let chunks =
+            matches!(self.route.course, Course::Chunk(_)) || self.route.chunk_end.is_some();
         if chunks || !matches!(self.stage, Stage::UnderWay) {
             return false;
         }
@@ -41,17 +42,23 @@ impl Active {
     /// Whether neither an update nor a chunk brings back a goal that was given up.
     pub(super) fn is_given_up_for_good(&self) -> bool {
         let settled = matches!(self.stage, Stage::Staying | Stage::Releasing(_));
-        self.lapse
-            .as_ref()
-            .is_some_and(|(_, lapse)| settled || lapse.is_final())
+        match self.standing {
+            Standing::GivenUp { cause, .. } => settled || cause.is_final(),
+            Standing::InForce | Standing::TakenBack => false,
+        }
+    }
+
+    /// Whether the goal was given up, for good or until an update comes.
+    pub(super) fn is_given_up(&self) -> bool {
+        matches!(self.standing, Standing::GivenUp { .. })
     }
 
     /// Has the goal come to its end where the arm comes to rest.
-    fn lapse(&mut self, on_timeout: OnTimeout, lapse: Lapse) {
+    fn lapse(&mut self, action: OnTimeout, cause: Lapse) {
         if self.goal.on_arrival == OnArrival::Hold {
             self.goal.on_arrival = self.afterwards;
         }
-        self.lapse = Some((on_timeout, lapse));
+        self.standing = Standing::GivenUp { action, cause };
     }
 
     /// Gives up a goal whose arm is being carried off; tells whether it is.
@@ -61,7 +68,13 @@ impl Active {
             return false;
         }
         if matches!(self.heading(), Target::Rest | Target::Guide(_)) {
-            return matches!(self.lapse, Some((_, Lapse::Displaced)));
+            return matches!(
+                self.standing,
+                Standing::GivenUp {
+                    cause: Lapse::Displaced,
+                    ..
+                }
+            );
         }
         let exceeded = self
             .deviation
@@ -78,12 +91,17 @@ impl Active {
 
     /// Gives the goal up: its updates stay away, or its deadman is silent.
     pub(super) fn watch(&mut self, model: &Model, alive: bool, now: u64) {
-        let given_up = matches!(self.lapse, Some((OnTimeout::Brake, _)));
-        // Whoever asks for rest gets it, with or without a deadman.
+        let braked = matches!(
+            self.standing,
+            Standing::GivenUp {
+                action: OnTimeout::Brake,
+                ..
+            }
+        );
+        // A goal of coming to rest needs no deadman.
         let comes_to_rest =
             self.heading() == Target::Rest && self.goal.on_arrival != OnArrival::Hold;
-        if given_up || comes_to_rest || matches!(self.stage, Stage::Releasing(_) | Stage::Finished)
-        {
+        if braked || comes_to_rest || matches!(self.stage, Stage::Releasing(_) | Stage::Finished) {
             return;
         }
         if !alive {
@@ -96,7 +114,7 @@ impl Active {
         {
             let silent = Lapse::Silent { silence };
             match (watchdog.on_timeout, self.goal.target) {
-                // A hand leads to no last target.
+                // Guiding has no target to hold: brake.
                 (OnTimeout::Brake, _) | (_, Target::Guide(_)) => self.give_up(model, silent),
                 (OnTimeout::Hold, _) => self.lapse(OnTimeout::Hold, silent),
             }
