@@ -89,8 +89,9 @@ impl Robot {
     /// the arm go.
     ///
     /// # Errors
-    /// [`MotionError`]: [`MotionError::Busy`] while anything else controls the arm, [`MotionError::Goal`] for gains or
-    /// limits that are not accepted, or what the robot has against it.
+    /// [`MotionError`]: [`MotionError::Busy`] while anything else controls the arm,
+    /// [`MotionError::Goal`] for gains or limits that are not accepted, or what the robot has
+    /// against it.
     ///
     /// # Cancel safety
     /// Dropping the future ends the session, in the background.

@@ -81,10 +81,10 @@ impl Follow {
     }
 
     /// Gives up when no target has come for `silence`, whole milliseconds from 10 on: the arm goes
-    /// on to the last one ([`OnTimeout::Hold`]) or brakes at once ([`OnTimeout::Brake`]), and the future
-    /// resolves as [`MotionError::Held`] or [`MotionError::Braked`] when it rests, unless targets
-    /// come again before that. A target counts even if it equals the one before. The control thread
-    /// watches this by itself. Without it, the last target is held for ever.
+    /// on to the last one ([`OnTimeout::Hold`]) or brakes at once ([`OnTimeout::Brake`]), and the
+    /// future resolves as [`MotionError::Held`] or [`MotionError::Braked`] when it rests, unless
+    /// targets come again before that. A target counts even if it equals the one before. The
+    /// control thread watches this by itself. Without it, the last target is held for ever.
     pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
         self.watchdog = Some(Watchdog {
             silence,

@@ -53,8 +53,8 @@ pub(super) enum Answer {
 }
 
 impl Program {
-    /// Whether everything that it computes with is finite in `state`. Anything made of other numbers
-    /// would go to the motors.
+    /// Whether everything that it computes with is finite in `state`. Anything made of other
+    /// numbers would go to the motors.
     pub(super) fn can_read(&self, state: &RobotState) -> bool {
         let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
         let finite = numbers.copied().all(f64::is_finite);
@@ -101,8 +101,8 @@ impl Program {
                 record.ddq_ref = reference.ddq.into();
                 record.bindings = bindings;
                 let valid = match &step.answer {
-                    session::Answer::Torques(Torques(torques)) => check::finite(torques),
-                    session::Answer::Setpoint(setpoint) => setpoint.validate(),
+                    session::SessionCommand::Torques(Torques(torques)) => check::finite(torques),
+                    session::SessionCommand::Setpoint(setpoint) => setpoint.validate(),
                 };
                 if let Err(invalid) = valid {
                     return Step {
@@ -113,8 +113,12 @@ impl Program {
                 return Step {
                     answer: Answer::Command {
                         command: match step.answer {
-                            session::Answer::Torques(torques) => Command::torques(version, torques),
-                            session::Answer::Setpoint(setpoint) => Command::setpoint(setpoint),
+                            session::SessionCommand::Torques(torques) => {
+                                Command::torques(version, torques)
+                            }
+                            session::SessionCommand::Setpoint(setpoint) => {
+                                Command::setpoint(setpoint)
+                            }
                         },
                         finished: step.finished,
                     },

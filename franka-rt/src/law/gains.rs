@@ -22,7 +22,7 @@ pub enum Law {
 /// the choices, so that no change steps the torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
-    /// Which law they are of.
+    /// The law that uses them.
     pub law: Law,
     /// End-effector stiffness, x y z `[N/m]` and about x y z `[N m/rad]`.
     pub cartesian_stiffness: [f64; 6],
@@ -45,7 +45,7 @@ pub struct Gains {
     pub project_joint_gains: bool,
 }
 
-/// A gain that no law should run with.
+/// A gain out of its bounds.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} of axis {axis} is {got}, expected between {least} and {most}")]
 #[non_exhaustive]

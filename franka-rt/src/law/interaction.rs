@@ -24,8 +24,8 @@ pub(crate) struct Interaction<'a> {
 impl<'a> Interaction<'a> {
     /// The springs: errors are positions, `[rad]`.
     ///
-    /// `space` has to be there if the gains [need](BlendedGains::needs_task_space) it; without it the
-    /// law is the hybrid one.
+    /// `space` has to be there if the gains [need](BlendedGains::needs_task_space) it; without it
+    /// the law is the hybrid one.
     pub(crate) fn springs(
         gains: &BlendedGains,
         jacobian: &'a Jacobian,

@@ -2,8 +2,8 @@
 //!
 //! With the joint-space inertia `M` and the Jacobian `J`, `W = J M^-1 J'` is the mobility of the
 //! end effector and `Lambda = W^-1` its inertia (Khatib, IEEE Journal on Robotics and Automation
-//! 3(1), 1987). The torques `tau` press with the wrench `Lambda J M^-1 tau` on whoever holds the
-//! end effector still.
+//! 3(1), 1987). The torques `tau` press with the wrench `Lambda J M^-1 tau` on a support that
+//! holds the end effector still.
 //!
 //! `W` is taken as it is where the arm can move in all directions. Near a singularity it is damped:
 //! as the inertia along any axis goes beyond that in [`GREATEST_INERTIA`], damping grows from zero,
@@ -41,8 +41,8 @@ impl TaskSpace {
         Self::new(&dynamics.jacobian, &(dynamics.mass + rotors))
     }
 
-    /// A `mass` that is no physical arm's, as of a load that cannot be, counts as the identity: the
-    /// geometry remains.
+    /// An unphysical `mass`, as of an impossible load, is replaced by the identity: the geometry
+    /// remains.
     fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Self {
         let mass = Cholesky::new(*mass)
             .unwrap_or_else(|| Cholesky::pack_dirty(SMatrix::<f64, 7, 7>::identity()));
@@ -63,7 +63,7 @@ impl TaskSpace {
         }
     }
 
-    /// The wrench with which `tau` presses on whoever holds the end effector still,
+    /// The wrench with which `tau` presses on a support that holds the end effector still,
     /// `Lambda J M^-1 tau`.
     pub(crate) fn reaction(&self, tau: &JointVector) -> Wrench {
         let mut half = *tau;
@@ -77,8 +77,8 @@ impl TaskSpace {
     /// `M^-1 J' Lambda` of the position alone, `[rad/m]`: of all motions that do it the one of the
     /// least kinetic energy.
     ///
-    /// Its transpose gives the force, `[N]`, with which torques press on whoever holds the end
-    /// effector at a point.
+    /// Its transpose gives the force, `[N]`, with which torques press on a hand that holds the
+    /// end effector at a point.
     pub(crate) fn yielding(&self) -> SMatrix<f64, 7, 3> {
         let mut yielding = self.root.fixed_columns::<3>(0) * self.blocks[0];
         self.mass
@@ -122,7 +122,7 @@ fn damped<const N: usize>(
             for i in 0..N {
                 raised[(i, i)] += (1.0 - room).powi(2) / greatest[i];
             }
-            // Numbers that are none; the robot will not send them.
+            // Non-finite input; not expected.
             Cholesky::new(raised).unwrap_or_else(|| Cholesky::pack_dirty(SMatrix::identity()))
         }
     }

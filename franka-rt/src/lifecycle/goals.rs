@@ -94,7 +94,7 @@ impl Lifecycle {
         let on_arrival = self.end_of(id);
         let end = |goal: &Goal| Goal {
             target: match goal.target {
-                Target::Guide(_) => Target::Rest, // A hand leads to no last target.
+                Target::Guide(_) => Target::Rest, // Guiding has no target to hold.
                 target => target,
             },
             on_arrival,

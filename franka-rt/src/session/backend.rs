@@ -6,7 +6,7 @@ use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, RobotStat
 
 use crate::control::{CartesianPose, JointPositions, Torques};
 use crate::session::guard::backstop::BACKSTOP;
-use crate::session::{Answer, ForceCap, Goal, GoalError, Guard, Target};
+use crate::session::{ForceCap, Goal, GoalError, Guard, SessionCommand, Target};
 
 /// What turns setpoints into torques.
 ///
@@ -47,8 +47,8 @@ pub enum Setpoints {
     ///
     /// Each goes with its elbow, the angle of joint 3, which leaves the robot's own inverse
     /// kinematics nothing to choose: its joints are those of the reference, and keep their limits.
-    /// A stretched arm is refused, and joint 4 stays on its side of
-    /// [`FLIP_ANGLE`]: the robot takes the elbow's side for that of the beginning. Where joint 3 rests while the arm moves about
+    /// A stretched arm is refused, and joint 4 stays on its side of [`FLIP_ANGLE`]: the robot takes
+    /// the elbow's side for that of the beginning. Where joint 3 rests while the arm moves about
     /// its pose, which takes wide turns of the joints 3 and 5, an elbow tells little about the
     /// others: there the robot is the judge, and [`Self::Joints`] the better choice.
     Poses,
@@ -167,13 +167,13 @@ impl Backend {
 
     /// The answer that holds the arm: what the robot desires already, or no torques beside its
     /// gravity compensation.
-    pub(super) fn holding(self, state: &RobotState) -> Answer {
+    pub(super) fn holding(self, state: &RobotState) -> SessionCommand {
         match self {
-            Self::Torques => Answer::Torques(Torques([0.0; 7])),
+            Self::Torques => SessionCommand::Torques(Torques([0.0; 7])),
             Self::RobotController(Setpoints::Joints) => {
-                Answer::Setpoint(JointPositions(state.q_d).into())
+                SessionCommand::Setpoint(JointPositions(state.q_d).into())
             }
-            Self::RobotController(Setpoints::Poses) => Answer::Setpoint(
+            Self::RobotController(Setpoints::Poses) => SessionCommand::Setpoint(
                 CartesianPose {
                     O_T_EE: state.O_T_EE_c,
                     elbow: Some(elbow(&state.q_d.into())),
@@ -189,8 +189,8 @@ pub(super) fn elbow(q: &JointVector) -> [f64; 2] {
     [q[2], side(q)]
 }
 
-/// On which side of the stretched arm joint 4 is: as [`franka_model::elbow::elbow`], but never
-/// neither.
+/// On which side of the stretched arm joint 4 is: as [`franka_model::elbow::elbow`], but -1 or +1
+/// also at the flip angle itself.
 fn side(q: &JointVector) -> f64 {
     if q[3] < FLIP_ANGLE { -1.0 } else { 1.0 }
 }

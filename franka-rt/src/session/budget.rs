@@ -167,7 +167,7 @@ const RAMP_TIME: f64 = 0.025;
 /// `acceleration` in about [`STOP_TIME`], up to the robot's `most`.
 ///
 /// A goal may come, with a budget of its own, while the arm moves faster than that budget allows.
-/// Its small acceleration would then brake over a distance that nobody has asked for, and its small
+/// Its small acceleration would then brake over an unexpectedly long distance, and its small
 /// jerk would first let the acceleration of the motion before it run on.
 pub(crate) fn able_to_stop(
     limits: AxisLimits,

@@ -93,7 +93,7 @@ pub enum GoalError {
         /// Why not.
         why: &'static str,
     },
-    /// A region to keep out of is one too many, or none at all.
+    /// A region to keep out of is invalid, or one too many.
     #[error("region {region} to keep out of {why}")]
     KeepOut {
         /// Which one, from 1.
@@ -264,7 +264,7 @@ fn check_reach(
         .map_err(|_| ())
 }
 
-/// Limits below this are none: plans within them are too long to be made.
+/// Least limit that is accepted: plans within smaller ones are too long to be made.
 const LIMIT_MIN: f64 = 1e-20;
 
 fn check_budget(budget: &Budget, model: &Model) -> Result<(), GoalError> {

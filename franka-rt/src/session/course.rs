@@ -4,7 +4,6 @@ use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 use franka_otg::{AxisLimits, AxisState, Generator, Limits, PlanError, State};
 
-use crate::session::active::Measured;
 use crate::session::chunk::ChunkCourse;
 use crate::session::guard::joint_bounds::BoundsReached;
 use crate::session::guard::leash;
@@ -12,6 +11,7 @@ use crate::session::guide::Guide;
 use crate::session::kinematics::{self, Drift};
 use crate::session::pose::{PoseGenerator, PoseState};
 use crate::session::reference::Reference;
+use crate::session::running::Measured;
 use crate::session::{Budget, Goal, Target, approach, budget, rigid};
 
 /// What moves the reference.
@@ -27,7 +27,7 @@ pub(super) enum Course {
 
 /// What a course does in one cycle.
 #[derive(Debug)]
-pub(super) struct Step {
+pub(super) struct CourseStep {
     pub(super) reference: Reference,
     /// What held joints back that follow a pose.
     pub(super) bounds: BoundsReached,
@@ -39,7 +39,7 @@ pub(super) struct Step {
     pub(super) failed: bool,
 }
 
-impl Step {
+impl CourseStep {
     /// One that nothing holds back.
     pub(super) fn free(reference: Reference) -> Self {
         Self {
@@ -133,16 +133,16 @@ impl Course {
         reference: &Reference,
         arm: &Measured,
         now: u64,
-    ) -> Step {
+    ) -> CourseStep {
         match self {
-            Self::Rest => Step::free(Reference::at_rest(reference.q)),
+            Self::Rest => CourseStep::free(Reference::at_rest(reference.q)),
             Self::Joints(generator) => {
                 let State {
                     position,
                     velocity,
                     acceleration,
                 } = *generator.step();
-                Step::free(Reference {
+                CourseStep::free(Reference {
                     q: position.into(),
                     dq: velocity.into(),
                     ddq: acceleration.into(),
@@ -150,9 +150,9 @@ impl Course {
             }
             Self::Guide(guide) => {
                 let (reference, leashed) = guide.step(reference, arm);
-                Step {
+                CourseStep {
                     leashed,
-                    ..Step::free(reference)
+                    ..CourseStep::free(reference)
                 }
             }
             Self::Chunk(chunk) => chunk.step(model, ee, posture, reference, now),
@@ -167,7 +167,7 @@ impl Course {
                 } else {
                     Ok(false)
                 };
-                Step {
+                CourseStep {
                     reference,
                     bounds,
                     held: tethered.unwrap_or(true),

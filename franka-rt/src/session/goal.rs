@@ -44,7 +44,7 @@ impl From<[f64; 7]> for Target {
     }
 }
 
-/// What of the arm a hand may move.
+/// What is free under hand guiding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Free {
     /// Axes of the base frame at the end effector: x y z, about x y z.
@@ -155,8 +155,7 @@ impl Goal {
         }
     }
 
-    /// The goal, taken back: the arm comes to rest. One that a hand has guided is held as others
-    /// are.
+    /// The goal with rest as its target. The gains of a guide give way to those that hold.
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),

@@ -4,9 +4,9 @@ use franka_model::{JointVector, Twist, rotation};
 use franka_otg::{Generator, State};
 use nalgebra::{Isometry3, Matrix6, Vector3};
 
-use super::active::Measured;
 use super::goal::Free;
 use super::guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
+use super::running::Measured;
 use crate::law::Gains;
 use crate::session::reference::Reference;
 
@@ -37,7 +37,7 @@ impl Gains {
 #[derive(Debug)]
 pub(super) struct Guide {
     free: Free,
-    stage: Stage,
+    stage: GuideStage,
 }
 
 #[derive(Debug)]
@@ -45,7 +45,7 @@ pub(super) struct Guide {
     clippy::large_enum_variant,
     reason = "one per session, inside its box; a box in here would allocate"
 )]
-enum Stage {
+enum GuideStage {
     Braking(Generator<7>),
     Floating(Floating),
 }
@@ -67,7 +67,7 @@ impl Guide {
     pub(super) fn new(free: Free, brake: Generator<7>) -> Self {
         Self {
             free,
-            stage: Stage::Braking(brake),
+            stage: GuideStage::Braking(brake),
         }
     }
 
@@ -75,7 +75,7 @@ impl Guide {
     pub(super) fn free(&mut self, free: Free) {
         if free != self.free {
             self.free = free;
-            if let Stage::Floating(floating) = &mut self.stage {
+            if let GuideStage::Floating(floating) = &mut self.stage {
                 floating.cycle = u32::MAX;
             }
         }
@@ -85,7 +85,7 @@ impl Guide {
     /// than the leash.
     pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> (Reference, bool) {
         let begun = match &mut self.stage {
-            Stage::Braking(generator) if !generator.is_done() => {
+            GuideStage::Braking(generator) if !generator.is_done() => {
                 let State {
                     position,
                     velocity,
@@ -98,12 +98,12 @@ impl Guide {
                 };
                 return (braking, false);
             }
-            Stage::Floating(floating) if floating.cycle < u32::MAX => floating,
-            Stage::Braking(_) | Stage::Floating(_) => {
-                self.stage = Stage::Floating(Floating::begin(reference, arm));
+            GuideStage::Floating(floating) if floating.cycle < u32::MAX => floating,
+            GuideStage::Braking(_) | GuideStage::Floating(_) => {
+                self.stage = GuideStage::Floating(Floating::begin(reference, arm));
                 match &mut self.stage {
-                    Stage::Floating(floating) => floating,
-                    Stage::Braking(_) => unreachable!("it floats"),
+                    GuideStage::Floating(floating) => floating,
+                    GuideStage::Braking(_) => unreachable!("it floats"),
                 }
             }
         };
@@ -132,13 +132,13 @@ impl Floating {
 
     /// The distance of the reference from the arm, and whether the leash held it.
     fn step(&mut self, free: Free, arm: &Measured) -> (JointVector, bool) {
-        let left = 1.0 - f64::from(self.cycle.min(LET_GO)) / f64::from(LET_GO);
+        let remaining = 1.0 - f64::from(self.cycle.min(LET_GO)) / f64::from(LET_GO);
         self.cycle = (self.cycle + 1).min(LET_GO);
-        let (at_ee, mut leashed) = self.at_end_effector(free, arm, left);
+        let (at_ee, mut leashed) = self.at_end_effector(free, arm, remaining);
         let inverse = Inverse::of(arm);
         let along = inverse.solve(arm, &at_ee);
         let elbow = if free.elbow {
-            self.offset * left
+            self.offset * remaining
         } else {
             let away = self.q - arm.q;
             let held = away.map(|away| away.clamp(-JOINT_LEASH, JOINT_LEASH));
@@ -154,13 +154,13 @@ impl Floating {
     }
 
     /// The same at the end effector. Axes that stay are held as by the leash.
-    fn at_end_effector(&mut self, free: Free, arm: &Measured, left: f64) -> (Twist, bool) {
+    fn at_end_effector(&mut self, free: Free, arm: &Measured, remaining: f64) -> (Twist, bool) {
         let away = self.pose.translation.vector - arm.pose.translation.vector;
         let turned = rotation::error(&self.pose.rotation, &arm.pose.rotation);
         let mut offset = Twist::zeros();
         for axis in 0..6 {
             offset[axis] = match (free.axes[axis], axis) {
-                (true, _) => self.offset_at_ee[axis] * left,
+                (true, _) => self.offset_at_ee[axis] * remaining,
                 (false, 0..3) => away[axis],
                 (false, _) => turned[axis - 3],
             };

@@ -87,7 +87,7 @@ impl Landing {
             None if self.held >= HOLD_AT_REST => Settlement::AtRest,
             Some(error) if self.held >= HOLD_AT_TARGET => Settlement::Arrived(error),
             _ if u128::from(self.cycles) < SETTLE_TIMEOUT.as_millis() => return Verdict::Settling,
-            // An arm that does not rest after all this time is being moved by somebody: the
+            // An arm that does not rest after all this time is being moved from outside; the
             // reference rests.
             None => Settlement::AtRest,
             Some(error) => Settlement::TargetNotReached(error),
@@ -119,8 +119,8 @@ impl Release {
     /// The reference in this cycle.
     pub(super) fn reference(&mut self) -> JointVector {
         self.cycle += 1;
-        let left = RELEASE.saturating_sub(self.cycle);
-        self.arm + self.length * (f64::from(left) / f64::from(RELEASE))
+        let remaining = RELEASE.saturating_sub(self.cycle);
+        self.arm + self.length * (f64::from(remaining) / f64::from(RELEASE))
     }
 
     pub(super) fn is_over(&self, at_rest: bool) -> bool {

@@ -2,8 +2,8 @@
 //! out.
 //!
 //! ```text
-//! goal slot -> lead -> course (joint generator | pose generator -> inverse kinematics) -> clearance -> leash -> law
-//!           -> shaping -> torques
+//! goal slot -> lead -> course (joint generator | pose generator -> inverse kinematics) -> clearance -> leash
+//!           -> law -> guards of the torques -> torques
 //! ```
 //!
 //! The state of a session is a joint reference `q, dq, ddq`. A course moves it: over seven joints
@@ -11,10 +11,10 @@
 //! When the kind of goal changes, the new course starts from the position, velocity and
 //! acceleration of the reference, so nothing steps.
 //!
-//! A goal that is to finish passes through the stages of `Stage`: under way, landing, releasing,
-//! finished. A newer goal takes the session back under way from any of them but the last.
+//! A goal that is to finish passes through the stages of `GoalStage`: under way, landing,
+//! releasing, finished. A newer goal takes the session back under way from any of them but the
+//! last.
 
-mod active;
 mod approach;
 mod backend;
 mod budget;
@@ -30,6 +30,7 @@ mod landing;
 mod pose;
 mod reference;
 mod route;
+mod running;
 mod setpoint_stream;
 
 use core::time::Duration;
@@ -63,14 +64,14 @@ pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT};
 
-use active::Active;
 use reference::Reference;
+use running::RunningSession;
 
 /// Time for which something may hold the course back: an obstacle by the leash, or the joints'
 /// bounds. A goal that is to finish and has not got on by then is braked, and lands where it is.
 pub const STALL_TIMEOUT: Duration = SETTLE_TIMEOUT;
 
-/// What a session reports of its goals.
+/// What a session reports to the lifecycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SessionEvent {
     /// A goal that was to finish has come to its end; the session releases the arm unless a newer
@@ -102,11 +103,11 @@ pub enum Settlement {
     Held(Lapse),
     /// Given up, and braked: it is held where it came to rest.
     Braked(Lapse),
-    /// At rest where it was held: those were missing that it was to begin with.
+    /// At rest where it was held: its common start has failed.
     Unstarted(StartFault),
 }
 
-/// Why a goal was given up that might have gone on.
+/// Why a goal was given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -149,8 +150,8 @@ impl core::fmt::Display for Lapse {
 
 /// What a session answers a state with.
 #[derive(Debug)]
-pub(crate) struct Step {
-    pub(crate) answer: Answer,
+pub(crate) struct SessionStep {
+    pub(crate) answer: SessionCommand,
     pub(crate) trace: Trace,
     /// The last command: the motion ends once the robot has taken it.
     pub(crate) finished: bool,
@@ -165,9 +166,9 @@ pub(crate) struct Trace {
     pub(crate) bindings: Bindings,
 }
 
-/// The command, whole or but for what goes beside torques.
+/// The command that answers a state: torques, or a setpoint.
 #[derive(Debug)]
-pub(crate) enum Answer {
+pub(crate) enum SessionCommand {
     Torques(Torques),
     Setpoint(MotionCommand),
 }
@@ -177,7 +178,7 @@ pub(crate) enum Answer {
 pub struct TargetSession {
     model: Arc<Model>,
     goals: SlotReader<Goal>,
-    active: Option<Active>,
+    active: Option<RunningSession>,
     /// A goal that waits for its common start.
     held: Option<Goal>,
     /// A goal whose common start has failed, and why.
@@ -231,7 +232,7 @@ impl TargetSession {
         self
     }
 
-    /// Has somebody else than the session's own law turn setpoints into torques.
+    /// Replaces what turns setpoints into torques; by default the session's own law does.
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
         self.backend = backend;
@@ -266,14 +267,14 @@ impl TargetSession {
         self.held.map(|held| held.id).or(active)
     }
 
-    /// Whether everything that the session computes with beside measured joints and torques is finite
-    /// in `state`.
+    /// Whether everything that the session computes with beside measured joints and torques is
+    /// finite in `state`.
     pub(crate) fn can_read(&self, state: &RobotState) -> bool {
         self.backend.can_read(state)
     }
 
     /// Answers one state. Bounded work, no allocation.
-    pub(crate) fn step(&mut self, state: &RobotState) -> Step {
+    pub(crate) fn step(&mut self, state: &RobotState) -> SessionStep {
         let held = self.held.take();
         let newer = self.read().or(held);
         self.follow(newer, state)
@@ -290,11 +291,11 @@ impl TargetSession {
     }
 
     /// Answers one state by holding the arm where it is, with the gains of the goal that waits.
-    pub(crate) fn hold(&mut self, state: &RobotState) -> Step {
+    pub(crate) fn hold(&mut self, state: &RobotState) -> SessionStep {
         let nothing = self.active.is_none();
         let rest = self.held.filter(|_| nothing).map(|held| Goal {
             id: GoalId::default(), // no goal's
-            watchdog: None,        // Who waits for others may be silent.
+            watchdog: None,        // None may expire before the common start.
             ..held.at_rest(OnArrival::Hold)
         });
         self.follow(rest, state)
@@ -302,7 +303,7 @@ impl TargetSession {
 
     /// Answers one state of a goal whose common start has failed: lands where the arm is held,
     /// unless another goal comes.
-    pub(crate) fn give_up(&mut self, fault: StartFault, state: &RobotState) -> Step {
+    pub(crate) fn give_up(&mut self, fault: StartFault, state: &RobotState) -> SessionStep {
         let held = self.held.take();
         let newer = self.read().or(held).map(|goal| {
             let (unstarted, _) = *self.unstarted.get_or_insert((goal.id, fault));
@@ -324,7 +325,7 @@ impl TargetSession {
     }
 
     /// Takes up a newer goal, if there is one, and answers one state.
-    fn follow(&mut self, newer: Option<Goal>, state: &RobotState) -> Step {
+    fn follow(&mut self, newer: Option<Goal>, state: &RobotState) -> SessionStep {
         let active = match (&mut self.active, newer) {
             (Some(active), newer) => {
                 if let Some(goal) = newer {
@@ -340,7 +341,7 @@ impl TargetSession {
                     afterwards,
                     ..
                 } = *self;
-                match Active::begin(
+                match RunningSession::begin(
                     &self.model,
                     goal,
                     backend,
@@ -352,7 +353,7 @@ impl TargetSession {
                     Some(active) => none.insert(active),
                     None => {
                         let event = Some(SessionEvent::BadTool);
-                        return Step {
+                        return SessionStep {
                             answer: self.backend.holding(state),
                             trace: Trace::default(),
                             finished: true,
@@ -363,7 +364,7 @@ impl TargetSession {
             }
             // The first goal is torn: the arm is held for this cycle.
             (None, None) => {
-                return Step {
+                return SessionStep {
                     answer: self.backend.holding(state),
                     trace: Trace::default(),
                     finished: false,

@@ -9,8 +9,8 @@ pub(crate) struct Reference {
     pub(crate) q: JointVector,
     /// Velocities, `[rad/s]`.
     pub(crate) dq: JointVector,
-    /// Accelerations, `[rad/s^2]`. Their inertia is fed forward beside the law, and the next generator
-    /// starts from them.
+    /// Accelerations, `[rad/s^2]`. Their inertia is fed forward beside the law, and the next
+    /// generator starts from them.
     pub(crate) ddq: JointVector,
 }
 

@@ -3,11 +3,11 @@
 use franka_model::{EndEffector, JointVector, Model};
 use franka_otg::AxisLimits;
 
-use crate::session::active::Measured;
 use crate::session::chunk::{ChunkCourse, ChunkStart};
 use crate::session::course::{self, Course};
 use crate::session::guard::clearance::{Ahead, Clearance};
 use crate::session::reference::Reference;
+use crate::session::running::Measured;
 use crate::session::{Budget, Chunk, Goal, Target};
 
 /// Share of its velocity that a goal keeps where something is near.
@@ -35,8 +35,8 @@ pub(super) struct Route {
     hindered: u32,
     /// The budget of the brake from which the way to rest was last seen to be clear.
     judged: Budget,
-    /// A chunk that another course has taken the place of. It is not freed here, but goes back in the
-    /// next cycle.
+    /// A chunk that another course has taken the place of. It is not freed here, but goes back in
+    /// the next cycle.
     pub(super) retired_chunk: Option<ChunkCourse>,
     /// Where the goal's last chunk has ended, if none runs.
     pub(super) chunk_end: Option<Target>,
@@ -217,11 +217,11 @@ impl Route {
     }
 
     /// Stays for a cycle, and looks around: the first step has less to do then.
-    pub(super) fn stay(&mut self, reference: &Reference) -> course::Step {
+    pub(super) fn stay(&mut self, reference: &Reference) -> course::CourseStep {
         let Reference { q, .. } = reference;
         // Nothing comes nearer to an arm that stays.
         let _ = self.clearance.ahead(q, q, q);
-        course::Step::free(*reference)
+        course::CourseStep::free(*reference)
     }
 
     /// One nominal millisecond on towards `goal`, or away from what is too near.
@@ -233,7 +233,7 @@ impl Route {
         reference: &Reference,
         arm: &Measured,
         goal: &Goal,
-    ) -> course::Step {
+    ) -> course::CourseStep {
         self.hindered = self.hindered.saturating_sub(1);
         if let Pace::Braked(since) = &mut self.pace {
             *since += 1;
@@ -252,8 +252,8 @@ impl Route {
         let step = self
             .course
             .step(model, ee, posture, reference, arm, arm.time);
-        // The way of a brake was checked before the step that it begins from. A person who guides the
-        // arm sees where it goes.
+        // The way of a brake was checked before the step that it begins from. A person who guides
+        // the arm sees where it goes.
         if matches!(goal.target, Target::Rest | Target::Guide(_)) {
             return step;
         }

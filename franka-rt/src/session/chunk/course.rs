@@ -5,13 +5,13 @@ use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
 use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Translation3, vector};
 
-use super::motion::{JointExtent, stacked};
+use super::curve_state::{JointExtent, stacked};
 use super::player::Player;
-use super::quintic::Phase;
+use super::quintic::PointState;
 use super::ring::{ChunkReader, Fate};
 use super::servo;
 use super::value::{Chunk, Points};
-use crate::session::course::{Step, limits_of_joint};
+use crate::session::course::{CourseStep, limits_of_joint};
 use crate::session::guard::joint_bounds::{BRAKING, BoundsReached};
 use crate::session::guard::leash;
 use crate::session::kinematics::{self, Drift};
@@ -142,9 +142,9 @@ impl ChunkCourse {
         posture: &JointVector,
         reference: &Reference,
         now: u64,
-    ) -> Step {
+    ) -> CourseStep {
         match &mut self.play {
-            Play::Joints { player, limits } => Step {
+            Play::Joints { player, limits } => CourseStep {
                 reference: follow_joints(model.joint_limits(), limits, reference, &player.at(now)),
                 bounds: BoundsReached::default(),
                 held: false,
@@ -170,7 +170,7 @@ impl ChunkCourse {
                         held = true;
                     }
                 }
-                Step {
+                CourseStep {
                     reference,
                     bounds,
                     held,
@@ -234,8 +234,8 @@ fn pose_limits(model: &Model, now: &PoseState, budget: &Budget) -> Budget {
     budget.able_to_stop(&now.twist, &now.acceleration, model.cartesian_limits())
 }
 
-/// What each joint may do on the way through points of this `extent`: its budget, unless it moves and does not
-/// keep that, made gentle enough for the points nearest to the ends of its range.
+/// What each joint may do on the way through points of this `extent`: its budget, unless it moves
+/// and does not keep that, made gentle enough for the points nearest to the ends of its range.
 fn joint_limits(
     robot: &JointLimits,
     extent: &JointExtent,
@@ -266,12 +266,12 @@ fn follow_joints(
     let mut next = *now;
     for (i, limits) in limits.iter().enumerate() {
         let (lower, upper) = approach::range(i, robot);
-        let here = Phase {
+        let here = PointState {
             p: vector![now.q[i]],
             v: vector![now.dq[i]],
             a: vector![now.ddq[i]],
         };
-        let there = Phase {
+        let there = PointState {
             p: vector![target.q[i].clamp(lower, upper)],
             v: vector![target.dq[i]],
             a: vector![target.ddq[i]],
@@ -299,7 +299,7 @@ fn follow_pose(
         translation,
         |v| v,
     );
-    let there = Phase {
+    let there = PointState {
         p: rotation::error(&target.pose.rotation, &now.pose.rotation),
         ..target.rotation()
     };

@@ -5,18 +5,18 @@
 //! the chart around the earlier of the two, so none of them is singular whatever way the end
 //! effector turns in all. The motion rests at its last point.
 
-use super::motion::Motion;
+use super::curve_state::CurveState;
 
 /// States at increasing times, seconds from the chunk's origin. Never empty.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Curve<M: Motion> {
+pub(super) struct Curve<M: CurveState> {
     times: Vec<f64>,
     states: Vec<M>,
     /// Found here, outside the thread: the cycle that takes a chunk up has no time for all points.
     extent: M::Extent,
 }
 
-impl<M: Motion> Curve<M> {
+impl<M: CurveState> Curve<M> {
     /// # Panics
     /// If there are no states, or not as many as times.
     pub(super) fn new(times: Vec<f64>, mut states: Vec<M>) -> Self {

@@ -15,9 +15,7 @@ pub enum ChunkError {
     },
     /// A number of a point is not finite, or larger than 1e6, or its quaternion is not of length
     /// one.
-    #[error(
-        "point {point} holds a number that is not finite or far too large, or a rotation that is none"
-    )]
+    #[error("point {point} holds a non-finite or far too large number, or an invalid rotation")]
     NotFinite {
         /// The point, from 0.
         point: usize,

@@ -7,8 +7,8 @@
 //!          <- ring of what is done with, to be freed outside
 //! ```
 //!
-//! * `value`, `error`: the chunk and what it may hold; `derivatives`, `curve`, `quintic`, `motion`:
-//!   the motion through its points, made outside the thread.
+//! * `value`, `error`: the chunk and what it may hold; `derivatives`, `curve`, `quintic`,
+//!   `curve_state`: the motion through its points, made outside the thread.
 //! * `ring`: across threads and back.
 //! * `player`: what is wanted at a time of the robot. Lost states need no more: the time jumps, and
 //!   the servo makes up for the distance.
@@ -16,9 +16,9 @@
 
 mod course;
 mod curve;
+mod curve_state;
 mod derivatives;
 mod error;
-mod motion;
 mod player;
 mod quintic;
 mod ring;

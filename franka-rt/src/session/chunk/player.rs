@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use super::curve::Curve;
-use super::motion::Motion;
+use super::curve_state::CurveState;
 use super::value::{Chunk, Origin, milliseconds};
 use crate::shaping::CYCLE;
 
@@ -13,7 +13,7 @@ const LET_GO: f64 = 1.0;
 
 /// A chunk that has been taken up.
 #[derive(Debug)]
-pub(super) struct Player<M: Motion> {
+pub(super) struct Player<M: CurveState> {
     curve: Curve<M>,
     /// Time of the robot that the curve's times count from, `message_id`.
     origin: u64,
@@ -24,11 +24,11 @@ pub(super) struct Player<M: Motion> {
 
 /// How the motion before goes over into the curve. Times as the curve's.
 #[derive(Debug)]
-enum Entry<M: Motion> {
+enum Entry<M: CurveState> {
     /// At once.
     Turn,
     /// The first point lies in the future: on the way to it since `since`.
-    Lead { from: M, since: f64 },
+    Approach { from: M, since: f64 },
     /// The distance from the curve at `since` is let go in `duration`.
     Blend {
         gap: M::Gap,
@@ -37,7 +37,7 @@ enum Entry<M: Motion> {
     },
 }
 
-impl<M: Motion> Player<M> {
+impl<M: CurveState> Player<M> {
     /// Takes up a chunk through `curve` in the answer to the state `now`, from a reference that was
     /// at `last` in the answer before.
     pub(super) fn new(
@@ -53,7 +53,7 @@ impl<M: Motion> Player<M> {
         };
         let since = milliseconds(now, counted_from) - CYCLE;
         let entry = if since + CYCLE < curve.begin() {
-            Entry::Lead { from: *last, since }
+            Entry::Approach { from: *last, since }
         } else if blend.is_zero() {
             Entry::Turn
         } else {
@@ -75,7 +75,7 @@ impl<M: Motion> Player<M> {
     pub(super) fn at(&self, now: u64) -> M {
         let t = milliseconds(now, self.origin);
         match &self.entry {
-            Entry::Lead { from, since } if t < self.curve.begin() => lead(
+            Entry::Approach { from, since } if t < self.curve.begin() => approach(
                 from,
                 self.curve.first(),
                 self.curve.begin() - since,
@@ -97,7 +97,7 @@ impl<M: Motion> Player<M> {
             Entry::Blend {
                 since, duration, ..
             } => t - since >= duration,
-            Entry::Turn | Entry::Lead { .. } => true,
+            Entry::Turn | Entry::Approach { .. } => true,
         };
         entered && t >= self.curve.end()
     }
@@ -118,7 +118,7 @@ impl<M: Motion> Player<M> {
 }
 
 /// On the way from one state to another, `t` after its begin.
-fn lead<M: Motion>(from: &M, to: &M, duration: f64, t: f64) -> M {
+fn approach<M: CurveState>(from: &M, to: &M, duration: f64, t: f64) -> M {
     if duration <= LET_GO {
         return M::between(from, to, duration, t);
     }

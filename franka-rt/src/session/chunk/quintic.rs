@@ -5,13 +5,13 @@ use nalgebra::SVector;
 
 /// Position, velocity and acceleration of a point with `D` coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Phase<const D: usize> {
+pub(super) struct PointState<const D: usize> {
     pub(super) p: SVector<f64, D>,
     pub(super) v: SVector<f64, D>,
     pub(super) a: SVector<f64, D>,
 }
 
-impl<const D: usize> Phase<D> {
+impl<const D: usize> PointState<D> {
     /// Everything zero.
     pub(super) fn zero() -> Self {
         Self {
@@ -33,11 +33,11 @@ impl<const D: usize> Phase<D> {
 
 /// The state at `t` of the motion that is at `from` at 0 and at `to` at `duration`, seconds.
 pub(super) fn between<const D: usize>(
-    from: &Phase<D>,
-    to: &Phase<D>,
+    from: &PointState<D>,
+    to: &PointState<D>,
     duration: f64,
     t: f64,
-) -> Phase<D> {
+) -> PointState<D> {
     // In units of the duration.
     let (s, d) = (t / duration, duration);
     let (v, a) = (from.v * d, from.a * (0.5 * d * d));
@@ -48,7 +48,7 @@ pub(super) fn between<const D: usize>(
     let c3 = p1 * 10.0 - v1 * 4.0 + a1;
     let c4 = p1 * -15.0 + v1 * 7.0 - a1 * 2.0;
     let c5 = p1 * 6.0 - v1 * 3.0 + a1;
-    Phase {
+    PointState {
         p: from.p + (v + (a + (c3 + (c4 + c5 * s) * s) * s) * s) * s,
         v: (v + (a * 2.0 + (c3 * 3.0 + (c4 * 4.0 + c5 * (5.0 * s)) * s) * s) * s) / d,
         a: (a * 2.0 + (c3 * 6.0 + (c4 * 12.0 + c5 * (20.0 * s)) * s) * s) / (d * d),
@@ -62,12 +62,12 @@ mod tests {
 
     #[test]
     fn meets_both_ends_and_its_derivatives_are_those_of_its_position() {
-        let from = Phase {
+        let from = PointState {
             p: vector![0.3, -1.0],
             v: vector![0.5, 2.0],
             a: vector![-3.0, 0.1],
         };
-        let to = Phase {
+        let to = PointState {
             p: vector![0.1, 1.0],
             v: vector![-0.7, 0.0],
             a: vector![4.0, -2.0],
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn reproduces_a_motion_of_constant_acceleration() {
-        let from = Phase {
+        let from = PointState {
             p: vector![1.0],
             v: vector![-2.0],
             a: vector![3.0],

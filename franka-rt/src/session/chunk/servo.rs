@@ -25,7 +25,7 @@
 use franka_otg::AxisLimits;
 use nalgebra::SVector;
 
-use super::quintic::Phase;
+use super::quintic::PointState;
 use crate::shaping::CYCLE;
 
 /// Largest rate, `[1/s]`, at which a missing velocity is made up for.
@@ -48,11 +48,11 @@ const HALVINGS: usize = 12;
 /// One cycle on from `now`, towards `target`, where the target is to be in that cycle. `bound`
 /// takes a velocity to the nearest one that the place allows.
 pub(super) fn follow<const D: usize>(
-    now: &Phase<D>,
-    target: &Phase<D>,
+    now: &PointState<D>,
+    target: &PointState<D>,
     limits: &AxisLimits,
     bound: impl Fn(SVector<f64, D>) -> SVector<f64, D>,
-) -> Phase<D> {
+) -> PointState<D> {
     let rate = (RATE_SHARE * limits.jerk / limits.acceleration).min(RATE_MAX);
     // Against where the motion leads without a jerk: then what is on the target stays on it.
     let ahead = now.after(&SVector::zeros(), CYCLE);
@@ -100,17 +100,17 @@ fn approach<const D: usize>(
 /// The state after one cycle of `jerk`, or of the one nearest to it on the way to taking the
 /// acceleration back that leads to an admissible state.
 fn admissible<const D: usize>(
-    now: &Phase<D>,
+    now: &PointState<D>,
     jerk: SVector<f64, D>,
     limits: &AxisLimits,
-) -> Phase<D> {
+) -> PointState<D> {
     // From outside the limits the way leads back, never further out.
     let velocity = limits
         .velocity
         .max(now.v.norm())
         .max(coasting(now, limits.jerk).norm());
     let acceleration = limits.acceleration.max(now.a.norm());
-    let keeps = |next: &Phase<D>| {
+    let keeps = |next: &PointState<D>| {
         next.a.norm() <= acceleration
             && next.v.norm() <= velocity
             && coasting(next, limits.jerk).norm() <= velocity
@@ -138,12 +138,12 @@ fn admissible<const D: usize>(
 }
 
 /// The velocity left when the acceleration has been taken back.
-fn coasting<const D: usize>(state: &Phase<D>, jerk: f64) -> SVector<f64, D> {
+fn coasting<const D: usize>(state: &PointState<D>, jerk: f64) -> SVector<f64, D> {
     state.v + state.a * (0.5 * CYCLE * cycles(state, jerk))
 }
 
 /// Whole cycles that it takes to take the acceleration back.
-fn cycles<const D: usize>(state: &Phase<D>, jerk: f64) -> f64 {
+fn cycles<const D: usize>(state: &PointState<D>, jerk: f64) -> f64 {
     // What rounding leaves behind the last cycle is none of its own.
     (state.a.norm() / (jerk * CYCLE) - 1e-9).ceil().max(0.0)
 }
@@ -177,8 +177,11 @@ mod tests {
         },
     ];
 
-    fn still<const D: usize>(p: SVector<f64, D>) -> Phase<D> {
-        Phase { p, ..Phase::zero() }
+    fn still<const D: usize>(p: SVector<f64, D>) -> PointState<D> {
+        PointState {
+            p,
+            ..PointState::zero()
+        }
     }
 
     #[test]
@@ -203,7 +206,7 @@ mod tests {
         let (radius, pace) = (0.05, 2.0);
         let on_circle = |t: f64| {
             let (sin, cos) = (pace * t).sin_cos();
-            Phase {
+            PointState {
                 p: vector![radius * cos, radius * sin, 0.3],
                 v: vector![-sin, cos, 0.0] * (radius * pace),
                 a: vector![-cos, -sin, 0.0] * (radius * pace * pace),
@@ -221,7 +224,7 @@ mod tests {
     #[test]
     fn a_state_outside_the_limits_comes_back_and_never_goes_further_out() {
         let limits = LIMITS[1];
-        let mut now = Phase {
+        let mut now = PointState {
             p: Vector3::zeros(),
             v: vector![0.4, 0.3, 0.0],
             a: vector![0.0, 0.6, 0.5],

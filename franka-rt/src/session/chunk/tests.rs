@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 use proptest::prelude::*;
 
 use super::course::{ChunkCourse, ChunkStart};
-use super::motion::stacked;
+use super::curve_state::stacked;
 use super::{Chunk, ChunkReader, ChunkWriter, Fate, chunk_ring};
 use crate::session::kinematics::Drift;
 use crate::session::pose::PoseState;

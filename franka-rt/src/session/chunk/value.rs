@@ -7,9 +7,9 @@ use franka_proto::RobotState;
 use nalgebra::{Isometry3, Vector3};
 
 use super::curve::Curve;
+use super::curve_state::stacked;
 use super::derivatives;
 use super::error::ChunkError;
-use super::motion::stacked;
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{GoalError, Target, check};
@@ -17,8 +17,8 @@ use crate::session::{GoalError, Target, check};
 /// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.
 pub const POINTS_MAX: usize = 1024;
 
-/// The latest that a point may lie after its chunk's origin. What is later is no prediction but a
-/// mistake of units.
+/// The latest that a point may lie after its chunk's origin. A later time is taken for a mistake
+/// of units.
 pub const OFFSET_MAX: Duration = Duration::from_secs(60);
 
 /// How long a chunk is blended with what the arm does unless said otherwise: as long as one
@@ -339,10 +339,10 @@ fn are_numbers<'a>(values: impl IntoIterator<Item = &'a f64>) -> bool {
     values.into_iter().all(|x| x.abs() <= NUMBER_MAX)
 }
 
-/// Whether all numbers are some and the rotation is one.
+/// Whether all numbers are finite and the rotation is a unit quaternion.
 fn is_pose(pose: &Isometry3<f64>) -> bool {
     let position: &Vector3<f64> = &pose.translation.vector;
-    // A quaternion of finite length 1 has no other numbers than finite ones.
+    // A quaternion of length 1 is finite.
     are_numbers(position) && (pose.rotation.coords.norm() - 1.0).abs() < 1e-6
 }
 

@@ -1,5 +1,4 @@
-//! A token that has to be kept alive, so that an arm does not go on for somebody who is no longer
-//! there.
+//! The deadman: a token that has to be kept alive. The arm brakes when its owner is silent or gone.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
@@ -8,9 +7,9 @@ use std::sync::Arc;
 /// Stands in the counter once the token is gone.
 const GONE: u64 = u64::MAX;
 
-/// The token: whoever holds it has to show life more often than every `silence`. Otherwise, and
-/// once it is dropped, the arm that is bound to it brakes and holds, and every goal ends as held,
-/// until there is life again. A token that was dropped never comes back.
+/// The token of a session. [`Self::keep_alive`] has to be called more often than every `silence`;
+/// otherwise, and once the token is dropped, the arm brakes and holds, and every goal ends as held,
+/// until the token is kept alive again. A token that was dropped never comes back.
 ///
 /// The control thread watches it by the robot's clock, whatever the rest of the program is busy
 /// with.
@@ -46,7 +45,7 @@ impl Deadman {
         (token, monitor)
     }
 
-    /// Shows life. Wait-free.
+    /// Restarts the time of silence. Wait-free.
     pub fn keep_alive(&self) {
         // Relaxed: the count is all that crosses.
         self.beats.fetch_add(1, Ordering::Relaxed);
@@ -60,7 +59,7 @@ impl Deadman {
 
 impl Drop for Deadman {
     fn drop(&mut self) {
-        // Relaxed, as above. Nobody counts up any more.
+        // Relaxed, as above. The counter has no other writer any more.
         self.beats.store(GONE, Ordering::Relaxed);
     }
 }

@@ -1,5 +1,5 @@
-//! The force cap: spring and damper together press on whoever holds the end effector with no more
-//! than this force.
+//! The force cap: spring and damper together press on a hand that holds the end effector with no
+//! more than this force.
 //!
 //! The leash bounds the spring alone. A quick push lets the damper add to it, and the springs of
 //! the joints press at the end effector too; this guard is about their sum, and about nothing else:

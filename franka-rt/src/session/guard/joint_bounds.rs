@@ -10,8 +10,8 @@ use crate::shaping::CYCLE;
 const VELOCITY_CAP: f64 = 0.7;
 
 /// How much faster than its budget a joint may move for the sake of a pose. On a straight line near
-/// a singular posture joints have to turn fast while the hand hardly moves, which nobody beside the
-/// arm expects. At 2 an arm that stretches at the default pace is held back needlessly.
+/// a singular posture joints have to turn fast while the hand hardly moves, which a person beside
+/// the arm does not expect. At 2 an arm that stretches at the default pace is held back needlessly.
 const HASTE: f64 = 3.0;
 
 /// Share of each joint's acceleration limit that the reference may use.

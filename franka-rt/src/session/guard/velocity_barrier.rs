@@ -1,4 +1,4 @@
-//! The velocity barrier: a joint that comes near the robot's velocity limit is braked, whoever
+//! The velocity barrier: a joint that comes near the robot's velocity limit is braked, whatever
 //! drives it.
 //!
 //! The generators keep the reference inside the limits; the arm itself may be faster, thrown by a

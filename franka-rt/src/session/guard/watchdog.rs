@@ -7,8 +7,8 @@ use core::time::Duration;
 pub struct Watchdog {
     /// The longest time without a target, by the robot's clock in whole milliseconds.
     pub silence: Duration,
-    /// What the arm does after that. The motion ends once it rests, unless its session goes from goal to
-    /// goal.
+    /// What the arm does after that. The motion ends once it rests, unless its session goes from
+    /// goal to goal.
     pub on_timeout: OnTimeout,
 }
 

@@ -5,12 +5,12 @@ use core::time::Duration;
 
 use franka_model::Model;
 
-use super::{Active, Measured, Stage, Standing};
+use super::{GoalStage, Measured, RunningSession, Standing};
 use crate::session::course::Course;
 use crate::session::guard::lead::LEAD_FRESH_MS;
 use crate::session::{Lapse, OnArrival, OnTimeout, Target};
 
-impl Active {
+impl RunningSession {
     /// Draws a target nearer that is too far ahead of the arm; tells whether it is.
     pub(super) fn draw_nearer(&mut self, model: &Model, arm: &Measured, now: u64) -> bool {
         let Some(lead) = self.goal.lead else {
@@ -18,7 +18,7 @@ impl Active {
         };
         let chunks =
             matches!(self.route.course, Course::Chunk(_)) || self.route.chunk_end.is_some();
-        if chunks || !matches!(self.stage, Stage::UnderWay) {
+        if chunks || !matches!(self.stage, GoalStage::UnderWay) {
             return false;
         }
         if now.saturating_sub(self.heard) <= LEAD_FRESH_MS {
@@ -41,7 +41,7 @@ impl Active {
 
     /// Whether neither an update nor a chunk brings back a goal that was given up.
     pub(super) fn is_given_up_for_good(&self) -> bool {
-        let settled = matches!(self.stage, Stage::Staying | Stage::Releasing(_));
+        let settled = matches!(self.stage, GoalStage::Staying | GoalStage::Releasing(_));
         match self.standing {
             Standing::GivenUp { cause, .. } => settled || cause.is_final(),
             Standing::InForce | Standing::TakenBack => false,
@@ -81,7 +81,7 @@ impl Active {
             .is_exceeded(model, &self.ee, &arm.q, &arm.pose, &self.aim);
         let follows = matches!(
             self.stage,
-            Stage::UnderWay | Stage::Landing(_) | Stage::Staying
+            GoalStage::UnderWay | GoalStage::Landing(_) | GoalStage::Staying
         );
         if exceeded && follows {
             self.give_up(model, Lapse::Displaced);
@@ -101,7 +101,10 @@ impl Active {
         // A goal of coming to rest needs no deadman.
         let comes_to_rest =
             self.heading() == Target::Rest && self.goal.on_arrival != OnArrival::Hold;
-        if braked || comes_to_rest || matches!(self.stage, Stage::Releasing(_) | Stage::Finished) {
+        if braked
+            || comes_to_rest
+            || matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished)
+        {
             return;
         }
         if !alive {

@@ -23,12 +23,12 @@ use super::guard::{Bindings, Guard, leash};
 use super::landing;
 use super::route::Route;
 use super::setpoint_stream::SetpointStream;
-use super::{Answer, Lapse, Step, Trace, end_effector_of, load_of, rigid};
-use stages::Stage;
+use super::{Lapse, SessionCommand, SessionStep, Trace, end_effector_of, load_of, rigid};
+use stages::GoalStage;
 
 /// What exists once the first state has been seen.
 #[derive(Debug)]
-pub(super) struct Active {
+pub(super) struct RunningSession {
     ee: EndEffector,
     load: Load,
     posture: JointVector,
@@ -48,7 +48,7 @@ pub(super) struct Active {
     deviation: Deviation,
     /// What follows a goal that is held and has to be given up.
     afterwards: OnArrival,
-    stage: Stage,
+    stage: GoalStage,
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
     standing: Standing,
@@ -90,7 +90,7 @@ pub(super) struct Measured {
     pub(super) jacobian: Jacobian,
 }
 
-impl Active {
+impl RunningSession {
     pub(super) fn begin(
         model: &Model,
         goal: Goal,
@@ -121,7 +121,7 @@ impl Active {
             ),
             deviation: Deviation::at(q),
             afterwards,
-            stage: Stage::UnderWay,
+            stage: GoalStage::UnderWay,
             held_back: 0,
             planned: true,
             stayed: false,
@@ -139,7 +139,7 @@ impl Active {
     }
 
     pub(super) fn take_up(&mut self, model: &Model, goal: Goal, now: u64) {
-        if matches!(self.stage, Stage::Finished) {
+        if matches!(self.stage, GoalStage::Finished) {
             return;
         }
         let named = goal.id == self.goal.id;
@@ -155,7 +155,7 @@ impl Active {
             && !self.is_given_up()
             && goal.target == self.goal.target
             && goal.on_arrival == self.goal.on_arrival;
-        if same && !matches!(self.stage, Stage::Releasing(_)) {
+        if same && !matches!(self.stage, GoalStage::Releasing(_)) {
             return self.tune(model, goal);
         }
         if !named {
@@ -191,7 +191,7 @@ impl Active {
             },
         );
         self.fade_gains();
-        if goal.budget != before.budget && !matches!(self.stage, Stage::Releasing(_)) {
+        if goal.budget != before.budget && !matches!(self.stage, GoalStage::Releasing(_)) {
             let aim = Goal {
                 target: self.aim,
                 ..self.goal
@@ -208,7 +208,7 @@ impl Active {
     }
 
     fn set_out(&mut self, model: &Model) {
-        self.stage = Stage::UnderWay;
+        self.stage = GoalStage::UnderWay;
         self.held_back = 0;
         self.route.chunk_end = None;
         self.turn_to(model, self.goal.target);
@@ -232,7 +232,7 @@ impl Active {
         alive: bool,
         chunks: Option<&mut ChunkReader>,
         state: &RobotState,
-    ) -> Step {
+    ) -> SessionStep {
         let q = JointVector::from(state.q);
         let dq = JointVector::from(state.dq);
         let dynamics = model.dynamics(&q, &dq, &self.ee, &self.load, &GRAVITY_EARTH);
@@ -271,7 +271,7 @@ impl Active {
         // makes its first one in the cycle after. So the first answer begins with no torque.
         let at_rest = self.reference == Reference::at_rest(self.reference.q);
         self.stayed = core::mem::take(&mut self.planned) && at_rest && !self.stayed;
-        let course::Step {
+        let course::CourseStep {
             reference,
             bounds,
             held,
@@ -311,25 +311,25 @@ impl Active {
             Drive::Torques(effort) => {
                 let limits = model.joint_limits();
                 let tau = effort.step(&self.reference, state, &dynamics, limits, &mut bindings);
-                Answer::Torques(Torques(tau.into()))
+                SessionCommand::Torques(Torques(tau.into()))
             }
             Drive::Setpoints(stream) => {
                 let (command, changed) = stream.command(model, &self.ee, &self.reference, state);
                 bindings.set(Guard::Backstop, changed);
-                Answer::Setpoint(command)
+                SessionCommand::Setpoint(command)
             }
         };
 
         let failed = failed || leash.is_err() || self.route.take_failure();
         bindings.set(Guard::PlanFailure, failed);
-        Step {
+        SessionStep {
             answer,
             trace: Trace {
                 goal: self.goal.id,
                 reference: self.reference,
                 bindings,
             },
-            finished: matches!(self.stage, Stage::Finished),
+            finished: matches!(self.stage, GoalStage::Finished),
             event,
         }
     }
@@ -343,10 +343,11 @@ impl Active {
         if let Some(echo) = stream.echo(model, &self.ee, &self.reference, state) {
             self.reference = echo;
             let target = match self.stage {
-                Stage::UnderWay => self.aim,
-                Stage::Landing(_) | Stage::Staying | Stage::Releasing(_) | Stage::Finished => {
-                    Target::Rest
-                }
+                GoalStage::UnderWay => self.aim,
+                GoalStage::Landing(_)
+                | GoalStage::Staying
+                | GoalStage::Releasing(_)
+                | GoalStage::Finished => Target::Rest,
             };
             let aim = Goal {
                 target,

@@ -5,13 +5,13 @@ use franka_model::{JointVector, Twist, rotation};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::curve::Curve;
-use super::quintic::{self, Phase};
+use super::quintic::{self, PointState};
 use super::value::Points;
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 
 /// A state with its first two derivatives that chunks can be made of.
-pub(super) trait Motion: Copy {
+pub(super) trait CurveState: Copy {
     /// How far one state is from another, with derivatives.
     type Gap: Copy + core::fmt::Debug;
 
@@ -44,24 +44,24 @@ pub(super) struct JointExtent {
     pub(super) upper: JointVector,
 }
 
-impl Motion for Reference {
-    type Gap = Phase<7>;
+impl CurveState for Reference {
+    type Gap = PointState<7>;
     type Extent = JointExtent;
 
     fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self {
         quintic::between(&from.phase(), &to.phase(), duration, t).into()
     }
 
-    fn gap_from(&self, base: &Self) -> Phase<7> {
-        Phase {
+    fn gap_from(&self, base: &Self) -> PointState<7> {
+        PointState {
             p: self.q - base.q,
             v: self.dq - base.dq,
             a: self.ddq - base.ddq,
         }
     }
 
-    fn displaced(&self, gap: &Phase<7>, duration: f64, t: f64) -> Self {
-        let gap = quintic::between(gap, &Phase::zero(), duration, t);
+    fn displaced(&self, gap: &PointState<7>, duration: f64, t: f64) -> Self {
+        let gap = quintic::between(gap, &PointState::zero(), duration, t);
         Self {
             q: self.q + gap.p,
             dq: self.dq + gap.v,
@@ -88,8 +88,8 @@ impl Motion for Reference {
 }
 
 impl Reference {
-    fn phase(&self) -> Phase<7> {
-        Phase {
+    fn phase(&self) -> PointState<7> {
+        PointState {
             p: self.q,
             v: self.dq,
             a: self.ddq,
@@ -97,8 +97,8 @@ impl Reference {
     }
 }
 
-impl From<Phase<7>> for Reference {
-    fn from(phase: Phase<7>) -> Self {
+impl From<PointState<7>> for Reference {
+    fn from(phase: PointState<7>) -> Self {
         Self {
             q: phase.p,
             dq: phase.v,
@@ -111,18 +111,18 @@ impl From<Phase<7>> for Reference {
 /// into this one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseGap {
-    translation: Phase<3>,
-    rotation: Phase<3>,
+    translation: PointState<3>,
+    rotation: PointState<3>,
 }
 
-impl Motion for PoseState {
+impl CurveState for PoseState {
     type Gap = PoseGap;
     type Extent = ();
 
     /// The rotation goes in the chart around the orientation of `from`, which the one of `to` has
     /// to be less than half a turn away from.
     fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self {
-        let start = Phase {
+        let start = PointState {
             p: Vector3::zeros(),
             ..from.rotation()
         };
@@ -141,12 +141,12 @@ impl Motion for PoseState {
         let (rate, second) =
             rotation::derivatives(&phi, &more, &(turning.a - alpha - more.cross(&omega)));
         PoseGap {
-            translation: Phase {
+            translation: PointState {
                 p: ours.p - theirs.p,
                 v: ours.v - theirs.v,
                 a: ours.a - theirs.a,
             },
-            rotation: Phase {
+            rotation: PointState {
                 p: phi,
                 v: rate,
                 a: second,
@@ -155,7 +155,7 @@ impl Motion for PoseState {
     }
 
     fn displaced(&self, gap: &PoseGap, duration: f64, t: f64) -> Self {
-        let none = Phase::zero();
+        let none = PointState::zero();
         let off = quintic::between(&gap.translation, &none, duration, t);
         let turn = quintic::between(&gap.rotation, &none, duration, t);
         let here = self.translation();
@@ -192,8 +192,8 @@ impl Motion for PoseState {
 
 impl PoseState {
     /// Position, velocity and acceleration of the frame's origin.
-    pub(super) fn translation(&self) -> Phase<3> {
-        Phase {
+    pub(super) fn translation(&self) -> PointState<3> {
+        PointState {
             p: self.pose.translation.vector,
             v: self.twist.fixed_rows::<3>(0).into_owned(),
             a: self.acceleration.fixed_rows::<3>(0).into_owned(),
@@ -202,8 +202,8 @@ impl PoseState {
 
     /// Angular velocity and acceleration, which are those of the rotation vector in the chart
     /// around this orientation.
-    pub(super) fn rotation(&self) -> Phase<3> {
-        Phase {
+    pub(super) fn rotation(&self) -> PointState<3> {
+        PointState {
             p: Vector3::zeros(),
             v: self.twist.fixed_rows::<3>(3).into_owned(),
             a: self.acceleration.fixed_rows::<3>(3).into_owned(),
@@ -211,7 +211,7 @@ impl PoseState {
     }
 
     /// The state that is at `turn` in the chart around this orientation, and at `way`.
-    fn turned(&self, turn: &Phase<3>, way: &Phase<3>) -> Self {
+    fn turned(&self, turn: &PointState<3>, way: &PointState<3>) -> Self {
         let omega = rotation::angular_velocity(&turn.p, &turn.v);
         let alpha = rotation::angular_acceleration(&turn.p, &turn.v, &turn.a);
         Self {
@@ -226,11 +226,11 @@ impl PoseState {
 }
 
 /// The rotation of `state` in the chart around the orientation of `anchor`.
-fn in_chart(state: &PoseState, anchor: &PoseState) -> Phase<3> {
+fn in_chart(state: &PoseState, anchor: &PoseState) -> PointState<3> {
     let phi = rotation::error(&state.pose.rotation, &anchor.pose.rotation);
     let turning = state.rotation();
     let (rate, second) = rotation::derivatives(&phi, &turning.v, &turning.a);
-    Phase {
+    PointState {
         p: phi,
         v: rate,
         a: second,

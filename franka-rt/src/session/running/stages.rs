@@ -2,7 +2,7 @@
 
 use franka_model::{Frame, Model};
 
-use super::{Active, Drive, Measured, Standing};
+use super::{Drive, Measured, RunningSession, Standing};
 use crate::session::landing::{Landing, Release, Verdict};
 use crate::session::reference::Reference;
 use crate::session::{
@@ -15,7 +15,7 @@ const REFERENCE_REST: f64 = 1e-3;
 
 /// What the session does about its goal.
 #[derive(Debug)]
-pub(super) enum Stage {
+pub(super) enum GoalStage {
     /// The reference moves, or holds a goal that is to be held.
     UnderWay,
     /// The reference has arrived; the arm settles.
@@ -28,7 +28,7 @@ pub(super) enum Stage {
     Finished,
 }
 
-impl Active {
+impl RunningSession {
     /// Moves through the stages of a goal that is to come to an end. The only place where the stage
     /// advances.
     pub(super) fn advance_stage(
@@ -40,7 +40,7 @@ impl Active {
     ) -> Option<SessionEvent> {
         let heading = self.heading();
         match &mut self.stage {
-            Stage::UnderWay => {
+            GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
                 if self.goal.on_arrival != OnArrival::Hold && (self.route.is_done() || stalled) {
                     if stalled && self.route.is_hindered() {
@@ -57,11 +57,11 @@ impl Active {
                             Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
                         }
                     };
-                    self.stage = Stage::Landing(Landing::new(target, self.goal.tolerance));
+                    self.stage = GoalStage::Landing(Landing::new(target, self.goal.tolerance));
                 }
                 None
             }
-            Stage::Landing(landing) => {
+            GoalStage::Landing(landing) => {
                 let (settlement, held) = match landing.judge(&arm.pose, at_rest) {
                     Verdict::Settling => return None,
                     Verdict::Settled(settlement, held) => (settlement, held),
@@ -75,13 +75,13 @@ impl Active {
                     return None;
                 }
                 self.stage = match (self.goal.on_arrival, &self.drive) {
-                    (OnArrival::Hold | OnArrival::ReportAndHold, _) => Stage::Staying,
+                    (OnArrival::Hold | OnArrival::ReportAndHold, _) => GoalStage::Staying,
                     (OnArrival::ReportAndFinish, Drive::Torques(_)) => {
                         self.route.rest();
-                        Stage::Releasing(Release::new(arm.q, &self.reference.q))
+                        GoalStage::Releasing(Release::new(arm.q, &self.reference.q))
                     }
                     // The robot holds the arm at its setpoint as it is.
-                    (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => Stage::Finished,
+                    (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => GoalStage::Finished,
                 };
                 Some(SessionEvent::Settled {
                     goal: self.goal.id,
@@ -98,15 +98,15 @@ impl Active {
                     duration_ms: (now - self.since).saturating_sub(held),
                 })
             }
-            Stage::Releasing(release) => {
+            GoalStage::Releasing(release) => {
                 self.reference = Reference::at_rest(release.reference());
                 self.route.rest();
                 if release.is_over(at_rest) {
-                    self.stage = Stage::Finished;
+                    self.stage = GoalStage::Finished;
                 }
                 None
             }
-            Stage::Staying | Stage::Finished => None,
+            GoalStage::Staying | GoalStage::Finished => None,
         }
     }
 }

@@ -2,19 +2,19 @@
 
 use franka_model::Model;
 
-use super::{Active, Stage, Standing};
+use super::{GoalStage, RunningSession, Standing};
 use crate::session::chunk::ChunkReader;
 use crate::session::course::Course;
 use crate::session::{Goal, OnArrival, Target};
 
-impl Active {
+impl RunningSession {
     /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is
     /// over.
     pub(super) fn follow_chunks(&mut self, model: &Model, chunks: &mut ChunkReader, now: u64) {
         if let Some(retired) = self.route.retired_chunk.take() {
             retired.end(chunks, now);
         }
-        let gone = matches!(self.stage, Stage::Releasing(_) | Stage::Finished);
+        let gone = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished);
         let taken_back = matches!(self.standing, Standing::TakenBack);
         if gone || taken_back || self.is_given_up_for_good() {
             chunks.discard(self.goal.id);
@@ -43,7 +43,7 @@ impl Active {
                 self.goal.on_arrival = OnArrival::Hold;
             }
             self.heard = now;
-            self.stage = Stage::UnderWay;
+            self.stage = GoalStage::UnderWay;
         } else if over && let Course::Chunk(chunk) = &self.route.course {
             let target = chunk.target();
             self.turn_to(model, target);
