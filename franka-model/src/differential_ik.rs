@@ -77,7 +77,7 @@ impl Default for Damping {
 pub struct DifferentialIk {
     /// Metres of position error that count as much as one radian of orientation error; positive.
     pub orientation_weight: f64,
-    /// Whether what the position lacks is asked for once more; see the module.
+    /// Whether the position's residual is added to the target once; see the module.
     pub position_first: bool,
     /// How `λ` is chosen.
     pub damping: Damping,
@@ -120,7 +120,7 @@ impl Default for DifferentialIk {
 pub struct Solution {
     /// Joint velocities (or displacements), inside the box.
     pub velocity: JointVector,
-    /// `J x − v`: what the end effector does beyond what was asked, unweighted.
+    /// `J x − v`: the residual of the end effector's velocity, unweighted.
     pub residual: Twist,
     /// Which bounds bind. Passing it to the next, similar problem saves passes.
     pub active: [Side; 7],
@@ -204,7 +204,7 @@ impl DifferentialIk {
     }
 }
 
-/// Velocity of the end effector, `[m/s]`, that is not worth a second solution.
+/// A residual velocity of the end effector, `[m/s]`, below which no second solution is computed.
 const NOTHING: f64 = 1e-9;
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use crate::{Jacobian, JointVector, READY, Twist, rotation, transform};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum IkError {
-    /// No start came closer than this; the pose is out of reach within the joint limits.
+    /// The pose is out of reach within the joint limits: no start came closer than this.
     Unreachable {
         /// Distance left, `[m]`.
         position: f64,
@@ -124,7 +124,7 @@ pub(crate) fn from_seed(
 /// Residual of a solution at the flange: metres and radians.
 pub const TOLERANCE: f64 = 1e-9;
 
-/// What is to be met, in the base frame.
+/// The target, in the base frame.
 enum Task {
     /// By the flange.
     Pose(Isometry3<f64>),
@@ -132,7 +132,7 @@ enum Task {
     Position(Vector3<f64>, Vector3<f64>),
 }
 
-/// What is left to a target.
+/// The residual of a target.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gap {
     position: f64,

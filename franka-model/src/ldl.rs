@@ -14,8 +14,8 @@ pub(crate) struct Ldl<const N: usize> {
 
 #[allow(clippy::needless_range_loop)] // indices are those of the textbook
 impl<const N: usize> Ldl<N> {
-    /// Of the matrix whose lower triangle, by rows, is given; `None` if it is not positive
-    /// definite.
+    /// The factorisation of the matrix with this lower triangle, by rows; `None` if it is not
+    /// positive definite.
     #[inline(always)]
     pub(crate) fn of(matrix: &[[f64; N]; N]) -> Option<Self> {
         let (factor, positive) = Self::regardless(matrix);

@@ -1,5 +1,5 @@
-//! What the robot allows: joints, end effector and elbow. The numbers and their sources stand with
-//! each robot's description.
+//! Limits of joints, end effector and elbow. The numbers and their sources are with the constants
+//! of each robot.
 //!
 //! All values are nominal, the ones that the robot checks against. A client stays below them by
 //! [`CLIENT_MARGIN`] (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
@@ -7,7 +7,7 @@
 use crate::JointVector;
 use crate::scalar::sqrt;
 
-/// What libfranka keeps off every limit: the same number in every unit
+/// The margin that libfranka keeps to every limit: the same number in every unit
 /// (libfranka 0.21, `rate_limiting.h`).
 pub const CLIENT_MARGIN: f64 = 1e-3;
 
@@ -37,12 +37,12 @@ pub struct JointLimits {
     pub torque_rate: JointVector,
 }
 
-/// Speeds near a position limit, as of a joint that brakes towards it.
+/// The speed limit near a position limit: the speed from which a joint can still brake.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrakingEnvelope {
     /// Deceleration of the parabola, `[rad/s²]`.
     pub deceleration: JointVector,
-    /// Speed, `[rad/s]`, that comes off the parabola.
+    /// Speed, `[rad/s]`, subtracted from the parabola.
     pub offset: JointVector,
 }
 
@@ -61,7 +61,7 @@ impl JointLimits {
     /// before the hard limit; without one it is [`velocity`](Self::velocity) everywhere, also
     /// beyond the limits. `margin` `[rad/s]` then comes off both sides: the robot checks with 0,
     /// libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position limit with an envelope the
-    /// bound towards it is `-margin` inwards: it asks for a way back.
+    /// bound towards it is `-margin` inwards: only motion away from the limit is allowed.
     ///
     /// Formula and operation order of libfranka 0.21, whose results it meets to the last digit.
     pub fn velocity_envelope(&self, q: &JointVector, margin: f64) -> (JointVector, JointVector) {
@@ -76,7 +76,7 @@ impl JointLimits {
         )
     }
 
-    /// Whether every position is within `lower` and `upper`; false for what is not a number.
+    /// Whether every position is within `lower` and `upper`; false for NaN.
     pub fn contains(&self, q: &JointVector) -> bool {
         (0..7).all(|i| self.lower[i] <= q[i] && q[i] <= self.upper[i])
     }

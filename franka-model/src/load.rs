@@ -1,4 +1,4 @@
-//! What the arm carries beyond the flange.
+//! Payloads on the flange.
 
 use nalgebra::{Matrix3, Vector3};
 

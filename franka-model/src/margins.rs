@@ -3,7 +3,7 @@
 use crate::JointVector;
 use crate::limits::JointLimits;
 
-/// Distances of one state of the joints from what they may do. Nothing is clamped: a negative
+/// Distances of one state of the joints from their limits. Nothing is clamped: a negative
 /// margin says by how much a limit is passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMargins {
@@ -13,8 +13,8 @@ pub struct JointMargins {
     pub to_upper: JointVector,
     /// To the nearer of the two, as a share of half the range: 1 in the middle, 0 at a limit.
     pub normalised: JointVector,
-    /// What is left, `[rad]`, to the limit that the joint moves towards, once it has come to rest
-    /// from its velocity; at rest what is left to the nearer one. The joint slows down at the
+    /// The distance, `[rad]`, to the limit that the joint moves towards, after braking from its
+    /// velocity; at rest the distance to the nearer limit. The joint slows down at the
     /// deceleration of its [envelope](crate::limits::BrakingEnvelope), or at its greatest
     /// acceleration where it has none, from now on: a bound on jerk takes a little more.
     pub braking: JointVector,
@@ -49,7 +49,7 @@ impl JointLimits {
             to_lower,
             to_upper,
             normalised: JointVector::from_fn(|i, _| {
-                // Of what is not a number `min` gives the other.
+                // `f64::min` ignores NaN.
                 let nearer = if q[i].is_nan() { f64::NAN } else { nearer[i] };
                 2.0 * nearer / (self.upper[i] - self.lower[i])
             }),
@@ -68,7 +68,7 @@ impl JointLimits {
         }
     }
 
-    /// What a joint brakes with, `[rad/s²]`.
+    /// The deceleration of a braking joint, `[rad/s²]`.
     fn deceleration(&self, i: usize) -> f64 {
         match &self.envelope {
             Some(envelope) => envelope.deceleration[i],

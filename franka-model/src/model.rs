@@ -15,9 +15,9 @@ use crate::{Jacobian, JointVector, MassMatrix};
 
 /// A robot's constants: kinematics, bodies and limits.
 ///
-/// The vendor's numbers are static values ([`of`](Self::of), [`physically_consistent`](Self::physically_consistent)); a
-/// description that a robot serves gives a value of its own. Both answer the same questions, and
-/// take the same time to do so.
+/// The vendor's numbers are static values ([`of`](Self::of),
+/// [`physically_consistent`](Self::physically_consistent)); a description that a robot serves gives
+/// a value of its own. Both answer the same questions, and take the same time to do so.
 ///
 /// Throughout, `q` are joint positions `[rad]`, `dq` velocities `[rad/s]`, `ddq` accelerations
 /// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in
@@ -53,7 +53,7 @@ impl Model {
         &self.joints
     }
 
-    /// The same robot whose joints are allowed what `limits` say.
+    /// The same robot with these joint limits.
     #[must_use]
     pub fn with_joint_limits(self, limits: JointLimits) -> Self {
         Self {

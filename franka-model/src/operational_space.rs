@@ -1,9 +1,9 @@
 //! The inertia that is felt at the end effector, or at another point of the arm.
 //!
-//! Who pushes the arm at a point feels masses that depend on the posture and on the direction. In
-//! the terms of the operational space formulation (Khatib, IEEE Journal on Robotics and Automation
-//! 3(1), 1987; effective mass: Khatib, International Journal of Robotics Research 14(1), 1995),
-//! with the Jacobian `J` of the point and the joint-space inertia `M`:
+//! A push against a point of the arm meets a mass that depends on the posture and on the direction.
+//! In the terms of the operational space formulation (Khatib, IEEE Journal on Robotics and
+//! Automation 3(1), 1987; effective mass: Khatib, International Journal of Robotics Research 14(1),
+//! 1995), with the Jacobian `J` of the point and the joint-space inertia `M`:
 //!
 //! - `J M⁻¹ Jᵀ` is the **mobility**: the acceleration per wrench. It exists at every posture.
 //! - Its inverse is the **operational-space inertia** `Λ`: the wrench per acceleration, if the
@@ -19,14 +19,15 @@ use crate::{Dynamics, EndEffector, Frame, Jacobian, JointVector, Load, MassMatri
 /// 6×6, `[linear; angular]` in rows and columns.
 pub type Matrix6 = SMatrix<f64, 6, 6>;
 
-/// How a point of the arm answers to wrenches, in the axes that its Jacobian is given in.
+/// The response of a point of the arm to wrenches, in the axes of its Jacobian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OperationalSpace {
     mobility: Matrix6,
 }
 
 impl OperationalSpace {
-    /// Of a point with this Jacobian, on an arm with this joint-space inertia.
+    /// The operational space of a point with this Jacobian, on an arm with this joint-space
+    /// inertia.
     ///
     /// The point is the origin of the Jacobian's frame, the axes are those of the Jacobian: base
     /// axes for a zero Jacobian. For another point of the last link move the end effector there
@@ -94,8 +95,9 @@ impl OperationalSpace {
 }
 
 impl Model {
-    /// What the origin of `frame` feels like, in base axes. `None` for a load that no rigid body
-    /// has, and for joints that stand still for the frame: see [`OperationalSpace::new`].
+    /// The operational space of the origin of `frame`, in base axes. `None` for a load that no
+    /// rigid body has, and for joints that stand still for the frame: see
+    /// [`OperationalSpace::new`].
     pub fn operational_space(
         &self,
         frame: Frame,
@@ -108,7 +110,7 @@ impl Model {
 }
 
 impl Dynamics {
-    /// What the end effector feels like, in base axes.
+    /// The operational space of the end effector, in base axes.
     pub fn operational_space(&self) -> Option<OperationalSpace> {
         OperationalSpace::new(&self.jacobian, &self.mass)
     }

@@ -1,4 +1,4 @@
-//! Commands: what can be asked of a robot, and what the commands of all services have in common.
+//! The commands of a robot, and what the commands of all services have in common.
 
 use core::fmt;
 
@@ -21,7 +21,7 @@ pub trait ServiceCommand: Copy + fmt::Debug + fmt::Display + Eq + 'static {
     /// How libfranka's messages about this service begin.
     const SERVICE: &'static str;
 
-    /// Writes libfranka's text about a reply whose status has no meaning.
+    /// Writes libfranka's text about a reply with an undefined status.
     ///
     /// # Errors
     /// Those of the formatter.

@@ -38,7 +38,7 @@ pub const MAX_REQUEST_SIZE: usize = 1024;
 /// What precedes every message on the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Header {
-    /// The version's number of the command; repeated in replies, where nobody checks it.
+    /// The version's number of the command; repeated in replies, where it is not checked.
     pub command: u32,
     /// Counter of the client's requests; a reply repeats it.
     pub command_id: u32,
@@ -90,7 +90,7 @@ impl Message<'_> {
     }
 }
 
-/// Why the bytes of a stream cannot be cut into messages. The stream is of no more use.
+/// Why the bytes of a stream cannot be cut into messages. The stream cannot be used any further.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrameError {
@@ -209,6 +209,12 @@ mod tests {
                 limit: MAX_MESSAGE_SIZE
             })
         );
-        assert!(next_message_within(&header(1025), MAX_REQUEST_SIZE).is_err());
+        assert_eq!(
+            next_message_within(&header(1025), MAX_REQUEST_SIZE),
+            Err(FrameError::TooLong {
+                got: 1025,
+                limit: 1024
+            })
+        );
     }
 }

@@ -57,7 +57,7 @@
 //!
 //! # Panics and bad bytes
 //!
-//! Decoding never panics, whatever the bytes; what has no meaning is an error that tells what came
+//! Decoding never panics, whatever the bytes; what cannot be decoded is an error with what was got
 //! and what was expected. Lengths are checked before anything is read, and a message that announces
 //! more than [`framing::MAX_MESSAGE_SIZE`] is refused before it is collected.
 //!

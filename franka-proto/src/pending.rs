@@ -38,7 +38,7 @@ impl<C: Copy> Pending<C> {
         self.entries.iter().all(Option::is_some)
     }
 
-    /// Adds a request; false, and no change, if the table is full.
+    /// Adds a request; returns false, without a change, if the table is full.
     pub(crate) fn insert(&mut self, id: CommandId, command: C) -> bool {
         let free = self.entries.iter_mut().find(|entry| entry.is_none());
         let Some(free) = free else { return false };
@@ -61,7 +61,7 @@ impl<C: Copy> Pending<C> {
         }
     }
 
-    /// Takes a request out; false if there is none of this id.
+    /// Removes a request; returns whether there was one with this id.
     pub(crate) fn remove(&mut self, id: CommandId) -> bool {
         let entry = self
             .entries

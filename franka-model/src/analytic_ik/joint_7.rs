@@ -283,7 +283,7 @@ impl Turn {
     }
 }
 
-/// A cosine that rounding may have moved out of its range; `None` for what is none.
+/// `x` as a cosine, clamped where rounding moved it out of range; `None` if it is further out.
 pub(super) fn cosine(x: f64) -> Option<f64> {
     (x.abs() <= 1.0 + FOLD).then(|| x.clamp(-1.0, 1.0))
 }

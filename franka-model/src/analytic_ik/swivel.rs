@@ -133,7 +133,7 @@ impl Side<'_> {
         let slack = 1e-12;
         let (least, most) = (off(reach(far) - slack), off(reach(FLIP_ANGLE) + slack));
         if least >= most {
-            return [None, None]; // also for what is not a number
+            return [None, None]; // also for NaN
         }
         let nearest = atan2(-q, p);
         [1.0, -1.0].map(|direction| {

@@ -22,11 +22,11 @@ pub struct JointBox {
 }
 
 impl JointBox {
-    /// The box between `lower` and `upper`; infinite bounds are no bounds.
+    /// The box between `lower` and `upper`; an infinite bound does not bind.
     ///
-    /// Where they cross, which rounding does to an interval of no width, both become their
-    /// midpoint: the variable is then fixed. Whoever may demand the impossible by more than that
-    /// must decide before which demand to drop.
+    /// Where they cross, as rounding can make them in an interval of no width, both become their
+    /// midpoint: the variable is then fixed. A caller whose bounds can contradict each other by
+    /// more than that has to decide beforehand which one to drop.
     pub fn new(lower: &JointVector, upper: &JointVector) -> Self {
         let mut bounds = Self {
             lower: *lower,
@@ -62,7 +62,7 @@ impl JointBox {
         JointVector::from_fn(|i, _| x[i].max(self.lower[i]).min(self.upper[i]))
     }
 
-    /// Which bound of variable `i` the value `x` is beyond.
+    /// The bound of variable `i` that the value `x` is beyond.
     pub(super) fn side_beyond(&self, i: usize, x: f64) -> Side {
         if x < self.lower[i] {
             Side::Lower

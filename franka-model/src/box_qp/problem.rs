@@ -1,8 +1,8 @@
-//! What is minimised.
+//! The function to minimise.
 
 use crate::{Jacobian, JointVector, Twist};
 
-/// What to minimise.
+/// The function to minimise.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem<'a> {
     /// `A`.

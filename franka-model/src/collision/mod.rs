@@ -25,8 +25,8 @@
 //! - An axis that crosses a box may be as far from one of its faces, or edges, as from another; one
 //!   parallel to a face, or to a plane, has both ends as near. The gradient is that of one of them,
 //!   in the latter case that of the middle.
-//! - The least distance over pairs has a kink where another pair becomes the nearest. Who needs a
-//!   smooth constraint takes every pair's distance and gradient ([`Placed::pairs`]) as one
+//! - The least distance over pairs has a kink where another pair becomes the nearest. For a
+//!   smooth constraint, take every pair's distance and gradient ([`Placed::pairs`]) as one
 //!   constraint each.
 //!
 //! Away from these sets (which have no volume) the gradient is the derivative.
@@ -102,7 +102,7 @@ impl Body {
 /// arm, inner one first; [`Body`] towards an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proximity<P> {
-    /// Who.
+    /// The bodies.
     pub bodies: P,
     /// Between the surfaces, `[m]`; negative: the bodies overlap.
     pub distance: f64,

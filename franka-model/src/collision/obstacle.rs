@@ -12,7 +12,7 @@ use crate::scalar::sqrt;
 pub enum Obstacle {
     /// All points with `normal · p < offset`.
     Plane {
-        /// Out of the region.
+        /// Unit normal, pointing out of the region.
         normal: UnitVector3<f64>,
         /// Distance of the surface from the origin along the normal, `[m]`.
         offset: f64,
@@ -109,8 +109,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// How far it is from the box; negative where it meets the box, the length of the shortest way
-    /// out.
+    /// The distance to the box; inside, minus the length of the shortest way out.
     pub(super) fn distance(&self) -> f64 {
         let t = self.one_nearest_outside();
         let gap = self.at(t) - self.clamped(t);
@@ -122,7 +121,7 @@ impl Axis {
         }
     }
 
-    /// Some parameter with the least distance to the box; see
+    /// A parameter with the least distance to the box; see
     /// [`nearest_outside`](Self::nearest_outside). Between the ends only the bends matter that lie
     /// where the slope has not been found to fall yet, or to rise already.
     fn one_nearest_outside(&self) -> f64 {
@@ -156,8 +155,7 @@ impl Axis {
 
     /// The point of the box nearest to the point at `t`.
     fn clamped(&self, t: f64) -> Vector3<f64> {
-        // Unlike `f64::clamp`, without a panic for sides that are none, and not a number stays what
-        // it is.
+        // Unlike `f64::clamp` this does not panic for a NaN side, and a NaN coordinate stays NaN.
         let clamp = |x: f64, half: f64| {
             if x > half || half.is_nan() {
                 half

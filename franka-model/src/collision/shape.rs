@@ -29,7 +29,8 @@ impl Capsule {
         }
     }
 
-    fn is_sound(&self) -> bool {
+    /// Whether all numbers are finite and the radius is not negative.
+    fn is_valid(&self) -> bool {
         let mut ends = self.start.iter().chain(self.end.iter());
         ends.all(|x| x.is_finite()) && self.radius.is_finite() && self.radius >= 0.0
     }
@@ -104,20 +105,19 @@ impl Shape<'static> {
 }
 
 impl Shape<'_> {
-    /// With capsules of one's own on the flange, in the flange frame, instead of any tool before.
+    /// With the given capsules on the flange, in the flange frame, instead of any tool before.
     ///
     /// A tool is checked against links 0 to 5.
     ///
     /// # Errors
-    /// [`ToolError`] for more capsules than there is room for, and for numbers that are not finite
-    /// or a negative radius.
+    /// [`ToolError`] for more than 8 capsules, for non-finite numbers and for a negative radius.
     pub fn with_tool<'a>(&self, capsules: &'a [Capsule]) -> Result<Shape<'a>, ToolError> {
         if capsules.len() > TOOL_MAX {
             return Err(ToolError::TooMany {
                 got: capsules.len(),
             });
         }
-        if let Some(index) = capsules.iter().position(|capsule| !capsule.is_sound()) {
+        if let Some(index) = capsules.iter().position(|capsule| !capsule.is_valid()) {
             return Err(ToolError::NotACapsule {
                 index,
                 got: capsules[index],
@@ -137,20 +137,20 @@ impl Shape<'_> {
     }
 }
 
-/// Why capsules are no tool.
+/// Why capsules are not accepted as a tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ToolError {
-    /// There is room for 8.
+    /// More than 8 capsules.
     TooMany {
-        /// How many there are.
+        /// Number of capsules.
         got: usize,
     },
     /// A number is not finite, or the radius negative.
     NotACapsule {
-        /// Which.
+        /// Index of the capsule.
         index: usize,
-        /// What was given.
+        /// The capsule.
         got: Capsule,
     },
 }

@@ -1,4 +1,4 @@
-//! Why there is no library.
+//! Why a model library cannot be loaded.
 
 use std::string::String;
 
@@ -18,7 +18,7 @@ pub enum LibraryError {
     /// Host: the library cannot be written to a temporary file.
     #[error("libfranka: Cannot save model library.")]
     Save(#[source] std::io::Error),
-    /// Robot, or link: what it sent is no library that this system loads.
+    /// Robot, or link: the bytes are not a library that this system can load.
     #[error("libfranka: Cannot load model library: {reason}")]
     Load {
         /// What the system's loader says.

@@ -1,8 +1,8 @@
 //! The FER's own model library: compiled code that a robot of FCI version 5 hands to its clients.
 //!
 //! [`Model::fer`](crate::Model::fer) meets that library to the last digits in everything that was
-//! compared (the book's page on the model). This module is for who wants to compare on a robot of
-//! their own, or does not want to rely on the comparison. Needs the feature `model-library`, and
+//! compared (the book's page on the model). This module is for comparisons on a particular robot,
+//! and for programs that do not rely on that comparison. Needs the feature `model-library`, and
 //! Linux.
 //!
 //! The code is loaded into this process. It runs with its rights, unchecked: hence
@@ -51,9 +51,9 @@ impl ModelLibrary {
     /// # Safety
     /// The bytes must be the vendor's model library, or another one whose initialisers and
     /// functions may be run, from any thread and at any time, and whose functions called `M_NE`,
-    /// `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` have the vendor's signatures. Who loads
-    /// what a robot sends trusts that robot, and everybody who can speak in its name on the
-    /// network, with this process.
+    /// `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` have the vendor's signatures. Loading
+    /// what a robot sends trusts that robot, and every host that can pose as it on the network,
+    /// with this process.
     pub unsafe fn load(bytes: &[u8]) -> Result<Self, LibraryError> {
         let file = Temporary::with(bytes).map_err(LibraryError::Save)?;
         // SAFETY: the caller vouches for the initialisers.
@@ -186,7 +186,7 @@ struct Temporary {
 }
 
 impl Temporary {
-    /// Writes a new file: one that exists already is somebody else's, and another name is tried.
+    /// Writes a new file: a file that exists already is left alone, and another name is tried.
     fn with(bytes: &[u8]) -> io::Result<Self> {
         loop {
             let number = COUNT.fetch_add(1, Ordering::Relaxed);

@@ -57,7 +57,7 @@ impl Model {
         of(kind).physically_consistent
     }
 
-    /// What its end effector and elbow may do.
+    /// The limits of its end effector and elbow.
     pub fn cartesian_limits(&self) -> &'static CartesianLimits {
         CartesianLimits::of(self.kind)
     }

@@ -53,10 +53,10 @@ impl<'a, 'n> Element<'a, 'n> {
             })
     }
 
-    /// A [sane](sane) number.
+    /// A [plausible](plausible) number.
     pub(super) fn number(&self, attribute: &'static str) -> Result<f64, UrdfError> {
         let text = self.text(attribute)?;
-        sane(text.trim()).ok_or_else(|| self.unexpected(attribute, text, ONE_NUMBER))
+        plausible(text.trim()).ok_or_else(|| self.unexpected(attribute, text, ONE_NUMBER))
     }
 
     /// A number that meets a condition, which `expected` tells.
@@ -77,7 +77,7 @@ impl<'a, 'n> Element<'a, 'n> {
     /// Three numbers.
     pub(super) fn vector(&self, attribute: &'static str) -> Result<[f64; 3], UrdfError> {
         let text = self.text(attribute)?;
-        let mut numbers = text.split_whitespace().map(sane);
+        let mut numbers = text.split_whitespace().map(plausible);
         match std::array::from_fn(|_| numbers.next().flatten()) {
             [Some(x), Some(y), Some(z)] if numbers.next().is_none() => Ok([x, y, z]),
             _ => Err(self.unexpected(attribute, text, THREE_NUMBERS)),
@@ -98,10 +98,11 @@ impl<'a, 'n> Element<'a, 'n> {
 const ONE_NUMBER: &str = "a number of at most 1e6 in size";
 const THREE_NUMBERS: &str = "three numbers of at most 1e6 in size";
 
-/// A number that can be part of a robot in SI units. What is made of such numbers stays finite.
-fn sane(text: &str) -> Option<f64> {
+/// A number of at most 1e6: larger ones have no place in a robot in SI units, and products of these
+/// stay finite.
+fn plausible(text: &str) -> Option<f64> {
     let number: f64 = text.parse().ok()?;
-    // Not true of what is not a number.
+    // False for NaN.
     (number.abs() <= 1e6).then_some(number)
 }
 

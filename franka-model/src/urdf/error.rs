@@ -3,8 +3,8 @@
 use std::string::String;
 use std::vec::Vec;
 
-/// Why a text is no description of the arm. Each variant says what was found, and its text what was
-/// expected.
+/// Why a text is not accepted as a description of the arm. Each variant holds what was found, its
+/// text says what was expected.
 ///
 /// Where libfranka has a text for the case (its velocity-limit parser, 0.21), the text begins with
 /// it.
@@ -45,7 +45,7 @@ pub enum UrdfError {
         /// The names of all joints that there are.
         got: Vec<String>,
     },
-    /// A joint of the arm is no hinge with limits.
+    /// A joint of the arm is not a hinge with limits.
     #[error("joint {joint} is of type '{got}', expected 'revolute'")]
     JointType {
         /// Its name.

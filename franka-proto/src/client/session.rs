@@ -37,8 +37,8 @@ pub enum Event<'a, P: Protocol = Version> {
         /// The version of the session.
         version: P,
     },
-    /// The device speaks another version. The connection is of no more use: open another one, with
-    /// a robot's version if [`Version::from_number`] knows it.
+    /// The device speaks another version. The connection cannot be used any further: open another
+    /// one, with a robot's version if [`Version::from_number`] knows it.
     Incompatible(IncompatibleVersion<P>),
     /// The answer to a request.
     ///
@@ -52,8 +52,8 @@ pub enum Event<'a, P: Protocol = Version> {
         /// The answer.
         reply: P::Reply<'a>,
     },
-    /// An answer that nobody waits for, such as the late one of an abandoned request. It changes
-    /// nothing.
+    /// An answer to no pending request, such as the late one of an abandoned request. The session
+    /// does not change.
     Unmatched {
         /// The id in the message.
         id: CommandId,

@@ -44,7 +44,7 @@ pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Reads the parameters of a request.
     ///
     /// # Errors
-    /// [`DecodeError`] if there are too few bytes, or an enumerator has no meaning.
+    /// [`DecodeError`] if there are too few bytes, or an enumerator is not defined.
     fn decode(
         command: Self::Command,
         message: &Message<'_>,

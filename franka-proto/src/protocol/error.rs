@@ -1,4 +1,4 @@
-//! What can be wrong with bytes, requests, replies and peers: got and expected.
+//! Errors of bytes, requests, replies and peers: what was got and what was expected.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use crate::command::{Command, CommandId, ServiceCommand};
 use crate::framing::Message;
 use crate::version::Version;
 
-/// Bytes that have no meaning. `C` is what can be asked of the device.
+/// Bytes that cannot be decoded. `C` are the commands of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeError<C: ServiceCommand = Command> {
@@ -36,15 +36,15 @@ pub enum DecodeError<C: ServiceCommand = Command> {
         /// The version of the session.
         version: u16,
     },
-    /// An enumerator in a request is none of the version's.
-    #[error("{field} {value} has no meaning")]
+    /// An enumerator in a request is not defined in the version.
+    #[error("{field} {value} is not defined")]
     UnknownValue {
         /// The vendor's name of the field.
         field: &'static str,
         /// Its value.
         value: u32,
     },
-    /// A status in a reply is none of the version's.
+    /// A status in a reply is not defined in the version.
     #[error("{}", Unexpected(*command))]
     UnknownStatus {
         /// The command that is answered.
@@ -79,7 +79,7 @@ pub(crate) fn payload<'a, T: FromBytes + Immutable + KnownLayout + Unaligned, C:
     Ok(payload)
 }
 
-/// libfranka's text about a reply to this command whose status has no meaning.
+/// libfranka's text about a reply to this command with an undefined status.
 struct Unexpected<C>(C);
 
 impl<C: ServiceCommand> fmt::Display for Unexpected<C> {
@@ -100,7 +100,7 @@ pub enum EncodeError {
         /// Bytes that the datagram has.
         needed: usize,
     },
-    /// The version has no way to say it.
+    /// The version has no field or value for it.
     #[error("this protocol version cannot carry {what}")]
     Unsupported {
         /// The vendor's name of the field.
@@ -174,11 +174,11 @@ pub enum ReplyError<C: ServiceCommand = Command> {
     },
 }
 
-/// A peer that left the protocol. No caller can cause it.
+/// A peer that violated the protocol. No caller can cause it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation<C: ServiceCommand = Command> {
-    /// The handshake's answer is neither yes nor no.
+    /// The status of the handshake's answer is not defined.
     #[error("libfranka: Protocol error during connection attempt")]
     ConnectStatus {
         /// The number of the status.
@@ -254,8 +254,8 @@ impl<C: ServiceCommand> Violation<C> {
         }
     }
 
-    /// Whether the session is of no more use. What concerns a single reply leaves the others
-    /// intact.
+    /// Whether the session cannot be used any further. A violation in a single reply leaves the
+    /// others intact.
     #[must_use]
     pub fn is_fatal(&self) -> bool {
         !matches!(self, Self::Reply { .. } | Self::SecondMotionStarted { .. })

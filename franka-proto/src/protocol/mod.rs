@@ -21,7 +21,7 @@ use crate::outgoing::Outgoing;
 /// [`Version`](crate::Version), [`gripper::Version`](crate::gripper::Version) and
 /// [`vacuum::Version`](crate::vacuum::Version) are all there are.
 pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
-    /// What can be asked for.
+    /// The commands.
     type Command: ServiceCommand;
     /// A request with its parameters.
     type Request: Clone + fmt::Debug + PartialEq;
@@ -31,10 +31,10 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The number that the handshake carries.
     fn number(self) -> u16;
 
-    /// What device speaks this protocol, for messages.
+    /// The name of the device that speaks this protocol, for messages.
     fn device(self) -> &'static str;
 
-    /// Which device of its kind speaks another version, if that is known.
+    /// The device in the field that speaks the version `number`, if one is known.
     fn field(number: u16) -> Option<FieldDevice>;
 
     /// The versions of this protocol that this crate speaks, ascending.
@@ -56,7 +56,8 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The answer to a handshake.
     fn answer_handshake(self, status: ConnectStatus) -> Self::Reply<'static>;
 
-    /// What a device answers to the request in a message whose enumerators have no meaning.
+    /// The answer of a device to a request with an undefined enumerator; `None` for an unknown
+    /// command.
     fn rejection(self, message: &Message<'_>) -> Option<(Self::Command, Self::Reply<'static>)>;
 
     /// What a reply means for the request that it answers.
@@ -75,7 +76,7 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The request in a message of a client.
     ///
     /// # Errors
-    /// [`DecodeError`] if there is none.
+    /// [`DecodeError`] if the message holds no valid request.
     fn decode_request(
         self,
         message: &Message<'_>,
@@ -97,7 +98,7 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The reply to `command` in a message of a device.
     ///
     /// # Errors
-    /// [`DecodeError`] if there is none.
+    /// [`DecodeError`] if the message holds no valid reply to `command`.
     fn decode_reply<'a>(
         self,
         command: Self::Command,

@@ -15,7 +15,7 @@ use crate::wire::{self, from_wire, to_wire};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MoveRequest {
-    /// Who controls the joints.
+    /// The controller of the joints.
     pub controller: MoveControllerMode,
     /// What the client sends.
     pub generator: MoveGeneratorMode,

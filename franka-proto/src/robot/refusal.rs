@@ -46,7 +46,8 @@ impl Refusal {
         })
     }
 
-    /// The refusal in a reply to `command`; `None` if the reply is none, or is to `Connect`.
+    /// The refusal in a reply to `command`; `None` if the reply is a success, or is to
+    /// `Connect`.
     #[must_use]
     pub fn from_reply(command: Command, reply: &Reply<'_>, mode: RobotMode) -> Option<Self> {
         Self::new(command, reply.status()?, mode)

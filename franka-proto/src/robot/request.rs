@@ -179,7 +179,7 @@ impl Request {
     /// # Errors
     /// [`DecodeError::UnknownCommand`] if the version has no such number,
     /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownValue`]
-    /// if an enumerator in it (a mode of a `Move`, say) is none of the version's.
+    /// if the version does not define an enumerator in it, such as a mode of a `Move`.
     pub fn decode(version: Version, message: &Message<'_>) -> Result<Self, DecodeError> {
         let number = message.header.command;
         let command = version

@@ -26,7 +26,7 @@ enum Phase {
     Open,
 }
 
-/// What a message of a client asks for.
+/// The event that a message of a client causes.
 // The variants are moved once, from the session to the driver; a box would need an allocator.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug, PartialEq)]
@@ -94,7 +94,7 @@ impl<P: Protocol> Session<P> {
         self.phase == Phase::Open
     }
 
-    /// What a message of the client asks for.
+    /// The event that a message of the client causes.
     ///
     /// # Errors
     /// [`Violation`]: the client is to be disconnected.

@@ -93,7 +93,7 @@ impl Profile {
     }
 }
 
-/// A byte that is no profile. The text is libfranka's, which then sends nothing.
+/// An undefined profile. The text is libfranka's, which then sends nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("Vacuum Gripper: Vacuum profile not defined!")]
 pub struct UndefinedProfile(pub u8);

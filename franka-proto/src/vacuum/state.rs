@@ -28,7 +28,7 @@ pub struct State {
     pub vacuum: i32,
 }
 
-/// The light of a vacuum gripper, by which it tells how it is.
+/// The status light of a vacuum gripper.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DeviceStatus {

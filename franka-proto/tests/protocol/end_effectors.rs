@@ -210,7 +210,7 @@ fn an_unknown_profile_fails_and_the_session_goes_on() {
     let Ok(server::Event::Rejected { error, reply, .. }) = pair.device.on_message(message) else {
         panic!("it is not rejected");
     };
-    assert_eq!(error.to_string(), "profile 4 has no meaning");
+    assert_eq!(error.to_string(), "profile 4 is not defined");
     let event = pair.receive(reply.as_bytes()).unwrap();
     let reply = Reply::Done(Status::Fail);
     let command = vacuum::Command::Vacuum;

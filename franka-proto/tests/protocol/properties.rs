@@ -3,8 +3,8 @@
 
 use franka_proto::framing::{Header, Message, next_message};
 use franka_proto::{
-    CollisionBehavior, Command, CommandId, ControllerMode, Deviation, Errors, Filters, Load,
-    MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode, MoveRequest, Reply, Request,
+    CollisionBehavior, Command, CommandId, ControllerMode, Deviation, EncodeError, Errors, Filters,
+    Load, MotionGeneratorMode, MoveControllerMode, MoveGeneratorMode, MoveRequest, Reply, Request,
     RobotCommand, RobotMode, RobotState, Version, client, server,
 };
 use proptest::array::{uniform3, uniform6, uniform7, uniform16};
@@ -282,7 +282,9 @@ fn a_finish_of_torques_alone_exists_in_protocol_10_only() {
         ..RobotCommand::default()
     };
     let mut bytes = [0xaa; RobotCommand::MAX_SIZE];
-    assert!(command.encode(Version::V5, &mut bytes).is_err());
+    let what = "torque_command_finished";
+    let refused = command.encode(Version::V5, &mut bytes);
+    assert_eq!(refused, Err(EncodeError::Unsupported { what }));
     assert!(bytes.iter().all(|&byte| byte == 0xaa));
     let size = command.encode(Version::V10, &mut bytes).unwrap();
     assert_eq!(
@@ -295,10 +297,16 @@ fn a_finish_of_torques_alone_exists_in_protocol_10_only() {
 fn a_buffer_that_is_too_short_is_an_error_and_stays_untouched() {
     for version in Version::ALL {
         let mut buffer = [0xaa; RobotState::MAX_SIZE];
-        let short = &mut buffer[..version.state_size() - 1];
-        assert!(RobotState::default().encode(version, short).is_err());
-        let short = &mut buffer[..version.command_size() - 1];
-        assert!(RobotCommand::default().encode(version, short).is_err());
+        let refused = |needed: usize| {
+            let got = needed - 1;
+            Err(EncodeError::Buffer { got, needed })
+        };
+        let size = version.state_size();
+        let encoded = RobotState::default().encode(version, &mut buffer[..size - 1]);
+        assert_eq!(encoded, refused(size));
+        let size = version.command_size();
+        let encoded = RobotCommand::default().encode(version, &mut buffer[..size - 1]);
+        assert_eq!(encoded, refused(size));
         assert!(buffer.iter().all(|&byte| byte == 0xaa));
     }
 }

@@ -1,4 +1,4 @@
-//! Parallel, crossing, touching and degenerate axes; tools; numbers that are none.
+//! Parallel, crossing, touching and degenerate axes; tools; non-finite numbers.
 
 use super::*;
 use crate::READY;

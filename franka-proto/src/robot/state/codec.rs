@@ -37,7 +37,7 @@ pub(crate) trait AccelerometerBlock:
 {
     /// Whether the layout has them.
     const EXISTS: bool;
-    /// Top and bottom.
+    /// The upper and the lower sensors; zero without accelerometers.
     fn values(&self) -> [[[f32; 3]; 6]; 2];
     fn of(top: &[[f32; 3]; 6], bottom: &[[f32; 3]; 6]) -> Self;
 }
@@ -71,7 +71,7 @@ impl AccelerometerBlock for () {
     fn of(_: &[[f32; 3]; 6], _: &[[f32; 3]; 6]) -> Self {}
 }
 
-/// The motion generator modes that a version knows; the byte is the position.
+/// The motion generator modes of a version; the byte is the position in the list.
 pub(crate) trait GeneratorModes {
     const MODES: &'static [MotionGeneratorMode];
 }

@@ -90,7 +90,11 @@ fn walls_filters_and_libraries_exist_in_protocol_5() {
     };
     pair.reply(id, reply);
     let refusal = Refusal::from_reply(Command::LoadModelLibrary, &reply, RobotMode::Idle);
-    assert!(refusal.is_some());
+    let text = refusal.expect("a refusal").to_string();
+    assert_eq!(
+        text,
+        "libfranka: Server reports error when loading model library."
+    );
 
     let id = pair.request(&library());
     let file = [0x7f; 5000];

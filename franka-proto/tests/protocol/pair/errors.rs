@@ -8,7 +8,7 @@ use franka_proto::{
 use super::{Pair, joint_motion, message, raw_reply};
 
 #[test]
-fn replies_that_nobody_waits_for_are_reported_and_change_nothing() {
+fn unexpected_replies_are_reported_and_change_nothing() {
     let mut pair = Pair::connected(Version::V10);
     let id = pair.request(&Request::StopMove);
     let bytes = raw_reply(99, &[0]);
