@@ -1,13 +1,14 @@
 //! One axis from its state to its target: brake, least time, given duration, laid out as a profile.
 
 use crate::brake::{Pieces, into_limits};
-use crate::generator::CYCLE;
-use crate::given_duration::lasting;
-use crate::least_time::{Least, Shape, least_time};
+use crate::cycle::CYCLE;
+use crate::feasible_durations::FeasibleDurations;
+use crate::given_duration::stretched;
+use crate::least_time::{LeastTime, least_time};
 use crate::limits::AxisLimits;
-use crate::passing::{Passing, Way};
-use crate::possible::Possible;
+use crate::moving_target::{MovingTarget, Solution};
 use crate::profile::Profile;
+use crate::shape::Shape;
 use crate::state::AxisState;
 use crate::task::{ROUNDING, Task};
 use crate::transfer::stop;
@@ -26,11 +27,11 @@ pub(crate) struct Axis {
     motion: Motion,
 }
 
-/// What follows the brake.
+/// The motion after the brake.
 #[derive(Debug, Clone, Copy)]
 enum Motion {
-    ToRest(Least),
-    Through(Passing),
+    ToRest(LeastTime),
+    ToMoving(MovingTarget),
 }
 
 /// Why an axis has no plan.
@@ -38,7 +39,7 @@ enum Motion {
 pub(crate) enum Refusal {
     /// The numbers are too far apart.
     OutOfRange,
-    /// The target moves in a way that the limits do not allow.
+    /// The limits do not allow the motion of the target.
     TargetMotion,
 }
 
@@ -56,7 +57,7 @@ impl Axis {
         } else {
             let v = target.velocity / (limits.acceleration * unit);
             let a = target.acceleration / limits.acceleration;
-            // It has to be reached from inside, and left again.
+            // The target has to be reached from inside the limits, and left again.
             let fastest = v.abs() + 0.5 * a * a;
             if a.abs() > 1.0 + AT_LIMIT || fastest > task.top * (1.0 + AT_LIMIT) {
                 return Err(Refusal::TargetMotion);
@@ -67,7 +68,7 @@ impl Axis {
                 fuzz: ROUNDING * size / (limits.jerk * unit * unit * unit),
                 ..task
             };
-            Motion::Through(Passing::new(&task, v, a))
+            Motion::ToMoving(MovingTarget::new(&task, v, a))
         };
         Ok(Self {
             start,
@@ -84,7 +85,7 @@ impl Axis {
     pub(crate) fn least_duration(&self) -> f64 {
         let least = match &self.motion {
             Motion::ToRest(least) => least.duration,
-            Motion::Through(passing) => passing.least(),
+            Motion::ToMoving(moving) => moving.least(),
         };
         self.unit * (self.braking + least)
     }
@@ -92,24 +93,24 @@ impl Axis {
     /// The least duration that it can take and that is not less than `duration`, which is not less
     /// than the least.
     pub(crate) fn from(&self, duration: f64) -> f64 {
-        let Motion::Through(passing) = &self.motion else {
+        let Motion::ToMoving(moving) = &self.motion else {
             return duration;
         };
         let left = duration / self.unit - self.braking;
-        let possible = passing.from(left);
-        if possible == left {
+        let feasible = moving.from(left);
+        if feasible == left {
             duration
         } else {
-            self.unit * (self.braking + possible)
+            self.unit * (self.braking + feasible)
         }
     }
 
     /// The last duration before `duration` that it can take, if it cannot take `duration`.
     pub(crate) fn before(&self, duration: f64) -> Option<f64> {
-        let Motion::Through(passing) = &self.motion else {
+        let Motion::ToMoving(moving) = &self.motion else {
             return None;
         };
-        let earlier = passing.before(duration / self.unit - self.braking)?;
+        let earlier = moving.before(duration / self.unit - self.braking)?;
         Some(self.unit * (self.braking + earlier))
     }
 
@@ -117,7 +118,7 @@ impl Axis {
     pub(crate) fn can_take(&self, duration: f64) -> bool {
         let left = duration / self.unit - self.braking;
         match &self.motion {
-            Motion::Through(passing) => passing.can_take(left),
+            Motion::ToMoving(moving) => moving.can_take(left),
             Motion::ToRest(least) => least.duration <= left || earlier(least, left).is_some(),
         }
     }
@@ -137,26 +138,26 @@ impl Axis {
     /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes
     /// longer.
     ///
-    /// Behind a target in motion it goes on for a cycle and then comes to rest in the least time.
+    /// After a target in motion it goes on for a cycle and then comes to rest in the least time.
     pub(crate) fn lay_out(&self, duration: f64, profile: &mut Profile) {
         let left = duration / self.unit - self.braking;
         match &self.motion {
             Motion::ToRest(least) => {
                 self.begin(profile);
-                let solution = lasting(least, left);
+                let solution = stretched(least, left);
                 let jerk = least.sign * self.limits.jerk;
                 profile.push_pieces(&solution.before, jerk, self.unit);
                 self.lay_out_shape(least.sign * solution.sign, &solution.shape, 0.0, profile);
             }
-            Motion::Through(passing) => {
-                match passing.way(left.max(passing.least())) {
-                    Way::Shape(sign, shape) => {
+            Motion::ToMoving(moving) => {
+                match moving.solve(left.max(moving.least())) {
+                    Solution::Shape(sign, shape) => {
                         self.begin(profile);
                         self.lay_out_shape(sign, &shape, 0.0, profile);
                     }
-                    Way::Mean { up, down, weight } => {
-                        let up = self.farthest(1.0, &up.0, up.1);
-                        let down = self.farthest(-1.0, &down.0, down.1);
+                    Solution::Mean { up, down, weight } => {
+                        let up = self.extremal(1.0, &up.0, up.1);
+                        let down = self.extremal(-1.0, &down.0, down.1);
                         profile.mean_of(weight, &up, &down, self.target);
                     }
                 }
@@ -171,7 +172,7 @@ impl Axis {
     }
 
     /// A motion that gets `beyond` the target in a direction.
-    fn farthest(&self, sign: f64, shape: &Shape, beyond: f64) -> Profile {
+    fn extremal(&self, sign: f64, shape: &Shape, beyond: f64) -> Profile {
         let mut profile = Profile::at_rest(0.0);
         self.begin(&mut profile);
         self.lay_out_shape(sign, shape, sign * beyond, &mut profile);
@@ -200,15 +201,15 @@ impl Axis {
 ///
 /// Near the end of a motion the least duration is uncertain by the third root of the rounding of
 /// positions: microseconds, which are micrometres of an axis that moves.
-fn earlier(least: &Least, duration: f64) -> Option<Least> {
-    let possible = Possible::new(&least.task, 0.0, 0.0);
-    let d = least.task.d - possible.drift(least.duration);
+fn earlier(least: &LeastTime, duration: f64) -> Option<LeastTime> {
+    let feasible = FeasibleDurations::new(&least.task, 0.0, 0.0);
+    let d = least.task.d - feasible.drift(least.duration);
     let earlier = least_time(Task {
         d: d.max(least.task.stop_point().0),
         ..least.task
     });
-    let takes = earlier.duration <= duration || possible.are_same(duration, earlier.duration);
-    takes.then_some(Least {
+    let takes = earlier.duration <= duration || feasible.are_same(duration, earlier.duration);
+    takes.then_some(LeastTime {
         sign: least.sign * earlier.sign,
         ..earlier
     })
@@ -230,7 +231,7 @@ pub(crate) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut P
 /// acceleration, if the limits allow it, and the least-time stop.
 ///
 /// The first command that counts as at the target is sent up to one cycle after the last axis is
-/// there. Whoever sets a new target then finds the axis where the old one would be, not already
+/// there. A target that is set then finds the axis where the old target would be, not already
 /// slowing down.
 fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
     let AxisState {

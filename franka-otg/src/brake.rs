@@ -34,7 +34,7 @@ impl Pieces {
 
     /// Appends a piece and returns what is left of the task after it.
     pub(crate) fn push(&mut self, task: Task, jerk: f64, t: f64) -> Task {
-        // NaN cannot occur here; a time that is not positive is no piece.
+        // Only positive times are pieces; NaN cannot occur here.
         if t > 0.0 && self.len < self.list.len() {
             self.list[self.len] = (jerk, t);
             self.len += 1;
@@ -62,7 +62,7 @@ pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     } else if too_low {
         task = slow_down(&mut pieces, task, -1.0);
     }
-    // What rounding leaves above the limit is accepted as the limit of this plan.
+    // A rounding error above the limit is accepted as the limit of this plan.
     let coasting = task.coasting_velocity().abs();
     if coasting <= task.top * (1.0 + 4.0 * TOLERANCE) {
         task.top = task.top.max(coasting);

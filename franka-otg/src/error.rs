@@ -1,12 +1,12 @@
-//! Why a state, target or limit is refused at the door.
+//! Why a state, target or limit is refused.
 
 use core::fmt;
 
-/// Why no plan is made. The generator keeps the plan that it has.
+/// Why no plan is made. The motion in progress goes on.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
-    /// A number of a state or target is infinite or not a number.
+    /// A non-finite value in a state or target.
     #[error("{quantity} of axis {axis} is not finite")]
     NotFinite {
         /// What the number describes.
@@ -14,7 +14,7 @@ pub enum PlanError {
         /// Axis, counted from zero.
         axis: usize,
     },
-    /// A limit is zero, negative, infinite or not a number.
+    /// A limit that is not positive and finite.
     #[error("{quantity} limit {value} of axis {axis} is not a positive finite number")]
     Limit {
         /// What is limited.
@@ -24,9 +24,11 @@ pub enum PlanError {
         /// The limit as given.
         value: f64,
     },
-    /// The target's velocity and acceleration cannot be met inside the limits: the acceleration is
-    /// larger than its limit, or the velocity would be on the way there or behind it.
-    #[error("the motion of the target of axis {axis} does not fit its limits")]
+    /// The target's velocity and acceleration cannot be met inside the limits: the acceleration
+    /// exceeds its limit, or the velocity would exceed its own just before or after the target.
+    #[error(
+        "the target of axis {axis} moves faster than its limits allow: |velocity| + acceleration^2 / (2 jerk limit) and |acceleration| must not exceed the limits"
+    )]
     TargetMotion {
         /// Axis, counted from zero; 0 for a straight line, which is planned as one.
         axis: usize,

@@ -1,16 +1,11 @@
 //! The generator: a plan, and the cycle that it has reached.
 
 use crate::axis::can_stop;
+use crate::cycle::CYCLE;
 use crate::error::{PlanError, Quantity};
 use crate::limits::Limits;
 use crate::plan::{Plan, Start, Synchronisation};
 use crate::state::{State, check_finite};
-
-/// One nominal cycle of the robot, in seconds (FCI documentation: 1 kHz).
-///
-/// The generator advances by this per command, whatever the time between two states: to the robot,
-/// two milliseconds' motion in one command is a doubled velocity.
-pub const CYCLE: f64 = 1e-3;
 
 /// Moves `N` axes to a target that may change at any time, inside limits of velocity, acceleration
 /// and jerk.
@@ -50,12 +45,12 @@ pub struct Generator<const N: usize> {
     state: State<N>,
 }
 
-/// What the plan is for.
+/// The goal of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Goal<const N: usize> {
-    /// The state that the caller asked for.
+    /// The target state.
     Target(State<N>),
-    /// Rest wherever it is reached first.
+    /// Rest, in the least time.
     Rest,
 }
 
@@ -92,8 +87,8 @@ impl<const N: usize> Generator<N> {
         Ok(generator)
     }
 
-    /// Becomes a generator at `state` that moves to rest at `target`, or comes to rest in the least
-    /// time: what a new one would be, in place. A generator is some kilobytes large.
+    /// Replaces state, limits and target: the motion leads to rest at `target`, or to rest in the
+    /// least time. The same as a new generator, but in place: a generator is some kilobytes large.
     ///
     /// # Errors
     /// As [`new`](Self::new) and [`set_target`](Self::set_target); the motion in progress goes on.
@@ -137,7 +132,7 @@ impl<const N: usize> Generator<N> {
         Ok(())
     }
 
-    /// The same generator with another way of moving the axes together, from the next plan on.
+    /// Sets how the axes move together, from the next plan on.
     #[must_use]
     pub fn with_synchronisation(mut self, synchronisation: Synchronisation) -> Self {
         self.synchronisation = synchronisation;
@@ -163,13 +158,14 @@ impl<const N: usize> Generator<N> {
     /// Moves to `target`, to be there with its velocity and acceleration, in the least time in
     /// which all axes can. The target in force already is not planned again.
     ///
-    /// Meant for following something that moves, with a new target before each arrival, and for
-    /// passing through points on the way to others. Without a new target the motion goes on past
-    /// the old one for one cycle, and then comes to rest in the least time: a program that stalls
-    /// does not send an arm on for ever.
+    /// For following an object in motion, with a new target before each arrival, and for passing
+    /// through points with a velocity. Without a new target the motion continues past the old one
+    /// for one cycle, and then comes to rest in the least time: a program that stalls does not keep
+    /// an arm moving.
     ///
-    /// An axis that would be early cannot wait at a moving target. It makes room and comes again,
-    /// which may lead it beyond the target or the other way first.
+    /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would be
+    /// early cannot wait at a moving target: it goes back and comes again, which may lead it past
+    /// the target first, and the others wait for it.
     ///
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the
@@ -214,7 +210,7 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Gives up the target and comes to rest in the least time.
+    /// Drops the target and comes to rest in the least time.
     ///
     /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its
     /// own if the axes have the same ratio of acceleration to jerk, and about the difference of
@@ -229,8 +225,7 @@ impl<const N: usize> Generator<N> {
     /// Re-anchors the generator at `state` and plans anew: to the target if there is one, else to
     /// rest in the least time.
     ///
-    /// The output steps to `state`; that it is close to the last output is for the caller to see
-    /// to.
+    /// The output steps to `state`: the caller ensures that it is close to the last output.
     ///
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
@@ -241,7 +236,7 @@ impl<const N: usize> Generator<N> {
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
     /// The cycle in which the motion ends, and all after it, give exactly the target without
-    /// velocity and acceleration (the place behind it where the motion comes to rest, if the target
+    /// velocity and acceleration (the position past it at which the motion comes to rest, if the target
     /// moves).
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
@@ -265,7 +260,7 @@ impl<const N: usize> Generator<N> {
         &self.state
     }
 
-    /// Position that the motion in progress leads to: that of the target, or where braking ends.
+    /// Position of the target, or the position at which braking ends if there is none.
     #[must_use]
     pub const fn target(&self) -> &[f64; N] {
         match &self.goal {
@@ -275,7 +270,7 @@ impl<const N: usize> Generator<N> {
     }
 
     /// Position at which the motion in progress comes to rest if nothing changes: the target, a
-    /// place behind it if it moves, or where braking ends.
+    /// position past it if it moves, or where braking ends.
     #[must_use]
     pub const fn end(&self) -> &[f64; N] {
         self.plan.end()
@@ -293,7 +288,7 @@ impl<const N: usize> Generator<N> {
         self.plan.duration()
     }
 
-    /// Time until the target is met, or rest is if there is none, in seconds; zero from then on.
+    /// Time in seconds until the target is met, or until rest if there is none; zero from then on.
     #[must_use]
     pub fn time_to_target(&self) -> f64 {
         if self.is_done() {

@@ -17,59 +17,28 @@
 //! acceleration it is a quadratic or linear equation. The cruise follows from the time equation, so
 //! the duration is exact and rounding goes into the position, where it is smallest.
 //!
-//! **Late push**, where no cruise fits: see [`crate::late_push`].
+//! **Stop, then go**, where no cruise fits: see [`crate::stop_then_go`].
 //!
 //! Slowing time down instead (one factor for the whole profile) would change the velocity at the
 //! start, and lowering all three limits at once makes the duration discontinuous where a start no
 //! longer fits inside them.
 
-use crate::brake::Pieces;
-use crate::late_push::late_push;
-use crate::least_time::{Least, Shape};
+use crate::least_time::LeastTime;
 use crate::scalar::sqrt;
-use crate::task::Task;
+use crate::shape::{Shape, Stretched};
+use crate::stop_then_go::stop_then_go;
+use crate::task::{SAME, Task};
 use crate::transfer::{ramp_and_hold, stop_distance_and_slope, transfer_time};
-
-/// A profile that lasts as long as asked for, in the frame of the least-time solution that it comes
-/// from.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Lasting {
-    /// What comes before the shape.
-    pub(crate) before: Pieces,
-    /// Direction of the shape.
-    pub(crate) sign: f64,
-    /// The shape.
-    pub(crate) shape: Shape,
-}
-
-impl Lasting {
-    /// Some pieces, and a least-time profile in their frame.
-    pub(crate) fn new(before: Pieces, least: &Least) -> Self {
-        Self {
-            before,
-            sign: least.sign,
-            shape: least.shape,
-        }
-    }
-
-    fn of(shape: Shape) -> Self {
-        Self {
-            before: Pieces::NONE,
-            sign: 1.0,
-            shape,
-        }
-    }
-}
 
 /// Stretches a least-time solution to `duration`, in units of the axis; to its own if that is
 /// longer.
-pub(crate) fn lasting(least: &Least, duration: f64) -> Lasting {
+pub(crate) fn stretched(least: &LeastTime, duration: f64) -> Stretched {
     if duration - least.duration <= SAME * duration {
-        return Lasting::of(least.shape);
+        return Stretched::of(least.shape);
     }
     match velocity_cap(&least.task, least.shape.cruise, duration) {
-        Some(shape) => Lasting::of(shape),
-        None => late_push(least, duration),
+        Some(shape) => Stretched::of(shape),
+        None => stop_then_go(least, duration),
     }
 }
 
@@ -188,9 +157,6 @@ impl Cap {
     }
 }
 
-/// Relative difference of durations that is rounding.
-pub(crate) const SAME: f64 = 1e-14;
-
 /// Bound of the search: bisection alone needs about 53 steps.
 const MAX_STEPS: usize = 60;
 
@@ -203,8 +169,8 @@ mod tests {
 
     /// Follows a solution; returns its duration, the task left at its end, and the largest
     /// acceleration, velocity and distance beyond the target between segments.
-    fn follow(task: &Task, solution: &Lasting) -> (f64, Task, f64, f64, f64) {
-        let Lasting {
+    fn follow(task: &Task, solution: &Stretched) -> (f64, Task, f64, f64, f64) {
+        let Stretched {
             before,
             sign,
             shape,
@@ -264,7 +230,7 @@ mod tests {
         fn every_longer_duration_has_a_profile(task in task(), exponent in -5.0..0.7) {
             let least = least_time(task);
             let duration = least.duration * (1.0 + 10_f64.powf(exponent));
-            let solution = lasting(&least, duration);
+            let solution = stretched(&least, duration);
             let (lasts, left, a, v, beyond) = follow(&least.task, &solution);
             let size = task.d.abs() + task.top * duration;
             // Near a stop point the rounding of a position costs its root in time.
@@ -282,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_braking_into_a_near_target_pushes_late() {
+    fn an_axis_braking_into_a_near_target_stops_first() {
         let task = Task {
             d: 0.0,
             v: 2.0,
@@ -298,7 +264,7 @@ mod tests {
         for factor in [1.001, 1.01, 1.02, 1.03] {
             let duration = factor * least.duration;
             assert!(velocity_cap(&least.task, least.shape.cruise, duration).is_none());
-            let solution = lasting(&least, duration);
+            let solution = stretched(&least, duration);
             let (lasts, left, _, _, beyond) = follow(&least.task, &solution);
             assert!(
                 (lasts - duration).abs() < 1e-13 * duration,
@@ -324,7 +290,7 @@ mod tests {
             d: task.stop_point().0,
             ..task
         });
-        let solution = lasting(&least, 10.0 * least.duration);
+        let solution = stretched(&least, 10.0 * least.duration);
         let (lasts, left, ..) = follow(&least.task, &solution);
         assert!((lasts - 10.0 * least.duration).abs() < 1e-12 * lasts);
         assert!(left.d.abs() < 1e-12 && left.v.abs() < 1e-12);

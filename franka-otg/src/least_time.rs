@@ -28,54 +28,13 @@
 //! usual way, fails on their common boundaries by rounding.
 
 use crate::scalar::{cbrt, sqrt};
+use crate::shape::Shape;
 use crate::task::Task;
 use crate::transfer::{ramp_and_hold, stop_distance, transfer_distance};
 
-/// A push and a stop: jerks `first, 0, -first, 0, -1, 0, 1` in units of the limit, each for its
-/// duration.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Shape {
-    /// Sign of the first jerk.
-    pub(crate) first: f64,
-    /// The seven durations, none negative.
-    pub(crate) t: [f64; 7],
-    /// Velocity between the two halves: during the fourth, if that is not zero.
-    pub(crate) cruise: f64,
-}
-
-impl Shape {
-    /// Sum of the durations.
-    pub(crate) fn duration(&self) -> f64 {
-        self.t.iter().sum()
-    }
-
-    /// Transfer from acceleration `a` to the velocity `cruise`, held for `time`, and transfer to
-    /// rest; both as ramp and hold.
-    pub(crate) fn two_transfers(
-        a: f64,
-        to_cruise: (f64, f64),
-        (cruise, time): (f64, f64),
-        to_rest: (f64, f64),
-    ) -> Self {
-        let ((x, first_hold), (y, second_hold)) = (to_cruise, to_rest);
-        // A negative x is an acceleration that never reaches zero: one negative jerk from x to -y.
-        let (t3, t5) = if x < 0.0 {
-            (0.0, (x + y).max(0.0))
-        } else {
-            (x, y)
-        };
-        let t1 = (x - a).max(0.0);
-        Self {
-            first: 1.0,
-            t: [t1, first_hold, t3, time, t5, second_hold, y],
-            cruise,
-        }
-    }
-}
-
 /// The least-time solution of a task inside its limits.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Least {
+pub(crate) struct LeastTime {
     /// Direction of the push, 1 or -1; the rest is in the frame in which it is upwards.
     pub(crate) sign: f64,
     /// The task in that frame.
@@ -87,7 +46,7 @@ pub(crate) struct Least {
 }
 
 /// Solves a task that is inside its limits.
-pub(crate) fn least_time(task: Task) -> Least {
+pub(crate) fn least_time(task: Task) -> LeastTime {
     let (stop, rounding) = task.stop_point();
     let fuzz = task.fuzz + if task.fuzz > 0.0 { rounding } else { 0.0 };
     let (sign, mut task, is_stop) = if (task.d - stop).abs() <= fuzz {
@@ -106,7 +65,7 @@ pub(crate) fn least_time(task: Task) -> Least {
     } else {
         start.solve(task.d)
     };
-    Least {
+    LeastTime {
         sign,
         task,
         shape,

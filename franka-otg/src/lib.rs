@@ -1,76 +1,123 @@
-//! Jerk-limited online trajectory generation, to targets at rest and in motion.
+//! Jerk-limited online trajectory generation for any machine with axes.
 //!
 //! [`Generator`] moves `N` axes from any state to a target inside limits of velocity, acceleration
-//! and jerk, in the least time in which all axes can arrive together. Target and limits may change
-//! in any cycle. A plan is made when something changes, then followed: planning anew in each cycle
-//! would add its rounding in each, where a kept plan ends exactly at the target.
+//! and jerk, in the least time in which all axes arrive together. Targets are at rest or in motion.
+//! Target and limits may change in any cycle. A plan is made when one of them changes and is then
+//! followed: planning in every cycle would add a rounding error per cycle, a plan that is kept ends
+//! exactly at the target.
 //!
 //! ```text
-//! state, target, limits -> plan     straight line if the motion so far allows one, else each axis on its own
-//!                           -> axis      brake into the limits if outside, then
-//!                                to rest           least_time      the least duration of this axis
-//!                                                  given_duration  a profile of a longer one
-//!                                to what moves     passing         the durations that are possible, a profile of each
-//!                                                  farthest        what both are made of
-//!                           -> profile   at most twenty segments of constant jerk; sampled once per cycle
+//! state, target, limits -> plan          a straight line if the motion so far allows one, else each axis on its own
+//!                            -> axis     brake into the limits if outside, then
+//!                                 at rest     least_time       the least duration of this axis
+//!                                             given_duration   a profile of a longer one
+//!                                 in motion   moving_target    the feasible durations, a profile for each
+//!                            -> profile  up to twenty segments of constant jerk; sampled once per cycle
 //! ```
+//!
+//! ```
+//! use franka_otg::{Generator, Limits, State};
+//!
+//! let limits = Limits::from_arrays([2.0; 2], [10.0; 2], [5000.0; 2])?;
+//! let mut generator = Generator::new(State::at_rest([0.0, 0.5]), limits)?;
+//! generator.set_target(&[0.3, -0.2])?;
+//! for _ in 0..100 {
+//!     let State { position, .. } = generator.step(); // the command of this cycle
+//!     assert!(position[0] < 0.3);
+//! }
+//! generator.set_target(&[0.1, 0.0])?; // in the middle of the motion
+//! while !generator.is_done() {
+//!     generator.step();
+//! }
+//! assert_eq!(generator.state(), &State::at_rest([0.1, 0.0]));
+//! # Ok::<(), franka_otg::PlanError>(())
+//! ```
+//!
+//! `cargo run --release -p franka-otg --example plot` draws a stepped, bursty and stalling target
+//! and the smooth command (the picture in the book's page on the generator). `cargo bench -p
+//! franka-otg` measures a new target for axes in motion.
+//!
+//! # Modules
+//!
+//! | module | contents |
+//! |---|---|
+//! | `generator` | the public face: input, output, the plan in progress |
+//! | `state`, `limits`, `error`, `cycle` | what goes in and comes out |
+//! | `plan` | the motion of all axes, and their common duration |
+//! | `straight_line` | all axes as one scalar problem |
+//! | `axis` | one axis, from its state to its profile |
+//! | `task` | one axis in units of its limits |
+//! | `brake` | from outside the limits back into them |
+//! | `least_time` | step one, targets at rest |
+//! | `given_duration`, `stop_then_go` | step two, targets at rest: velocity cap, and stop first |
+//! | `moving_target` | targets in motion: a profile for each feasible duration |
+//! | `feasible_durations`, `velocity_change` | which durations are feasible |
+//! | `extremal_profile`, `plateau` | the motion that gets farthest in a given time; one by way of a constant velocity |
+//! | `shape`, `profile` | seven durations of jerk; segments over time |
+//! | `transfer`, `root`, `times`, `scalar` | velocity changes, root search, sorted lists, roots |
 //!
 //! # Targets at rest
 //!
 //! An axis may wait at rest, so the positions at which it can rest at time `T` are an interval that
-//! only grows with `T`. Three things follow. Every duration from the least on is feasible, so the
-//! common duration is the longest of the least ones. The optimum is "push at the limits, then
-//! stop", its direction given by the place where an immediate stop would end. And where the push
-//! ends is a monotone function of how long it lasts, so the case that applies is found by comparing
-//! the target with the breakpoints: closed forms or one short convex search, no families to try
+//! only grows with `T`. Three things follow. Every duration from the least one on is feasible, so
+//! the common duration is the longest of the least ones. The optimum is "push at the limits, then
+//! stop", its direction given by the position at which an immediate stop would end. And where the
+//! push ends is a monotone function of how long it lasts, so the case that applies is found by
+//! comparing the target with the breakpoints: closed forms or one short convex search
 //! (`least_time`).
 //!
 //! # Targets in motion
 //!
-//! At a target that moves an axis cannot wait, and there may be durations that cannot be met
-//! between others that can. But for one duration the positions that can be reached still are an
-//! interval, whose ends have closed forms, and the mean of two admissible motions is one. So
-//! whether a duration is possible is decided by two evaluations, and a profile for it is a weighted
-//! mean: one short search per axis finds where possible durations begin, and nothing else is
-//! searched for (`passing`).
+//! At a target in motion an axis cannot wait, and there may be *blocked* durations between feasible
+//! ones. But for one duration the reachable positions are still an interval, whose ends have closed
+//! forms, and the mean of two admissible motions is admissible. So two evaluations decide whether a
+//! duration is feasible, and a profile for it is a weighted mean: one short search per axis finds
+//! where feasible durations begin (`moving_target`).
 //!
-//! # What it holds
+//! # Guarantees
 //!
 //! - Velocity, acceleration and jerk keep their limits to rounding, from every state that can stay
-//!   inside them. Others are brought back inside under the jerk limit, as early as possible; the
-//!   state is never clamped (`brake`).
-//! - All axes arrive together. A target at rest that can be reached without overshooting is not
-//!   overshot because another axis takes longer. The one exception keeps the second promise: an
-//!   axis whose stop ends exactly at its target cannot be late there without overshooting, and
-//!   waits (`late_push`).
-//! - From rest, and while new targets stay on the line, the path is straight (`line`).
-//! - No allocation, no panic, for all finite inputs; what `f64` cannot compute is an error at the
-//!   door.
+//!   inside them. Other states are brought back inside under the jerk limit, as early as possible;
+//!   the state is never clamped (`brake`).
+//! - All axes are at the target at the same time, to rounding. A target at rest that can be reached
+//!   without overshooting is not overshot because another axis takes longer. There is one
+//!   exception: an axis whose stop ends exactly at its target cannot arrive later without
+//!   overshooting, and waits there (`stop_then_go`).
+//! - From rest, and while new targets stay on the line, the path is straight (`straight_line`).
+//! - No allocation and no panic, for all finite inputs; input that `f64` cannot compute with is an
+//!   error.
 //!
-//! # Why it terminates
+//! # What it does not do
+//!
+//! - It knows no robot: joint ranges, collisions, kinematics and torques are the caller's.
+//! - It reads no clock: [`Generator::step`] advances by [`CYCLE`], one millisecond. A machine with
+//!   another cycle calls [`Generator::sample`].
+//! - Limits are symmetric and bind each axis by itself; a limit of a norm is the caller's.
+//! - It plans to one target at a time. A path through waypoints is the caller's sequence of
+//!   targets.
+//!
+//! # Termination
 //!
 //! No function calls itself, directly or through others: the modules call each other in the order
 //! of the diagram. So the work is bounded if each loop is, and each loop counts:
 //!
 //! | loop | passes at most |
 //! |---|---|
-//! | axes of a plan, groups of limits | `N` |
+//! | axes of a plan | `N` |
 //! | `least_time`, Newton steps | 60 |
 //! | `given_duration`, bracketed Newton steps | 60 |
-//! | `late_push`, one `root` around `least_time` | 100 evaluations |
-//! | `possible`, pieces between breaks: one `root` each, for two sides | 15 pieces of 100 evaluations, none of which loops |
+//! | `stop_then_go`, one `root` around `least_time` | 100 evaluations |
+//! | `feasible_durations`, pieces between breaks: one `root` each, for two sides | 15 pieces of 100 evaluations, none of which loops |
 //! | `times`, insertion into a sorted list | the list's capacity, at most 48 |
 //! | `plan`, common duration | 8 candidates of each axis |
 //! | `plateau`, one `root` | 100 evaluations |
 //! | `profile`, segments laid out, merged or skipped | 20, 40, 20 |
 //!
-//! The counts of the searches are ceilings that no comparison of floating-point numbers can lift,
-//! whatever is rounded, infinite or not a number. What a search needs is a separate question, which
-//! decides accuracy and not termination: bisection alone, into which the bracketed ones fall back,
-//! halves the bracket in each step and has no more than 53 to halve. On a grid over states, targets
-//! and limits, flat and double roots among them, `root` never takes 80 % of what it may
-//! (`tests/bounds.rs`); Newton steps may take all of theirs at a double root, where each halves the
-//! rest.
+//! Each search counts its passes, so it ends whatever is rounded, infinite or NaN. Accuracy is a
+//! separate question: bisection, into which the bracketed searches fall back, halves the bracket
+//! in each step and has no more than 53 bits to halve. On a grid over states, targets and limits,
+//! flat and double roots among them, `root` never takes 80 % of its passes (`tests/bounds.rs`);
+//! Newton steps may take all of theirs at a double root, where each halves the rest.
 //!
 //! # Sources
 //!
@@ -78,9 +125,9 @@
 //! Real-time Trajectory Generation with Arbitrary Target States*, RSS 2021, arXiv:2105.04830; T.
 //! Kröger, F. Wahl, *Online Trajectory Generation: Basic Concepts for Instantaneous Reactions to
 //! Unforeseen Events*, IEEE T-RO 26(1), 2010; R. Haschke, E. Weitnauer, H. Ritter, *On-Line
-//! Planning of Time-Optimal, Jerk-Limited Trajectories*, IROS 2008. The decision by breakpoints,
-//! the two families of step two and the way off a line are derived in these files; the tests hold
-//! them against plain bisection, and against vectors made with Ruckig 0.19.4.
+//! Planning of Time-Optimal, Jerk-Limited Trajectories*, IROS 2008. The decision by breakpoints
+//! and the two families of step two are derived in these files; the tests hold them against plain
+//! bisection, and against vectors made with Ruckig 0.19.4.
 
 #![no_std]
 #![forbid(unsafe_code)]
@@ -90,31 +137,34 @@ extern crate std;
 
 mod axis;
 mod brake;
+mod cycle;
 mod error;
-mod farthest;
+mod extremal_profile;
+mod feasible_durations;
 mod generator;
 mod given_duration;
-mod late_push;
 mod least_time;
 mod limits;
-mod line;
-mod passing;
+mod moving_target;
 mod plan;
 mod plateau;
-mod possible;
 mod profile;
 mod root;
 mod scalar;
+mod search_passes;
+mod shape;
 mod state;
-mod steps;
+mod stop_then_go;
+mod straight_line;
 mod task;
 mod times;
 mod transfer;
 mod velocity_change;
 
 pub use axis::rest_of;
+pub use cycle::CYCLE;
 pub use error::{PlanError, Quantity};
-pub use generator::{CYCLE, Generator};
+pub use generator::Generator;
 pub use limits::{AxisLimits, Limits};
 pub use plan::Synchronisation;
 pub use state::{AxisState, State};

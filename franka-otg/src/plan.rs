@@ -2,11 +2,11 @@
 
 use crate::axis::{Axis, Refusal, lay_out_stop};
 use crate::error::PlanError;
+use crate::feasible_durations::CANDIDATES;
 use crate::limits::Limits;
-use crate::line::Line;
-use crate::possible::CANDIDATES;
 use crate::profile::Profile;
 use crate::state::{AxisState, State};
+use crate::straight_line::StraightLine;
 
 /// How the axes of a motion to a target move together. All arrive at the same instant in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,31 +22,31 @@ pub enum Synchronisation {
 /// A motion that is being followed, as a function of the time since it was planned.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan<const N: usize> {
-    course: Course<N>,
-    /// Motion along the line of the course.
+    path: Path<N>,
+    /// Motion along the straight line.
     along: Profile,
     /// Motion of each axis on its own.
     axes: [Profile; N],
     /// When the target is met, in seconds from the start.
     arrival: f64,
-    /// Where it comes to rest: the target, or behind it.
+    /// Where it comes to rest: at the target, or past it if the target moves.
     end: [f64; N],
     duration: f64,
 }
 
 #[derive(Debug, Clone)]
-enum Course<const N: usize> {
+enum Path<const N: usize> {
     /// Each axis on its own.
-    Axes,
+    PerAxis,
     /// On a straight line.
-    Line(Line<N>),
+    Straight(StraightLine<N>),
 }
 
 /// What a plan starts from.
 pub(crate) struct Start<'a, const N: usize> {
     pub(crate) state: State<N>,
     /// The straight line that the state is on, and the state along it.
-    pub(crate) line: Option<(Line<N>, AxisState)>,
+    pub(crate) line: Option<(StraightLine<N>, AxisState)>,
     pub(crate) limits: &'a Limits<N>,
 }
 
@@ -54,7 +54,7 @@ impl<const N: usize> Plan<N> {
     /// Staying at `position`.
     pub(crate) fn at_rest(position: [f64; N]) -> Self {
         Self {
-            course: Course::Axes,
+            path: Path::PerAxis,
             along: Profile::at_rest(0.0),
             axes: position.map(Profile::at_rest),
             arrival: 0.0,
@@ -63,7 +63,7 @@ impl<const N: usize> Plan<N> {
         }
     }
 
-    /// Replaces the plan by the motion to `target`, and to rest behind it if it moves.
+    /// Replaces the plan by the motion to `target`, and to rest past it if it moves.
     ///
     /// # Errors
     /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the plan is then unchanged.
@@ -80,7 +80,7 @@ impl<const N: usize> Plan<N> {
                 Some((*line, *along, to))
             });
             let straight = kept.or_else(|| {
-                let (line, along) = Line::through(&start.state, target)?;
+                let (line, along) = StraightLine::through(&start.state, target)?;
                 let to = line.state_of(target)?;
                 Some((line, along, to))
             });
@@ -89,13 +89,13 @@ impl<const N: usize> Plan<N> {
             }
         }
         self.move_axes(&start.state, target, start.limits)?;
-        self.course = Course::Axes;
+        self.path = Path::PerAxis;
         Ok(())
     }
 
     fn follow_line(
         &mut self,
-        line: Line<N>,
+        line: StraightLine<N>,
         along: AxisState,
         to: AxisState,
         target: &State<N>,
@@ -113,7 +113,7 @@ impl<const N: usize> Plan<N> {
             self.arrival = least;
             self.end = line.state(AxisState::at_rest(self.along.end())).position;
         }
-        self.course = Course::Line(line);
+        self.path = Path::Straight(line);
         Ok(())
     }
 
@@ -171,7 +171,7 @@ impl<const N: usize> Plan<N> {
             self.duration = self.along.duration();
             self.arrival = self.duration;
             self.end = line.state(AxisState::at_rest(self.along.end())).position;
-            self.course = Course::Line(*line);
+            self.path = Path::Straight(*line);
             return;
         }
         self.duration = 0.0;
@@ -181,10 +181,10 @@ impl<const N: usize> Plan<N> {
             self.end[i] = profile.end();
         }
         self.arrival = self.duration;
-        self.course = Course::Axes;
+        self.path = Path::PerAxis;
     }
 
-    /// Where it comes to rest.
+    /// The position at which it comes to rest.
     pub(crate) const fn end(&self) -> &[f64; N] {
         &self.end
     }
@@ -205,9 +205,9 @@ impl<const N: usize> Plan<N> {
         if t >= self.duration - SLACK {
             return State::at_rest(self.end);
         }
-        match &self.course {
-            Course::Axes => self.sample_axes(t),
-            Course::Line(line) => line.state(self.along.sample(t)),
+        match &self.path {
+            Path::PerAxis => self.sample_axes(t),
+            Path::Straight(line) => line.state(self.along.sample(t)),
         }
     }
 
@@ -220,9 +220,11 @@ impl<const N: usize> Plan<N> {
     }
 
     /// The straight line that the motion is on at `t`, and the state along it; `None` at rest.
-    pub(crate) fn line_at(&self, t: f64) -> Option<(Line<N>, AxisState)> {
-        match &self.course {
-            Course::Line(line) if t < self.duration - SLACK => Some((*line, self.along.sample(t))),
+    pub(crate) fn line_at(&self, t: f64) -> Option<(StraightLine<N>, AxisState)> {
+        match &self.path {
+            Path::Straight(line) if t < self.duration - SLACK => {
+                Some((*line, self.along.sample(t)))
+            }
             _ => None,
         }
     }
@@ -233,8 +235,8 @@ impl<const N: usize> Plan<N> {
 /// An axis that cannot take a duration asks for the next one that it can, which is one of its
 /// candidates; the duration only grows, so each candidate is asked for once at most.
 ///
-/// Rounding alone must not cause a detour: an axis that would need one may have been possible just
-/// before, by less than the other axes know when they can arrive.
+/// Rounding alone must not cause a detour: the feasible durations of an axis may end just before a
+/// duration that another axis knows less exactly than that.
 fn common_duration<const N: usize>(axes: &[Result<Axis, Refusal>; N], at_least: f64) -> f64 {
     let axes = || axes.iter().flatten();
     let mut duration = at_least;
@@ -266,6 +268,6 @@ impl Refusal {
 /// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a
 /// duration costs no cycle.
 ///
-/// A millionth of a cycle: what is left there is the third power of it, times a sixth of the jerk
+/// A millionth of a cycle: the distance left then is its third power times a sixth of the jerk
 /// limit.
 const SLACK: f64 = 1e-9;

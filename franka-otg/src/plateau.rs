@@ -1,6 +1,6 @@
-//! A motion to a target in motion that takes a given time, by way of a constant velocity.
+//! A motion of a given duration to a target in motion, by way of a constant velocity.
 //!
-//! Transfer to a velocity `w`, stay there, transfer to the end's. With the first transfer in
+//! Transfer to a velocity `w`, cruise, transfer to the end's velocity. With the first transfer in
 //! direction `s` and the second in direction `u`, and both ends extended by their jerks to zero
 //! acceleration (`c0 = v0 - s a0^2/2`, `cf = vf + u af^2/2`), the time and the distance left over
 //! are
@@ -10,22 +10,22 @@
 //! excess(w) = M(c0, w) + w cruise(w) + M(w, cf) - D
 //! ```
 //!
-//! with `M` the displacement of a transfer. The farthest motions up and down are the two ends of
+//! with `M` the displacement of a transfer. The extremal motions up and down are the two ends of
 //! this family, and where the cruise is not negative the excess grows with `w`: so there is one
 //! `w`, between theirs. A cruise is negative only for durations so close to that of the mere change
-//! of velocity that no plateau fits; then the mean of the two farthest motions serves.
+//! of velocity that no plateau fits; then the mean of the two extremal motions is used.
 //!
-//! The mean would do for every duration, and without a search. But a plan made anew from a state on
-//! this motion goes on with the same velocity, while the mean of what is farthest from there has
-//! another course each time: planned anew in each cycle it swings from one end of the interval to
-//! the other.
+//! The mean would do for every duration, without a search. But a plan made anew from a state on
+//! this motion continues with the same velocity, while the mean of the extremal motions from there
+//! differs each time: planned anew in each cycle it swings from one end of the interval to the
+//! other.
 
-use crate::least_time::Shape;
 use crate::root::{Point, root};
+use crate::shape::Shape;
 use crate::task::Task;
 use crate::transfer::{ramp_and_hold, transfer_distance, transfer_time};
 
-/// A motion of one duration, by way of one velocity still to be found.
+/// The problem of one duration: the velocity is to be found.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plateau {
     task: Task,
@@ -44,7 +44,7 @@ impl Plateau {
         }
     }
 
-    /// The motion, as a direction and the shape in it, if one fits between two velocities.
+    /// The direction and the shape of the motion, if its velocity is between two others.
     pub(crate) fn between(&self, low: f64, high: f64) -> Option<(f64, Shape)> {
         let point = |at| Point {
             at,

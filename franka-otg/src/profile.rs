@@ -52,7 +52,7 @@ impl Profile {
         }
     }
 
-    /// Forgets all segments and begins at `state`.
+    /// Removes all segments and begins at `state`.
     pub(crate) fn begin(&mut self, state: AxisState) {
         self.origin = state.position;
         self.end = state.position;
@@ -112,16 +112,16 @@ impl Profile {
         }
     }
 
-    /// Takes where the segments lead, made exactly at rest, for the end.
+    /// Makes the position that the segments lead to the end, exactly at rest.
     pub(crate) fn finish_here(&mut self) {
         self.end = self.origin + self.front.position;
     }
 
     /// Becomes the mean of two motions from one state that take equally long, the first one with
-    /// `weight`, the other with the rest to one, and leads to `target`.
+    /// `weight`, the other one with `1 - weight`, and leads to `target`.
     ///
-    /// The states of its segments are means of theirs, not sums of what comes before: like theirs
-    /// they are as exact at the end as at the start, and after any cruise.
+    /// The states of its segments are means of the states of theirs, not sums over the segments
+    /// before: they are as exact at the end as at the start, and after any cruise.
     pub(crate) fn mean_of(&mut self, weight: f64, one: &Self, other: &Self, target: AxisState) {
         let mean = |a: f64, b: f64| weight * a + (1.0 - weight) * b;
         self.begin(AxisState {

@@ -1,6 +1,6 @@
 //! Bracketed search for the root of a continuous function.
 
-use crate::steps;
+use crate::search_passes;
 
 /// A point and the value of the function there.
 #[derive(Debug, Clone, Copy)]
@@ -20,15 +20,15 @@ pub(crate) fn root(
     close: f64,
     mut function: impl FnMut(f64) -> f64,
 ) -> f64 {
-    // `a` and `b` bracket the root, `a` is the newest point, `c` the one that it or `b` replaced.
+    // `a` and `b` bracket the root, `a` is the newest point, `c` the point that it or `b` replaced.
     let (mut a, mut b) = (low, high);
     let mut part = 0.5_f64;
     for pass in 0..MAX_STEPS {
-        steps::see(pass, MAX_STEPS);
+        search_passes::count(pass, MAX_STEPS);
         let best = nearer(a, b);
         let width = (b.at - a.at).abs();
         let resolution = 2.0 * f64::EPSILON * best.at.abs() / width;
-        // If the width is zero the resolution is infinite, or not a number if the root is.
+        // If the width is zero the resolution is infinite, or NaN if the root is zero too.
         if best.value.abs() <= close || resolution >= 0.5 || resolution.is_nan() {
             return best.at;
         }

@@ -99,6 +99,9 @@ impl Task {
 /// Relative rounding of a position that some ten operations led to.
 pub(crate) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Relative difference of durations that is rounding.
+pub(crate) const SAME: f64 = 1e-14;
+
 /// Bound of distances and velocities in units of the limits, chosen so that no product of the
 /// solution overflows.
 const FAR: f64 = 1e100;

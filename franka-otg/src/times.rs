@@ -1,6 +1,6 @@
 //! Short sorted lists of durations.
 
-/// A few times in ascending order. If there is no room left, a new one takes the place of the last.
+/// Up to `C` times in ascending order. In a full list a new time replaces the last one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Times<const C: usize> {
     list: [f64; C],
@@ -14,7 +14,7 @@ impl<const C: usize> Times<C> {
         len: 0,
     };
 
-    /// Adds a time unless it is there.
+    /// Adds a time unless the list has it.
     pub(crate) fn insert(&mut self, t: f64) {
         if self.iter().any(|other| other == t) {
             return;

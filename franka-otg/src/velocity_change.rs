@@ -1,9 +1,9 @@
 //! When the velocity and the acceleration of a target can be met, wherever the axis is then.
 //!
-//! The position's problem one derivative lower. The velocities that can be reached in one duration
+//! The position's problem one derivative lower. The velocities that are reachable in one duration
 //! are an interval; its ends are "acceleration up, then down" and the reverse, and the areas under
-//! them give the equations. A target that accelerates cannot be waited for with its acceleration
-//! either, so there may be a blocked interval here, too.
+//! them give the equations. The acceleration of a target cannot be waited for either, so there may
+//! be a blocked interval here, too.
 
 use crate::scalar::sqrt;
 use crate::task::{ROUNDING, Task};
@@ -13,11 +13,11 @@ use crate::task::{ROUNDING, Task};
 pub(crate) struct VelocityChange {
     a0: f64,
     af: f64,
-    /// Square of the acceleration in between, or what takes its place with a hold, that leads to
-    /// the end's velocity: the highest and the lowest.
+    /// Square of the acceleration in between that leads to the end's velocity (with a hold: twice
+    /// the area), for the highest and the lowest.
     peak: f64,
     valley: f64,
-    /// What the change is rounded relative to.
+    /// The magnitude to which the rounding of the change is relative.
     size: f64,
 }
 
@@ -34,17 +34,17 @@ impl VelocityChange {
         }
     }
 
-    /// What the velocities are rounded relative to.
+    /// The magnitude to which the rounding of velocities is relative.
     pub(crate) const fn size(&self) -> f64 {
         self.size
     }
 
     /// Whether the change can take `t`.
-    pub(crate) fn is_possible(&self, t: f64) -> bool {
-        self.is_possible_within(t, TIGHT * self.size)
+    pub(crate) fn is_feasible(&self, t: f64) -> bool {
+        self.is_feasible_within(t, TIGHT * self.size)
     }
 
-    fn is_possible_within(&self, t: f64, tolerance: f64) -> bool {
+    fn is_feasible_within(&self, t: f64, tolerance: f64) -> bool {
         let Self { a0, af, .. } = *self;
         let shortest = (af - a0).abs();
         let (highest, lowest) = (0.5 * (t + a0 + af), 0.5 * (t - a0 - af));
@@ -53,8 +53,8 @@ impl VelocityChange {
             && area(lowest) >= self.valley - tolerance
     }
 
-    /// Where possible durations begin or end, in no order, and what the rounding of velocities
-    /// makes of them.
+    /// Durations at which feasible ones begin or end, unordered, each with its uncertainty by the
+    /// rounding of velocities.
     pub(crate) fn crossings(&self) -> [Option<(f64, f64)>; 4] {
         let Self { a0, af, .. } = *self;
         let shortest = (af - a0).abs();
@@ -74,7 +74,7 @@ impl VelocityChange {
             for (j, extreme) in [extreme, -extreme].into_iter().enumerate() {
                 let t = 2.0 * extreme - sum;
                 if t >= shortest - 2.0 * rounding
-                    && self.is_possible_within(t.max(shortest), tolerance)
+                    && self.is_feasible_within(t.max(shortest), tolerance)
                 {
                     times[2 * i + j] = Some((t.max(shortest), rounding));
                 }
@@ -91,18 +91,17 @@ fn area(x: f64) -> f64 {
     if x <= 1.0 { x * x } else { 2.0 * x - 1.0 }
 }
 
-/// Velocity that the rounding of the task's velocity may come from: an axis that slows down was
-/// faster before. A limit that is much larger is seldom reached.
+/// The velocity that the rounding of the task's velocity may come from: an axis that slows down was
+/// faster before. A much larger limit is seldom reached.
 pub(crate) fn typical_velocity(task: &Task) -> f64 {
     task.top.min(1e3)
 }
 
-/// Relative rounding of a state that some thousand plans led to, each from the state that the one
-/// before gave. Equal steps are rounded alike, so what they are rounded by adds up. For the
-/// durations at which both farthest motions end at the target: a motion is there from some point
-/// on, and has to stay.
+/// Relative rounding of a state after some thousand plans, each made from the state that the one
+/// before gave. Equal steps are rounded alike, so their errors add up. For durations at which both
+/// extremal motions end at the target: a motion is there from some point on, and has to stay there.
 pub(crate) const DRIFT: f64 = 1024.0 * ROUNDING;
 
-/// Relative rounding of one plan, for all other durations. What is let pass here remains in the
-/// state, so it has to be little of what is let pass there.
+/// Relative rounding of one plan, for all other durations. An error that is accepted here remains in
+/// the state, so it has to be a small part of [`DRIFT`].
 pub(crate) const TIGHT: f64 = 16.0 * ROUNDING;

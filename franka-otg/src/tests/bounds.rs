@@ -1,7 +1,7 @@
 //! How far the searches stay below the ceilings that bound them.
 
 use super::random::{beside_one_that_takes, stop_point};
-use crate::{AxisLimits, AxisState, Generator, Limits, Synchronisation, steps};
+use crate::{AxisLimits, AxisState, Generator, Limits, Synchronisation, search_passes};
 
 /// The most passes, in percent of what a search may take, over the motions from one state to a
 /// target beside an axis that takes `stretch` times as long.
@@ -19,7 +19,7 @@ fn passes(limits: AxisLimits, state: AxisState, target: AxisState, stretch: f64)
             .set_moving_target(&target)
             .unwrap();
     }
-    steps::take_most()
+    search_passes::take_most()
 }
 
 #[test]

@@ -8,8 +8,7 @@ use super::random::{arm_limits, cases, many};
 use super::walk::check_step;
 use crate::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// A change of mind: after so many cycles, targets (as fractions of a range) and a way of going
-/// there.
+/// A number of cycles, and the target (as fractions of a range) that is set before them.
 type Change = (usize, Vec<f64>);
 
 fn changes<const N: usize>() -> impl Strategy<Value = Vec<Change>> {

@@ -4,12 +4,12 @@ mod bounds;
 mod closed_loop;
 mod extreme;
 mod least;
-mod lines;
 mod moving;
 mod oracle;
 mod random;
 mod reading;
 mod refusals;
+mod straight_lines;
 mod stretched;
 mod walk;
 

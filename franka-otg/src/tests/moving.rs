@@ -70,8 +70,8 @@ fn check<const N: usize>(
 }
 
 /// Follows any motion that keeps the limits for a while, and takes the state that it leads to for
-/// the target: nobody may need longer for that than the motion did, and its duration has to be
-/// possible.
+/// the target: the plan must not take longer than the motion did, and its duration has to be
+/// feasible.
 fn certify(
     (limits, state, _): (Limits<1>, State<1>, [f64; 1]),
     legs: &[(f64, f64)],
@@ -90,7 +90,7 @@ fn certify(
     }
     let target = now.axis(0);
     let change = 0.5 * target.acceleration * target.acceleration / top.jerk;
-    // A start may be one that no motion inside the limits leads to, and so may be what follows it.
+    // No motion inside the limits may lead to a start, nor to the states that follow it.
     prop_assume!(target.velocity.abs() + change <= top.velocity);
     let least = towards(limits, state, &now).time_to_target();
     prop_assert!(least <= took * (1.0 + 1e-9), "{least} instead of {took}");
@@ -124,8 +124,8 @@ fn replan<const N: usize>(
     Ok(())
 }
 
-/// A change of mind: after so many cycles, and for each axis a place, a speed, and whether it is to
-/// move at all.
+/// A number of cycles, and for each axis the position and speed that are set before them, and
+/// whether it is to move at all.
 type Change = (usize, Vec<(f64, f64, bool)>);
 
 /// Follows one target after the other, moving and resting, with gaps and bursts, to the end.

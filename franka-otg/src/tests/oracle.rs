@@ -57,7 +57,7 @@ fn end_of_push(start: AxisState, theta: f64, velocity: f64, limits: AxisLimits) 
     (state.position, duration)
 }
 
-/// Least-time transfer to a velocity without acceleration, in the caller's units.
+/// LeastTime-time transfer to a velocity without acceleration, in the caller's units.
 fn transfer(state: AxisState, to: f64, limits: AxisLimits) -> [(f64, f64); 3] {
     let (jerk, most) = (limits.jerk, limits.acceleration);
     let AxisState {

@@ -80,7 +80,7 @@ fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64) -> AxisSt
     }
 }
 
-/// Where an axis with these limits comes to rest if it gives up.
+/// The position at which an axis with these limits comes to rest if it stops.
 pub(super) fn stop_point(limits: AxisLimits, state: AxisState) -> f64 {
     let limits = Limits::per_axis([limits]).unwrap();
     Generator::new(one(state), limits).unwrap().target()[0]
@@ -180,7 +180,7 @@ pub(super) fn beside_one_that_takes(
     )
 }
 
-/// So many cases, without a file of seeds beside the source: a case that failed is printed, and
+/// Runs `count` cases without a file of seeds beside the source: a failing case is printed, and
 /// becomes a test of its own.
 pub(crate) fn cases(count: u32) -> ProptestConfig {
     ProptestConfig {

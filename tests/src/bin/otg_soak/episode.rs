@@ -26,7 +26,11 @@ pub(crate) fn plan(seed: u64, tally: &mut Tally) {
 fn single<const N: usize>(seed: u64, random: &mut SmallRng, tally: &mut Tally) {
     let limits = Kind::Mixed.limits::<N>(random);
     let state = problem::departure(random, &limits);
-    let target = problem::target(random, &state, &limits, true);
+    let target = if random.random_bool(0.5) {
+        problem::target(random, &state, &limits, true)
+    } else {
+        problem::arrival(random, &state, &limits)
+    };
     let failures = tally.failures.len();
     let check_optimum = random.random_bool(0.01);
     if let Some(least) = follow(seed, limits, state, &target, check_optimum, tally) {

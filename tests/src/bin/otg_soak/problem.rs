@@ -4,6 +4,8 @@ use franka_otg::{AxisLimits, AxisState, Limits, State};
 use rand::Rng;
 use rand::rngs::SmallRng;
 
+use crate::oracle::stop_point;
+
 /// What the limits of an episode are like.
 #[derive(Clone, Copy)]
 pub(crate) enum Kind {
@@ -131,6 +133,47 @@ pub(crate) fn target<const N: usize>(
             target.velocity[i] = velocity;
             target.acceleration[i] = acceleration;
         }
+    }
+    target
+}
+
+/// A target for single plans: from far to within a millionth of where a stop would end, at rest, at
+/// its velocity limit, hardly moving or anything between.
+pub(crate) fn arrival<const N: usize>(
+    random: &mut SmallRng,
+    now: &State<N>,
+    limits: &Limits<N>,
+) -> State<N> {
+    let mut target = *now;
+    for i in 0..N {
+        let axis = limits.axis(i);
+        let AxisLimits {
+            velocity,
+            acceleration,
+            jerk,
+        } = axis;
+        let scale = velocity
+            * (velocity / acceleration + acceleration.min((velocity * jerk).sqrt()) / jerk);
+        let exponent = match random.random_range(0..5) {
+            0..3 => random.random_range(-1.0..1.5),
+            _ => random.random_range(-6.0..-1.0),
+        };
+        let way = scale * 10_f64.powf(exponent) * [-1.0, 1.0][random.random_range(0..2)];
+        let stop = stop_point([0.0, now.velocity[i], now.acceleration[i]], axis);
+        let speed = match random.random_range(0..9) {
+            0 => 0.0,
+            1 => random.random_range(-1e-9..1e-9),
+            2 => 1.0,
+            _ => random.random_range(-1.0..1.0),
+        };
+        let bend = match random.random_range(0..3) {
+            0 => random.random_range(-1.0..1.0_f64),
+            _ => 0.0,
+        };
+        let room = (2.0 * jerk * velocity * (1.0 - f64::abs(speed))).sqrt();
+        target.position[i] += stop + way;
+        target.velocity[i] = velocity * speed;
+        target.acceleration[i] = bend * acceleration.min(room);
     }
     target
 }

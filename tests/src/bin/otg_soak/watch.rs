@@ -121,12 +121,14 @@ impl<const N: usize> Watch<N> {
         if target.is_at_rest() && generator.sample(duration) != *target {
             self.fail(tally, "does not end at its target".to_owned());
         }
+        let met = generator.sample(duration * (1.0 + f64::EPSILON));
         let left = 1e-6 * duration;
         let before = generator.sample(duration - left);
         for i in 0..N {
             let (to, jerk) = (target.axis(i), generator.limits().axis(i).jerk);
             let expected = to.position - left * (to.velocity - 0.5 * left * to.acceleration);
             let error = (before.position[i] - expected).abs() - jerk * left.powi(3);
+            let error = error.max((met.position[i] - to.position).abs());
             let error = (error / self.axes[i].size).max(0.0);
             tally.landing.see(error, self.seed);
             if error > PLACE {

@@ -1,30 +1,30 @@
-//! Step two where no cruise fits: slow down first, and go for the target late.
+//! Step two where no cruise fits: follow the stop for a while, then go to the target.
 //!
-//! Needed where an axis is slowing down into a target just past its stop point and should lose a
-//! little time, up to a fifth of the duration. It follows its least-time stop for a while, and then
-//! takes the least-time profile to the target from where that has led. The duration of the whole
-//! grows with the while: from the least at zero, since what follows a piece of one profile is a
-//! profile with that piece fixed, which cannot be better than one with a shorter piece fixed; and
-//! continuously, to that of coming to a rest and moving on from there. A longer one waits at that
-//! rest. So every duration has its profile. None overshoots: along a stop the stop point stays
-//! where it is, short of the target, and from there the way is a push and a stop.
+//! Needed where an axis slows down into a target just past its stop point and should arrive a
+//! little later, by up to a fifth of the duration. It follows its least-time stop for a while, and
+//! then takes the least-time profile from there to the target. The total duration grows with that
+//! while: it is the least duration at zero, since a profile with its first piece fixed cannot be
+//! faster than one with a shorter piece fixed; and it is continuous, up to the duration of stopping
+//! and moving on from rest. For a longer duration the axis waits at that rest. So every duration
+//! has its profile. None overshoots: along a stop the stop point is constant and short of the
+//! target, and from there the rest is a push and a stop.
 //!
-//! A target that is the stop point itself has no way to be late without overshooting; what is said
+//! A target that is the stop point itself cannot be reached later without overshooting; the rule
 //! above then gives the stop, and a wait at the target.
 //!
-//! Lowering the acceleration limit instead slows down more gently, but beyond the gentlest stop
-//! that ends at the target there is nothing left to lower: the axis would be early, or overshoot.
+//! Lowering the acceleration limit instead slows down more gently, but past the gentlest stop
+//! that ends at the target there is nothing to lower: the axis would be early, or overshoot.
 
 use crate::brake::Pieces;
-use crate::given_duration::{Lasting, SAME};
-use crate::least_time::{Least, least_time};
+use crate::least_time::{LeastTime, least_time};
 use crate::root::{Point, root};
-use crate::task::Task;
+use crate::shape::Stretched;
+use crate::task::{SAME, Task};
 use crate::transfer::stop;
 
 /// The profile of `duration` that follows the stop first, in the frame of `least`, which takes
 /// less.
-pub(crate) fn late_push(least: &Least, duration: f64) -> Lasting {
+pub(crate) fn stop_then_go(least: &LeastTime, duration: f64) -> Stretched {
     let task = least.task;
     let (sign, times) = stop(task.v, task.a);
     let stop = Stop { task, sign, times };
@@ -39,7 +39,7 @@ pub(crate) fn late_push(least: &Least, duration: f64) -> Lasting {
     let wait = duration - whole - last.duration;
     if wait >= 0.0 {
         before.push(rest, 0.0, wait);
-        return Lasting::new(before, &last);
+        return stretched(before, &last);
     }
     let first = Point {
         at: 0.0,
@@ -53,7 +53,7 @@ pub(crate) fn late_push(least: &Least, duration: f64) -> Lasting {
         theta + least_time(stop.after(theta).1).duration - duration
     });
     let (before, left) = stop.after(theta);
-    Lasting::new(before, &least_time(left))
+    stretched(before, &least_time(left))
 }
 
 /// The least-time stop of a task.
@@ -72,5 +72,13 @@ impl Stop {
             left -= t;
         }
         (pieces, task)
+    }
+}
+
+fn stretched(before: Pieces, least: &LeastTime) -> Stretched {
+    Stretched {
+        before,
+        sign: least.sign,
+        shape: least.shape,
     }
 }

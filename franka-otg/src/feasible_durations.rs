@@ -1,32 +1,32 @@
-//! Which durations are possible for a target in motion.
+//! Which durations are feasible for a target in motion.
 
-use crate::farthest::{Farthest, Reach};
+use crate::extremal_profile::{ExtremalProblem, ExtremalProfile};
 use crate::root::{Point, root};
 use crate::task::{ROUNDING, Task};
 use crate::times::Times;
 use crate::velocity_change::{DRIFT, TIGHT, VelocityChange, typical_velocity};
 
-/// Decides about durations.
+/// Decides which durations are feasible.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Possible {
-    pub(crate) up: Farthest,
+pub(crate) struct FeasibleDurations {
+    pub(crate) up: ExtremalProblem,
     /// The same with all directions reversed.
-    pub(crate) down: Farthest,
+    pub(crate) down: ExtremalProblem,
     change: VelocityChange,
     size: Size,
     vf: f64,
     af: f64,
 }
 
-/// Durations at which possible ones begin or end.
+/// Durations at which feasible ones begin or end.
 pub(crate) type Candidates = Times<CANDIDATES>;
 
-impl Possible {
+impl FeasibleDurations {
     /// For a task inside its limits and a target with velocity `vf` and acceleration `af`.
     pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
         Self {
-            up: Farthest::new(task, vf, af),
-            down: Farthest::new(&task.mirrored(-1.0), -vf, -af),
+            up: ExtremalProblem::new(task, vf, af),
+            down: ExtremalProblem::new(&task.mirrored(-1.0), -vf, -af),
             change: VelocityChange::new(task, vf, af),
             size: Size::new(task, vf, af),
             vf,
@@ -44,35 +44,35 @@ impl Possible {
         position <= self.drift(t) && velocity <= DRIFT * self.change.size()
     }
 
-    /// What the position of the target may be rounded by after a chain of plans.
+    /// The largest rounding of the target's position after a chain of plans.
     pub(crate) fn drift(&self, t: f64) -> f64 {
         DRIFT * self.size.at(t, self.vf)
     }
 
     /// Whether a motion of duration `t` ends at the target but for rounding.
-    pub(crate) fn meets(&self, reach: &Reach, t: f64) -> bool {
+    pub(crate) fn meets(&self, reach: &ExtremalProfile, t: f64) -> bool {
         reach.beyond <= TIGHT * self.size.at(t, reach.w)
     }
 
     /// Whether the axis can be at its target after `t`.
-    pub(crate) fn is_possible(&self, t: f64) -> bool {
-        self.change.is_possible(t) && {
-            let (up, down) = (self.up.reach(t), self.down.reach(t));
+    pub(crate) fn is_feasible(&self, t: f64) -> bool {
+        self.change.is_feasible(t) && {
+            let (up, down) = (self.up.profile(t), self.down.profile(t));
             up.beyond >= -TIGHT * self.size.at(t, up.w)
                 && down.beyond >= -TIGHT * self.size.at(t, down.w)
         }
     }
 
-    /// Durations at which possible ones begin, and some at which they end.
+    /// Durations at which feasible ones begin, and some at which they end.
     pub(crate) fn candidates(&self) -> Candidates {
         let mut candidates = Candidates::NONE;
         let mut breaks = Times::<BREAKS>::NONE;
         for (t, rounding) in self.change.crossings().into_iter().flatten() {
             breaks.insert(t);
-            // Whoever follows a plan is here from some point on: both sides end at the target but
-            // for rounding, and going for the rounding could cost a detour. The velocity's is the
-            // larger one, so the time is that which meets the position.
-            let up = self.up.reach(t);
+            // On the last part of a plan both sides end at the target but for rounding, and
+            // removing the rounding could cost a detour. That of the velocity is the larger one,
+            // so the time is that at which the position is met.
+            let up = self.up.profile(t);
             let later = -up.beyond / up.rate();
             if later.abs() <= rounding && t + later >= 0.0 {
                 candidates.insert(t + later);
@@ -81,7 +81,7 @@ impl Possible {
             }
         }
         let Some(first) = breaks.iter().next() else {
-            return candidates; // not for numbers that are finite
+            return candidates; // does not occur for finite numbers
         };
         for side in [&self.up, &self.down] {
             for t in side.turning_points().into_iter().flatten() {
@@ -91,10 +91,10 @@ impl Possible {
             }
         }
         let mut found = Times::<FOUND>::NONE;
-        let mut left: Option<(f64, [Reach; 2])> = None;
+        let mut left: Option<(f64, [ExtremalProfile; 2])> = None;
         for right in breaks.iter() {
-            let reaches = [self.up.reach(right), self.down.reach(right)];
-            // A target at a turning point but for rounding.
+            let reaches = [self.up.profile(right), self.down.profile(right)];
+            // The target may be at a turning point, but for rounding.
             if reaches
                 .iter()
                 .any(|reach| reach.beyond.abs() <= TIGHT * self.size.at(right, reach.w))
@@ -102,7 +102,7 @@ impl Possible {
                 found.insert(right);
             }
             if let Some((left, before)) = left
-                && self.change.is_possible(0.5 * (left + right))
+                && self.change.is_feasible(0.5 * (left + right))
             {
                 for (side, (from, to)) in [&self.up, &self.down]
                     .into_iter()
@@ -115,7 +115,7 @@ impl Possible {
             }
             left = Some((right, reaches));
         }
-        // Behind the last break both cruise, and come to the target if they are not there yet.
+        // After the last break both cruise, and reach the target if they have not passed it.
         let mut latest = 0.0_f64;
         if let Some((last, reaches)) = left {
             latest = last;
@@ -128,7 +128,7 @@ impl Possible {
             }
         }
         for t in found.iter() {
-            if self.is_possible(t) {
+            if self.is_feasible(t) {
                 candidates.insert(t);
             }
         }
@@ -139,18 +139,23 @@ impl Possible {
     }
 }
 
-/// When the end of the farthest motion crosses the target, between two durations.
-fn crossing(side: &Farthest, (left, from): (f64, &Reach), (right, to): (f64, &Reach)) -> f64 {
-    let point = |at, reach: &Reach| Point {
+/// The duration between two others at which the end of the extremal motion crosses the target.
+fn crossing(
+    side: &ExtremalProblem,
+    (left, from): (f64, &ExtremalProfile),
+    (right, to): (f64, &ExtremalProfile),
+) -> f64 {
+    let point = |at, reach: &ExtremalProfile| Point {
         at,
         value: reach.beyond,
     };
     root(point(left, from), point(right, to), 0.0, |t| {
-        side.reach(t).beyond
+        side.profile(t).beyond
     })
 }
 
-/// What the distance from the end of a motion to the target is rounded relative to.
+/// The magnitude to which the rounding of the distance from a motion's end to the target is
+/// relative.
 #[derive(Debug, Clone, Copy)]
 struct Size {
     fixed: f64,
@@ -177,10 +182,9 @@ impl Size {
 /// Four of the velocity and six turning points of each side.
 const BREAKS: usize = 16;
 
-/// Each break may be a candidate, and between two breaks each side may cross once; behind the last,
-/// too.
+/// Each break may be a candidate, and between two breaks and after the last one each side may cross
+/// once.
 const FOUND: usize = 48;
 
-/// Possible durations are three intervals at most; what rounding finds twice may take the places
-/// that are left.
+/// Feasible durations are three intervals at most; the rest is for ends that rounding finds twice.
 pub(crate) const CANDIDATES: usize = 8;

@@ -1,13 +1,14 @@
 //! Plots the response of the trajectory generator to a stepped, bursty and stalling target, as an
 //! SVG.
 //!
-//! `cargo run --release --example generator_plot [FILE]`
+//! `cargo run --release -p franka-otg --example plot [FILE]`
 
+use std::error::Error;
 use std::fmt::Write as _;
 
 use franka_otg::{CYCLE, Generator, Limits, State};
 
-fn main() -> anyhow::Result<()> {
+fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args().nth(1);
     let file = file.unwrap_or_else(|| "generator.svg".to_owned());
     let mut generator = Generator::new(

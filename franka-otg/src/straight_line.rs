@@ -1,6 +1,6 @@
 //! Straight lines: all axes as one.
 //!
-//! If the way to go, the velocities and the accelerations of all axes, now and at the target, are
+//! If the displacement to the target, the velocities and the accelerations of all axes, now and at the target, are
 //! multiples of one vector, one scalar problem along it moves them in phase, and the path is a
 //! straight line. From rest this is always so. Its duration equals the time-synchronised one when
 //! one axis binds in all three limits, and is longer otherwise.
@@ -12,21 +12,22 @@ use crate::state::{AxisState, State};
 
 /// The line `origin + s * direction`, its direction scaled to a largest component of one.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Line<const N: usize> {
+pub(crate) struct StraightLine<const N: usize> {
     origin: [f64; N],
     direction: [f64; N],
     /// The axis whose component is the largest.
     main: usize,
 }
 
-impl<const N: usize> Line<N> {
+impl<const N: usize> StraightLine<N> {
     /// The line along which `state` moves and `target` lies, with the state along it.
     ///
-    /// `None` if there is none, or if nothing moves and nothing is to move.
+    /// `None` if there is no such line, or if the state and the target are the same at rest.
     pub(crate) fn through(state: &State<N>, target: &State<N>) -> Option<(Self, AxisState)> {
-        let way: [f64; N] = core::array::from_fn(|i| target.position[i] - state.position[i]);
+        let displacement: [f64; N] =
+            core::array::from_fn(|i| target.position[i] - state.position[i]);
         let vectors = [
-            way,
+            displacement,
             state.velocity,
             state.acceleration,
             target.velocity,

@@ -1,10 +1,10 @@
-//! The motion that gets farthest in a given time and ends with a given velocity and acceleration.
+//! The extremal profile: the motion that gets farthest in a given time and ends with a given
+//! velocity and acceleration.
 //!
-//! The building block for targets in motion. In the frame in which "far" is upwards it is a push
-//! and a turn, jerks `+ 0 - 0 - 0 +`: the costate of the acceleration is a parabola in time that
-//! opens upwards, so the jerk changes its sign at most twice, and holds are where the acceleration
-//! or the velocity is at its limit. Nothing else is optimal, and for one duration there is one of
-//! it.
+//! In the frame in which "far" is upwards it is a push and a stop to the end's velocity, jerks
+//! `+ 0 - 0 - 0 +`: the costate of the acceleration is a parabola in time that opens upwards, so
+//! the jerk changes its sign at most twice, and there are holds where the acceleration or the
+//! velocity is at its limit. Nothing else is optimal, and there is one such motion per duration.
 //!
 //! Both ends are extended by their jerk to the instant without acceleration, as in `least_time`:
 //!
@@ -14,27 +14,27 @@
 //!
 //! Let `x` be the acceleration before the first negative jerk, `-y` the one before the last
 //! positive jerk, `w` the velocity between at zero acceleration, `e = cf - c0`, and `T` the
-//! duration counted from the extended ends. The area of the acceleration asks for
+//! duration counted from the extended ends. The integral of the acceleration requires
 //! `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. Where the larger
-//! of the two reaches the limit the other one follows from `(1 + y)^2 = T - e` or
-//! `(1 + x)^2 = T + e`, where both do, from `2 w = T - 2 + c0 + cf`, and at the velocity limit the
-//! rest of the time is a cruise. All of it is closed, and continuous from case to case: there is
-//! nothing to search and no root to reject. `x` or `y` may be negative: an acceleration that never
-//! changes its sign.
+//! of the two reaches the limit, the other one follows from `(1 + y)^2 = T - e` or
+//! `(1 + x)^2 = T + e`; where both do, from `2 w = T - 2 + c0 + cf`; at the velocity limit the
+//! remaining time is a cruise. All of it is closed, and continuous from case to case: there is no
+//! search and no root to reject. `x` or `y` may be negative: an acceleration that never changes its
+//! sign.
 //!
-//! With time the end moves at the rate `w + x y/2` (or the velocity limit, in a cruise). It need
-//! not grow: whoever has to end with a negative velocity gets less far with more time, until the
-//! time is enough to go up in between. Where the rate can be zero is closed too: see
-//! [`Farthest::turning_points`].
+//! As the duration grows, the end moves at the rate `w + x y/2` (or the velocity limit, in a
+//! cruise). The rate may be negative: a motion that has to end with a negative velocity gets less
+//! far with more time, until there is time to go up in between. The zeros of the rate are closed
+//! too: see [`ExtremalProblem::turning_points`].
 
-use crate::least_time::Shape;
 use crate::scalar::sqrt;
+use crate::shape::Shape;
 use crate::task::Task;
 use crate::transfer::{ramp_and_hold, transfer_time};
 
 /// Both ends of a motion, in the frame in which it goes up, extended to zero acceleration.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Farthest {
+pub(crate) struct ExtremalProblem {
     a0: f64,
     af: f64,
     c0: f64,
@@ -44,9 +44,9 @@ pub(crate) struct Farthest {
     top: f64,
 }
 
-/// The farthest motion of one duration.
+/// The extremal motion of one duration.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reach {
+pub(crate) struct ExtremalProfile {
     /// How far beyond the target it ends.
     pub(crate) beyond: f64,
     /// Velocity between the two halves: the largest, where both have an acceleration of their own
@@ -57,7 +57,7 @@ pub(crate) struct Reach {
     second: (f64, f64),
 }
 
-impl Farthest {
+impl ExtremalProblem {
     /// For a task whose target moves with velocity `vf` and acceleration `af`.
     pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
         let (v0, a0) = (task.v, task.a);
@@ -73,22 +73,21 @@ impl Farthest {
         }
     }
 
-    /// The farthest motion that takes `t`, which has to be a time in which the end's velocity can
-    /// be reached.
-    pub(crate) fn reach(&self, t: f64) -> Reach {
+    /// The extremal motion that takes `t`, a time in which the end's velocity can be reached.
+    pub(crate) fn profile(&self, t: f64) -> ExtremalProfile {
         let Self { a0, af, c0, cf, .. } = *self;
         let whole = (t + a0 - af).max(0.0);
         let e = cf - c0;
         let q = 0.5 * whole;
         let difference = if q > 0.0 { e / q } else { 0.0 };
-        // Rounding may ask for a little less than what the ends have; the sum is the time and
-        // stays.
+        // Rounding may give a little less than the accelerations of the ends; the sum is the time
+        // and is kept.
         let x = (0.5 * (q + difference)).max(a0).min(q + af);
         let y = q - x;
         let (x, first_hold, y, second_hold) = if x <= 1.0 && y <= 1.0 {
             (x, 0.0, y, 0.0)
         } else {
-            // Each hold is the time that the rest leaves.
+            // Each hold is the time that the ramps leave.
             let w = 0.5 * (whole - 2.0 + c0 + cf);
             let (first, second) = (w - c0 - 1.0, w - cf - 1.0);
             if first >= 0.0 && second >= 0.0 {
@@ -110,7 +109,7 @@ impl Farthest {
             return self.cruising(whole);
         }
         let distance = half(c0, x, first_hold) + half(cf, y, second_hold);
-        Reach {
+        ExtremalProfile {
             beyond: distance - self.d,
             w,
             first: (x, first_hold),
@@ -120,13 +119,13 @@ impl Farthest {
     }
 
     /// The same where the velocity limit is reached.
-    fn cruising(&self, whole: f64) -> Reach {
+    fn cruising(&self, whole: f64) -> ExtremalProfile {
         let (c0, cf, w) = (self.c0, self.cf, self.top);
         let (x, first_hold) = ramp_and_hold(w - c0);
         let (y, second_hold) = ramp_and_hold(w - cf);
         let cruise = (whole - 2.0 * (x + y) - first_hold - second_hold).max(0.0);
         let distance = half(c0, x, first_hold) + half(cf, y, second_hold) + w * cruise;
-        Reach {
+        ExtremalProfile {
             beyond: distance - self.d,
             w,
             first: (x, first_hold),
@@ -135,8 +134,8 @@ impl Farthest {
         }
     }
 
-    /// Durations between which the end moves one way as the duration grows, in no order and some
-    /// for nothing; the last is where the cruise begins.
+    /// Durations between which the end moves monotonically as the duration grows, unordered, some
+    /// superfluous; the last is where the cruise begins.
     ///
     /// Without holds the rate `w + x y/2` is zero where `3 s^2 + 4 (c0 + cf) s + e^2 = 0` with
     /// `s = (x + y)^2`, with one hold where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 = 0`, with both
@@ -177,7 +176,7 @@ impl Farthest {
     }
 }
 
-impl Reach {
+impl ExtremalProfile {
     /// How fast the end moves as the duration grows.
     pub(crate) fn rate(&self) -> f64 {
         if self.cruise > 0.0 {
@@ -188,7 +187,7 @@ impl Reach {
     }
 
     /// The shape of the motion from acceleration `a0` to `af`.
-    pub(crate) fn shape(&self, ends: &Farthest) -> Shape {
+    pub(crate) fn shape(&self, ends: &ExtremalProblem) -> Shape {
         let ((x, first_hold), (y, second_hold)) = (self.first, self.second);
         // Where an acceleration never changes its sign there is one negative jerk, from x to -y.
         let (t3, t5) = if x < 0.0 {

@@ -11,7 +11,7 @@ std::thread_local! {
 
 /// A search that may take `ceiling` passes is in its pass number `pass`, counted from zero.
 #[cfg_attr(not(test), expect(unused_variables, reason = "only tests count"))]
-pub(crate) fn see(pass: usize, ceiling: usize) {
+pub(crate) fn count(pass: usize, ceiling: usize) {
     #[cfg(test)]
     MOST.set(MOST.get().max(100 * (pass + 1) / ceiling));
 }

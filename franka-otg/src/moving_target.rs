@@ -1,0 +1,188 @@
+//! Targets in motion: the feasible durations, and a profile for each.
+//!
+//! At a target with a velocity an axis cannot wait. An axis that would be early has to make room
+//! and come again, so there may be durations between feasible ones that are not feasible:
+//! *blocked* ones. For one duration the reachable positions are still an interval, since the
+//! dynamics are linear and the limits convex. Its ends are the extremal motions up and down
+//! (`extremal_profile`), in closed form. Hence
+//!
+//! - a duration is feasible if its interval contains the target: two evaluations;
+//! - the ends of the interval pass the target a few times at most, and between these durations
+//!   feasibility does not change. Each end is monotone between its turning points, which have
+//!   closed forms too, so one bracketed search per piece finds the least duration and the ends of
+//!   the blocked intervals (`feasible_durations`);
+//! - each feasible duration has a profile: the mean of the two extremal motions, weighted so that
+//!   it ends at the target. A mean of motions inside convex limits is inside them. It always
+//!   exists; where a constant velocity fits in between, that profile is better ([`Plateau`]).
+//!
+//! The velocity of the target has to be reachable as well. That is the same problem one derivative
+//! lower, and has a blocked interval of its own if the target accelerates (`velocity_change`).
+//!
+//! The usual solution looks for all profiles that fit: quartic and sixth-order equations in eleven
+//! families per direction, half of which fail by rounding where two families meet.
+
+use crate::feasible_durations::{Candidates, FeasibleDurations};
+use crate::plateau::Plateau;
+use crate::shape::Shape;
+use crate::task::Task;
+
+/// One axis and a target that moves, in units of the axis.
+///
+/// Quantities that follow from the task in a few operations are not stored: there is one of these
+/// for each axis of a plan, and most axes of most plans go to rest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MovingTarget {
+    task: Task,
+    vf: f64,
+    af: f64,
+    candidates: Candidates,
+}
+
+/// The motion of one duration.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Solution {
+    /// One shape in a direction, 1 or -1.
+    Shape(f64, Shape),
+    /// The mean of two shapes.
+    Mean {
+        /// The extremal motion upwards, and how far beyond the target it ends.
+        up: (Shape, f64),
+        /// The extremal motion downwards, in its own frame.
+        down: (Shape, f64),
+        /// Weight of the first.
+        weight: f64,
+    },
+}
+
+impl MovingTarget {
+    /// The feasible durations of a task inside its limits, for a target with velocity `vf` and
+    /// acceleration `af` that can be met inside them.
+    pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
+        Self {
+            task: *task,
+            vf,
+            af,
+            candidates: FeasibleDurations::new(task, vf, af).candidates(),
+        }
+    }
+
+    fn feasible(&self) -> FeasibleDurations {
+        FeasibleDurations::new(&self.task, self.vf, self.af)
+    }
+
+    /// The least feasible duration.
+    pub(crate) fn least(&self) -> f64 {
+        self.candidates.iter().next().unwrap_or(0.0)
+    }
+
+    /// The least feasible duration that is not less than `t`, but for rounding.
+    pub(crate) fn from(&self, t: f64) -> f64 {
+        if self.can_take(t) {
+            return t;
+        }
+        // After the last candidate all durations are feasible: rounding may deny it.
+        self.candidates.iter().find(|&next| next > t).unwrap_or(t)
+    }
+
+    /// The last candidate before `t`, if `t` itself is blocked.
+    pub(crate) fn before(&self, t: f64) -> Option<f64> {
+        if self.can_take(t) {
+            return None;
+        }
+        self.candidates.iter().filter(|&earlier| earlier < t).last()
+    }
+
+    /// Whether the axis can be at its target after `t`, but for rounding.
+    pub(crate) fn can_take(&self, t: f64) -> bool {
+        let feasible = self.feasible();
+        feasible.is_feasible(t) || self.same(&feasible, t).is_some()
+    }
+
+    /// The candidate that `t` is, but for rounding.
+    fn same(&self, feasible: &FeasibleDurations, t: f64) -> Option<f64> {
+        self.candidates
+            .iter()
+            .find(|&candidate| feasible.are_same(t, candidate))
+    }
+
+    /// The motion for a duration that [`from`](Self::from) gives.
+    pub(crate) fn solve(&self, t: f64) -> Solution {
+        let feasible = self.feasible();
+        let t = if feasible.is_feasible(t) {
+            t
+        } else {
+            self.same(&feasible, t).unwrap_or(t)
+        };
+        let (up, down) = (feasible.up.profile(t), feasible.down.profile(t));
+        if feasible.meets(&up, t) {
+            return Solution::Shape(1.0, up.shape(&feasible.up));
+        }
+        if feasible.meets(&down, t) {
+            return Solution::Shape(-1.0, down.shape(&feasible.down));
+        }
+        let plateau = Plateau::new(&self.task, self.vf, self.af, t);
+        match plateau.between(-down.w, up.w) {
+            Some((sign, shape)) => Solution::Shape(sign, shape),
+            None => {
+                let weight = down.beyond / (up.beyond + down.beyond);
+                Solution::Mean {
+                    up: (up.shape(&feasible.up), up.beyond),
+                    down: (down.shape(&feasible.down), down.beyond),
+                    weight,
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::least_time::least_time;
+    use crate::tests::cases;
+
+    proptest! {
+        #![proptest_config(cases(3000))]
+
+        /// Rest is a motion too: the other solution, which shares none of the equations, has to
+        /// agree.
+        #[test]
+        fn a_target_at_rest_takes_as_long_as_by_the_other_solution(
+            exponent in -1.5_f64..2.5, coasting in -1.0_f64..1.0, bend in -1.0_f64..1.0, distance in -3.0_f64..1.0, up in any::<bool>(),
+        ) {
+            let top = 10_f64.powf(exponent);
+            let room = 2.0 * top * (1.0 + coasting * 1_f64.copysign(bend));
+            let a = bend * f64::min(1.0, room.sqrt());
+            let task = Task { d: 0.0, v: top * coasting - 0.5 * a * a.abs(), a, top, fuzz: 0.0 };
+            let way = top * (1.0 + top) * 10_f64.powf(distance);
+            let task = Task { d: task.stop_point().0 + if up { way } else { -way }, ..task };
+            let (got, expected) = (MovingTarget::new(&task, 0.0, 0.0).least(), least_time(task).duration);
+            prop_assert!((got - expected).abs() <= 1e-9 * expected, "{got} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn an_axis_early_at_a_moving_target_has_durations_that_are_blocked() {
+        // At the target's velocity, a little short of its position: to be there later the axis has
+        // to go back first.
+        let task = Task {
+            d: 1e-3,
+            v: 0.5,
+            a: 0.0,
+            top: 1.0,
+            fuzz: 0.0,
+        };
+        let target = MovingTarget::new(&task, 0.5, 0.0);
+        let least = target.least();
+        assert!(least < 2e-3, "{least}");
+        let next = target.from(0.1);
+        assert!(next > 2.0, "{next}");
+        // It slows down to nothing and less, and comes again with as much.
+        let feasible = target.feasible();
+        let (low, high) = (feasible.down.profile(next), feasible.up.profile(next));
+        assert!(low.beyond.abs() < 1e-12 && high.beyond > 0.0);
+        assert!(low.w > 0.0, "backwards, in the frame that is upside down");
+    }
+}

@@ -1,0 +1,68 @@
+//! The order of jerks that all motions have, and pieces before it.
+
+use crate::brake::Pieces;
+
+/// A push and a stop: jerks `first, 0, -first, 0, -1, 0, 1` in units of the limit, each for its
+/// duration.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shape {
+    /// Sign of the first jerk.
+    pub(crate) first: f64,
+    /// The seven durations, none negative.
+    pub(crate) t: [f64; 7],
+    /// Velocity between the two halves: during the fourth, if that is not zero.
+    pub(crate) cruise: f64,
+}
+
+impl Shape {
+    /// Sum of the durations.
+    pub(crate) fn duration(&self) -> f64 {
+        self.t.iter().sum()
+    }
+
+    /// Transfer from acceleration `a` to the velocity `cruise`, held for `time`, and transfer to
+    /// rest; both as ramp and hold.
+    pub(crate) fn two_transfers(
+        a: f64,
+        to_cruise: (f64, f64),
+        (cruise, time): (f64, f64),
+        to_rest: (f64, f64),
+    ) -> Self {
+        let ((x, first_hold), (y, second_hold)) = (to_cruise, to_rest);
+        // A negative x is an acceleration that never reaches zero: one negative jerk from x to -y.
+        let (t3, t5) = if x < 0.0 {
+            (0.0, (x + y).max(0.0))
+        } else {
+            (x, y)
+        };
+        let t1 = (x - a).max(0.0);
+        Self {
+            first: 1.0,
+            t: [t1, first_hold, t3, time, t5, second_hold, y],
+            cruise,
+        }
+    }
+}
+
+/// Some pieces and a shape: a motion of a given duration, in the frame of the least-time solution
+/// that it comes from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stretched {
+    /// What comes before the shape.
+    pub(crate) before: Pieces,
+    /// Direction of the shape.
+    pub(crate) sign: f64,
+    /// The shape.
+    pub(crate) shape: Shape,
+}
+
+impl Stretched {
+    /// The shape alone, in its own frame.
+    pub(crate) fn of(shape: Shape) -> Self {
+        Self {
+            before: Pieces::NONE,
+            sign: 1.0,
+            shape,
+        }
+    }
+}
