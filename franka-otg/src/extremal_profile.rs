@@ -30,7 +30,7 @@
 use crate::scalar::sqrt;
 use crate::shape::Shape;
 use crate::task::Task;
-use crate::transfer::{ramp_and_hold, transfer_time};
+use crate::transfer::{change_of_ramp, ramp_and_hold, transfer_time};
 
 /// Both ends of a motion, in the frame in which it goes up, extended to zero acceleration.
 #[derive(Debug, Clone, Copy)]
@@ -121,8 +121,10 @@ impl ExtremalProblem {
     /// The same where the velocity limit is reached.
     fn cruising(&self, whole: f64) -> ExtremalProfile {
         let (c0, cf, w) = (self.c0, self.cf, self.top);
-        let (x, first_hold) = ramp_and_hold(w - c0);
-        let (y, second_hold) = ramp_and_hold(w - cf);
+        // The ramps are not shorter than those that the ends need already, which rounding of the
+        // velocities could make them: the cruise has to be the remaining time.
+        let (x, first_hold) = ramp_and_hold((w - c0).max(change_of_ramp(self.a0)));
+        let (y, second_hold) = ramp_and_hold((w - cf).max(change_of_ramp(-self.af)));
         let cruise = (whole - 2.0 * (x + y) - first_hold - second_hold).max(0.0);
         let distance = half(c0, x, first_hold) + half(cf, y, second_hold) + w * cruise;
         ExtremalProfile {

@@ -23,7 +23,7 @@
 use crate::root::{Point, root};
 use crate::shape::Shape;
 use crate::task::Task;
-use crate::transfer::{ramp_and_hold, transfer_distance, transfer_time};
+use crate::transfer::{change_of_ramp, ramp_and_hold, transfer_distance, transfer_time};
 
 /// The problem of one duration: the velocity is to be found.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +66,8 @@ impl Plateau {
         let s = 1_f64.copysign(w - (v + 0.5 * a * a.abs()));
         let u = 1_f64.copysign((vf - 0.5 * af * af.abs()) - w);
         let (c0, cf) = (v - s * 0.5 * a * a, vf + u * 0.5 * af * af);
-        let (first, second) = ((s * (w - c0)).max(0.0), (u * (cf - w)).max(0.0));
+        let first = (s * (w - c0)).max(change_of_ramp(s * a));
+        let second = (u * (cf - w)).max(change_of_ramp(u * af));
         let cruise = self.time + s * a + u * af - transfer_time(first) - transfer_time(second);
         let before = a * (a * a / 3.0 - s * v);
         let after = d + af * (af * af / 3.0 + u * vf);

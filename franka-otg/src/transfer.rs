@@ -41,6 +41,15 @@ pub(crate) fn ramp_and_hold(d: f64) -> (f64, f64) {
     }
 }
 
+/// Change of velocity of the transfer, from and to zero acceleration, that ramps up to `a` and at
+/// once down; zero if `a` is not positive.
+///
+/// A transfer that begins or ends with the acceleration `a` changes the velocity by this at least.
+pub(crate) fn change_of_ramp(a: f64) -> f64 {
+    let a = a.max(0.0);
+    a * a
+}
+
 /// The least-time stop from velocity `v` and acceleration `a`, `|a| <= 1`.
 ///
 /// Returns the sign of its first jerk and three durations: jerk, hold, opposite jerk.

@@ -280,3 +280,30 @@ fn an_axis_that_would_be_early_by_less_than_a_cycle_is_not_early() {
         );
     }
 }
+
+/// The start is at the velocity limit but for an acceleration that is just taken back in time: its
+/// first ramp has no duration, and rounding must not make it a negative one.
+#[test]
+fn a_start_whose_acceleration_leads_to_the_velocity_limit_is_on_time() {
+    for (limits, from, to) in [
+        (
+            [1.5535810034256612, 0.12317897597788591, 857.8158894876473],
+            [0.25, 1.5535810034256015, 1.0129782423983028e-5],
+            [7.965082069798872, 1.1297348971077423, 0.0],
+        ),
+        (
+            [0.8240603066797059, 1.4049498153490305, 141.70095386372785],
+            [0.25, 0.824060306642014, 0.00010335350578967577],
+            [0.49463795734067134, 0.48162239048678246, 0.0],
+        ),
+    ] {
+        let [velocity, acceleration, jerk] = limits.map(|limit| [limit]);
+        let limits = Limits::from_arrays(velocity, acceleration, jerk).unwrap();
+        let state = |[position, velocity, acceleration]: [f64; 3]| State {
+            position: [position],
+            velocity: [velocity],
+            acceleration: [acceleration],
+        };
+        check((limits, state(from), state(to))).unwrap();
+    }
+}
