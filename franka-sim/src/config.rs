@@ -1,4 +1,4 @@
-//! What a simulated robot is like before a client connects.
+//! The configuration of a simulated robot.
 
 mod unpublished;
 

@@ -1,4 +1,4 @@
-//! What the robot believes that the environment does to it.
+//! The external forces that the robot estimates, and contact and collision.
 
 use franka_model::{Frame, Jacobian, JointVector, Wrench};
 use franka_proto::{CollisionBehavior, Errors, RobotError};
@@ -28,7 +28,7 @@ pub(crate) struct Estimate {
 }
 
 impl Estimate {
-    /// Nothing touches the arm.
+    /// An estimate of no contact.
     pub(crate) fn new() -> Self {
         Self {
             torque: JointVector::zeros(),
@@ -41,7 +41,7 @@ impl Estimate {
         }
     }
 
-    /// Takes in what the environment does to the joints by the observer, `[N·m]`, at the joint
+    /// Updates the estimate from the external joint torques of the observer, `[N·m]`, at the joint
     /// positions `q`.
     pub(crate) fn update(&mut self, external: &JointVector, q: &JointVector, arm: &Arm<'_>) {
         self.torque = -external;
@@ -111,7 +111,7 @@ impl Estimate {
         reflexes
     }
 
-    /// Forgets collisions.
+    /// Clears the collisions.
     pub(crate) fn clear(&mut self) {
         self.joint_collision = [false; 7];
         self.cartesian_collision = [false; 6];

@@ -10,7 +10,7 @@ use crate::signal::CYCLE;
 /// `[N·m]`.
 ///
 /// First-order low-passes of gain `T / (T + 1 / 2πf)`; the highest cutoff that can be set, 1000 Hz,
-/// means none (FCI documentation). A pose that is none passes as it is, to be refused.
+/// means none (FCI documentation). An invalid pose passes as it is, to be refused later.
 pub(crate) fn filtered(
     command: &RobotCommand,
     before: &Desired,

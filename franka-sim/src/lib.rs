@@ -77,10 +77,10 @@ mod noise;
 mod observer;
 pub mod plant;
 pub mod robot;
-mod score;
 pub mod serve;
 mod settings;
 mod signal;
+mod success_rate;
 mod urdf;
 
 pub use config::{Config, Noise, Tool, Unpublished};

@@ -1,4 +1,4 @@
-//! What a client may set: frames, load, stiffnesses, thresholds.
+//! The settings of a client: frames, load, stiffnesses, thresholds.
 
 use franka_model::{EndEffector, JointVector, Load, Twist, transform};
 use franka_proto::{CollisionBehavior, Filters, Request, SetterStatus};

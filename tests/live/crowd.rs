@@ -105,7 +105,8 @@ impl Member {
             ..franka_model::Load::NONE
         };
         let sim = sim.tool(Tool::hand()).q(home(number).into());
-        let sim = sim.payload(payload).enforce_communication(strict);
+        let sim = sim.configure(|config| config.payload = payload);
+        let sim = sim.enforce_communication(strict);
         let sim = sim.start().await.expect("a simulator starts");
         let robot = connect(&sim).await;
         let expected = [Version::V10, Version::V5][number % 2];

@@ -55,7 +55,8 @@ fn assert_numbers(got: &[f64], tag: u32, inputs: &[&[f64]]) {
 #[tokio::test]
 async fn every_function_of_a_downloaded_library_gets_its_inputs() {
     let bytes = stand_in("whole", &[]);
-    let (robot, _sim) = connected(Sim::fer().model_library(bytes.clone())).await;
+    let sim = Sim::fer().configure(|config| config.model_library = Some(bytes.clone().into()));
+    let (robot, _sim) = connected(sim).await;
     let downloaded = robot.load_model_library(Architecture::X64, System::Linux);
     assert_eq!(downloaded.await, Ok(bytes));
     // SAFETY: the library was compiled from the source beside this file, with the signatures that

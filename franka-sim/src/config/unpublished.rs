@@ -1,4 +1,4 @@
-//! What nobody outside the vendor knows of a robot, and what is taken for it here.
+//! What the vendor has not published about the robot, and what is assumed here.
 
 use franka_model::{JointVector, Twist, joint_vector};
 use franka_proto::CollisionBehavior;

@@ -1,4 +1,4 @@
-//! What moves the fingers: kinematics of their own, or a plant that has fingers.
+//! The motion of the fingers: by kinematics of their own, or by a plant that has fingers.
 
 use super::towards;
 use crate::plant::FingerDrive;
@@ -102,10 +102,10 @@ impl Grip {
         }
     }
 
-    /// Lets go of what is held, and stays.
+    /// Releases what is held; the fingers stay where they are.
     pub(super) fn rest(&mut self) {
         if let Means::Driven { drive, .. } = &mut self.means {
-            // Who has arrived stays there exactly.
+            // Fingers at the target hold their width exactly.
             let is_there = (self.width - drive.width).abs() < NEAR;
             *drive = resting(if is_there { drive.width } else { self.width });
         }

@@ -1,4 +1,4 @@
-//! What the robot makes of the motion commands of one cycle.
+//! The motion generators: from the command of one cycle to the desired motion.
 //!
 //! ```text
 //! command | lost | finish ──> commanded signal ──> checks ──> [inverse kinematics ──> checks]

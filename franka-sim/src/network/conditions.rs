@@ -1,4 +1,4 @@
-//! What a network does to what it carries.
+//! Conditions of a network: loss, delay, jitter, rate, reordering, duplication, stalls.
 
 use std::time::Duration;
 

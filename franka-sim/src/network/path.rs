@@ -10,11 +10,11 @@ use super::line::Line;
 use super::loss::Losses;
 use crate::noise::Random;
 
-/// What carries datagrams one way.
+/// One direction of a network: carries datagrams, and delays, loses or repeats them.
 ///
 /// [`send`](Self::send) is the input, [`take`](Self::take) the output;
 /// [`next_arrival`](Self::next_arrival) says when there will be one. [`cut`](Self::cut) and
-/// [`drop_next`](Self::drop_next) are for whoever wants a certain fault and not a likely one.
+/// [`drop_next`](Self::drop_next) make a fault certain instead of likely.
 #[derive(Debug, Clone)]
 pub struct Path {
     conditions: Conditions,

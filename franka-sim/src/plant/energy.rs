@@ -1,4 +1,4 @@
-//! What the motors put in and friction takes out is the arm's energy, on every plant.
+//! Tests of the energy balance of every plant: motors, friction, and the arm's energy.
 
 use franka_model::{GRAVITY_EARTH, JointVector, Load, Model, READY, RobotKind};
 

@@ -1,7 +1,7 @@
 //! The physics under the robot's controllers.
 //!
 //! A [`Plant`] turns joint torques into motion. Nothing in it knows of the protocol, of desired
-//! values or of the model that the controllers believe in: it may carry a load that nobody
+//! values or of the model that the controllers believe in: it may carry a load that is not
 //! declared.
 //!
 //! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature
@@ -35,7 +35,7 @@ use franka_model::{JointVector, Load};
 /// The robot calls [`step`](Self::step) several times per millisecond, each time with the torques
 /// that its controllers compute from the newest positions and velocities.
 ///
-/// Who knows which plant a robot has gets at it by [`Any`]: see
+/// The plant of a robot can be downcast through [`Any`]: see
 /// [`Robot::plant`](crate::Robot::plant).
 pub trait Plant: Any + Debug + Send {
     /// Joint positions, `[rad]`.

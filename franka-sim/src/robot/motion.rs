@@ -10,8 +10,8 @@ use franka_proto::{
 use crate::config::FirstCycles;
 use crate::filter::filtered;
 use crate::generator::{Arm, Desired, Input, PointToPoint, advance};
-use crate::score::{LOST_LIMIT, Score};
 use crate::signal::{CYCLE, JointSignal};
+use crate::success_rate::{LOST_LIMIT, SuccessRate};
 
 /// Between `kMotionStarted` and the final reply to a `Move`.
 #[derive(Debug, Clone)]
@@ -21,7 +21,7 @@ pub(super) struct Motion {
     /// `message_id` of the first state that shows the motion. Commands that answer earlier states
     /// belong to the motion before.
     first_state: u64,
-    score: Score,
+    success_rate: SuccessRate,
     /// `tau_J_d`: the last torques accepted, zero before the first, `[N·m]`.
     torque: JointVector,
     /// Whether the last cycle had no command and so was none for the generator.
@@ -33,7 +33,7 @@ pub(super) struct Motion {
 /// What the newest state asks of the client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Awaited {
-    /// No command, or none that has not come yet.
+    /// No command, or one that has come already.
     Nothing,
     /// The first one of a motion: a client may look at several states before, and none of them is
     /// lost.
@@ -76,7 +76,7 @@ impl Motion {
             id,
             request,
             first_state,
-            score: Score::default(),
+            success_rate: SuccessRate::default(),
             torque: JointVector::zeros(),
             paused: false,
             asynchronous: request
@@ -129,7 +129,7 @@ impl Motion {
 
     /// `control_command_success_rate`.
     pub(super) fn success_rate(&self, first: FirstCycles) -> f64 {
-        self.score.rate(first)
+        self.success_rate.rate(first)
     }
 
     /// Whether a command counts that answers state `answers` while `newest` is the last one
@@ -143,7 +143,7 @@ impl Motion {
     pub(super) fn awaits(&self) -> Awaited {
         match &self.asynchronous {
             Some(_) => Awaited::Nothing,
-            None if self.score.has_begun() => Awaited::Next,
+            None if self.success_rate.has_begun() => Awaited::Next,
             None => Awaited::First,
         }
     }
@@ -167,7 +167,7 @@ impl Motion {
         let mut errors = Errors::NONE;
         self.paused = false;
         // The first command is compared with the start as it is.
-        let filters = rules.filters.filter(|_| self.score.has_begun());
+        let filters = rules.filters.filter(|_| self.success_rate.has_begun());
         let smooth = command
             .zip(filters)
             .map(|(command, filters)| filtered(command, desired, &self.torque, &filters));
@@ -175,17 +175,17 @@ impl Motion {
         let input = match command {
             Some(command) => {
                 // Without limits there is no wrong place to start from, either.
-                let first = !self.score.has_begun() && rules.limits;
-                self.score.hit();
+                let first = !self.success_rate.has_begun() && rules.limits;
+                self.success_rate.hit();
                 if first {
                     Input::First(command)
                 } else {
                     Input::Next(command)
                 }
             }
-            None if !self.score.has_begun() => return Verdict::Continues,
+            None if !self.success_rate.has_begun() => return Verdict::Continues,
             None => {
-                let lost = self.score.miss();
+                let lost = self.success_rate.miss();
                 if !rules.communication {
                     self.paused = true;
                     return Verdict::Continues;

@@ -1,4 +1,4 @@
-//! Bounds that something may be beyond and may leave, but not pass further.
+//! Bounds that a clearance may be beyond at the start, and may leave, but not pass further.
 
 /// Watches a clearance: below `bound` it may not shrink by more than `allowed` from the largest
 /// that it has had there.
@@ -20,7 +20,7 @@ impl Ratchet {
         Self { best: bound }
     }
 
-    /// Takes in the clearance of now; whether it has shrunk too far.
+    /// Whether the clearance, updated to its present value, has shrunk too far.
     pub(super) fn is_passed(&mut self, clearance: f64, bound: f64, allowed: f64) -> bool {
         self.best = self.best.max(clearance).min(bound);
         clearance < self.best - allowed

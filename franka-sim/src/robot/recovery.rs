@@ -1,4 +1,4 @@
-//! Out of a reflex: the automatic recovery, and the one that takes a person.
+//! Recovery from a reflex: the automatic one, and the manual one of Desk.
 
 use franka_model::JointVector;
 use franka_proto::{CommandId, Errors, RecoveryStatus, Reply, RobotMode};

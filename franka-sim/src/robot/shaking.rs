@@ -1,4 +1,4 @@
-//! Joints that shake.
+//! Oscillating joints: `instability_detected`.
 
 use franka_model::JointVector;
 

@@ -1,4 +1,4 @@
-//! What touches the arm: hands that push, springs that pull, tables that are in the way.
+//! Touches, which act on the arm from outside: pushes, springs, grips, walls, blocked joints.
 
 mod present;
 

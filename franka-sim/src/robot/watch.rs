@@ -1,4 +1,5 @@
-//! What the robot watches in a motion besides the limits of its joints and what touches it.
+//! Supervision of a motion besides joint limits and contact: self-collision, walls, power,
+//! stability.
 
 use franka_model::JointVector;
 use franka_model::collision::Shape;

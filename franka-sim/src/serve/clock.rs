@@ -1,5 +1,5 @@
-//! The millisecond of the thread that serves the devices: when a state is due, and what becomes of
-//! the time for which the host did not run the thread.
+//! The clock of the thread that serves the devices: when a state is due, and what happens when the
+//! host has made the thread late.
 
 use std::time::{Duration, Instant};
 

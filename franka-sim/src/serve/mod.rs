@@ -16,7 +16,7 @@
 //! | `device_server` | a device on its sockets: commands, orders and jobs in, states and replies out |
 //! | `device` | what the server needs of a device |
 //! | `relay` | the simulated network between sockets and device |
-//! | `tcp` | sessions, one client at a time, and the refusal of a second client |
+//! | `sessions` | one client at a time, and the refusal of a second client |
 //! | `pending` | connections before their handshake |
 //! | `stream` | messages of a stream, and how slow they may come |
 //! | `service` | the handle on a device from other tasks |
@@ -30,8 +30,8 @@ mod pending;
 mod priority;
 mod relay;
 mod service;
+mod sessions;
 mod stream;
-mod tcp;
 
 pub use clock::Pace;
 pub use service::{Service, Stopped};
@@ -40,12 +40,11 @@ use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use bytes::Bytes;
-use franka_model::{JointVector, Load, RobotKind};
-use franka_proto::{RobotState, VirtualWall};
+use franka_model::{JointVector, RobotKind};
+use franka_proto::RobotState;
 use tokio::sync::watch;
 
-use crate::config::{Config, Noise, Tool, Unpublished};
+use crate::config::{Config, Tool};
 use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
 use crate::network::Network;
 use crate::plant::Plant;
@@ -109,6 +108,20 @@ impl Sim {
         }
     }
 
+    /// Changes the configuration: any field of [`Config`].
+    ///
+    /// ```
+    /// # use franka_sim::{Noise, Sim};
+    /// let sim = Sim::fer().configure(|config| {
+    ///     config.noise = Noise::MODERATE;
+    ///     config.unpublished.power = 300.0;
+    /// });
+    /// ```
+    pub fn configure(mut self, change: impl FnOnce(&mut Config)) -> Self {
+        change(&mut self.config);
+        self
+    }
+
     /// Listens on `address`, IPv4 or IPv6; port 0 takes a free one. Robots listen on 1337.
     pub fn bind(mut self, address: SocketAddr) -> Self {
         self.bind = address;
@@ -135,8 +148,7 @@ impl Sim {
 
     /// Serves a Franka Hand beside the robot, on this TCP port; 0 takes a free one. Hands listen on
     /// 1338. Its mass and frame are those of [`Tool::hand`], to be mounted with
-    ///       [`tool`](Self::tool). If the
-    /// [plant](Self::plant) has fingers, they are the hand's.
+    /// [`tool`](Self::tool). If the [plant](Self::plant) has fingers, they are the hand's.
     pub fn hand(mut self, fingers: Fingers, port: u16) -> Self {
         self.hand = Some((fingers, port));
         self
@@ -149,45 +161,9 @@ impl Sim {
         self
     }
 
-    /// Hangs a load on the flange that is not declared to the robot.
-    pub fn payload(mut self, payload: Load) -> Self {
-        self.config.payload = payload;
-        self
-    }
-
-    /// Makes the sensors noisy.
-    pub fn noise(mut self, noise: Noise) -> Self {
-        self.config.noise = noise;
-        self
-    }
-
-    /// Seeds all randomness.
-    pub fn seed(mut self, seed: u64) -> Self {
-        self.config.seed = seed;
-        self
-    }
-
     /// See [`Config::enforce_limits`].
     pub fn enforce_limits(mut self, enforce: bool) -> Self {
         self.config.enforce_limits = enforce;
-        self
-    }
-
-    /// See [`Config::joint_discontinuity_scale`].
-    pub fn joint_discontinuity_scale(mut self, factor: f64) -> Self {
-        self.config.joint_discontinuity_scale = factor;
-        self
-    }
-
-    /// Sets up a virtual wall: see [`Config::walls`].
-    pub fn wall(mut self, number: i32, wall: VirtualWall) -> Self {
-        self.config.walls.push((number, wall));
-        self
-    }
-
-    /// See [`Config::unpublished`].
-    pub fn unpublished(mut self, unpublished: Unpublished) -> Self {
-        self.config.unpublished = unpublished;
         self
     }
 
@@ -244,12 +220,6 @@ impl Sim {
     /// See [`Config::urdf`].
     pub fn urdf(mut self, text: impl Into<String>) -> Self {
         self.config.urdf = Some(text.into());
-        self
-    }
-
-    /// See [`Config::model_library`].
-    pub fn model_library(mut self, library: impl Into<Bytes>) -> Self {
-        self.config.model_library = Some(library.into());
         self
     }
 

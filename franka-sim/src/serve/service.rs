@@ -1,4 +1,4 @@
-//! One device of a simulation, as seen from outside.
+//! The handle on one device of a simulation, for other tasks.
 
 use std::fmt;
 use std::io;
@@ -11,7 +11,7 @@ use tokio::task::JoinHandle;
 use super::clock::Pace;
 use super::device::Device;
 use super::device_server::{DeviceServer, Job};
-use super::tcp;
+use super::sessions;
 
 /// A device that is being served. Dropping it closes its sockets.
 pub struct Service<D> {
@@ -41,7 +41,7 @@ pub(super) async fn open<D: Device>(
     socket.set_nonblocking(true)?;
     let (orders, stream) = mpsc::channel(QUEUE);
     let (jobs, waiting) = mpsc::channel(QUEUE);
-    let server = tokio::spawn(tcp::serve(listener, orders, device.name(), D::FRAMING));
+    let server = tokio::spawn(sessions::serve(listener, orders, device.name(), D::FRAMING));
     let service = Service {
         address,
         jobs,

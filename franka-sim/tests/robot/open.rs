@@ -1,5 +1,5 @@
-//! The questions that nobody outside has an answer to: for each, the default that is documented and
-//! another choice.
+//! What the vendor has not published: for each question, the default that is documented and another
+//! choice.
 
 use franka_model::{JointVector, READY, RobotKind, Twist};
 use franka_proto::{

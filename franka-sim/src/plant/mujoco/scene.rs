@@ -1,4 +1,4 @@
-//! What is around the arm, and the model that MuJoCo makes of both.
+//! The surroundings of the arm, and the MuJoCo model of both.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The touches there are now, and what each does to the arm.
+//! The touches that act now, and the torques of each on the arm.
 
 use franka_model::{EndEffector, JointVector, Model, Twist, Wrench, rotation, transform};
 use nalgebra::{Matrix3, Vector3};

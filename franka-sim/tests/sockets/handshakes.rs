@@ -62,7 +62,7 @@ fn another_version_is_answered_and_closed() {
 }
 
 #[test]
-fn silent_connections_keep_nobody_out_and_are_closed() {
+fn silent_connections_keep_no_client_out_and_are_closed() {
     each_robot(|binary| {
         for port in binary.ports() {
             let mut silent: Vec<_> = (0..100).map(|_| port.dial()).collect();
@@ -80,7 +80,7 @@ fn silent_connections_keep_nobody_out_and_are_closed() {
 }
 
 #[test]
-fn a_handshake_that_breaks_off_keeps_nobody_out() {
+fn a_handshake_that_breaks_off_keeps_no_client_out() {
     each_robot(|binary| {
         for port in binary.ports() {
             let hello = port.connect(port.version, 4711);
@@ -114,7 +114,7 @@ fn a_handshake_may_come_byte_by_byte_and_name_any_port() {
             let answer = slow.read(port.header() + 1).expect("an answer");
             assert_eq!(answer[port.header()], 0, "kSuccess");
             drop(slow);
-            // No states can go to port 0, nor to one where nobody listens.
+            // No states can go to port 0, nor to one that is closed.
             for udp_port in [0, 1, 9] {
                 let begun = Instant::now();
                 while begun.elapsed() < Duration::from_secs(1) {

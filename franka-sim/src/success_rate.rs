@@ -1,4 +1,5 @@
-//! Which cycles of a motion the client answered.
+//! `control_command_success_rate`: which cycles of a motion the client answered, and how many it lost
+//! in a row.
 
 use crate::config::FirstCycles;
 
@@ -13,13 +14,13 @@ const WINDOW: u32 = 100;
 ///
 /// Counting begins with the client's first command: before it, the robot waits.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Score {
+pub(crate) struct SuccessRate {
     received: u128,
     counted: u32,
     lost_in_a_row: u32,
 }
 
-impl Score {
+impl SuccessRate {
     /// Whether a command has been received since the motion began.
     pub(crate) fn has_begun(&self) -> bool {
         self.counted > 0
@@ -63,32 +64,32 @@ mod tests {
 
     #[test]
     fn the_rate_looks_back_a_hundred_cycles() {
-        let mut score = Score::default();
-        let rates = |score: &Score| {
-            let rate = |first| score.rate(first);
+        let mut answers = SuccessRate::default();
+        let rates = |answers: &SuccessRate| {
+            let rate = |first| answers.rate(first);
             (rate(FirstCycles::SoFar), rate(FirstCycles::Window))
         };
-        assert_eq!(rates(&score), (0.0, 0.0));
-        score.hit();
-        assert_eq!(rates(&score), (1.0, 0.01));
-        score.miss();
-        assert_eq!(rates(&score), (0.5, 0.01));
+        assert_eq!(rates(&answers), (0.0, 0.0));
+        answers.hit();
+        assert_eq!(rates(&answers), (1.0, 0.01));
+        answers.miss();
+        assert_eq!(rates(&answers), (0.5, 0.01));
         for _ in 0..98 {
-            score.hit();
+            answers.hit();
         }
-        assert_eq!(rates(&score), (0.99, 0.99));
-        score.hit();
-        score.hit();
-        assert_eq!(rates(&score), (1.0, 1.0));
+        assert_eq!(rates(&answers), (0.99, 0.99));
+        answers.hit();
+        answers.hit();
+        assert_eq!(rates(&answers), (1.0, 1.0));
     }
 
     #[test]
     fn losses_count_in_a_row_only() {
-        let mut score = Score::default();
+        let mut answers = SuccessRate::default();
         for _ in 0..LOST_LIMIT - 1 {
-            score.miss();
+            answers.miss();
         }
-        score.hit();
-        assert_eq!(score.miss(), 1);
+        answers.hit();
+        assert_eq!(answers.miss(), 1);
     }
 }

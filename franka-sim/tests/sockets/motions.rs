@@ -91,7 +91,7 @@ fn motions_in_a_row_preempt_each_other() {
 }
 
 #[test]
-fn parameters_that_are_no_numbers_are_invalid_arguments() {
+fn non_finite_and_huge_parameters_are_invalid_arguments() {
     each_robot(|binary| {
         let mut client = Client::connect(binary);
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -106,12 +106,30 @@ fn parameters_that_are_no_numbers_are_invalid_arguments() {
                 assert!(!status.is_success(), "{setter:?}");
             }
         }
+        for huge in [1e6, 1e20, 1e300] {
+            for setter in setters(huge) {
+                let id = client.request(&setter);
+                let status = client.status(id);
+                // No force reaches such a threshold, so it is harmless.
+                let is_harmless = matches!(setter, Request::SetCollisionBehavior(_));
+                assert_eq!(status.is_success(), is_harmless, "{setter:?}");
+            }
+            let state = client.next_state();
+            assert!(
+                state
+                    .q
+                    .iter()
+                    .chain(&state.dq)
+                    .all(|value| value.is_finite())
+            );
+        }
         drop(client);
         assert_served(binary);
+        assert_moves(binary);
     });
 }
 
-/// Every setter of both versions, with one number in it that is none.
+/// Every setter of both versions, with this number in one place.
 fn setters(bad: f64) -> [Request; 6] {
     let torque = [20.0; 7];
     let mut force = [20.0; 6];

@@ -8,6 +8,8 @@ use franka_async::{Gripper, Realtime, Robot};
 use franka_proto::RobotError;
 use franka_sim::{Fingers, Running, Sim, Tool};
 
+use crate::alone;
+
 /// More than a busy machine takes from a thread.
 const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -25,6 +27,7 @@ async fn start(sim: Sim, patience: Duration) -> (Running, Robot) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn states_follow_faster_than_on_the_wall_and_are_as_many_every_time() {
+    let _alone = alone();
     for sim in [Sim::fr3, Sim::fer] {
         let mut runs = Vec::new();
         for _ in 0..2 {
@@ -58,6 +61,7 @@ async fn states_follow_faster_than_on_the_wall_and_are_as_many_every_time() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn no_answer_is_too_late_for_a_patient_robot() {
+    let _alone = alone();
     let (sim, robot) = start(Sim::fr3(), PATIENCE).await;
     let mut calls = 0;
     let control = robot.control_torques(move |_, period| {
@@ -82,6 +86,7 @@ async fn no_answer_is_too_late_for_a_patient_robot() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_client_that_falls_silent_is_noticed_when_patience_is_over() {
+    let _alone = alone();
     let (sim, robot) = start(Sim::fr3(), Duration::from_millis(5)).await;
     let mut calls = 0;
     let control = robot.control_torques(move |_, _| {
@@ -107,6 +112,7 @@ async fn a_client_that_falls_silent_is_noticed_when_patience_is_over() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_hand_grasps_in_the_time_of_the_robot() {
+    let _alone = alone();
     let (sim, robot) = start(Sim::fr3(), PATIENCE).await;
     let address = sim.hand().expect("a hand").addr();
     let hand = Gripper::connect(address).await.expect("a session");

@@ -1,4 +1,4 @@
-//! Commands of a motion with numbers that are none, in every field of every generator.
+//! Commands of a motion with non-finite numbers, in every field of every generator.
 
 use franka_proto::{
     MoveControllerMode, MoveGeneratorMode, MoveStatus, RobotCommand, RobotMode, Status,
@@ -62,7 +62,7 @@ const TRIALS: [Trial; 6] = [
 ];
 
 #[test]
-fn numbers_that_are_none_end_the_motion_and_harm_nobody() {
+fn non_finite_numbers_end_the_motion_and_disturb_no_other_client() {
     each_robot(|binary| {
         for trial in &TRIALS {
             for place in 0..trial.places {

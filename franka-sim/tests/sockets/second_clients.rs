@@ -27,7 +27,7 @@ fn a_second_client_is_refused_and_the_first_not_disturbed() {
                 let mut second = port.dial();
                 second.send(&port.connect(port.version, 4711));
                 assert_undisturbed(port, &mut first, &udp, 2 * id);
-                // In order: whoever waits hears of it at once.
+                // By a reset, which a waiting client notices at once.
                 second.expect_reset();
                 assert_undisturbed(port, &mut first, &udp, 2 * id + 1);
             }

@@ -45,7 +45,7 @@ fn only_the_socket_that_the_client_announced_commands() {
 const LENGTHS: [usize; 9] = [0, 1, 8, 369, 370, 371, 1377, 2373, 65_507];
 
 #[test]
-fn garbage_does_not_disturb_a_motion_nor_anybody_without_one() {
+fn garbage_disturbs_no_client_in_a_motion_or_without_one() {
     each_robot(|binary| {
         // Where the states come from, which stays the same from client to client.
         let targets = binary.ports().each_ref().map(|port| {

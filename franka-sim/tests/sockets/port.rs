@@ -108,7 +108,7 @@ impl Port {
                 return (connection, udp);
             }
             // The client before has not been taken leave of yet.
-            assert!(begun.elapsed() < SOON, "{} lets nobody in", self.name);
+            assert!(begun.elapsed() < SOON, "{} accepts no client", self.name);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The stream: one client at a time, and what becomes of a second one.
+//! Sessions of clients: one at a time, and a second client is refused.
 //!
 //! ```text
 //! pending ── handshake is whole ──> waits a moment ── device is free ──> session

@@ -1,0 +1,54 @@
+//! The simulator over sockets: its binary against clients that leave the protocol, and stopped in
+//! the middle of a motion; robot time that the client's answers make.
+//!
+//! After each abuse a good client is served within a second, by the same process, which has not
+//! grown.
+//!
+//! | module | content |
+//! |---|---|
+//! | `binary` | the process: its ports, its memory, what it has logged |
+//! | `port` | a service as bytes see it |
+//! | `good` | the good client, which is the project's own |
+//! | `client` | a client of the robot that can do wrong in mid-session |
+//! | `handshakes`, `messages`, `second_clients`, `motions`, `datagrams`, `commands`, `growth` | abuse |
+//! | `stopped` | the process stopped and continued |
+//! | `virtual_time` | robot time as fast as the client answers |
+
+mod binary;
+mod client;
+mod commands;
+mod datagrams;
+mod good;
+mod growth;
+mod handshakes;
+mod messages;
+mod motions;
+mod port;
+mod second_clients;
+mod stopped;
+mod virtual_time;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use binary::Binary;
+
+/// Held by each test: two cores carry only so many robots.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// Held across every await of a test, which is its purpose: each test blocks a runtime of its own.
+struct Alone {
+    _guard: MutexGuard<'static, ()>,
+}
+
+fn alone() -> Alone {
+    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    Alone { _guard }
+}
+
+/// Runs a test on both robots, one after the other.
+fn each_robot(test: impl Fn(&Binary)) {
+    let _alone = alone();
+    for kind in ["fr3", "fer"] {
+        test(&Binary::start(kind));
+    }
+}
