@@ -18,8 +18,8 @@
 //!   [`Engage::observer`] and [`record`]: every cycle.
 //! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`Active`]:
 //!   the same from a thread of the user's, which reads states and writes commands.
-//!   [`AsynchronousControl`]: sparse joint targets between which the robot plans. [`control`]: their
-//!   commands.
+//!   [`AsynchronousControl`]: sparse joint targets between which the robot plans.
+//!   [`control`]: their commands.
 //! * [`StartBarrier`]: motions of several robots that begin within the same millisecond.
 //! * [`Robot::states`]: the newest state as it changes. [`Robot::read`], [`StateStream`]: every
 //!   state. Both whatever moves. [`Robot::stats`], [`stats`]: how punctual control is.
@@ -121,11 +121,10 @@ pub mod goal {
     pub use franka_rt::law::{Gains, Law};
     pub use franka_rt::lifecycle::Tuning;
     pub use franka_rt::session::{
-        BLEND, Backend, Budget, CHUNKS_MAX, Chunk, DEFAULT_FORCE_CAP, Deadman, DeadmanMonitor,
-        FORCE_CAP, ForceCap, Free, JOINT_DEVIATION, JOINT_LEASH, KEEP_OUT_MAX, KEEP_OUT_STOP,
-        LEAD_FRESH_MS, Lead, OFFSET_MAX, OnTimeout, POINTS_MAX, ROTATION_DEVIATION, ROTATION_LEASH,
-        SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints, TRANSLATION_DEVIATION, TRANSLATION_LEASH,
-        Target, Tolerance, VELOCITY_BARRIER_ONSET,
+        Backend, Budget, CHUNKS_MAX, Chunk, Deadman, DeadmanMonitor, ForceCap, Free,
+        JOINT_DEVIATION, JOINT_LEASH, KEEP_OUT_MAX, KEEP_OUT_STOP, Lead, OnTimeout,
+        ROTATION_DEVIATION, ROTATION_LEASH, SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints,
+        TRANSLATION_DEVIATION, TRANSLATION_LEASH, Target, Tolerance, VELOCITY_BARRIER_ONSET,
     };
 }
 

@@ -94,8 +94,9 @@ macro_rules! goal_options {
 
         /// Bounds the force with which springs and dampers press at the end effector, `[N]`,
         /// between 5 and 200; by default that of the session, or
-        /// [`DEFAULT_FORCE_CAP`](crate::goal::DEFAULT_FORCE_CAP). An undeclared load counts: the
-        /// arm sinks under more weight than the cap, and the motion does not arrive. Refused under
+        /// [`ForceCap::DEFAULT_NEWTONS`](crate::goal::ForceCap::DEFAULT_NEWTONS). An undeclared
+        /// load counts: the arm sinks under more weight than the cap, and the motion does not
+        /// arrive. Refused under
         /// [`Backend::RobotController`](crate::goal::Backend::RobotController), which cannot keep
         /// it.
         pub fn force_cap(mut self, newtons: f64) -> Self {
@@ -132,7 +133,7 @@ pub(crate) use goal_options;
 #[cfg(test)]
 mod tests {
     use franka_rt::law::Gains;
-    use franka_rt::session::{DEFAULT_FORCE_CAP, ForceCap, GoalId, OnArrival, Target};
+    use franka_rt::session::{ForceCap, GoalId, OnArrival, Target};
 
     use super::*;
 
@@ -145,12 +146,15 @@ mod tests {
         assert_eq!(GoalOptions::default().apply(plain, model), Ok(plain));
         let mut options = GoalOptions::of_session(Tuning {
             gains: Some(Gains::droid()),
-            force_cap: Some(ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP)),
+            force_cap: Some(ForceCap::Newtons(0.5 * ForceCap::DEFAULT_NEWTONS)),
             ..Tuning::default()
         });
         let tuned = options.apply(plain, model).unwrap();
         assert_eq!(tuned.gains, Gains::droid());
-        assert_eq!(tuned.force_cap, ForceCap::Newtons(0.5 * DEFAULT_FORCE_CAP));
+        assert_eq!(
+            tuned.force_cap,
+            ForceCap::Newtons(0.5 * ForceCap::DEFAULT_NEWTONS)
+        );
         assert_eq!(tuned.budget, plain.budget);
         let stiffness = [200.0, 200.0, 200.0, 10.0, 10.0, 10.0];
         options.stiffness = Some(stiffness);

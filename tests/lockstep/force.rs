@@ -15,9 +15,7 @@ use franka_model::{EndEffector, JointVector, Load, Model, transform};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{
-    DEFAULT_FORCE_CAP, ForceCap, Goal, GoalId, Guard, Lapse, OnArrival, Target, Tolerance,
-};
+use franka_rt::session::{ForceCap, Goal, GoalId, Guard, Lapse, OnArrival, Target, Tolerance};
 use franka_sim::plant::ArmParameters;
 use franka_sim::{Touch, TouchId};
 use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
@@ -219,10 +217,10 @@ fn a_pushing_hand_meets_at_most_the_cap_and_more_without_one() {
                 println!("{name}: {free:.1?}");
                 assert_eq!(free.capped, 0);
                 assert!(
-                    free.pressed > 1.1 * DEFAULT_FORCE_CAP,
+                    free.pressed > 1.1 * ForceCap::DEFAULT_NEWTONS,
                     "{way}, {name}: {free:?}"
                 );
-                for cap in [15.0, 25.0, DEFAULT_FORCE_CAP] {
+                for cap in [15.0, 25.0, ForceCap::DEFAULT_NEWTONS] {
                     let felt = pushed(ready, way, gains, ForceCap::Newtons(cap));
                     println!("  {cap} N: {felt:.1?}");
                     assert!(felt.capped > 20, "{way}, {name}: {felt:?}");

@@ -3,7 +3,7 @@
 use franka_model::Wrench;
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{MotionError, Tuning};
-use franka_rt::session::{Guard, LEAD_FRESH_MS, Lapse, Lead, OnArrival, PoseError, Target};
+use franka_rt::session::{Guard, Lapse, Lead, OnArrival, PoseError, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -79,7 +79,7 @@ fn a_distant_target_moves_the_arm_at_most_by_the_lead_after_the_stream_stops() {
         assert!(!lockstep.client.record.bindings.contains(Guard::Lead));
         let wild = Translation3::new(0.0, 0.4, 0.0) * start;
         assert_eq!(lockstep.update(id, Target::Pose(wild)), Ok(true));
-        lockstep.run(LEAD_FRESH_MS + 1);
+        lockstep.run(Lead::FRESH_MS + 1);
         assert!(lockstep.client.record.bindings.contains(Guard::Lead));
         let aside = |lockstep: &Lockstep| lockstep.true_pose().translation.y - start.translation.y;
         let then = aside(&lockstep);

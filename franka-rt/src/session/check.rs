@@ -9,9 +9,7 @@ use franka_otg::AxisLimits;
 use franka_proto::{RobotState, Version};
 
 use crate::law::{GainError, Law};
-use crate::session::{
-    Budget, CHUNKS_MAX, FORCE_CAP, ForceCap, Goal, KeepOut, Target, Watchdog, approach,
-};
+use crate::session::{Budget, CHUNKS_MAX, ForceCap, Goal, KeepOut, Target, Watchdog, approach};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -154,7 +152,7 @@ impl Goal {
             check_silence(silence)?;
         }
         if let ForceCap::Newtons(got) = self.force_cap
-            && !FORCE_CAP.contains(&got)
+            && !ForceCap::RANGE.contains(&got)
         {
             return Err(GoalError::ForceCap { got });
         }

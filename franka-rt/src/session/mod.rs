@@ -48,15 +48,14 @@ pub use backend::{Backend, Setpoints};
 pub use budget::Budget;
 pub use check::{GoalError, TooManyChunks};
 pub use chunk::{
-    BLEND, CHUNKS_MAX, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, OFFSET_MAX,
-    POINTS_MAX, Returned, chunk_ring,
+    CHUNKS_MAX, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring,
 };
 pub use goal::{Free, Goal, GoalId, OnArrival, Target, Tolerance};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub use guard::deadman::{Deadman, DeadmanMonitor};
 pub use guard::deviation::{JOINT_DEVIATION, ROTATION_DEVIATION, TRANSLATION_DEVIATION};
-pub use guard::force_cap::{DEFAULT_FORCE_CAP, FORCE_CAP, ForceCap};
-pub use guard::lead::{LEAD_FRESH_MS, Lead};
+pub use guard::force_cap::ForceCap;
+pub use guard::lead::Lead;
 pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
 pub use guard::torque_clamp::TORQUE_CLAMP;
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;

@@ -10,7 +10,7 @@ pub enum ChunkError {
     /// There are more points than a chunk may have.
     #[error("more than {most} points")]
     TooMany {
-        /// The most that a chunk may have, [`POINTS_MAX`](super::POINTS_MAX).
+        /// The most that a chunk may have, [`Chunk::POINTS_MAX`](super::Chunk::POINTS_MAX).
         most: usize,
     },
     /// A number of a point is not finite, or larger than 1e6, or its quaternion is not of length
@@ -26,7 +26,8 @@ pub enum ChunkError {
         /// The point, from 0.
         point: usize,
     },
-    /// A point lies later than [`OFFSET_MAX`](super::OFFSET_MAX) after the chunk's origin.
+    /// A point lies later than [`Chunk::OFFSET_MAX`](super::Chunk::OFFSET_MAX) after the chunk's
+    /// origin.
     #[error("point {point} lies too far in the future")]
     TooLate {
         /// The point, from 0.

@@ -30,4 +30,4 @@ mod value;
 pub(super) use course::{ChunkCourse, ChunkStart};
 pub use error::ChunkError;
 pub use ring::{CHUNKS_MAX, ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
-pub use value::{BLEND, Chunk, OFFSET_MAX, POINTS_MAX};
+pub use value::Chunk;

@@ -14,17 +14,6 @@ use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{GoalError, Target, check};
 
-/// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.
-pub const POINTS_MAX: usize = 1024;
-
-/// The latest that a point may lie after its chunk's origin. A later time is taken for a mistake
-/// of units.
-pub const OFFSET_MAX: Duration = Duration::from_secs(60);
-
-/// How long a chunk is blended with what the arm does unless said otherwise: as long as one
-/// inference of a policy at 10 Hz.
-pub const BLEND: Duration = Duration::from_millis(100);
-
 /// The least time between two points, `[s]`: one cycle, less the rounding of a conversion.
 const SPACING_MIN: f64 = 1e-3 - 1e-9;
 
@@ -57,8 +46,8 @@ pub(super) enum Origin {
 ///   whose time has passed when the chunk is taken up are skipped, and the motion is entered at the
 ///   instant that the robot is at.
 /// - **Receding horizon.** A newer chunk takes the place of the one before it as soon as its first
-///   point's time has come, or at once if none is running. It is blended in over [`BLEND`]; see
-///   [`blend`](Self::blend) and [`replace`](Self::replace).
+///   point's time has come, or at once if none is running. It is blended in over [`Chunk::BLEND`];
+///   see [`blend`](Self::blend) and [`replace`](Self::replace).
 ///
 /// ```
 /// use core::time::Duration;
@@ -89,6 +78,17 @@ pub(super) enum Points {
 }
 
 impl Chunk {
+    /// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.
+    pub const POINTS_MAX: usize = 1024;
+
+    /// The latest that a point may lie after its chunk's origin. What is later is no prediction but
+    /// a mistake of units.
+    pub const OFFSET_MAX: Duration = Duration::from_secs(60);
+
+    /// How long a chunk is blended with what the arm does unless said otherwise: as long as one
+    /// inference of a policy at 10 Hz.
+    pub const BLEND: Duration = Duration::from_millis(100);
+
     /// Through joint positions, `[rad]`, each at its time after the chunk's origin. Their
     /// velocities are estimated from their neighbours.
     ///
@@ -201,12 +201,12 @@ impl Chunk {
         self
     }
 
-    /// Replaces [`BLEND`]: the time over which the chunk is blended with what the arm does when it
-    /// is taken up. What the arm does goes on with its velocity and acceleration at first, and the
-    /// difference to the chunk is then let go.
+    /// Replaces [`Chunk::BLEND`]: the time over which the chunk is blended with what the arm does
+    /// when it is taken up. What the arm does goes on with its velocity and acceleration at first,
+    /// and the difference to the chunk is then let go.
     #[must_use]
     pub fn blend(mut self, over: Duration) -> Self {
-        self.blend = over.min(OFFSET_MAX);
+        self.blend = over.min(Self::OFFSET_MAX);
         self
     }
 
@@ -292,7 +292,7 @@ impl Chunk {
         Self {
             points,
             origin: Origin::TakeUp,
-            blend: BLEND,
+            blend: Self::BLEND,
         }
     }
 }
@@ -310,10 +310,12 @@ fn collect<T>(
 ) -> Result<(Vec<f64>, Vec<T>), ChunkError> {
     let (mut times, mut values) = (Vec::new(), Vec::new());
     for (point, (time, value)) in points.into_iter().enumerate() {
-        if point == POINTS_MAX {
-            return Err(ChunkError::TooMany { most: POINTS_MAX });
+        if point == Chunk::POINTS_MAX {
+            return Err(ChunkError::TooMany {
+                most: Chunk::POINTS_MAX,
+            });
         }
-        if time > OFFSET_MAX {
+        if time > Chunk::OFFSET_MAX {
             return Err(ChunkError::TooLate { point });
         }
         let time = time.as_secs_f64();

@@ -30,18 +30,6 @@ use nalgebra::Vector3;
 
 use crate::law::task_space::TaskSpace;
 
-/// Force caps that a goal may have, `[N]`. Below, friction alone would keep the arm from following.
-pub const FORCE_CAP: RangeInclusive<f64> = 5.0..=200.0;
-
-/// The force cap of goals that do not say another, `[N]`.
-///
-/// Just above the weight of the robot's whole payload of 3 kg, and above what the default gains
-/// come to when the arm is held back without a push. Motions within the default budget do not meet
-/// it (simulated: none of their cycles, also with 3 kg declared and with 0.5 kg undeclared), while
-/// a hand that pushes against a held arm at 0.25 m/s would meet 40 to 54 N without it, and 67 to
-/// 115 N if the joints are stiff.
-pub const DEFAULT_FORCE_CAP: f64 = 30.0;
-
 /// How much force springs and dampers may press with at the end effector.
 ///
 /// Only the session's own law keeps it: a goal with [`Self::Newtons`] is refused where the robot's
@@ -49,20 +37,33 @@ pub const DEFAULT_FORCE_CAP: f64 = 30.0;
 /// ([`Backend::RobotController`](crate::session::Backend::RobotController)).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ForceCap {
-    /// [`DEFAULT_FORCE_CAP`].
+    /// [`Self::DEFAULT_NEWTONS`].
     #[default]
     Default,
-    /// This much, `[N]`, in [`FORCE_CAP`].
+    /// This much, `[N]`, in [`Self::RANGE`].
     Newtons(f64),
     /// As much as the springs and dampers come to.
     Off,
 }
 
 impl ForceCap {
+    /// Force caps that a goal may have, `[N]`. Below, friction alone would keep the arm from
+    /// following.
+    pub const RANGE: RangeInclusive<f64> = 5.0..=200.0;
+
+    /// The force cap of goals that do not say another, `[N]`.
+    ///
+    /// Just above the weight of the robot's whole payload of 3 kg, and above what the default gains
+    /// come to when the arm is held back without a push. Motions within the default budget do not
+    /// meet it (simulated: none of their cycles, also with 3 kg declared and with 0.5 kg
+    /// undeclared), while a hand that pushes against a held arm at 0.25 m/s would meet 40 to 54 N
+    /// without it, and 67 to 115 N if the joints are stiff.
+    pub const DEFAULT_NEWTONS: f64 = 30.0;
+
     /// The cap, `[N]`, if there is one.
     pub fn newtons(self) -> Option<f64> {
         match self {
-            Self::Default => Some(DEFAULT_FORCE_CAP),
+            Self::Default => Some(Self::DEFAULT_NEWTONS),
             Self::Newtons(newtons) => Some(newtons),
             Self::Off => None,
         }
@@ -196,7 +197,7 @@ mod tests {
             error in joints(0.1),
             velocity in joints(1.0),
             gains in gains(),
-            cap in FORCE_CAP,
+            cap in ForceCap::RANGE,
         ) {
             let dynamics = dynamics_at(&(READY + offset));
             let free = torques(&gains, &dynamics, &error, &velocity);
@@ -236,7 +237,7 @@ mod tests {
             stretch in 0.0..1.0f64,
             error in joints(0.1),
             gains in gains(),
-            cap in FORCE_CAP,
+            cap in ForceCap::RANGE,
         ) {
             q[3] = -2.0 * stretch.powi(8);
             let dynamics = dynamics_at(&q);

@@ -10,7 +10,7 @@ use crate::session::guard::leash;
 /// How far ahead of the measured arm a target may be.
 ///
 /// A target that is further ahead is drawn nearer on the straight line to it, in every cycle anew
-/// while targets come: for [`LEAD_FRESH_MS`](crate::session::LEAD_FRESH_MS) after the newest one,
+/// while targets come: for [`Self::FRESH_MS`] after the newest one,
 /// the same target again included. Then it stays where it was last drawn to. So an arm whose
 /// targets stop coming goes on by no more than this.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,11 +23,11 @@ pub struct Lead {
     pub joints: f64,
 }
 
-/// Time after the newest target, `[ms]`, for which it is drawn anew. A stream of 5 Hz is followed
-/// without a pause.
-pub const LEAD_FRESH_MS: u64 = 200;
-
 impl Lead {
+    /// Time after the newest target, `[ms]`, for which it is drawn anew. A stream of 5 Hz is
+    /// followed without a pause.
+    pub const FRESH_MS: u64 = 200;
+
     /// Where `target` is drawn to by an arm at `q` and `measured`; `None` if it is near enough.
     pub(crate) fn drawn(
         &self,

@@ -7,7 +7,7 @@ use franka_model::Model;
 
 use super::{GoalStage, Measured, RunningSession, Standing};
 use crate::session::course::Course;
-use crate::session::guard::lead::LEAD_FRESH_MS;
+use crate::session::guard::lead::Lead;
 use crate::session::{Lapse, OnArrival, OnTimeout, Target};
 
 impl RunningSession {
@@ -21,7 +21,7 @@ impl RunningSession {
         if chunks || !matches!(self.stage, GoalStage::UnderWay) {
             return false;
         }
-        if now.saturating_sub(self.heard) <= LEAD_FRESH_MS {
+        if now.saturating_sub(self.heard) <= Lead::FRESH_MS {
             let drawn = lead.drawn(&self.goal.target, &arm.q, &arm.pose);
             let target = drawn.unwrap_or(self.goal.target);
             if target != self.aim {

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail, ensure};
 use clap::Parser;
-use franka_rt::session::DEFAULT_FORCE_CAP;
+use franka_rt::session::ForceCap;
 use franka_sim::{Running, Sim, Tool, Touch};
 use franka_tests::push::{PACE, PUSH, START, STIFFNESS, hand};
 use nalgebra::Vector3;
@@ -146,9 +146,9 @@ async fn push(kind: Kind, way: Vector3<f64>, arguments: &Arguments) -> anyhow::R
     ours.end().await?;
     sim.stop().await;
 
-    let most = 1.1 * DEFAULT_FORCE_CAP;
-    let summary =
-        format!("own {own:.1} N, franka-rs {peer:.1} N, cap {DEFAULT_FORCE_CAP} N, at {PACE} m/s");
+    const CAP: f64 = ForceCap::DEFAULT_NEWTONS;
+    let most = 1.1 * CAP;
+    let summary = format!("own {own:.1} N, franka-rs {peer:.1} N, cap {CAP} N, at {PACE} m/s");
     ensure!(own <= most && peer > most, "{summary}");
     Ok(summary)
 }
