@@ -32,12 +32,11 @@ impl Engage {
     goal_options!();
 
     /// Keeps the arm out of these regions, base frame, none by default. The reference slows down on
-    /// the way to one and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it, and a goal that
-    /// this blocks is given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked); an arm that stands in
-    /// a region may leave it. Links and the Franka Hand are kept out, no other tool.
+    /// the way to one and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it, and a goal
+    /// that this blocks is given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked); an arm
+    /// that stands in a region may leave it. Links and the Franka Hand are kept out, no other tool.
     /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) refuses more than
-    /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, numbers that are not finite and negative
-    /// sides.
+    /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers and negative sides.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.engagement.keep_out = Some(regions.into_iter().collect());
         self
@@ -179,9 +178,9 @@ impl Arm {
     /// unless another chunk or goal comes.
     ///
     /// # Errors
-    /// As [`Self::set`]; [`GoalError::Late`](crate::error::GoalError::Late) if all points have passed, and
-    /// [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster than the control
-    /// thread takes them up.
+    /// As [`Self::set`]; [`GoalError::Late`](crate::error::GoalError::Late) if all points have
+    /// passed, and [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster
+    /// than the control thread takes them up.
     ///
     /// # Cancel safety
     /// As [`Self::set`].

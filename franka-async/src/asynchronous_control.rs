@@ -100,7 +100,7 @@ impl AsynchronousControl {
     /// with the next state.
     ///
     /// # Errors
-    /// [`MotionError::Invalid`] for numbers that are not finite; what ended the motion, if it has
+    /// [`MotionError::Invalid`] for non-finite numbers; what ended the motion, if it has
     /// ended.
     pub fn set_target(&self, q: [f64; 7]) -> Result<(), MotionError> {
         check::finite(&q)?;

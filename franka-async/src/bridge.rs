@@ -28,35 +28,35 @@ use crate::telemetry::{self, Telemetry};
 /// Time that a motion gets to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 
-/// Time that an arm on its way to a goal gets to come to rest when the connection is lost, before the
-/// thread that brakes it ends.
+/// Time that an arm on its way to a goal gets to come to rest when the connection is lost, before
+/// the thread that brakes it ends.
 const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Makes the thread's bell heard on this runtime.
+/// Registers the eventfd of the thread with this runtime.
 ///
 /// # Errors
 /// If the runtime's poll does not take the descriptor.
-pub(crate) fn attach(bell: Wake) -> io::Result<AsyncFd<Wake>> {
+pub(crate) fn attach(wake: Wake) -> io::Result<AsyncFd<Wake>> {
     // SAFETY: a `Wake` owns its eventfd through an `Arc` that nothing replaces: the descriptor is
     // open, and the same, for as long as the `Wake` lives, and the `AsyncFd` owns the `Wake`.
-    let attached = unsafe { AsyncFd::register_with_interest(bell, Interest::READABLE) };
+    let attached = unsafe { AsyncFd::register_with_interest(wake, Interest::READABLE) };
     attached.map_err(Into::into)
 }
 
-/// Waits until the bell rings and silences it.
+/// Waits until the thread has written to its eventfd, and drains it.
 ///
 /// # Cancel safety
-/// A ring is not lost: it is heard by the next call.
-pub(crate) async fn hear(bell: &AsyncFd<Wake>) -> io::Result<()> {
-    let mut guard = bell.readable().await?;
-    bell.get_ref().clear();
+/// A wake-up is not lost: the next call returns at once.
+pub(crate) async fn woken(wake: &AsyncFd<Wake>) -> io::Result<()> {
+    let mut guard = wake.readable().await?;
+    wake.get_ref().clear();
     guard.clear_ready();
     Ok(())
 }
 
 pub(crate) struct Bridge {
     lifecycle: Lifecycle,
-    bell: AsyncFd<Wake>,
+    wake: AsyncFd<Wake>,
     orders: rtrb::Producer<Order>,
     notices: rtrb::Consumer<Notice<Event>>,
     publisher: Publisher,
@@ -73,17 +73,17 @@ pub(crate) struct Bridge {
 }
 
 impl Bridge {
-    /// `states` has, beside those who wait for states, the receivers that exist now.
+    /// `states` has the receivers of the driver itself, and no subscriber yet.
     pub(crate) fn new(
         lifecycle: Lifecycle,
         handle: Handle,
-        bell: AsyncFd<Wake>,
+        wake: AsyncFd<Wake>,
         (channel, connection): (Channel, Connection),
         states: Arc<watch::Sender<RobotState>>,
     ) -> Self {
         Self {
             lifecycle,
-            bell,
+            wake,
             orders: handle.orders,
             notices: handle.notices,
             publisher: Publisher::new(
@@ -139,12 +139,12 @@ impl Bridge {
             ];
             let deadline = deadline.into_iter().flatten().min();
             tokio::select! {
-                heard = hear(&self.bell) => {
-                    if let Err(error) = heard {
+                woken = woken(&self.wake) => {
+                    if let Err(error) = woken {
                         let text = format!("its eventfd cannot be read: {error}");
                         self.lose(CloseReason::ThreadEnded { text });
                     }
-                    self.listen();
+                    self.on_wakeup();
                 }
                 () = cancellation.cancelled(), if closing.is_none() => {
                     closing = Some(self.begin_closing());
@@ -169,7 +169,7 @@ impl Bridge {
         }
         self.end(inbox, &mut done).await;
         for done in done {
-            // A caller who no longer waits has been dropped.
+            // Fails if the caller was dropped.
             let _ = done.send(());
         }
     }
@@ -206,8 +206,8 @@ impl Bridge {
         }
     }
 
-    /// Takes everything that the thread has left for us.
-    fn listen(&mut self) {
+    /// Takes everything that the thread has published.
+    fn on_wakeup(&mut self) {
         self.publisher.publish();
         self.telemetry.watch(Instant::now());
         self.take_notices();
@@ -218,6 +218,7 @@ impl Bridge {
         }
     }
 
+    /// Passes the thread's events on to the lifecycle.
     fn take_notices(&mut self) {
         while let Ok(notice) = self.notices.pop() {
             match notice {
@@ -262,8 +263,8 @@ impl Bridge {
     async fn rest(&mut self) {
         let deadline = Instant::now() + BRAKING_TIMEOUT;
         while self.lifecycle.is_braking() && !self.thread_has_ended() {
-            match tokio::time::timeout_at(deadline, hear(&self.bell)).await {
-                Ok(Ok(())) => self.listen(),
+            match tokio::time::timeout_at(deadline, woken(&self.wake)).await {
+                Ok(Ok(())) => self.on_wakeup(),
                 Ok(Err(_)) | Err(_) => {
                     tracing::warn!("the arm was not seen to rest; the control thread ends");
                     break;
@@ -285,7 +286,7 @@ impl Bridge {
         let now = self.now();
         // Without an audience, what was published last is not the newest.
         self.publisher.refresh();
-        // What is asked for may follow on what the thread has said, before its bell is heard.
+        // What is asked for may follow on what the thread has said, before the eventfd wakes this task.
         self.look_for_a_stall();
         self.take_notices();
         match input {
@@ -402,8 +403,8 @@ impl Bridge {
         Instant::now() + CLOSING_TIMEOUT
     }
 
-    /// Tells everybody who still waits, has an arm that moves brake, closes the connection and ends
-    /// the thread. Those who ask for that meanwhile join `done`.
+    /// Resolves what is pending, brakes an arm that moves, closes the connection and ends the
+    /// thread. Requests to shut down that come meanwhile are added to `done`.
     async fn end(
         mut self,
         mut inbox: mpsc::UnboundedReceiver<Input>,
@@ -414,7 +415,7 @@ impl Bridge {
         self.lifecycle.on_connection_closed(reason);
         self.carry_out();
         while let Some(input) = inbox.recv().await {
-            // All others hear of the end by their answers being dropped.
+            // The others see the end by their reply channels being closed.
             if let Input::Shutdown { ended: reply } = input {
                 done.push(reply);
             }

@@ -1,10 +1,10 @@
-//! The command channel: one task that owns the TCP connection, sends requests and hands replies to
-//! whoever waits.
+//! The command channel: one task that owns the TCP connection, sends requests and routes the
+//! replies.
 //!
 //! Replies match by command id. Every request has a deadline but `Move`, whose two replies belong
 //! to the lifecycle of the motion. Motions have a queue and places of their own, so that no number
-//! of other requests holds up a stop. When the connection ends, everybody who waits is told why,
-//! and so is everybody who comes later.
+//! of other requests holds up a stop. When the connection ends, pending and later calls return the
+//! reason.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -38,9 +38,9 @@ const CALLS: usize = <Session>::PENDING_LIMIT - 2;
 /// The way to the task. Clones share it.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel {
-    calls: mpsc::Sender<Call>,
+    calls: mpsc::Sender<QueuedRequest>,
     /// Unbounded, and yet bounded: two requests per motion, and motions follow one another.
-    motions: mpsc::UnboundedSender<Call>,
+    motions: mpsc::UnboundedSender<QueuedRequest>,
     closing: Closing,
 }
 
@@ -93,17 +93,17 @@ pub(crate) enum Response {
 }
 
 #[derive(Debug)]
-struct Call {
+struct QueuedRequest {
     request: Request,
-    waiter: Waiter,
+    reply_to: ReplyTo,
 }
 
 #[derive(Debug)]
-enum Waiter {
+enum ReplyTo {
     /// The motion's lifecycle: its replies go to the bridge, without a deadline.
     Motion(MotionId),
-    /// Nobody: the lifecycle sends `StopMove` and watches the states instead.
-    Nobody,
+    /// The reply is discarded: the lifecycle sends `StopMove` and watches the states instead.
+    Discarded,
     Caller {
         answer: oneshot::Sender<Result<Response, CommandError>>,
         deadline: Duration,
@@ -122,12 +122,12 @@ impl Channel {
         // Unbounded, and yet bounded: two replies per motion, and motions follow one another.
         let (reports, inbox) = mpsc::unbounded_channel();
         let closing = Closing::default();
-        let task = Task {
+        let task = CommandTask {
             stream,
             session,
             newest,
             reports,
-            waiting: HashMap::new(),
+            pending: HashMap::new(),
         };
         let close = CancellationToken::new();
         let task = tokio::spawn(task.run((first, queue), closing.clone(), close.clone()));
@@ -149,9 +149,9 @@ impl Channel {
         deadline: Duration,
     ) -> Result<Response, CommandError> {
         let (answer, answered) = oneshot::channel();
-        let call = Call {
+        let call = QueuedRequest {
             request,
-            waiter: Waiter::Caller { answer, deadline },
+            reply_to: ReplyTo::Caller { answer, deadline },
         };
         if self.calls.send(call).await.is_err() {
             return Err(self.closed());
@@ -162,11 +162,15 @@ impl Channel {
     /// Sends a request on behalf of a motion, past all that wait for room. Replies to a `Move` come
     /// as [`Report`]s; a closed channel has said so in a report of its own.
     pub(crate) fn send(&self, motion: MotionId, request: Request) {
-        let waiter = match request {
-            Request::Move(_) => Waiter::Motion(motion),
-            _ => Waiter::Nobody,
+        let reply_to = match request {
+            Request::Move(_) => ReplyTo::Motion(motion),
+            _ => ReplyTo::Discarded,
         };
-        if self.motions.send(Call { request, waiter }).is_err() {
+        if self
+            .motions
+            .send(QueuedRequest { request, reply_to })
+            .is_err()
+        {
             tracing::debug!("a motion's request was not sent");
         }
     }
@@ -184,23 +188,26 @@ impl Channel {
 }
 
 /// The two queues into the task: motions, and everything else.
-type Queues = (mpsc::UnboundedReceiver<Call>, mpsc::Receiver<Call>);
+type Queues = (
+    mpsc::UnboundedReceiver<QueuedRequest>,
+    mpsc::Receiver<QueuedRequest>,
+);
 
-struct Task {
+struct CommandTask {
     stream: Framed<TcpStream, MessageCodec>,
     session: Session,
     newest: Newest,
     reports: mpsc::UnboundedSender<Report>,
-    waiting: HashMap<CommandId, Waiting>,
+    pending: HashMap<CommandId, Pending>,
 }
 
-struct Waiting {
+struct Pending {
     command: Command,
-    waiter: Waiter,
+    reply_to: ReplyTo,
     until: Option<Instant>,
 }
 
-impl Task {
+impl CommandTask {
     async fn run(mut self, mut queues: Queues, closing: Closing, close: CancellationToken) {
         let reason = tokio::select! {
             reason = self.serve(&mut queues) => reason,
@@ -209,9 +216,9 @@ impl Task {
         // Noted before the queues close: a caller that finds them closed finds the reason, too.
         let reason = closing.note(reason);
         drop(queues);
-        for (_, waiting) in self.waiting.drain() {
-            if let Waiter::Caller { answer, .. } = waiting.waiter {
-                // A caller who no longer listens has been dropped.
+        for (_, waiting) in self.pending.drain() {
+            if let ReplyTo::Caller { answer, .. } = waiting.reply_to {
+                // Fails if the caller was dropped.
                 let _ = answer.send(Err(CommandError::ConnectionClosed {
                     reason: reason.clone(),
                 }));
@@ -224,7 +231,7 @@ impl Task {
     async fn serve(&mut self, (motions, calls): &mut Queues) -> CloseReason {
         loop {
             let until = self
-                .waiting
+                .pending
                 .values()
                 .filter_map(|waiting| waiting.until)
                 .min();
@@ -264,18 +271,21 @@ impl Task {
         }
     }
 
-    async fn on_call(&mut self, Call { request, waiter }: Call) -> Result<(), CloseReason> {
-        if matches!(waiter, Waiter::Motion(_)) {
+    async fn on_call(
+        &mut self,
+        QueuedRequest { request, reply_to }: QueuedRequest,
+    ) -> Result<(), CloseReason> {
+        if matches!(reply_to, ReplyTo::Motion(_)) {
             self.forget_motions();
         }
         let outgoing = match self.session.request(&request) {
             Ok(outgoing) => outgoing,
             Err(error) => {
-                match waiter {
-                    Waiter::Caller { answer, .. } => {
+                match reply_to {
+                    ReplyTo::Caller { answer, .. } => {
                         let _ = answer.send(Err(error.into()));
                     }
-                    Waiter::Motion(_) | Waiter::Nobody => {
+                    ReplyTo::Motion(_) | ReplyTo::Discarded => {
                         tracing::error!(%error, "a motion's request was not sent");
                     }
                 }
@@ -284,33 +294,33 @@ impl Task {
         };
         let id = outgoing.id();
         let command = request.command();
-        match waiter {
-            Waiter::Nobody => {
+        match reply_to {
+            ReplyTo::Discarded => {
                 self.session.abandon(id);
             }
-            Waiter::Motion(_) => self.wait(id, command, waiter, None),
-            Waiter::Caller { deadline, .. } => {
-                self.wait(id, command, waiter, Some(Instant::now() + deadline));
+            ReplyTo::Motion(_) => self.wait(id, command, reply_to, None),
+            ReplyTo::Caller { deadline, .. } => {
+                self.wait(id, command, reply_to, Some(Instant::now() + deadline));
             }
         }
         codec::send(&mut self.stream, outgoing).await
     }
 
-    fn wait(&mut self, id: CommandId, command: Command, waiter: Waiter, until: Option<Instant>) {
-        let waiting = Waiting {
+    fn wait(&mut self, id: CommandId, command: Command, reply_to: ReplyTo, until: Option<Instant>) {
+        let waiting = Pending {
             command,
-            waiter,
+            reply_to,
             until,
         };
-        self.waiting.insert(id, waiting);
+        self.pending.insert(id, waiting);
     }
 
     /// Gives up waiting for motions that the lifecycle has done with: it begins one after the
     /// other.
     fn forget_motions(&mut self) {
         let over = self
-            .waiting
-            .extract_if(|_, waiting| matches!(waiting.waiter, Waiter::Motion(_)));
+            .pending
+            .extract_if(|_, waiting| matches!(waiting.reply_to, ReplyTo::Motion(_)));
         for (id, _) in over {
             self.session.abandon(id);
         }
@@ -320,7 +330,7 @@ impl Task {
     fn on_frame(&mut self, frame: &Frame) -> Result<(), Violation> {
         match self.session.on_message(frame.message()) {
             Ok(Event::Reply { id, command, reply }) => self.on_reply(id, command, &reply),
-            Ok(Event::Unmatched { id }) => tracing::debug!(%id, "a reply that nobody waits for"),
+            Ok(Event::Unmatched { id }) => tracing::debug!(%id, "a reply without a request"),
             Ok(other) => tracing::warn!(?other, "a message out of place"),
             Err(violation) if violation.is_fatal() => return Err(violation),
             Err(violation) => self.on_violation(violation),
@@ -332,25 +342,25 @@ impl Task {
         if let Reply::Move(status) = *reply {
             let is_last = status != MoveStatus::MotionStarted;
             let waiting = if is_last {
-                self.waiting.remove(&id)
+                self.pending.remove(&id)
             } else {
                 None
             };
-            let motion = waiting.as_ref().or_else(|| self.waiting.get(&id));
-            if let Some(&Waiting {
-                waiter: Waiter::Motion(motion),
+            let motion = waiting.as_ref().or_else(|| self.pending.get(&id));
+            if let Some(&Pending {
+                reply_to: ReplyTo::Motion(motion),
                 ..
             }) = motion
             {
-                // Fails only when the bridge is gone, and with it everybody who could care.
+                // Fails only when the bridge has ended, and with it the motion.
                 let _ = self.reports.send(Report::Move { motion, status });
             }
             return;
         }
-        let Some(Waiting {
-            waiter: Waiter::Caller { answer, .. },
+        let Some(Pending {
+            reply_to: ReplyTo::Caller { answer, .. },
             ..
-        }) = self.waiting.remove(&id)
+        }) = self.pending.remove(&id)
         else {
             return;
         };
@@ -370,16 +380,16 @@ impl Task {
             Violation::Reply { id, .. } | Violation::SecondMotionStarted { id } => *id,
             other => return tracing::warn!(%other, "the robot left the protocol"),
         };
-        match self.waiting.remove(&id).map(|waiting| waiting.waiter) {
-            Some(Waiter::Motion(motion)) => {
+        match self.pending.remove(&id).map(|waiting| waiting.reply_to) {
+            Some(ReplyTo::Motion(motion)) => {
                 let _ = self
                     .reports
                     .send(Report::MoveViolation { motion, violation });
             }
-            Some(Waiter::Caller { answer, .. }) => {
+            Some(ReplyTo::Caller { answer, .. }) => {
                 let _ = answer.send(Err(violation.into()));
             }
-            Some(Waiter::Nobody) | None => {
+            Some(ReplyTo::Discarded) | None => {
                 tracing::warn!(%violation, "the robot left the protocol")
             }
         }
@@ -387,11 +397,11 @@ impl Task {
 
     fn on_deadline(&mut self, now: Instant) {
         let late = self
-            .waiting
+            .pending
             .extract_if(|_, waiting| waiting.until.is_some_and(|until| until <= now));
         for (id, waiting) in late {
             self.session.abandon(id);
-            if let Waiter::Caller { answer, deadline } = waiting.waiter {
+            if let ReplyTo::Caller { answer, deadline } = waiting.reply_to {
                 let _ = answer.send(Err(CommandError::Timeout {
                     command: waiting.command,
                     deadline,

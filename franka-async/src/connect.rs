@@ -83,7 +83,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let bridge = Bridge::new(
         lifecycle,
         opened.handle,
-        opened.bell,
+        opened.wake,
         (channel.clone(), connection),
         states,
     );
@@ -107,7 +107,7 @@ struct Opened {
     stream: Framed<TcpStream, MessageCodec>,
     session: Session,
     handle: Handle,
-    bell: AsyncFd<Wake>,
+    wake: AsyncFd<Wake>,
     first: RobotState,
 }
 
@@ -163,8 +163,8 @@ async fn open_with(
     let driver = Driver::new(version).with_link_timeout(link_timeout);
     let start = move || thread::spawn(config, driver, udp, address.ip(), version);
     let mut handle = off_worker(start).await??;
-    let bell = bridge::attach(handle.wake.clone())?;
-    let first = timeout(builder.connect_timeout, first_state(&mut handle, &bell))
+    let wake = bridge::attach(handle.wake.clone())?;
+    let first = timeout(builder.connect_timeout, first_state(&mut handle, &wake))
         .await
         .map_err(|_| ConnectError::NoState)??;
     Ok(Opened {
@@ -172,13 +172,13 @@ async fn open_with(
         stream,
         session,
         handle,
-        bell,
+        wake,
         first,
     })
 }
 
-/// Runs what blocks for milliseconds (threads that are started and joined, memory that is locked and
-/// touched) where no other task waits for it. Dropping the future drops the result.
+/// Runs what blocks for milliseconds (threads that are started and joined, memory that is locked
+/// and touched) where no other task waits for it. Dropping the future drops the result.
 async fn off_worker<T: Send + 'static>(
     blocking: impl FnOnce() -> T + Send + 'static,
 ) -> std::io::Result<T> {
@@ -189,10 +189,10 @@ async fn off_worker<T: Send + 'static>(
 /// Waits for the first state: without one there is nothing to control.
 async fn first_state(
     handle: &mut Handle,
-    bell: &AsyncFd<Wake>,
+    wake: &AsyncFd<Wake>,
 ) -> Result<RobotState, ConnectError> {
     loop {
-        bridge::hear(bell).await?;
+        bridge::woken(wake).await?;
         if let Some(state) = handle.states.newest() {
             return Ok(state);
         }

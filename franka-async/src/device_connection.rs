@@ -1,8 +1,8 @@
 //! The connection to an end effector: one task that owns both of its sockets.
 //!
 //! An action has one answer, when it has ended, and no deadline: a homing takes seconds, a blocked
-//! move minutes. The task watches whether somebody still waits for the action that runs, and sends
-//! a stop once nobody does. States come by UDP at a leisurely pace; a task of the runtime is good
+//! move minutes. The task sends a stop once the future of the running action
+//! is dropped. States come by UDP at a leisurely pace; a task of the runtime is good
 //! enough for them.
 
 use std::collections::HashMap;
@@ -78,27 +78,27 @@ impl Device for vacuum::Version {
     }
 }
 
-/// How an action ended, on its way to whoever awaits it.
-type Outcome<D> = Result<bool, ActionError<<D as Protocol>::Command>>;
+/// How an action ended.
+type ActionResult<D> = Result<bool, ActionError<<D as Protocol>::Command>>;
 
-type Answer<D> = oneshot::Sender<Outcome<D>>;
+type ActionReply<D> = oneshot::Sender<ActionResult<D>>;
 
-struct Call<D: Device> {
+struct QueuedAction<D: Device> {
     request: D::Request,
-    answer: Answer<D>,
+    answer: ActionReply<D>,
 }
 
 /// The way to the task. Clones share it.
-pub(crate) struct Link<D: Device> {
+pub(crate) struct DeviceConnection<D: Device> {
     address: SocketAddr,
     /// Unbounded, and yet bounded: the task takes requests at once, and refuses those for which the
     /// session has no place.
-    calls: mpsc::UnboundedSender<Call<D>>,
+    calls: mpsc::UnboundedSender<QueuedAction<D>>,
     states: watch::Receiver<D::State>,
     closing: Closing,
 }
 
-impl<D: Device> Clone for Link<D> {
+impl<D: Device> Clone for DeviceConnection<D> {
     fn clone(&self) -> Self {
         Self {
             address: self.address,
@@ -109,14 +109,14 @@ impl<D: Device> Clone for Link<D> {
     }
 }
 
-impl<D: Device> fmt::Debug for Link<D> {
+impl<D: Device> fmt::Debug for DeviceConnection<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut link = f.debug_struct("Link");
+        let mut link = f.debug_struct("DeviceConnection");
         link.field("address", &self.address).finish_non_exhaustive()
     }
 }
 
-impl<D: Device + Send + Sync + 'static> Link<D>
+impl<D: Device + Send + Sync + 'static> DeviceConnection<D>
 where
     D::Command: Send + Sync,
     D::Request: Send,
@@ -143,7 +143,7 @@ where
         let (states, published) = watch::channel(first);
         let (calls, queue) = mpsc::unbounded_channel();
         let closing = Closing::default();
-        let task = Task {
+        let task = DeviceTask {
             stream,
             session,
             socket,
@@ -177,9 +177,9 @@ where
     ///
     /// # Cancel safety
     /// The action is stopped, unless a newer one has taken its place.
-    pub(crate) async fn act(&self, request: D::Request) -> Outcome<D> {
+    pub(crate) async fn act(&self, request: D::Request) -> ActionResult<D> {
         let (answer, answered) = oneshot::channel();
-        if self.calls.send(Call { request, answer }).is_err() {
+        if self.calls.send(QueuedAction { request, answer }).is_err() {
             return Err(self.closed());
         }
         answered.await.unwrap_or_else(|_| Err(self.closed()))
@@ -207,20 +207,20 @@ async fn first_state<D: Device>(
     }
 }
 
-struct Task<D: Device> {
+struct DeviceTask<D: Device> {
     stream: Framed<TcpStream, MessageCodec>,
     session: Session<D>,
     socket: UdpSocket,
     peer: IpAddr,
     states: watch::Sender<D::State>,
     /// The newest action, until it is answered.
-    running: Option<(CommandId, Answer<D>)>,
+    running: Option<(CommandId, ActionReply<D>)>,
     /// Stops, and actions in whose place others came.
-    waiting: HashMap<CommandId, Answer<D>>,
+    waiting: HashMap<CommandId, ActionReply<D>>,
 }
 
-impl<D: Device> Task<D> {
-    async fn run(mut self, mut calls: mpsc::UnboundedReceiver<Call<D>>, closing: Closing) {
+impl<D: Device> DeviceTask<D> {
+    async fn run(mut self, mut calls: mpsc::UnboundedReceiver<QueuedAction<D>>, closing: Closing) {
         let Err(reason) = self.serve(&mut calls).await;
         // Noted before the answers are dropped: a caller that finds them dropped finds the reason.
         closing.note(reason);
@@ -229,7 +229,7 @@ impl<D: Device> Task<D> {
     /// Serves until the connection ends; the error says why it did.
     async fn serve(
         &mut self,
-        calls: &mut mpsc::UnboundedReceiver<Call<D>>,
+        calls: &mut mpsc::UnboundedReceiver<QueuedAction<D>>,
     ) -> Result<std::convert::Infallible, CloseReason> {
         let mut buffer = [0; DATAGRAM_SIZE];
         loop {
@@ -260,8 +260,11 @@ impl<D: Device> Task<D> {
         }
     }
 
-    async fn on_call(&mut self, Call { request, answer }: Call<D>) -> Result<(), CloseReason> {
-        // Nobody waits for it any more; a stop counts all the same.
+    async fn on_call(
+        &mut self,
+        QueuedAction { request, answer }: QueuedAction<D>,
+    ) -> Result<(), CloseReason> {
+        // Its future was dropped before it was sent. A stop is sent all the same.
         if answer.is_closed() && request != D::STOP {
             return Ok(());
         }
@@ -272,7 +275,7 @@ impl<D: Device> Task<D> {
         let outgoing = match self.session.request(&request) {
             Ok(outgoing) => outgoing,
             Err(error) => {
-                // A caller who no longer listens has been dropped.
+                // Fails if the caller was dropped.
                 let _ = answer.send(Err(error.into()));
                 return Ok(());
             }
@@ -287,7 +290,7 @@ impl<D: Device> Task<D> {
         codec::send(&mut self.stream, outgoing).await
     }
 
-    /// Stops the action that nobody waits for.
+    /// Stops the action whose future was dropped.
     async fn stop(&mut self) -> Result<(), CloseReason> {
         if let Some((id, _)) = self.running.take() {
             self.session.abandon(id);
@@ -297,7 +300,7 @@ impl<D: Device> Task<D> {
                 self.session.abandon(stop.id());
                 codec::send(&mut self.stream, stop).await
             }
-            // An action that nobody can stop: without the connection, the device stops by itself.
+            // Without the connection, the device stops by itself.
             Err(error) => {
                 tracing::warn!(%error, "no room for a stop; closing the connection instead");
                 Err(CloseReason::ClosedByUs)
@@ -317,7 +320,7 @@ impl<D: Device> Task<D> {
                     self.states.send_replace(state);
                 }
             }
-            Err(error) => tracing::debug!(%error, "a datagram that is no state"),
+            Err(error) => tracing::debug!(%error, "an invalid state datagram"),
         }
     }
 
@@ -337,7 +340,7 @@ impl<D: Device> Task<D> {
                 Reply::Connect { .. } => unreachable!("the session answers its handshake itself"),
             },
             Ok(Event::Unmatched { id }) => {
-                tracing::debug!(%id, "a reply that nobody waits for");
+                tracing::debug!(%id, "a reply without a request");
                 return Ok(());
             }
             Ok(other) => {
@@ -363,8 +366,8 @@ impl<D: Device> Task<D> {
     }
 }
 
-/// Waits until nobody waits for the running action any more.
-async fn abandoned<D: Device>(running: &mut Option<(CommandId, Answer<D>)>) {
+/// Waits until the future of the running action is dropped.
+async fn abandoned<D: Device>(running: &mut Option<(CommandId, ActionReply<D>)>) {
     match running {
         Some((_, answer)) => answer.closed().await,
         None => std::future::pending().await,

@@ -131,7 +131,7 @@ mod tests {
 
     const LIMIT: Duration = Duration::from_secs(5);
 
-    /// An address of this host that nobody listens on.
+    /// An address of this host without a listener.
     async fn silent(ip: &str) -> SocketAddr {
         let ip: IpAddr = ip.parse().expect("an address");
         let listener = TcpListener::bind((ip, 0)).await.expect("a free port");
@@ -157,7 +157,7 @@ mod tests {
         let gone = [silent("127.0.0.1").await, silent("::1").await];
         let error = dial::<Version>(&gone, LIMIT)
             .await
-            .expect_err("nobody listens");
+            .expect_err("nothing listens");
         let ConnectError::NoAddress { attempts } = &error else {
             panic!("{error}")
         };
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(error.party(), Party::Robot);
         let error = dial::<Version>(&gone[..1], LIMIT)
             .await
-            .expect_err("nobody listens");
+            .expect_err("nothing listens");
         assert!(
             matches!(error, ConnectError::Refused),
             "one address alone: {error}"

@@ -16,8 +16,8 @@ use std::str::FromStr;
 /// | `robot.lan`, `robot.lan:40123` | a host name; its addresses are tried in turn, IPv4 before IPv6 |
 ///
 /// Other text makes an endpoint too, which connecting refuses as
-/// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. To know at
-/// once, `parse` it.
+/// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. To
+/// know at once, `parse` it.
 ///
 /// ```
 /// use franka_async::error::EndpointError;
@@ -147,7 +147,7 @@ fn parse_host(host: &str, text: &str) -> Result<Host, EndpointError> {
     if let Ok(address) = host.parse::<Ipv4Addr>() {
         return Ok(Host::Address(address.into(), 0));
     }
-    // The system would take `172.16.2` as 172.16.0.2, which nobody means who leaves a number out.
+    // The system would take `172.16.2`, a mistyped address, as 172.16.0.2.
     if host
         .bytes()
         .all(|byte| byte.is_ascii_digit() || byte == b'.')

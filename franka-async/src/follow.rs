@@ -157,7 +157,7 @@ impl Follow {
             // Not taken, or no answer: the goal is over, and the motion itself says why.
             if let Ok(Err(error)) = answer.await {
                 robot.send(Input::Cancel { goal: moving.id() });
-                // Braked first: whoever hears of the bad target may count on an arm at rest.
+                // Braked first: once the error is returned, the arm rests.
                 return match moving.await {
                     Err(MotionError::Stopped) | Ok(_) => Err(error.into()),
                     otherwise => otherwise,

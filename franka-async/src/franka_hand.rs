@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-use crate::device_connection::Link;
+use crate::device_connection::DeviceConnection;
 use crate::endpoint::Endpoint;
 use crate::error::{ConnectError, GripperError};
 use crate::states::States;
@@ -23,7 +23,7 @@ use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 /// connection. Everything else may be called and awaited from anywhere.
 #[derive(Clone, Debug)]
 pub struct Gripper {
-    link: Link<Version>,
+    connection: DeviceConnection<Version>,
 }
 
 impl Gripper {
@@ -36,23 +36,23 @@ impl Gripper {
     /// # Cancel safety
     /// Dropping the future closes whatever was opened.
     pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError<Version>> {
-        let link = Link::connect(endpoint.into()).await?;
-        Ok(Self { link })
+        let connection = DeviceConnection::connect(endpoint.into()).await?;
+        Ok(Self { connection })
     }
 
     /// Where the Hand is.
     pub fn address(&self) -> SocketAddr {
-        self.link.address()
+        self.connection.address()
     }
 
     /// The newest state.
     pub fn state(&self) -> State {
-        self.link.state()
+        self.connection.state()
     }
 
     /// The newest state as it changes. Ends when the connection does.
     pub fn states(&self) -> States<State> {
-        self.link.states()
+        self.connection.states()
     }
 
     /// Finds how wide the fingers open: `max_width` of the state. Needed once after power-on and
@@ -65,7 +65,7 @@ impl Gripper {
     /// Dropping the future stops the fingers, unless a newer action has taken over or the future
     /// was never polled.
     pub async fn homing(&self) -> Result<bool, GripperError> {
-        self.link.act(Request::Homing).await
+        self.connection.act(Request::Homing).await
     }
 
     /// Moves the fingers to `width` `[m]` at `speed` `[m/s]`. True if they arrived.
@@ -76,7 +76,9 @@ impl Gripper {
     /// # Cancel safety
     /// See [`Self::homing`].
     pub async fn move_to(&self, width: f64, speed: f64) -> Result<bool, GripperError> {
-        self.link.act(Request::Move(Move { width, speed })).await
+        self.connection
+            .act(Request::Move(Move { width, speed }))
+            .await
     }
 
     /// Closes the fingers on an object. True if they ended within the tolerances of its width; the
@@ -89,7 +91,7 @@ impl Gripper {
     /// See [`Self::homing`]. Once the future has resolved, nothing lets go of the object but
     /// another request.
     pub async fn grasp(&self, grasp: Grasp) -> Result<bool, GripperError> {
-        self.link.act(Request::Grasp(grasp)).await
+        self.connection.act(Request::Grasp(grasp)).await
     }
 
     /// Stops the fingers and lets go of what they hold. The action that runs resolves as aborted.
@@ -101,6 +103,6 @@ impl Gripper {
     /// # Cancel safety
     /// Once polled, the fingers stop all the same.
     pub async fn stop(&self) -> Result<bool, GripperError> {
-        self.link.act(Request::Stop).await
+        self.connection.act(Request::Stop).await
     }
 }

@@ -1,4 +1,4 @@
-//! The newest state, for those who look now and then and for those who wait for each.
+//! The newest state: read from the control thread's slot, or published as it changes.
 
 use std::sync::{Arc, Weak};
 
@@ -9,15 +9,15 @@ use tokio::sync::watch;
 
 /// Reads the newest state where the control thread has left it.
 ///
-/// Whoever looks takes it from there, by himself, at no cost to the thread or to any task. Whoever
-/// waits for changes enters the audience: from then on the bridge is woken for every state.
+/// Reading it costs no other thread or task anything. A subscriber to changes has the bridge woken
+/// for every state.
 #[derive(Clone, Debug)]
 pub(crate) struct Newest {
     /// Stays as it is, so that each of its clones finds whatever came later.
     reader: StateReader,
     /// What the bridge has published. Without an audience it may be some states behind.
     published: watch::Receiver<RobotState>,
-    /// Weak, so that those who wait hear of the end.
+    /// Weak, so that subscribers see the end of the connection.
     publisher: Weak<watch::Sender<RobotState>>,
     audience: Audience,
 }

@@ -1,4 +1,4 @@
-//! What the thread leaves for the world outside, passed on to whoever listens.
+//! States and records of the control thread, passed on to subscribers.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -16,7 +16,7 @@ use crate::newest_state;
 const RECORDS: usize = 2048;
 const STATES: usize = 1024;
 
-/// What those hear who listen to every state.
+/// An item of the stream of every state.
 #[derive(Clone, Debug)]
 pub(crate) enum Update {
     State(Arc<RobotState>),
@@ -50,7 +50,7 @@ struct Listeners {
     records: broadcast::Sender<Record>,
 }
 
-/// Where to listen. Weak, so that listeners hear of the end. Whoever does enters the audience.
+/// Where to subscribe. Weak, so that subscribers see the end of the connection.
 #[derive(Clone, Debug)]
 pub(crate) struct Subscriptions {
     updates: broadcast::WeakSender<Update>,
@@ -60,7 +60,7 @@ pub(crate) struct Subscriptions {
 }
 
 impl Publisher {
-    /// `states` has, beside those who wait for states, the receivers that exist now.
+    /// `states` has the receivers of the driver itself, and no subscriber yet.
     pub(crate) fn new(
         newest: StateReader,
         sequence: StateSequence,
@@ -97,12 +97,11 @@ impl Publisher {
         self.listeners.newest.borrow()
     }
 
-    /// Passes on everything that has come. Without anybody who listens, the thread does not ring
-    /// for every state any more.
+    /// Passes on everything that has come. Without subscribers, the thread no longer
+    /// wakes the bridge for every state.
     pub(crate) fn publish(&mut self) {
         self.refresh();
-        // Counted before the listeners are: whoever begins to listen after that has none of these
-        // to come.
+        // Counted before the subscribers are: none of these is due to one that comes later.
         let come = self.sequence.waiting();
         if self.listeners.updates.receiver_count() == 0 {
             self.sequence.skip(come);
@@ -122,8 +121,8 @@ impl Publisher {
         self.audience.leave(|| self.listeners.are_there());
     }
 
-    /// Passes on the newest state only. While nobody listens, the one that was passed on last may
-    /// be some states old.
+    /// Passes on the newest state only. Without subscribers, the one that was passed on last
+    /// may be some states old.
     pub(crate) fn refresh(&mut self) {
         if let Some(state) = self.newest.newest() {
             newest_state::publish(&self.listeners.newest, state);
@@ -134,7 +133,7 @@ impl Publisher {
     pub(crate) fn tell_silence(&self, silence: Duration) {
         let since = self.state().message_id;
         *lock(&self.silent) = Some(Silent { since, silence });
-        // Perhaps nobody listens. Whoever begins to has not heard this, and looks there.
+        // Fails without subscribers. Later ones find the silence above.
         let _ = self.listeners.updates.send(Update::Silence(silence));
     }
 }
@@ -156,7 +155,7 @@ impl Subscriptions {
     }
 
     /// The silence that the link was given up for, if no state has come since: `newest` is the
-    /// `message_id` of the newest. Told once, and not to those who come later.
+    /// `message_id` of the newest. The message of it is sent once; later subscribers look here.
     pub(crate) fn silence(&self, newest: u64) -> Option<Duration> {
         let silent = *lock(&self.silent);
         silent.and_then(|told| (newest <= told.since).then_some(told.silence))

@@ -33,8 +33,8 @@ pub type Pose = nalgebra::Isometry3<f64>;
 /// progress are handles too.
 ///
 /// A connection that is lost ends everything that belongs to it, control thread included; the
-/// handles that are left then say why. If the runtime ends first, nobody is left to brake: the
-/// robot then misses its commands and stops by itself, with a reflex. Await [`Robot::shutdown`]
+/// handles that are left then say why. If the runtime ends first, the arm is not braked: the
+/// robot misses its commands and stops by itself, with a reflex. Await [`Robot::shutdown`]
 /// before the program ends.
 ///
 /// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
@@ -90,7 +90,7 @@ impl Robot {
     /// The measured pose of the end effector, `O_T_EE` of the newest state.
     pub fn pose(&self) -> Pose {
         let state = self.state();
-        // What the robot says, unless it is no pose; then what its joints say.
+        // An invalid pose is replaced by that of the joint positions.
         transform::isometry_from_array(&state.O_T_EE).unwrap_or_else(|| self.pose_at(state.q))
     }
 

@@ -47,7 +47,7 @@ impl Robot {
     ///     torque if torque.abs() > 5.0 => ControlFlow::Break(torque),
     ///     _ => ControlFlow::Continue(()),
     /// };
-    /// println!("somebody pushes: {} N m", robot.read(touched).await?);
+    /// println!("joint 2 is pushed with {} N m", robot.read(touched).await?);
     /// # Ok(())
     /// # }
     /// ```

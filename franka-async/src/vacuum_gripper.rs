@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use crate::device_connection::Link;
+use crate::device_connection::DeviceConnection;
 use crate::endpoint::Endpoint;
 use crate::error::{ConnectError, VacuumGripperError};
 use crate::states::States;
@@ -13,7 +13,7 @@ use franka_proto::vacuum::{Request, State, Vacuum, Version};
 /// ends holds for it as well.
 #[derive(Clone, Debug)]
 pub struct VacuumGripper {
-    link: Link<Version>,
+    connection: DeviceConnection<Version>,
 }
 
 impl VacuumGripper {
@@ -26,23 +26,23 @@ impl VacuumGripper {
     /// # Cancel safety
     /// Dropping the future closes whatever was opened.
     pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError<Version>> {
-        let link = Link::connect(endpoint.into()).await?;
-        Ok(Self { link })
+        let connection = DeviceConnection::connect(endpoint.into()).await?;
+        Ok(Self { connection })
     }
 
     /// Where the gripper is.
     pub fn address(&self) -> SocketAddr {
-        self.link.address()
+        self.connection.address()
     }
 
     /// The newest state.
     pub fn state(&self) -> State {
-        self.link.state()
+        self.connection.state()
     }
 
     /// The newest state as it changes. Ends when the connection does.
     pub fn states(&self) -> States<State> {
-        self.link.states()
+        self.connection.states()
     }
 
     /// Sucks an object on and holds it. True if the vacuum was reached in time.
@@ -54,7 +54,7 @@ impl VacuumGripper {
     /// Dropping the future stops the pump, unless a newer action has taken over or the future was
     /// never polled.
     pub async fn vacuum(&self, vacuum: Vacuum) -> Result<bool, VacuumGripperError> {
-        self.link.act(Request::Vacuum(vacuum)).await
+        self.connection.act(Request::Vacuum(vacuum)).await
     }
 
     /// Drops the object. True if that was done within `timeout`, which goes out in whole
@@ -67,7 +67,7 @@ impl VacuumGripper {
     /// See [`Self::vacuum`].
     pub async fn drop_off(&self, timeout: Duration) -> Result<bool, VacuumGripperError> {
         let timeout = i64::try_from(timeout.as_millis()).unwrap_or(i64::MAX);
-        self.link.act(Request::DropOff { timeout }).await
+        self.connection.act(Request::DropOff { timeout }).await
     }
 
     /// Stops the action that runs, which resolves as aborted. True if it succeeded.
@@ -78,6 +78,6 @@ impl VacuumGripper {
     /// # Cancel safety
     /// Once polled, the gripper stops all the same.
     pub async fn stop(&self) -> Result<bool, VacuumGripperError> {
-        self.link.act(Request::Stop).await
+        self.connection.act(Request::Stop).await
     }
 }

@@ -64,8 +64,8 @@ pub(super) fn joints(sample: &Sample<'_>) -> Option<(JointVector, Derivatives<7>
     Some((q, Derivatives::of(velocity, dq_d, ddq_d)))
 }
 
-/// Pose and derivatives that a Cartesian command asks for; `None` for other commands, and for what
-/// is no pose.
+/// Pose and derivatives that a Cartesian command asks for; `None` for other commands and for
+/// invalid poses.
 pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivatives<6>)> {
     let Sample {
         before, command, ..

@@ -23,11 +23,6 @@ const KNOWN: &[(&str, &str)] = &[
     ("franka_otg", "axis, generator, plan"),
     ("franka_otg", "given_duration, late_push"),
     ("franka_rt", "control, driver, law, session, shaping, stats"),
-    (
-        "franka_async",
-        "active, arm, bridge, builder, channel, connect, error, follow, input, model, motion, \
-         parameters, reading, robot",
-    ),
 ];
 
 /// Fails with each circle that is not part of a [`KNOWN`] one, and where each of its imports is;

@@ -35,7 +35,7 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Host: no thread, socket or descriptor.
     #[error("the connection cannot be set up: {0}")]
     System(#[from] io::Error),
-    /// Robot: nobody listens there. FCI is off, or it is another machine.
+    /// Robot: it takes no connection. FCI is off, or it is another machine.
     #[error(
         "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk."
     )]
@@ -184,7 +184,7 @@ mod tests {
     use crate::error::Error;
 
     #[test]
-    fn a_description_that_cannot_be_read_is_nobodys_fault_here() {
+    fn a_description_that_cannot_be_read_is_the_peers_fault() {
         let error = Model::from_urdf("<sdf/>").expect_err("no description");
         let text = error.to_string();
         let error: ConnectError = ModelError::from(error).into();
