@@ -41,7 +41,7 @@ impl FeasibleDurations {
         let (speed, bend) = (self.vf.abs(), self.af.abs());
         let position = apart * (speed + apart * (bend + apart));
         let velocity = apart * (bend + apart);
-        position <= self.drift(t) && velocity <= DRIFT * self.change.size()
+        position <= NEAR * self.drift(t) && velocity <= NEAR * DRIFT * self.change.size()
     }
 
     /// The largest rounding of the target's position after a chain of plans.
@@ -178,6 +178,11 @@ impl Size {
         self.fixed + (self.velocity + w.abs()) * (t + self.offset)
     }
 }
+
+/// Part of the drift of a chain of plans by which a duration may differ from one that is feasible.
+/// The whole of it, just after the beginning of blocked durations, was a landing error above 1e-12
+/// relative in two of ten million plans.
+const NEAR: f64 = 0.25;
 
 /// Four of the velocity and six turning points of each side.
 const BREAKS: usize = 16;
