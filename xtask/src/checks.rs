@@ -88,7 +88,7 @@ impl Check {
                     command.arg("clippy").args(arguments);
                     workspace.run(command.args(["--", "-Dwarnings"]))
                 };
-                let features = features(workspace)?;
+                let features = mujoco::features(workspace)?;
                 deny(&["--workspace", "--all-targets", "--features", &features])?;
                 deny(&["--workspace"])?;
                 deny(&["--package", "franka-async", "--no-default-features"])?;
@@ -96,7 +96,7 @@ impl Check {
             Self::Doc => {
                 let mut command = workspace.cargo();
                 command.args(["doc", "--workspace", "--no-deps", "--features"]);
-                command.arg(features(workspace)?);
+                command.arg(mujoco::features(workspace)?);
                 workspace.run(command.env("RUSTDOCFLAGS", "-Dwarnings"))?;
             }
             Self::Test => return test(workspace),
@@ -109,20 +109,10 @@ impl Check {
     }
 }
 
-/// The features that everything is built with once: the phases of a cycle timed, and the MuJoCo
-/// plant where its library can be had. Without them the code is linted.
-pub(crate) fn features(workspace: &Workspace) -> anyhow::Result<String> {
-    let mut features = "franka-tests/cycle-phases".to_owned();
-    if mujoco::prepare(workspace)?.is_ok() {
-        features += ",franka-tests/mujoco";
-    }
-    Ok(features)
-}
-
 /// All tests, by cargo-nextest where it is installed: test binaries then run side by side. Then the
 /// examples of the documentation, which it does not run.
 fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    let features = features(workspace)?;
+    let features = mujoco::features(workspace)?;
     let realtime = realtime::obtain();
     let run = |arguments: &[&str]| {
         let mut command = workspace.cargo();

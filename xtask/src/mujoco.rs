@@ -43,6 +43,16 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String
     }
 }
 
+/// The features that everything is built with once: the phases of a cycle timed, and the MuJoCo
+/// plant where its library can be had. Without them the code is linted.
+pub(crate) fn features(workspace: &Workspace) -> anyhow::Result<String> {
+    let mut features = "franka-tests/cycle-phases".to_owned();
+    if prepare(workspace)?.is_ok() {
+        features += ",franka-tests/mujoco";
+    }
+    Ok(features)
+}
+
 /// Does nothing if the user names a library of their own or the right one is there. The inner error
 /// says why this machine cannot have one.
 fn fetch(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {

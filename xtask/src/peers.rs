@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 
-use crate::checks;
+use crate::mujoco;
 use crate::python::{Python, Version};
 use crate::realtime;
 use crate::step::Outcome;
@@ -63,10 +63,11 @@ fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Summary> {
     build.arg(directory(workspace).join("franka_rs").join("Cargo.toml"));
     build.arg("--target-dir").arg(&target);
     workspace.run(&mut build)?;
-    // As the tests are built, so that what they have built is used again: with it come the programs.
+    // As the tests are built, so that what they have built is used again: with it come the
+    // programs.
     let mut build = workspace.cargo();
     build.args(["test", "--no-run", "--quiet", "--workspace", "--features"]);
-    workspace.run(build.arg(checks::features(workspace)?))?;
+    workspace.run(build.arg(mujoco::features(workspace)?))?;
 
     let mut beside = workspace.program(workspace.target().join("debug").join(BESIDE));
     beside.arg(target.join("debug").join("franka-rs-peer"));
