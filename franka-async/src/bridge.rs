@@ -10,10 +10,10 @@ use std::time::Duration;
 
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order, Program};
+use franka_rt::event_fd::EventFd;
 use franka_rt::lifecycle::{CloseReason, Lifecycle, Output};
 use franka_rt::session::GoalId;
 use franka_rt::thread::{Handle, Notice, Thread};
-use franka_rt::wake::Wake;
 use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
 use tokio::sync::{mpsc, oneshot, watch};
@@ -36,9 +36,9 @@ const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 ///
 /// # Errors
 /// If the runtime's poll does not take the descriptor.
-pub(crate) fn attach(wake: Wake) -> io::Result<AsyncFd<Wake>> {
-    // SAFETY: a `Wake` owns its eventfd through an `Arc` that nothing replaces: the descriptor is
-    // open, and the same, for as long as the `Wake` lives, and the `AsyncFd` owns the `Wake`.
+pub(crate) fn attach(wake: EventFd) -> io::Result<AsyncFd<EventFd>> {
+    // SAFETY: an `EventFd` owns its eventfd through an `Arc` that nothing replaces: the descriptor is
+    // open, and the same, for as long as the `EventFd` lives, and the `AsyncFd` owns the `EventFd`.
     let attached = unsafe { AsyncFd::register_with_interest(wake, Interest::READABLE) };
     attached.map_err(Into::into)
 }
@@ -47,16 +47,16 @@ pub(crate) fn attach(wake: Wake) -> io::Result<AsyncFd<Wake>> {
 ///
 /// # Cancel safety
 /// A wake-up is not lost: the next call returns at once.
-pub(crate) async fn woken(wake: &AsyncFd<Wake>) -> io::Result<()> {
+pub(crate) async fn woken(wake: &AsyncFd<EventFd>) -> io::Result<()> {
     let mut guard = wake.readable().await?;
-    wake.get_ref().clear();
+    wake.get_ref().drain();
     guard.clear_ready();
     Ok(())
 }
 
 pub(crate) struct Bridge {
     lifecycle: Lifecycle,
-    wake: AsyncFd<Wake>,
+    wake: AsyncFd<EventFd>,
     orders: rtrb::Producer<Order>,
     notices: rtrb::Consumer<Notice<Event>>,
     publisher: Publisher,
@@ -77,7 +77,7 @@ impl Bridge {
     pub(crate) fn new(
         lifecycle: Lifecycle,
         handle: Handle,
-        wake: AsyncFd<Wake>,
+        wake: AsyncFd<EventFd>,
         (channel, connection): (Channel, Connection),
         states: Arc<watch::Sender<RobotState>>,
     ) -> Self {
@@ -90,7 +90,7 @@ impl Bridge {
                 handle.states,
                 handle.sequence,
                 handle.records,
-                handle.audience,
+                handle.state_wakeups,
                 states,
             ),
             telemetry: Telemetry::new(handle.stats),
@@ -284,7 +284,7 @@ impl Bridge {
 
     fn on_input(&mut self, input: Input) {
         let now = self.now();
-        // Without an audience, what was published last is not the newest.
+        // Without wake-ups per state, what was published last is not the newest.
         self.publisher.refresh();
         // What is asked for may follow on what the thread has said, before the eventfd wakes this task.
         self.look_for_a_stall();

@@ -7,10 +7,10 @@ use std::sync::atomic::AtomicU64;
 use franka_proto::client::Session;
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::{Driver, LinkTimeout};
+use franka_rt::event_fd::EventFd;
 use franka_rt::exchange;
 use franka_rt::lifecycle::Lifecycle;
 use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
-use franka_rt::wake::Wake;
 use tokio::io::unix::AsyncFd;
 use tokio::net::TcpStream;
 use tokio::sync::watch;
@@ -71,8 +71,8 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let (tcp, address) = dial(&addresses, limit).await?;
     let opened = open(tcp, address, &builder).await?;
     let states = Arc::new(watch::Sender::new(opened.first));
-    let (reader, audience) = (&opened.handle.states, &opened.handle.audience);
-    let newest = Newest::new(reader.clone(), &states, audience.clone());
+    let (reader, state_wakeups) = (&opened.handle.states, &opened.handle.state_wakeups);
+    let newest = Newest::new(reader.clone(), &states, state_wakeups.clone());
     let (channel, connection, reports) =
         Channel::start(opened.stream, opened.session, newest.clone());
     let stats = opened.handle.stats.clone();
@@ -107,7 +107,7 @@ struct Opened {
     stream: Framed<TcpStream, MessageCodec>,
     session: Session,
     handle: Handle,
-    wake: AsyncFd<Wake>,
+    wake: AsyncFd<EventFd>,
     first: RobotState,
 }
 
@@ -163,7 +163,7 @@ async fn open_with(
     let driver = Driver::new(version).with_link_timeout(link_timeout);
     let start = move || thread::spawn(config, driver, udp, address.ip(), version);
     let mut handle = off_worker(start).await??;
-    let wake = bridge::attach(handle.wake.clone())?;
+    let wake = bridge::attach(handle.event_fd.clone())?;
     let first = timeout(builder.connect_timeout, first_state(&mut handle, &wake))
         .await
         .map_err(|_| ConnectError::NoState)??;
@@ -189,7 +189,7 @@ async fn off_worker<T: Send + 'static>(
 /// Waits for the first state: without one there is nothing to control.
 async fn first_state(
     handle: &mut Handle,
-    wake: &AsyncFd<Wake>,
+    wake: &AsyncFd<EventFd>,
 ) -> Result<RobotState, ConnectError> {
     loop {
         bridge::woken(wake).await?;

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Weak};
 
 use franka_proto::RobotState;
-use franka_rt::audience::Audience;
+use franka_rt::state_wakeups::StateWakeups;
 use franka_rt::thread::StateReader;
 use tokio::sync::watch;
 
@@ -15,11 +15,11 @@ use tokio::sync::watch;
 pub(crate) struct Newest {
     /// Stays as it is, so that each of its clones finds whatever came later.
     reader: StateReader,
-    /// What the bridge has published. Without an audience it may be some states behind.
+    /// What the bridge has published. Without wake-ups per state it may be some states behind.
     published: watch::Receiver<RobotState>,
     /// Weak, so that subscribers see the end of the connection.
     publisher: Weak<watch::Sender<RobotState>>,
-    audience: Audience,
+    state_wakeups: StateWakeups,
 }
 
 /// Publishes a state, unless a newer one is published already.
@@ -38,13 +38,13 @@ impl Newest {
     pub(crate) fn new(
         reader: StateReader,
         publisher: &Arc<watch::Sender<RobotState>>,
-        audience: Audience,
+        state_wakeups: StateWakeups,
     ) -> Self {
         Self {
             reader,
             published: publisher.subscribe(),
             publisher: Arc::downgrade(publisher),
-            audience,
+            state_wakeups,
         }
     }
 
@@ -59,8 +59,8 @@ impl Newest {
     /// The newest state, and as it changes from now on.
     pub(crate) fn changes(&self) -> watch::Receiver<RobotState> {
         let mut states = self.published.clone();
-        self.audience.enter();
-        // What was published without an audience may be some states old.
+        self.state_wakeups.request();
+        // What was published without wake-ups may be some states old.
         if let Some(publisher) = self.publisher.upgrade() {
             publish(&publisher, self.state());
         }

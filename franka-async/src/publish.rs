@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use franka_proto::RobotState;
-use franka_rt::audience::Audience;
 use franka_rt::driver::Record;
+use franka_rt::state_wakeups::StateWakeups;
 use franka_rt::thread::{StateReader, StateSequence};
 use tokio::sync::{broadcast, watch};
 
@@ -29,7 +29,7 @@ pub(crate) struct Publisher {
     pub(crate) newest: StateReader,
     pub(crate) sequence: StateSequence,
     pub(crate) ring: rtrb::Consumer<Record>,
-    audience: Audience,
+    state_wakeups: StateWakeups,
     silent: Arc<Mutex<Option<Silent>>>,
     listeners: Listeners,
 }
@@ -55,7 +55,7 @@ struct Listeners {
 pub(crate) struct Subscriptions {
     updates: broadcast::WeakSender<Update>,
     records: broadcast::WeakSender<Record>,
-    audience: Audience,
+    state_wakeups: StateWakeups,
     silent: Arc<Mutex<Option<Silent>>>,
 }
 
@@ -65,14 +65,14 @@ impl Publisher {
         newest: StateReader,
         sequence: StateSequence,
         ring: rtrb::Consumer<Record>,
-        audience: Audience,
+        state_wakeups: StateWakeups,
         states: Arc<watch::Sender<RobotState>>,
     ) -> Self {
         Self {
             newest,
             sequence,
             ring,
-            audience,
+            state_wakeups,
             silent: Arc::default(),
             listeners: Listeners {
                 own: states.receiver_count(),
@@ -87,7 +87,7 @@ impl Publisher {
         Subscriptions {
             updates: self.listeners.updates.downgrade(),
             records: self.listeners.records.downgrade(),
-            audience: self.audience.clone(),
+            state_wakeups: self.state_wakeups.clone(),
             silent: self.silent.clone(),
         }
     }
@@ -118,7 +118,7 @@ impl Publisher {
         while let Ok(record) = self.ring.pop() {
             let _ = self.listeners.records.send(record);
         }
-        self.audience.leave(|| self.listeners.are_there());
+        self.state_wakeups.release(|| self.listeners.are_there());
     }
 
     /// Passes on the newest state only. Without subscribers, the one that was passed on last
@@ -150,7 +150,7 @@ impl Subscriptions {
     /// The first ones may be of states that came before.
     pub(crate) fn updates(&self) -> broadcast::Receiver<Update> {
         let updates = subscribe(&self.updates);
-        self.audience.enter();
+        self.state_wakeups.request();
         updates
     }
 
@@ -164,7 +164,7 @@ impl Subscriptions {
     /// As [`Self::updates`].
     pub(crate) fn records(&self) -> broadcast::Receiver<Record> {
         let records = subscribe(&self.records);
-        self.audience.enter();
+        self.state_wakeups.request();
         records
     }
 }

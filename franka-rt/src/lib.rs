@@ -9,23 +9,22 @@
 //! * [`driver`]: what one robot state calls for; phases from watching to finishing. No clock, no
 //!   socket.
 //! * [`session`]: target control: goals in, one continuous joint-space reference out.
-//! * [`control`]: control at 1 kHz by the user's own functions; [`shaping`]: filters, limiters and
-//!   checks of their commands.
+//! * [`control`]: control at 1 kHz by the user's own functions.
 //! * [`law`]: joint torques from a reference and a state.
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
 //!   Pure.
 //! * [`together`]: motions of several robots that begin at the same time.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
-//! * [`slot`], [`wake`], [`audience`], [`exchange`], [`sched`], [`stats`]: what the loop is built
-//!   of.
+//! * [`slot`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: what the loop is
+//!   built of. [`stats`] says when a state is late.
 //!
-//! This crate knows no async runtime, opens no TCP connection and reads no file but the kernel's
-//! real-time flag.
+//! This crate knows no async runtime, opens no TCP connection and reads no file but those that tell
+//! of a real-time kernel.
 
-pub mod audience;
 pub mod control;
 pub mod driver;
+pub mod event_fd;
 pub mod exchange;
 pub mod law;
 pub mod lifecycle;
@@ -34,8 +33,8 @@ pub mod sched;
 pub mod session;
 pub mod shaping;
 pub mod slot;
+pub mod state_wakeups;
 pub mod stats;
 mod sys;
 pub mod thread;
 pub mod together;
-pub mod wake;

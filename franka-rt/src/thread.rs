@@ -8,7 +8,7 @@
 //!
 //! The command leaves before anything is published. After [`spawn`] has returned, the loop neither
 //! allocates, frees, locks nor logs, and its only system calls are `recvfrom`, `sendto`, the clock
-//! and the `write` that rings the bell. What has to be freed (a program that ended) leaves inside
+//! and the `write` to the eventfd. What has to be freed (a program that ended) leaves inside
 //! an event.
 //!
 //! The queues are rtrb's, whose two ends never wait for each other. Not crossbeam's `ArrayQueue`:
@@ -24,15 +24,15 @@
 //! `cycle-phases`) each part of it. Control itself lives by the robot's clock, in the core.
 //!
 //! A panic in the core ends the loop and nothing else: the robot misses its commands and stops by
-//! itself, the bell rings, and [`Thread::join`] tells. Printing the panic is the business of the
+//! itself, the eventfd is notified, and [`Thread::join`] tells. Printing the panic is the business of the
 //! process's panic hook.
 
 mod borrower;
 mod cycle;
-mod desk;
 mod driven;
 mod fault;
 mod handle;
+mod handoff;
 mod lease;
 mod lifetime;
 
@@ -47,24 +47,24 @@ use std::time::Instant;
 
 use franka_proto::{RobotState, Version};
 
-pub use self::desk::BorrowError;
 pub use self::driven::Core;
 pub use self::fault::LinkFault;
 pub use self::handle::{Handle, Lost, Notice, StateReader, StateSequence, Thread};
+pub use self::handoff::BorrowError;
 pub use self::lease::{Lease, Lender, WriteFault};
 
 use self::borrower::BorrowerWatch;
 use self::cycle::Cycle;
-use self::desk::{Desk, NotReturned};
 use self::fault::Latch;
 use self::handle::Datagram;
+use self::handoff::{Handoff, NotReturned};
 use self::lifetime::Lifetime;
-use crate::audience::Audience;
+use crate::event_fd::EventFd;
 use crate::exchange::{self, Exchange};
 use crate::sched::{SchedError, Scheduling};
 use crate::slot;
+use crate::state_wakeups::StateWakeups;
 use crate::stats::{Laps, Meter};
-use crate::wake::Wake;
 
 /// How to run the thread.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -134,8 +134,8 @@ pub fn spawn<C: Core>(
         capacity,
     } = config;
     let size = version.state_size();
-    let wake = Wake::new()?;
-    let audience = Audience::default();
+    let event_fd = EventFd::new()?;
+    let state_wakeups = StateWakeups::default();
     let meter = Meter::new();
     let stats = meter.stats().clone();
     let lifetime = Arc::new(Lifetime::default());
@@ -145,7 +145,7 @@ pub fn spawn<C: Core>(
     let datagram = Datagram([0; RobotState::MAX_SIZE]);
     let (state_ring, states) = touched_ring(capacity.states);
     let (state_slot, state_reader) = slot::slot();
-    let desk = Arc::new(Desk::new(exchange::TICK));
+    let handoff = Arc::new(Handoff::new(exchange::TICK));
     let link_timeout = core.link_timeout();
     let wait = exchange::wait_for(link_timeout);
     let exchange = Exchange::new(socket, robot, size)?.with_wait(wait)?;
@@ -163,15 +163,15 @@ pub fn spawn<C: Core>(
         datagram: Box::new(datagram),
         meter,
         laps: Laps::start(now),
-        wake: wake.clone(),
-        audience: audience.clone(),
-        unheard: 0,
+        event_fd: event_fd.clone(),
+        state_wakeups: state_wakeups.clone(),
+        states_since_wake: 0,
         lifetime: lifetime.clone(),
         started: now,
         receive_faults: Latch::default(),
         send_faults: Latch::default(),
     });
-    let lender = Lender::new(desk.clone());
+    let lender = Lender::new(handoff.clone());
     let (granted, grant) = mpsc::sync_channel(1);
     let stack_size = scheduling.stack_size();
     let run = move || {
@@ -184,13 +184,13 @@ pub fn spawn<C: Core>(
         let _ = granted.send(answer);
         drop(granted);
         let lifetime = cycle.lifetime.clone();
-        let wake = cycle.wake.clone();
+        let event_fd = cycle.event_fd.clone();
         // The core panics, if at all, in its own methods, and is not used after that.
         let ended = catch_unwind(AssertUnwindSafe(|| {
             while !refused && !lifetime.stop_wanted() {
-                if desk.is_wanted() {
-                    let mut watch = BorrowerWatch::new(&lifetime, &wake, link_timeout);
-                    cycle = desk.lend(cycle, || {
+                if handoff.is_wanted() {
+                    let mut watch = BorrowerWatch::new(&lifetime, &event_fd, link_timeout);
+                    cycle = handoff.lend(cycle, || {
                         watch.look();
                         lifetime.stop_wanted()
                     })?;
@@ -199,9 +199,9 @@ pub fn spawn<C: Core>(
             }
             Ok::<C, NotReturned>(cycle.core)
         }));
-        desk.close();
+        handoff.close();
         lifetime.note_end();
-        wake.ring();
+        event_fd.notify();
         match ended {
             Ok(core) => core.map_err(Lost::from),
             Err(payload) => Err(Lost::panicked(&*payload)),
@@ -228,8 +228,8 @@ pub fn spawn<C: Core>(
             version,
             size,
         },
-        wake,
-        audience,
+        event_fd,
+        state_wakeups,
         stats,
         granted,
         lender,

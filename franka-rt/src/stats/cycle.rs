@@ -48,7 +48,7 @@ pub struct Phases {
     pub program: Duration,
     /// The command written into bytes and handed to the kernel.
     pub send: Duration,
-    /// What follows the command: log, newest state, rings, events, bell. It delays the next cycle
+    /// What follows the command: log, newest state, rings, events, wake-up. It delays the next cycle
     /// if it is long. Under active control it comes before the command.
     pub publish: Duration,
 }

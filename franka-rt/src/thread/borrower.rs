@@ -4,13 +4,13 @@ use core::time::Duration;
 use std::time::Instant;
 
 use super::lifetime::Lifetime;
-use crate::wake::Wake;
+use crate::event_fd::EventFd;
 
 /// Watches the turns of one borrower while the thread waits for its cycle, and tells when none has
 /// come for the link timeout. It is over when it is dropped.
 pub(super) struct BorrowerWatch<'a> {
     lifetime: &'a Lifetime,
-    wake: &'a Wake,
+    event_fd: &'a EventFd,
     timeout: Duration,
     turns: u64,
     since: Instant,
@@ -19,10 +19,10 @@ pub(super) struct BorrowerWatch<'a> {
 }
 
 impl<'a> BorrowerWatch<'a> {
-    pub(super) fn new(lifetime: &'a Lifetime, wake: &'a Wake, timeout: Duration) -> Self {
+    pub(super) fn new(lifetime: &'a Lifetime, event_fd: &'a EventFd, timeout: Duration) -> Self {
         Self {
             lifetime,
-            wake,
+            event_fd,
             timeout,
             turns: lifetime.turns(),
             since: Instant::now(),
@@ -40,11 +40,11 @@ impl<'a> BorrowerWatch<'a> {
         self.set(self.since.elapsed() >= self.timeout);
     }
 
-    /// Rings for a change, and for one that the borrower has made by a turn.
+    /// Notifies of a change, also of one that the borrower has made by a turn.
     fn set(&mut self, stalled: bool) {
         if self.lifetime.set_stalled(stalled) || self.stalled != stalled {
             self.stalled = stalled;
-            self.wake.ring();
+            self.event_fd.notify();
         }
     }
 }

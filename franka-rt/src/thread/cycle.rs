@@ -9,11 +9,11 @@ use super::Core;
 use super::fault::{Latch, LinkFault};
 use super::handle::{Datagram, Notice};
 use super::lifetime::Lifetime;
-use crate::audience::Audience;
+use crate::event_fd::EventFd;
 use crate::exchange::{Exchange, Reception, SendError};
 use crate::slot::SlotWriter;
+use crate::state_wakeups::StateWakeups;
 use crate::stats::{CycleTimes, Laps, Meter, Phase, Stats};
-use crate::wake::Wake;
 
 /// What the thread owns.
 pub(super) struct Cycle<C: Core> {
@@ -34,10 +34,10 @@ pub(super) struct Cycle<C: Core> {
     pub(super) meter: Meter,
     /// Times the phases of the cycle.
     pub(super) laps: Laps,
-    pub(super) wake: Wake,
-    pub(super) audience: Audience,
-    /// States since the bell rang for one.
-    pub(super) unheard: u32,
+    pub(super) event_fd: EventFd,
+    pub(super) state_wakeups: StateWakeups,
+    /// States since the last wake-up for one.
+    pub(super) states_since_wake: u32,
     pub(super) lifetime: Arc<Lifetime>,
     /// When the cycle was made.
     pub(super) started: Instant,
@@ -70,9 +70,9 @@ impl<C: Core> Cycle<C> {
         self.count(&reception);
         let fault = self.fault_of(&reception, decoded.and_then(Result::err));
         let told = self.report(reception.fresh, fault) | self.pass_events_on();
-        let due = reception.fresh && self.is_ring_due();
+        let due = reception.fresh && self.is_wakeup_due();
         if due || told {
-            self.wake.ring();
+            self.event_fd.notify();
         }
         self.laps.end(Phase::Publish);
         if let Some(cycle) = sent {
@@ -204,13 +204,13 @@ impl<C: Core> Cycle<C> {
             .or(reception.error.map(LinkFault::Receive))
     }
 
-    /// Whether to ring for a state: for every one if somebody listens, and now and then if nobody
-    /// does.
-    fn is_ring_due(&mut self) -> bool {
-        self.unheard += 1;
-        let due = self.audience.is_there() || self.unheard >= UNHEARD_MAX;
+    /// Whether to send a wake-up for a state: for every one if that is requested, and now and then
+    /// otherwise.
+    fn is_wakeup_due(&mut self) -> bool {
+        self.states_since_wake += 1;
+        let due = self.state_wakeups.are_wanted() || self.states_since_wake >= STATES_PER_WAKE_MAX;
         if due {
-            self.unheard = 0;
+            self.states_since_wake = 0;
         }
         due
     }
@@ -249,9 +249,8 @@ impl<C: Core> Cycle<C> {
     }
 }
 
-/// States after which the bell rings although nobody listens. The rings of the thread hold far
-/// more, and the wake-ups, twenty a second, take less than a thousandth of a core.
-const UNHEARD_MAX: u32 = 50;
+/// States after which a wake-up is sent without a request. The rings of the thread hold far more, and the wake-ups, twenty a second, take less than a thousandth of a core.
+const STATES_PER_WAKE_MAX: u32 = 50;
 
 /// Orders taken in one cycle at most; the rest waits for the next.
 const ORDERS_PER_CYCLE: usize = 8;

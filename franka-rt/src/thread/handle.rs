@@ -7,16 +7,16 @@ use std::thread::JoinHandle;
 
 use franka_proto::{RobotState, Version};
 
-use super::desk::NotReturned;
+use super::handoff::NotReturned;
 use super::lifetime::Lifetime;
-use crate::audience::Audience;
 use crate::driver::Driver;
+use crate::event_fd::EventFd;
 use crate::panic;
 use crate::sched::Granted;
 use crate::slot::{Read, SlotReader, Words};
+use crate::state_wakeups::StateWakeups;
 use crate::stats::Stats;
 use crate::thread::{Core, Lender, LinkFault};
-use crate::wake::Wake;
 
 /// Everything that connects the world outside to one running thread. Take it apart: each field has
 /// its own user.
@@ -35,11 +35,11 @@ pub struct Handle<C: Core = Driver> {
     /// All states, oldest first. Those that find it full are missing, and counted in
     /// [`Stats::states_lost`].
     pub sequence: StateSequence,
-    /// Rings after every cycle that left a notice, or a state while there is an audience; for every
-    /// fiftieth state without one; and when the thread ends.
-    pub wake: Wake,
-    /// Whether anybody wants to hear of every state. There is somebody at first.
-    pub audience: Audience,
+    /// Notified after every cycle that left a notice, or a state while wake-ups are requested; after
+    /// every fiftieth state without a request; and when the thread ends.
+    pub event_fd: EventFd,
+    /// Whether a wake-up is sent for every state; initially true.
+    pub state_wakeups: StateWakeups,
     /// Counts and times of the loop.
     pub stats: Arc<Stats>,
     /// What the operating system granted the thread.
@@ -75,15 +75,15 @@ impl<C> Thread<C> {
         self.shared.ask_to_stop();
     }
 
-    /// Whether the loop has ended, because it was stopped or because the core panicked. The bell
-    /// rings after this has become true.
+    /// Whether the loop has ended, because it was stopped or because the core panicked. The
+    /// eventfd is notified after this has become true.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended()
     }
 
     /// The link timeout, if a thread that has borrowed the cycle has not run it for that long. While
-    /// that lasts no state is received or published, and the loss of the link goes unseen. The bell
-    /// rings after this has changed.
+    /// that lasts no state is received or published, and the loss of the link goes unseen. The
+    /// eventfd is notified after this has changed.
     pub fn stalled(&self) -> Option<Duration> {
         self.shared.is_stalled().then_some(self.link_timeout)
     }
@@ -161,7 +161,7 @@ impl StateReader {
     /// The newest state, if this reader has not returned it yet. Never waits.
     ///
     /// The thread may be writing at this very moment: after a few attempts the answer is `None`. A
-    /// later ring of the bell brings a listener back in any case.
+    /// later wake-up brings a listener back in any case.
     pub fn newest(&mut self) -> Option<RobotState> {
         match self.slot.read_retry(ATTEMPTS) {
             // The thread publishes only what it has decoded itself.

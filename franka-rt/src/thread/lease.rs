@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The thread hands the cycle over between two turns and waits until it comes back, or until it is
-//! told to stop. The lock of the [`Desk`] is taken at the two hand-overs only; a turn, whoever runs
+//! told to stop. The lock of the [`Handoff`] is taken at the two hand-overs only; a turn, whoever runs
 //! it, takes none.
 
 use std::sync::Arc;
@@ -15,19 +15,19 @@ use franka_proto::RobotState;
 
 use super::Core;
 use super::cycle::Cycle;
-use super::desk::{BorrowError, Desk};
+use super::handoff::{BorrowError, Handoff};
 use crate::control::{Command, WriteError};
 use crate::driver::Driver;
 use crate::exchange::SendError;
 
 /// Lends the cycle of one thread. Clones lend the same one.
 pub struct Lender<C: Core = Driver> {
-    desk: Arc<Desk<Box<Cycle<C>>>>,
+    handoff: Arc<Handoff<Box<Cycle<C>>>>,
 }
 
 impl<C: Core> Lender<C> {
-    pub(super) fn new(desk: Arc<Desk<Box<Cycle<C>>>>) -> Self {
-        Self { desk }
+    pub(super) fn new(handoff: Arc<Handoff<Box<Cycle<C>>>>) -> Self {
+        Self { handoff }
     }
 
     /// Takes the cycle over from its thread. Blocks until that has done its turn: a cycle, or a
@@ -37,8 +37,8 @@ impl<C: Core> Lender<C> {
     /// [`BorrowError`].
     pub fn borrow(&self) -> Result<Lease<C>, BorrowError> {
         Ok(Lease {
-            cycle: Some(self.desk.borrow()?),
-            desk: self.desk.clone(),
+            cycle: Some(self.handoff.borrow()?),
+            handoff: self.handoff.clone(),
             is_unsound: false,
         })
     }
@@ -46,7 +46,7 @@ impl<C: Core> Lender<C> {
 
 impl<C: Core> Clone for Lender<C> {
     fn clone(&self) -> Self {
-        Self::new(self.desk.clone())
+        Self::new(self.handoff.clone())
     }
 }
 
@@ -65,7 +65,7 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
 /// A panic of the holder's gives it back as well. Only if the core itself panics, in a
 /// [`turn`](Self::turn) or a [`write`](Lease::write), is the cycle destroyed and the thread ended.
 pub struct Lease<C: Core = Driver> {
-    desk: Arc<Desk<Box<Cycle<C>>>>,
+    handoff: Arc<Handoff<Box<Cycle<C>>>>,
     /// `None` only while it is dropped.
     cycle: Option<Box<Cycle<C>>>,
     /// Whether a method of the core is being called, or has panicked.
@@ -141,7 +141,7 @@ impl<C: Core> Drop for Lease<C> {
         if let Some(cycle) = &cycle {
             cycle.lifetime.set_stalled(false);
         }
-        self.desk.give_back(cycle.filter(|_| !self.is_unsound));
+        self.handoff.give_back(cycle.filter(|_| !self.is_unsound));
     }
 }
 

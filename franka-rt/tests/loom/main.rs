@@ -7,10 +7,10 @@
 //! | module | crossing |
 //! |---|---|
 //! | [`slot`] | newest values: goals in, states out |
-//! | [`desk`] | the cycle, lent to a thread of the user's |
-//! | [`bell`] | "look", and "it has ended" |
+//! | [`handoff`] | the cycle, lent to a thread of the user's |
+//! | [`event_fd`] | wake-ups, and the end of the thread |
 //! | [`together`] | motions of several robots that begin together, or not at all |
-//! | [`audience`] | whether to ring for every state |
+//! | [`state_wakeups`] | whether to send a wake-up for every state |
 //!
 //! The queues are rtrb's and not explored here: nothing of ours is inside them, and loom cannot see
 //! into a crate that is not built for it. rtrb 0.4 has no loom models; its own tests are written
@@ -18,8 +18,8 @@
 //! stands for itself, and nothing is concluded from two.
 #![cfg(loom)]
 
-mod audience;
-mod bell;
-mod desk;
+mod event_fd;
+mod handoff;
 mod slot;
+mod state_wakeups;
 mod together;

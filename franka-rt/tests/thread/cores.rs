@@ -186,10 +186,10 @@ fn a_panic_of_the_core_ends_the_thread_and_nothing_else() {
     );
     robot.send(1);
     assert_eq!(wait_for("state", || handle.states.newest()).message_id, 1);
-    handle.wake.clear();
+    handle.event_fd.drain();
     robot.send(2);
     wait_for("end", || handle.thread.has_ended().then_some(()));
-    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+    wait_for("ring", || (handle.event_fd.drain() > 0).then_some(()));
     let lost = handle.thread.join().expect_err("it panicked");
     let Lost::Panicked { message } = lost else {
         panic!("{lost}")

@@ -68,7 +68,7 @@ fn a_borrower_that_runs_no_turn_is_reported_until_it_does() {
     let mut lease = handle.lender.borrow().expect("nobody else has it");
     let stalled = wait_for("report", || handle.thread.stalled());
     assert_eq!(stalled, LinkTimeout::MIN);
-    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+    wait_for("ring", || (handle.event_fd.drain() > 0).then_some(()));
     wait_for("end of the stall", || {
         robot.send(1);
         lease.turn().expect("the thread lives");

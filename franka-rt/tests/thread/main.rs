@@ -3,11 +3,11 @@
 //! Waits have generous deadlines and end as soon as what they wait for is there: the margins are
 //! for a loaded machine with two processors, not for the code.
 
-mod audience;
 mod cores;
 mod faults;
 mod lease;
 mod receiving;
+mod state_wakeups;
 mod stopping;
 
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};

@@ -31,7 +31,7 @@ fn states_are_published_as_they_come() {
         late_reader.newest().map(|state| state.message_id),
         Some(sent)
     );
-    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+    wait_for("ring", || (handle.event_fd.drain() > 0).then_some(()));
 
     handle.thread.join().expect("nothing panics");
     let stats = &handle.stats;
@@ -113,7 +113,7 @@ fn short_datagrams_are_reported_once_and_the_next_state_is_taken() {
         })
     );
     assert_eq!(fault.to_string(), "libfranka: incorrect object size");
-    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+    wait_for("ring", || (handle.event_fd.drain() > 0).then_some(()));
     robot.send(2);
     assert_eq!(wait_for("state", || handle.states.newest()).message_id, 2);
     handle.thread.join().expect("nothing panics");
@@ -132,7 +132,7 @@ fn silence_is_reported_and_a_later_state_taken() {
     robot.send(1);
     wait_for("state", || handle.states.newest());
     let heard = Instant::now();
-    handle.wake.clear();
+    handle.event_fd.drain();
     let notice = wait_for("notice", || handle.notices.pop().ok());
     let Notice::Core(Event::LinkLost { silence }) = notice else {
         panic!("{notice:?}")
@@ -143,7 +143,7 @@ fn silence_is_reported_and_a_later_state_taken() {
         silence <= heard.elapsed() + Duration::from_secs(1),
         "{silence:?}"
     );
-    wait_for("ring", || (handle.wake.clear() > 0).then_some(()));
+    wait_for("ring", || (handle.event_fd.drain() > 0).then_some(()));
     robot.send(2_000);
     assert_eq!(
         wait_for("state", || handle.states.newest()).message_id,

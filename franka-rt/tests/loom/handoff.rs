@@ -1,10 +1,10 @@
-//! The desk where the cycle changes hands. What is lent here is a count of the turns that it has
+//! The handoff where the cycle changes hands. What is lent here is a count of the turns that it has
 //! run.
 
 // Private to the crate, and free of everything else in it.
-#[path = "../../src/thread/desk.rs"]
+#[path = "../../src/thread/handoff.rs"]
 #[allow(unreachable_pub, reason = "what the crate exports is exported there")]
-mod desk;
+mod handoff;
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use loom::sync::Arc;
 use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use loom::thread;
 
-use self::desk::{BorrowError, Desk};
+use self::handoff::{BorrowError, Handoff};
 
 /// Ticks that never end: whoever waits for a change has to be told of it.
 const FOREVER: Duration = Duration::MAX;
@@ -21,24 +21,24 @@ const FOREVER: Duration = Duration::MAX;
 const AT_ONCE: Duration = Duration::ZERO;
 
 /// The owner's loop, for as long as somebody wants the value or `goes_on` says so; then it closes
-/// the desk. Returns the turns that were run in all, if the value is back.
-fn own(desk: &Desk<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
+/// the handoff. Returns the turns that were run in all, if the value is back.
+fn own(handoff: &Handoff<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
     let mut turns = Some(0);
     while let Some(value) = turns.filter(|_| goes_on()) {
-        if desk.is_wanted() {
-            turns = desk.lend(value, || !goes_on()).ok();
+        if handoff.is_wanted() {
+            turns = handoff.lend(value, || !goes_on()).ok();
         } else {
             thread::yield_now();
         }
     }
-    desk.close();
+    handoff.close();
     turns
 }
 
 /// Borrows, runs a turn and gives back.
-fn take_a_turn(desk: &Desk<u64>) -> Result<(), BorrowError> {
-    let turns = desk.borrow()?;
-    desk.give_back(Some(turns + 1));
+fn take_a_turn(handoff: &Handoff<u64>) -> Result<(), BorrowError> {
+    let turns = handoff.borrow()?;
+    handoff.give_back(Some(turns + 1));
     Ok(())
 }
 
@@ -47,17 +47,17 @@ fn take_a_turn(desk: &Desk<u64>) -> Result<(), BorrowError> {
 #[test]
 fn whoever_wants_it_gets_it() {
     loom::model(|| {
-        let desk = Arc::new(Desk::new(FOREVER));
+        let handoff = Arc::new(Handoff::new(FOREVER));
         let served = Arc::new(AtomicBool::new(false));
         let borrower = {
-            let (desk, served) = (desk.clone(), served.clone());
+            let (handoff, served) = (handoff.clone(), served.clone());
             thread::spawn(move || {
-                let got = take_a_turn(&desk);
+                let got = take_a_turn(&handoff);
                 served.store(true, Ordering::Relaxed);
                 got
             })
         };
-        let turns = own(&desk, || !served.load(Ordering::Relaxed));
+        let turns = own(&handoff, || !served.load(Ordering::Relaxed));
         assert_eq!(borrower.join().expect("no panic"), Ok(()));
         assert_eq!(turns, Some(1), "no turn is lost or doubled");
     });
@@ -69,17 +69,17 @@ fn two_borrowers_get_it_or_hear_that_the_other_has_it() {
     let mut model = loom::model::Builder::new();
     model.preemption_bound = Some(2);
     model.check(|| {
-        let desk = Arc::new(Desk::new(FOREVER));
+        let handoff = Arc::new(Handoff::new(FOREVER));
         let left = Arc::new(AtomicU64::new(2));
         let borrowers = [(); 2].map(|()| {
-            let (desk, left) = (desk.clone(), left.clone());
+            let (handoff, left) = (handoff.clone(), left.clone());
             thread::spawn(move || {
-                let got = take_a_turn(&desk);
+                let got = take_a_turn(&handoff);
                 left.fetch_sub(1, Ordering::Relaxed);
                 got
             })
         });
-        let turns = own(&desk, || left.load(Ordering::Relaxed) > 0);
+        let turns = own(&handoff, || left.load(Ordering::Relaxed) > 0);
         let got = borrowers.map(|borrower| borrower.join().expect("no panic"));
         let served = got.iter().filter(|got| got.is_ok()).count();
         assert!(served >= 1, "somebody gets it: {got:?}");
@@ -92,21 +92,21 @@ fn two_borrowers_get_it_or_hear_that_the_other_has_it() {
     });
 }
 
-/// The owner is told to stop at any moment: nobody waits for good, and the value ends in one place.
+/// The owner is told to stop at any moment: nobody waits for good, and the value ends in one state.
 #[test]
 fn a_stop_at_any_moment_leaves_nobody_waiting() {
     loom::model(|| {
-        let desk = Arc::new(Desk::new(AT_ONCE));
+        let handoff = Arc::new(Handoff::new(AT_ONCE));
         let stop = Arc::new(AtomicBool::new(false));
         let borrower = {
-            let desk = desk.clone();
-            thread::spawn(move || take_a_turn(&desk))
+            let handoff = handoff.clone();
+            thread::spawn(move || take_a_turn(&handoff))
         };
         let stopper = {
             let stop = stop.clone();
             thread::spawn(move || stop.store(true, Ordering::Relaxed))
         };
-        let turns = own(&desk, || !stop.load(Ordering::Relaxed));
+        let turns = own(&handoff, || !stop.load(Ordering::Relaxed));
         let got = borrower.join().expect("no panic");
         stopper.join().expect("no panic");
         match (got, turns) {
@@ -115,7 +115,7 @@ fn a_stop_at_any_moment_leaves_nobody_waiting() {
             (Err(BorrowError::Ended), Some(0)) => {}
             other => panic!("{other:?}"),
         }
-        assert_eq!(desk.borrow(), Err(BorrowError::Ended), "nobody later");
+        assert_eq!(handoff.borrow(), Err(BorrowError::Ended), "nobody later");
     });
 }
 
@@ -123,17 +123,17 @@ fn a_stop_at_any_moment_leaves_nobody_waiting() {
 #[test]
 fn a_value_that_is_spoilt_ends_the_owner() {
     loom::model(|| {
-        let desk = Arc::new(Desk::new(FOREVER));
+        let handoff = Arc::new(Handoff::new(FOREVER));
         let borrower = {
-            let desk = desk.clone();
+            let handoff = handoff.clone();
             thread::spawn(move || {
-                let spoilt = desk.borrow();
-                desk.give_back(None);
+                let spoilt = handoff.borrow();
+                handoff.give_back(None);
                 spoilt
             })
         };
-        assert_eq!(own(&desk, || true), None);
+        assert_eq!(own(&handoff, || true), None);
         assert_eq!(borrower.join().expect("no panic"), Ok(0));
-        assert_eq!(desk.borrow(), Err(BorrowError::Ended));
+        assert_eq!(handoff.borrow(), Err(BorrowError::Ended));
     });
 }

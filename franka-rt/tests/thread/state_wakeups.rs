@@ -1,4 +1,4 @@
-//! Who is rung for.
+//! When the thread sends wake-ups.
 
 use franka_rt::driver::Driver;
 use franka_rt::thread::{Core, Handle};
@@ -6,8 +6,8 @@ use franka_rt::thread::{Core, Handle};
 use super::{Peer, Probe, VERSION, config, start, wait_for};
 
 /// Sends so many states, each after the one before has been published; ends the thread; returns how
-/// often the bell rang.
-fn rings<C: Core>(mut handle: Handle<C>, robot: &Peer, states: u64) -> u64 {
+/// many notifications came.
+fn notifications<C: Core>(mut handle: Handle<C>, robot: &Peer, states: u64) -> u64 {
     for id in 1..=states {
         robot.send(id);
         wait_for("state", || {
@@ -15,26 +15,30 @@ fn rings<C: Core>(mut handle: Handle<C>, robot: &Peer, states: u64) -> u64 {
         });
     }
     handle.thread.join().expect("nothing panics");
-    handle.wake.clear()
+    handle.event_fd.drain()
 }
 
 #[test]
-fn without_an_audience_the_bell_rings_for_every_fiftieth_state() {
+fn without_a_request_every_fiftieth_state_wakes() {
     let (handle, robot) = start(config(), Driver::new(VERSION));
-    assert_eq!(rings(handle, &robot, 120), 120 + 1, "and at the end");
+    assert_eq!(
+        notifications(handle, &robot, 120),
+        120 + 1,
+        "and at the end"
+    );
 
     let (handle, robot) = start(config(), Driver::new(VERSION));
-    handle.audience.leave(|| false);
-    assert_eq!(rings(handle, &robot, 120), 2 + 1);
+    handle.state_wakeups.release(|| false);
+    assert_eq!(notifications(handle, &robot, 120), 2 + 1);
 }
 
 #[test]
-fn an_event_is_rung_for_without_an_audience() {
+fn an_event_wakes_without_a_request() {
     let core = Probe {
         to_say: 0..1,
         ..Probe::default()
     };
     let (handle, robot) = start(config(), core);
-    handle.audience.leave(|| false);
-    assert_eq!(rings(handle, &robot, 10), 1 + 1);
+    handle.state_wakeups.release(|| false);
+    assert_eq!(notifications(handle, &robot, 10), 1 + 1);
 }

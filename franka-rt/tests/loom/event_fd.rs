@@ -1,9 +1,8 @@
-//! The bell: what is published before a ring is found by whoever looks after it.
+//! The wake-up: what is published before a notification is found by a listener that looks after it.
 //!
-//! The bell itself is an eventfd, which only the kernel can be asked about. Its counter and its
-//! readiness are made of a lock and a condition variable here; what is explored is the order of our
-//! operations around it, which is that of the thread (publish, note the end, ring) and of the
-//! bridge (hear, silence, look).
+//! The eventfd itself belongs to the kernel. Its counter and its readiness are made of a lock and a
+//! condition variable here; what is explored is the order of our operations around it, which is that
+//! of the thread (publish, note the end, notify) and of the bridge (wait, drain, look).
 
 // Private to the crate, and free of everything else in it.
 #[path = "../../src/thread/lifetime.rs"]
@@ -18,46 +17,46 @@ use self::lifetime::Lifetime;
 
 /// What an eventfd does.
 #[derive(Default)]
-struct Bell {
-    rings: Mutex<u64>,
+struct EventFd {
+    count: Mutex<u64>,
     readable: Condvar,
 }
 
-impl Bell {
-    fn ring(&self) {
-        *self.rings.lock().expect("no panic") += 1;
+impl EventFd {
+    fn notify(&self) {
+        *self.count.lock().expect("no panic") += 1;
         self.readable.notify_all();
     }
 
-    /// Waits until it has rung and silences it.
-    fn hear(&self) {
-        let mut rings = self.rings.lock().expect("no panic");
-        while *rings == 0 {
-            rings = self.readable.wait(rings).expect("no panic");
+    /// Waits until it is notified, and drains it.
+    fn notified(&self) {
+        let mut count = self.count.lock().expect("no panic");
+        while *count == 0 {
+            count = self.readable.wait(count).expect("no panic");
         }
-        *rings = 0;
+        *count = 0;
     }
 }
 
-/// A listener that looks once after each time it hears the bell has the newest value in the end,
+/// A listener that looks once after each notification has the newest value in the end,
 /// torn reads or not; one that misses it waits for good, which loom reports.
 #[test]
-fn whoever_looks_after_each_ring_finds_the_newest_value() {
+fn a_look_after_each_notification_finds_the_newest_value() {
     loom::model(|| {
-        let bell = Arc::new(Bell::default());
+        let event_fd = Arc::new(EventFd::default());
         let (mut writer, mut reader) = slot::<[u64; 1]>();
         let publishing = {
-            let bell = bell.clone();
+            let event_fd = event_fd.clone();
             thread::spawn(move || {
                 for value in [1, 2] {
                     writer.write(&[value]);
-                    bell.ring();
+                    event_fd.notify();
                 }
             })
         };
         let mut newest = 0;
         while newest < 2 {
-            bell.hear();
+            event_fd.notified();
             if let Read::Newer([value]) = reader.read_newer() {
                 newest = value;
             }
@@ -67,20 +66,20 @@ fn whoever_looks_after_each_ring_finds_the_newest_value() {
 }
 
 #[test]
-fn the_end_is_heard_with_all_that_was_left_before_it() {
+fn the_end_is_seen_with_all_that_was_left_before_it() {
     loom::model(|| {
-        let bell = Arc::new(Bell::default());
+        let event_fd = Arc::new(EventFd::default());
         let lifetime = Arc::new(Lifetime::default());
         let left = Arc::new(AtomicU64::new(0));
         let ending = {
-            let (bell, lifetime, left) = (bell.clone(), lifetime.clone(), left.clone());
+            let (event_fd, lifetime, left) = (event_fd.clone(), lifetime.clone(), left.clone());
             thread::spawn(move || {
                 while !lifetime.stop_wanted() {
                     thread::yield_now();
                 }
                 left.store(7, Ordering::Relaxed);
                 lifetime.note_end();
-                bell.ring();
+                event_fd.notify();
             })
         };
         lifetime.ask_to_stop();
@@ -88,8 +87,8 @@ fn the_end_is_heard_with_all_that_was_left_before_it() {
         if lifetime.has_ended() {
             assert_eq!(left.load(Ordering::Relaxed), 7);
         }
-        bell.hear();
-        assert!(lifetime.has_ended(), "the bell rings after the end");
+        event_fd.notified();
+        assert!(lifetime.has_ended(), "the notification comes after the end");
         assert_eq!(left.load(Ordering::Relaxed), 7);
         ending.join().expect("no panic");
     });

@@ -6,7 +6,7 @@
 //!   borrower:                    borrow --> Lent --> give_back
 //! ```
 //!
-//! Nothing here knows what is lent: `tests/loom.rs` includes this file and explores the hand-overs.
+//! Nothing here knows what is lent: `tests/loom/main.rs` includes this file and explores the hand-overs.
 
 use std::sync::PoisonError;
 #[cfg(not(loom))]
@@ -22,16 +22,16 @@ use loom::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-/// Where a value changes hands.
-pub(super) struct Desk<T> {
+/// The place where a value passes between the owner and a borrower.
+pub(super) struct Handoff<T> {
     wanted: AtomicBool,
-    place: Mutex<Place<T>>,
+    state: Mutex<HandoffState<T>>,
     changed: Condvar,
     tick: Duration,
 }
 
 /// Where the value is.
-enum Place<T> {
+enum HandoffState<T> {
     /// With its owner.
     Running,
     /// On its way to a borrower.
@@ -65,12 +65,12 @@ pub enum BorrowError {
     Ended,
 }
 
-impl<T> Desk<T> {
-    /// A desk whose owner, while it waits for its value, looks every `tick` whether it has to stop.
+impl<T> Handoff<T> {
+    /// A handoff whose owner, while it waits for its value, polls the stop flag every `tick`.
     pub(super) fn new(tick: Duration) -> Self {
         Self {
             wanted: AtomicBool::new(false),
-            place: Mutex::new(Place::Running),
+            state: Mutex::new(HandoffState::Running),
             changed: Condvar::new(),
             tick,
         }
@@ -88,80 +88,83 @@ impl<T> Desk<T> {
         value: T,
         mut stop_wanted: impl FnMut() -> bool,
     ) -> Result<T, NotReturned> {
-        let mut place = self.lock();
+        let mut state = self.lock();
         // Under the lock: whoever wants it later finds it on offer, or lent.
         self.wanted.store(false, Ordering::Relaxed);
-        *place = Place::Offered(value);
+        *state = HandoffState::Offered(value);
         self.changed.notify_all();
         loop {
             let stop = stop_wanted();
-            match core::mem::replace(&mut *place, Place::Running) {
-                Place::Returned(value) => return Ok(value),
-                Place::Offered(value) if stop => return Ok(value),
-                Place::Ended => return Err(NotReturned::Spoilt),
-                other => *place = other,
+            match core::mem::replace(&mut *state, HandoffState::Running) {
+                HandoffState::Returned(value) => return Ok(value),
+                HandoffState::Offered(value) if stop => return Ok(value),
+                HandoffState::Ended => return Err(NotReturned::Spoilt),
+                other => *state = other,
             }
             if stop {
                 return Err(NotReturned::Lent);
             }
-            place = self.wait_a_tick(place);
+            state = self.wait_a_tick(state);
         }
     }
 
     /// The owner refuses all further borrowers.
     pub(super) fn close(&self) {
-        let mut place = self.lock();
+        let mut state = self.lock();
         // What a borrower has brought back meanwhile is freed here, after the last turn.
-        *place = Place::Ended;
+        *state = HandoffState::Ended;
         self.changed.notify_all();
     }
 
     /// Takes the value over from its owner. Waits until that offers it.
     pub(super) fn borrow(&self) -> Result<T, BorrowError> {
-        let mut place = self.lock();
+        let mut state = self.lock();
         loop {
-            match core::mem::replace(&mut *place, Place::Lent) {
-                Place::Offered(value) => return Ok(value),
-                Place::Lent => return Err(BorrowError::Lent),
-                Place::Ended => {
-                    *place = Place::Ended;
+            match core::mem::replace(&mut *state, HandoffState::Lent) {
+                HandoffState::Offered(value) => return Ok(value),
+                HandoffState::Lent => return Err(BorrowError::Lent),
+                HandoffState::Ended => {
+                    *state = HandoffState::Ended;
                     return Err(BorrowError::Ended);
                 }
-                other @ (Place::Running | Place::Returned(_)) => *place = other,
+                other @ (HandoffState::Running | HandoffState::Returned(_)) => *state = other,
             }
             self.wanted.store(true, Ordering::Relaxed);
-            let waited = self.changed.wait(place);
-            place = waited.unwrap_or_else(PoisonError::into_inner);
+            let waited = self.changed.wait(state);
+            state = waited.unwrap_or_else(PoisonError::into_inner);
         }
     }
 
     /// Gives back what was borrowed; `None` if it is not to be used any more.
     pub(super) fn give_back(&self, value: Option<T>) {
-        let mut place = self.lock();
-        *place = match (&*place, value) {
-            (Place::Lent, Some(value)) => Place::Returned(value),
+        let mut state = self.lock();
+        *state = match (&*state, value) {
+            (HandoffState::Lent, Some(value)) => HandoffState::Returned(value),
             // It is spoilt, or the owner has ended: it is freed here.
-            _ => Place::Ended,
+            _ => HandoffState::Ended,
         };
         self.changed.notify_all();
     }
 
-    fn lock(&self) -> MutexGuard<'_, Place<T>> {
+    fn lock(&self) -> MutexGuard<'_, HandoffState<T>> {
         // Nobody panics while holding it.
-        self.place.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Waits for a change, for a tick at most.
-    fn wait_a_tick<'a>(&'a self, place: MutexGuard<'a, Place<T>>) -> MutexGuard<'a, Place<T>> {
+    fn wait_a_tick<'a>(
+        &'a self,
+        state: MutexGuard<'a, HandoffState<T>>,
+    ) -> MutexGuard<'a, HandoffState<T>> {
         // loom knows no time. A tick of zero stands for one that is over once somebody else has
         // run, and its condition variable takes any other for one that never ends.
         #[cfg(loom)]
         if self.tick.is_zero() {
-            drop(place);
+            drop(state);
             loom::thread::yield_now();
             return self.lock();
         }
-        let waited = self.changed.wait_timeout(place, self.tick);
+        let waited = self.changed.wait_timeout(state, self.tick);
         waited.unwrap_or_else(PoisonError::into_inner).0
     }
 }

@@ -1,0 +1,35 @@
+//! Wake-ups per state: a request is never lost to a release at the same time.
+
+use franka_rt::state_wakeups::StateWakeups;
+use loom::sync::Arc;
+use loom::sync::atomic::{AtomicUsize, Ordering};
+use loom::thread;
+
+/// A subscriber is counted before it requests; the bridge finds none and releases meanwhile.
+#[test]
+fn a_request_during_a_release_holds_in_the_end() {
+    loom::model(|| {
+        let state_wakeups = StateWakeups::default();
+        let listeners = Arc::new(AtomicUsize::new(0));
+        let entering = {
+            let (state_wakeups, listeners) = (state_wakeups.clone(), listeners.clone());
+            thread::spawn(move || {
+                listeners.fetch_add(1, Ordering::Relaxed);
+                state_wakeups.request();
+            })
+        };
+        state_wakeups.release(|| listeners.load(Ordering::Relaxed) > 0);
+        entering.join().expect("no panic");
+        assert!(state_wakeups.are_wanted());
+    });
+}
+
+#[test]
+fn a_release_without_subscribers_holds() {
+    loom::model(|| {
+        let state_wakeups = StateWakeups::default();
+        assert!(state_wakeups.are_wanted(), "initially");
+        state_wakeups.release(|| false);
+        assert!(!state_wakeups.are_wanted());
+    });
+}
