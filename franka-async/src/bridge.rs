@@ -37,8 +37,9 @@ const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 /// # Errors
 /// If the runtime's poll does not take the descriptor.
 pub(crate) fn attach(wake: EventFd) -> io::Result<AsyncFd<EventFd>> {
-    // SAFETY: an `EventFd` owns its eventfd through an `Arc` that nothing replaces: the descriptor is
-    // open, and the same, for as long as the `EventFd` lives, and the `AsyncFd` owns the `EventFd`.
+    // SAFETY: an `EventFd` owns its eventfd through an `Arc` that nothing replaces: the descriptor
+    // is open, and the same, for as long as the `EventFd` lives, and the `AsyncFd` owns the
+    // `EventFd`.
     let attached = unsafe { AsyncFd::register_with_interest(wake, Interest::READABLE) };
     attached.map_err(Into::into)
 }
@@ -286,7 +287,8 @@ impl Bridge {
         let now = self.now();
         // Without wake-ups per state, what was published last is not the newest.
         self.publisher.refresh();
-        // What is asked for may follow on what the thread has said, before the eventfd wakes this task.
+        // What is asked for may follow on what the thread has said, before the eventfd wakes this
+        // task.
         self.look_for_a_stall();
         self.take_notices();
         match input {

@@ -146,8 +146,8 @@ impl Robot {
         self.set(Request::SetFilters(filters)).await
     }
 
-    /// Reads the virtual wall `id` as it is set up in Handoff (libfranka's `getVirtualWall`). Protocol
-    /// 5 only (Franka Emika Robot).
+    /// Reads the virtual wall `id` as it is set up in Handoff (libfranka's `getVirtualWall`).
+    /// Protocol 5 only (Franka Emika Robot).
     ///
     /// # Errors
     /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.

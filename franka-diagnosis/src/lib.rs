@@ -1,18 +1,19 @@
-//! Why a Franka robot ended a motion: which limit was exceeded, by how much, since when, what led up
-//! to it and what to change.
+//! Why a Franka robot ended a motion: which limit was exceeded, by how much, since when, what led
+//! up to it and what to change.
 //!
 //! ```text
 //! errors, log, model --> finding (one error: commanded | measured | contact | lost cycles)
 //!                          +-> causes (steps | contact | lost cycles | posture) --> advice
 //! ```
 //!
-//! The robot names errors and nothing else: no joint, no number. Joint and number are computed here,
-//! from the log of the motion's last cycles, by the differences and limits that the robot checks by
-//! (FCI documentation), so far as these are published and as states of single precision show them.
-//! What the log does not show is not guessed: a [`Diagnosis`] then says that it is not visible.
+//! The robot names errors and nothing else: no joint, no number. Joint and number are computed
+//! here, from the log of the motion's last cycles, by the differences and limits that the robot
+//! checks by (FCI documentation), so far as these are published and as states of single precision
+//! show them. What the log does not show is not guessed: a [`Diagnosis`] then says that it is not
+//! visible.
 //!
-//! * [`Diagnose`]: the diagnosis of an error, where it was caught. [`Case`], [`Diagnosis::of`]: of a
-//!   log, saved or live.
+//! * [`Diagnose`]: the diagnosis of an error, where it was caught. [`Case`], [`Diagnosis::of`]: of
+//!   a log, saved or live.
 //! * [`Finding`]: the limit that was exceeded. [`Cause`]: what led up to it. [`Advice`]: what to
 //!   change.
 //!

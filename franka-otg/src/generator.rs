@@ -163,9 +163,9 @@ impl<const N: usize> Generator<N> {
     /// for one cycle, and then comes to rest in the least time: a program that stalls does not keep
     /// an arm moving.
     ///
-    /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would be
-    /// early cannot wait at a moving target: it goes back and comes again, which may lead it past
-    /// the target first, and the others wait for it.
+    /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would
+    /// be early cannot wait at a moving target: it goes back and comes again, which may lead it
+    /// past the target first, and the others wait for it.
     ///
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the
@@ -236,8 +236,8 @@ impl<const N: usize> Generator<N> {
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
     /// The cycle in which the motion ends, and all after it, give exactly the target without
-    /// velocity and acceleration (the position past it at which the motion comes to rest, if the target
-    /// moves).
+    /// velocity and acceleration (the position past it at which the motion comes to rest, if the
+    /// target moves).
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
         self.state = self.plan.sample(self.elapsed());

@@ -1,9 +1,9 @@
 //! Straight lines: all axes as one.
 //!
-//! If the displacement to the target, the velocities and the accelerations of all axes, now and at the target, are
-//! multiples of one vector, one scalar problem along it moves them in phase, and the path is a
-//! straight line. From rest this is always so. Its duration equals the time-synchronised one when
-//! one axis binds in all three limits, and is longer otherwise.
+//! If the displacement to the target, the velocities and the accelerations of all axes, now and at
+//! the target, are multiples of one vector, one scalar problem along it moves them in phase, and
+//! the path is a straight line. From rest this is always so. Its duration equals the
+//! time-synchronised one when one axis binds in all three limits, and is longer otherwise.
 //!
 //! Rounding makes the axes of a moving line look not quite parallel, so the scalar state is kept
 //! and continued while targets stay on the line, instead of being derived from the axes again.

@@ -102,6 +102,6 @@ pub(crate) fn typical_velocity(task: &Task) -> f64 {
 /// extremal motions end at the target: a motion is there from some point on, and has to stay there.
 pub(crate) const DRIFT: f64 = 1024.0 * ROUNDING;
 
-/// Relative rounding of one plan, for all other durations. An error that is accepted here remains in
-/// the state, so it has to be a small part of [`DRIFT`].
+/// Relative rounding of one plan, for all other durations. An error that is accepted here remains
+/// in the state, so it has to be a small part of [`DRIFT`].
 pub(crate) const TIGHT: f64 = 16.0 * ROUNDING;

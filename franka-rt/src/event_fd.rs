@@ -35,8 +35,8 @@ impl EventFd {
         let _ = (&*self.0).write(&1u64.to_ne_bytes());
     }
 
-    /// Returns the number of notifications since the last call, and makes the descriptor unreadable.
-    /// Never blocks.
+    /// Returns the number of notifications since the last call, and makes the descriptor
+    /// unreadable. Never blocks.
     pub fn drain(&self) -> u64 {
         let mut count = [0; 8];
         match (&*self.0).read(&mut count) {

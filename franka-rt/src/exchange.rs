@@ -3,9 +3,9 @@
 //!
 //! The robot sends one state per millisecond, and a host that was held up finds several of them
 //! waiting. The newest one wins: [`Exchange::receive`] waits for a datagram, then takes all that
-//! are there and keeps the one with the highest `message_id`, if that is above the last one kept and
-//! not impossibly far ahead of it. What did not come from the robot's address is dropped and counted. Nothing here allocates after
-//! [`Exchange::new`].
+//! are there and keeps the one with the highest `message_id`, if that is above the last one kept
+//! and not impossibly far ahead of it. What did not come from the robot's address is dropped and
+//! counted. Nothing here allocates after [`Exchange::new`].
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
@@ -250,8 +250,9 @@ pub enum SendError {
 /// receive buffer of Linux (212992 bytes) holds fewer states than that.
 pub const DRAIN_MAX: usize = 256;
 
-/// The most that a state's `message_id` may be above the newest one, `[ms]` of the robot's clock: 49
-/// days. No connection outlives such a silence, so what is further ahead is not a state's number.
+/// The most that a state's `message_id` may be above the newest one, `[ms]` of the robot's clock:
+/// 49 days. No connection outlives such a silence, so what is further ahead is not a state's
+/// number.
 pub const LEAP_MAX: u64 = u32::MAX as u64;
 
 /// Size of the `message_id`, in bytes.

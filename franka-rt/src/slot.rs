@@ -19,7 +19,8 @@
 //! ```
 //!
 //! The words are atomics, so a torn read is a wrong value and not a data race, and no `unsafe` is
-//! needed. Memory order is argued at the two loops; `tests/loom/main.rs` explores the interleavings.
+//! needed. Memory order is argued at the two loops; `tests/loom/main.rs` explores the
+//! interleavings.
 
 #[cfg(loom)]
 use loom::sync::{

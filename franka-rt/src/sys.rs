@@ -89,8 +89,8 @@ pub(crate) fn block_signals() {
     unsafe { libc::pthread_sigmask(libc::SIG_BLOCK, &raw const signals, core::ptr::null_mut()) };
 }
 
-/// Signals that the kernel raises for what a thread itself does. Blocked, they would end the process
-/// without the handler that prints why.
+/// Signals that the kernel raises for what a thread itself does. Blocked, they would end the
+/// process without the handler that prints why.
 const FAULTS: [libc::c_int; 7] = [
     libc::SIGABRT,
     libc::SIGBUS,

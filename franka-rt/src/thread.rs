@@ -24,8 +24,8 @@
 //! `cycle-phases`) each part of it. Control itself lives by the robot's clock, in the core.
 //!
 //! A panic in the core ends the loop and nothing else: the robot misses its commands and stops by
-//! itself, the eventfd is notified, and [`Thread::join`] tells. Printing the panic is the business of the
-//! process's panic hook.
+//! itself, the eventfd is notified, and [`Thread::join`] tells. Printing the panic is the business
+//! of the process's panic hook.
 
 mod borrower;
 mod cycle;
@@ -241,8 +241,8 @@ pub fn spawn<C: Core>(
     })
 }
 
-/// A ring of at least one element whose memory has been written to, so that no cycle meets a page of
-/// it for the first time.
+/// A ring of at least one element whose memory has been written to, so that no cycle meets a page
+/// of it for the first time.
 fn touched_ring<T>(capacity: usize) -> (rtrb::Producer<T>, rtrb::Consumer<T>) {
     let capacity = capacity.max(1);
     let (mut producer, consumer) = rtrb::RingBuffer::new(capacity);

@@ -68,8 +68,8 @@ impl<P: Protocol> Connection<P> {
         self.received.extend_from_slice(bytes);
     }
 
-    /// The next request that has been received whole. Handshakes, and requests that no device takes,
-    /// are answered here, through `replies`.
+    /// The next request that has been received whole. Handshakes, and requests that no device
+    /// takes, are answered here, through `replies`.
     pub(crate) fn next_request(
         &mut self,
         replies: &mut VecDeque<Bytes>,

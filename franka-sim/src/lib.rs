@@ -44,10 +44,10 @@
 //!
 //! # Disturbances
 //!
-//! [`Robot`], and from any task through [`Running::with`]: [`touch`](Robot::touch) the arm anywhere ([`Touch`]:
-//! push it, also over time, pull it by a spring, hold it, block a joint, put a wall in its way),
-//! press the user stop, close the brakes, guide the arm, activate a safety function, change the
-//! payload, trip any error, and perform the recovery that takes a person.
+//! [`Robot`], and from any task through [`Running::with`]: [`touch`](Robot::touch) the arm anywhere
+//! ([`Touch`]: push it, also over time, pull it by a spring, hold it, block a joint, put a wall in
+//! its way), press the user stop, close the brakes, guide the arm, activate a safety function,
+//! change the payload, trip any error, and perform the recovery that takes a person.
 //!
 //! # What it does not do
 //!

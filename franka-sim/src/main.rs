@@ -128,9 +128,10 @@ struct Arguments {
     #[arg(long)]
     realtime: bool,
 
-    /// Keeps to the clock on the wall even where the host holds the simulator up: the states that are
-    /// due then come in a burst, and answers that they leave no time for count as lost. Without, the
-    /// robot's clock slips by what the host is late. How often that was is logged at the end.
+    /// Keeps to the clock on the wall even where the host holds the simulator up: the states that
+    /// are due then come in a burst, and answers that they leave no time for count as lost.
+    /// Without, the robot's clock slips by what the host is late. How often that was is logged at
+    /// the end.
     #[arg(long)]
     strict_clock: bool,
 

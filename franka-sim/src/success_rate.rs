@@ -1,5 +1,5 @@
-//! `control_command_success_rate`: which cycles of a motion the client answered, and how many it lost
-//! in a row.
+//! `control_command_success_rate`: which cycles of a motion the client answered, and how many it
+//! lost in a row.
 
 use crate::config::FirstCycles;
 

@@ -19,10 +19,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use crate::workspace::Workspace;
 
 /// Circles that are known and not yet removed, as crate and modules. Nothing is added here.
-const KNOWN: &[(&str, &str)] = &[(
-    "franka_rt",
-    "control, driver, law, session, shaping, stats",
-)];
+const KNOWN: &[(&str, &str)] = &[("franka_rt", "control, driver, law, session, shaping, stats")];
 
 /// Fails with each circle that is not part of a [`KNOWN`] one, and where each of its imports is;
 /// also with each that is known and gone, so that the list only shrinks.

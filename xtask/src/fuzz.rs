@@ -203,8 +203,8 @@ fn executions(log: &str) -> Option<u64> {
     line.trim().parse().ok()
 }
 
-/// The platform that the compiler builds for by itself. Named, it keeps build scripts and macros free
-/// of the sanitizer.
+/// The platform that the compiler builds for by itself. Named, it keeps build scripts and macros
+/// free of the sanitizer.
 fn host() -> anyhow::Result<String> {
     let output = Command::new("rustc").arg("-vV").output()?;
     let text = String::from_utf8_lossy(&output.stdout);

@@ -145,7 +145,8 @@ pub(super) static VENDOR: [LinkCapsule; 10] = [
 
 /// Franka Research 3: capsules fitted to the surface of the collision meshes of
 /// `franka_description` 1.0.1 by least squares. The second summand of a radius is the largest
-/// distance, rounded up, at which the surface of the link's collision and visual meshes sticks out of the fit.
+/// distance, rounded up, at which the surface of the link's collision and visual meshes sticks out
+/// of the fit.
 pub(super) static FR3: [LinkCapsule; 17] = [
     link(
         0,

@@ -258,10 +258,10 @@ impl Lifecycle {
         matches!(self.phase, Phase::Closed(_)) && self.unfinished.is_some()
     }
 
-    /// Takes note that a thread that has borrowed the cycle has not run it for `silence`, or that it
-    /// does again (`None`). Meanwhile no state arrives and no motion can run: the one under way is
-    /// given up and resolves as [`MotionError::Stalled`], and none begins until the cycle has seen
-    /// its end.
+    /// Takes note that a thread that has borrowed the cycle has not run it for `silence`, or that
+    /// it does again (`None`). Meanwhile no state arrives and no motion can run: the one under way
+    /// is given up and resolves as [`MotionError::Stalled`], and none begins until the cycle has
+    /// seen its end.
     pub fn on_stall(&mut self, silence: Option<Duration>, now: Duration) {
         self.is_stalled = silence.is_some();
         if let (Some(silence), Phase::Active(active)) = (silence, &self.phase) {

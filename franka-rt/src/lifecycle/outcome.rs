@@ -120,8 +120,8 @@ pub enum MotionError {
     /// Caller: the protocol version has no such motion. Nothing was sent.
     #[error(transparent)]
     Unsupported(#[from] RequestError),
-    /// Caller: a command cannot be sent: what a control function returned, or what was computed from
-    /// a state or a goal with non-finite numbers. The robot was told to stop.
+    /// Caller: a command cannot be sent: what a control function returned, or what was computed
+    /// from a state or a goal with non-finite numbers. The robot was told to stop.
     #[error(transparent)]
     Invalid(#[from] InvalidCommand),
     /// Caller: a control function panicked. The robot was told to stop.
@@ -130,8 +130,8 @@ pub enum MotionError {
         /// What the panic said, if it was text.
         message: String,
     },
-    /// Caller: the thread that runs active control has read no state for so long. The robot was told
-    /// to stop.
+    /// Caller: the thread that runs active control has read no state for so long. The robot was
+    /// told to stop.
     #[error(
         "active control has read no state for {} ms: its thread has to call `read_once` for each",
         .silence.as_millis()

@@ -48,8 +48,8 @@ pub struct Phases {
     pub program: Duration,
     /// The command written into bytes and handed to the kernel.
     pub send: Duration,
-    /// What follows the command: log, newest state, rings, events, wake-up. It delays the next cycle
-    /// if it is long. Under active control it comes before the command.
+    /// What follows the command: log, newest state, rings, events, wake-up. It delays the next
+    /// cycle if it is long. Under active control it comes before the command.
     pub publish: Duration,
 }
 

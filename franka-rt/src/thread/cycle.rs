@@ -249,7 +249,8 @@ impl<C: Core> Cycle<C> {
     }
 }
 
-/// States after which a wake-up is sent without a request. The rings of the thread hold far more, and the wake-ups, twenty a second, take less than a thousandth of a core.
+/// States after which a wake-up is sent without a request. The rings of the thread hold far more,
+/// and the wake-ups, twenty a second, take less than a thousandth of a core.
 const STATES_PER_WAKE_MAX: u32 = 50;
 
 /// Orders taken in one cycle at most; the rest waits for the next.

@@ -35,8 +35,8 @@ pub struct Handle<C: Core = Driver> {
     /// All states, oldest first. Those that find it full are missing, and counted in
     /// [`Stats::states_lost`].
     pub sequence: StateSequence,
-    /// Notified after every cycle that left a notice, or a state while wake-ups are requested; after
-    /// every fiftieth state without a request; and when the thread ends.
+    /// Notified after every cycle that left a notice, or a state while wake-ups are requested;
+    /// after every fiftieth state without a request; and when the thread ends.
     pub event_fd: EventFd,
     /// Whether a wake-up is sent for every state; initially true.
     pub state_wakeups: StateWakeups,
@@ -81,9 +81,9 @@ impl<C> Thread<C> {
         self.shared.has_ended()
     }
 
-    /// The link timeout, if a thread that has borrowed the cycle has not run it for that long. While
-    /// that lasts no state is received or published, and the loss of the link goes unseen. The
-    /// eventfd is notified after this has changed.
+    /// The link timeout, if a thread that has borrowed the cycle has not run it for that long.
+    /// While that lasts no state is received or published, and the loss of the link goes unseen.
+    /// The eventfd is notified after this has changed.
     pub fn stalled(&self) -> Option<Duration> {
         self.shared.is_stalled().then_some(self.link_timeout)
     }

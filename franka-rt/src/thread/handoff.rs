@@ -6,7 +6,8 @@
 //!   borrower:                    borrow --> Lent --> give_back
 //! ```
 //!
-//! Nothing here knows what is lent: `tests/loom/main.rs` includes this file and explores the hand-overs.
+//! Nothing here knows what is lent: `tests/loom/main.rs` includes this file and explores the
+//! hand-overs.
 
 use std::sync::PoisonError;
 #[cfg(not(loom))]

@@ -1,7 +1,7 @@
 //! What the thread and its owner tell each other by flags.
 //!
-//! Nothing here knows the thread: `tests/loom/main.rs` includes this file and explores what the flags
-//! order.
+//! Nothing here knows the thread: `tests/loom/main.rs` includes this file and explores what the
+//! flags order.
 
 #[cfg(not(loom))]
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

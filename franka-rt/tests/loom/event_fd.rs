@@ -1,8 +1,8 @@
 //! The wake-up: what is published before a notification is found by a listener that looks after it.
 //!
 //! The eventfd itself belongs to the kernel. Its counter and its readiness are made of a lock and a
-//! condition variable here; what is explored is the order of our operations around it, which is that
-//! of the thread (publish, note the end, notify) and of the bridge (wait, drain, look).
+//! condition variable here; what is explored is the order of our operations around it, which is
+//! that of the thread (publish, note the end, notify) and of the bridge (wait, drain, look).
 
 // Private to the crate, and free of everything else in it.
 #[path = "../../src/thread/lifetime.rs"]

@@ -46,8 +46,8 @@ const ANSWERS: usize = 2 + <server::Session>::PENDING_LIMIT;
 /// A device, its UDP socket, the queues from its listener, and the simulated network, if any.
 ///
 /// The queues are those of Tokio: both ends of each are a task and this thread, the task waits for
-/// room or for a reply without blocking a worker, and the thread only tries. A queue between threads
-/// (crossbeam) has no end that a task can await.
+/// room or for a reply without blocking a worker, and the thread only tries. A queue between
+/// threads (crossbeam) has no end that a task can await.
 pub(super) struct DeviceServer<D> {
     device: D,
     socket: UdpSocket,

@@ -180,9 +180,9 @@ impl Sim {
         self
     }
 
-    /// Keeps to the clock on the wall even where the host holds the simulator up: the states that are
-    /// due then come in a burst, and answers that they leave no time for count as lost. By default
-    /// the clock slips instead: see [`Pace`].
+    /// Keeps to the clock on the wall even where the host holds the simulator up: the states that
+    /// are due then come in a burst, and answers that they leave no time for count as lost. By
+    /// default the clock slips instead: see [`Pace`].
     pub fn strict_clock(mut self, strict: bool) -> Self {
         self.strict_clock = strict;
         self

@@ -25,8 +25,8 @@ pub struct Service<D> {
 #[error("the simulated robot has stopped")]
 pub struct Stopped;
 
-/// Opens the sockets of a device. Returns its handle, and its server for the thread. Errors name the
-/// address, since there are several.
+/// Opens the sockets of a device. Returns its handle, and its server for the thread. Errors name
+/// the address, since there are several.
 pub(super) async fn open<D: Device>(
     bind: SocketAddr,
     device: D,

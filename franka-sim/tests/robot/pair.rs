@@ -225,8 +225,8 @@ impl Pair {
         cycles
     }
 
-    /// Asserts that the newest state shows a reflex for exactly these reasons, and that the motion's
-    /// final reply came after the first state that did.
+    /// Asserts that the newest state shows a reflex for exactly these reasons, and that the
+    /// motion's final reply came after the first state that did.
     pub(crate) fn assert_reflex(&self, id: CommandId, reasons: &[RobotError]) {
         let reasons: Errors = reasons.iter().copied().collect();
         assert_eq!(self.state.reflex_reason, reasons);

@@ -1,5 +1,5 @@
-//! The simulator's process stopped and continued in the middle of a motion: what a busy host does to
-//! it, made worse. A robot's clock does not stand still, so no client's motion suffers.
+//! The simulator's process stopped and continued in the middle of a motion: what a busy host does
+//! to it, made worse. A robot's clock does not stand still, so no client's motion suffers.
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -19,8 +19,8 @@ pub(crate) const END: u64 = 2 * REST + 2 * RAMP + CRUISE;
 const JOINT_SPEED: f64 = 0.05;
 /// Full speed of the end effector, `[m/s]`: some three times as many rad/s in a joint.
 const CARTESIAN_SPEED: f64 = 0.02;
-/// The largest torque on joint 1, `[N m]`. It changes by up to 0.4 N m in a millisecond, so that one
-/// lost cycle is bridged.
+/// The largest torque on joint 1, `[N m]`. It changes by up to 0.4 N m in a millisecond, so that
+/// one lost cycle is bridged.
 const TORQUE: f64 = 5.0;
 
 /// The joint that moves, or takes the torque.
@@ -93,8 +93,8 @@ pub(crate) fn cartesian_velocities(_: &RobotState, ms: u64) -> CartesianVelociti
     }
 }
 
-/// Torque on the joint, `[N m]`: one period of a sine, so that the arm ends at rest. It is fastest in
-/// the middle.
+/// Torque on the joint, `[N m]`: one period of a sine, so that the arm ends at rest. It is fastest
+/// in the middle.
 pub(crate) fn torque(ms: u64) -> f64 {
     let duration = END - 2 * REST;
     match ms {

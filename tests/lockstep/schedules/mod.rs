@@ -21,8 +21,8 @@
 //! with the same build.
 //!
 //! * `motions`: motions that supersede one another, each with an end of its own.
-//! * `sessions`: sessions that go from goal to goal, of all kinds, with both backends. `submission`:
-//!   what each goal may come to.
+//! * `sessions`: sessions that go from goal to goal, of all kinds, with both backends.
+//!   `submission`: what each goal may come to.
 //! * `causes`: what was done from outside, and what a robot owes to it.
 //! * `draw`: random goals.
 
