@@ -13,7 +13,7 @@ use franka_proto::framing::next_message;
 use franka_proto::{Reply, VirtualWall};
 use nalgebra::{Isometry3, Vector3};
 
-const PORT: u16 = 5000;
+pub(crate) const PORT: u16 = 5000;
 
 /// Both ends of a session, and what the client has got so far.
 pub(crate) struct Pair {
