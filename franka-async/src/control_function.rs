@@ -6,9 +6,9 @@ use std::time::Duration;
 use franka_proto::{MoveControllerMode, RobotState};
 use franka_rt::control::{
     Callback, CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions,
-    JointVelocities, Next, Torques,
+    JointVelocities, Next, Shaper, Torques,
 };
-use franka_rt::shaping::{DEFAULT_CUTOFF_FREQUENCY, Shaper};
+use franka_rt::shaping::DEFAULT_CUTOFF_FREQUENCY;
 use franka_rt::together::StartTicket;
 
 use crate::cancel::Canceller;

@@ -5,7 +5,8 @@ use franka_proto::{MotionGeneratorMode, RobotCommand, RobotError, RobotState};
 
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 use franka_rt::driver::Commander;
-use franka_rt::driver::{LogEntry, MotionStatistics};
+use franka_rt::driver::LogEntry;
+use franka_rt::stats::MotionStatistics;
 
 /// Duration of a control cycle, `[s]`.
 pub(super) const CYCLE: f64 = 1e-3;

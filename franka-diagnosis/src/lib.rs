@@ -82,8 +82,9 @@ use std::sync::Arc;
 use evidence::Evidence;
 use franka_model::Model;
 use franka_proto::{Errors, RobotError};
-use franka_rt::driver::{ControlLog, MotionStatistics};
+use franka_rt::driver::ControlLog;
 use franka_rt::lifecycle::{ControlError, MotionError};
+use franka_rt::stats::MotionStatistics;
 
 pub use advice::Advice;
 pub use cause::Cause;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use franka_diagnosis::{Case, Commander, Diagnosis};
 use franka_model::Model;
 use franka_proto::{ControllerMode, RobotCommand, RobotError, RobotState};
-use franka_rt::driver::{ControlLog, MotionStatistics};
+use franka_rt::driver::ControlLog;
+use franka_rt::stats::MotionStatistics;
 use serde_json::json;
 
 #[test]

@@ -9,7 +9,7 @@
 //! * [`driver`]: what one robot state calls for; phases from watching to finishing. No clock, no
 //!   socket.
 //! * [`session`]: target control: goals in, one continuous joint-space reference out.
-//! * [`control`]: control at 1 kHz by the user's own functions.
+//! * [`control`]: commands, and control at 1 kHz by the user's own functions.
 //! * [`law`]: joint torques from a reference and a state.
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.

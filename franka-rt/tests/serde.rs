@@ -7,8 +7,8 @@ use std::time::Duration;
 use franka_proto::{
     ControllerMode, MotionGeneratorMode, RobotError, RobotMode, RobotState, Version,
 };
-use franka_rt::control::{Callback, Finish, TargetStatus, Torques};
-use franka_rt::driver::{Activity, ControlLog, Driver, Modes, MotionId, Order, Program, Record};
+use franka_rt::control::{Callback, Finish, Modes, TargetStatus, Torques};
+use franka_rt::driver::{Activity, ControlLog, Driver, MotionId, Order, Program, Record};
 use franka_rt::lifecycle::{MotionReport, Party};
 use franka_rt::session::{Bindings, PoseError};
 use franka_rt::stats::{Arrival, CycleTimes, Phase, Phases, Quantiles};

@@ -97,7 +97,7 @@ fn scenario_15_a_non_finite_command_stops_the_robot() {
             JointPositions(q)
         });
         let callback =
-            callback.with_shaper(franka_rt::shaping::Shaper::new(version, false, 1000.0));
+            callback.with_shaper(franka_rt::control::Shaper::new(version, false, 1000.0));
         let request = callback.request(version, MoveControllerMode::JointImpedance);
         let motion = pair.begin(Program::Callback(Box::new(callback)), request);
         assert_eq!(motion.first, None);

@@ -6,9 +6,9 @@ use franka_proto::{
     server,
 };
 use franka_rt::control::{
-    ActiveControl, Command, JointPositions, JointVelocities, Misfit, Torques, WriteError,
+    ActiveControl, Command, JointPositions, JointVelocities, Misfit, Modes, Torques, WriteError,
 };
-use franka_rt::driver::{Modes, Program};
+use franka_rt::driver::Program;
 
 use crate::for_each_version;
 use crate::pair::{Pair, Running};

@@ -4,10 +4,9 @@ use franka_proto::{
     ControllerMode, MotionGeneratorMode, MoveControllerMode, MoveRequest, MoveStatus, Reply,
     RobotError, RobotMode, StopStatus, Version,
 };
-use franka_rt::control::{Callback, Finish, JointVelocities, Torques};
+use franka_rt::control::{Callback, Finish, JointVelocities, Shaper, Torques};
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{END_TIMEOUT, MotionError, Stage};
-use franka_rt::shaping::Shaper;
 
 use crate::for_each_version;
 use crate::pair::Pair;

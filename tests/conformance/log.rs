@@ -1,10 +1,9 @@
 //! The last cycles of a motion.
 
 use franka_proto::{MoveControllerMode, MoveStatus, RobotCommand, RobotError, RobotMode, Version};
-use franka_rt::control::{Callback, JointVelocities};
+use franka_rt::control::{Callback, JointVelocities, Shaper};
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::ControlError;
-use franka_rt::shaping::Shaper;
 
 use crate::for_each_version;
 use crate::pair::Pair;

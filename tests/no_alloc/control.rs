@@ -6,11 +6,10 @@ use std::time::Duration;
 use franka_proto::{MoveControllerMode, MoveRequest, RobotMode, RobotState, Version};
 use franka_rt::control::{
     AsynchronousPositions, AsynchronousTarget, Callback, CartesianPose, CartesianVelocities,
-    JointPositions, JointVelocities, Torques,
+    JointPositions, JointVelocities, Modes, Shaper, Torques,
 };
-use franka_rt::driver::{ControlLog, Driver, Modes, MotionId, Order, Program};
+use franka_rt::driver::{ControlLog, Driver, MotionId, Order, Program};
 use franka_rt::session::{OnArrival, Target};
-use franka_rt::shaping::Shaper;
 use franka_rt::stats::{Arrival, CycleTimes};
 use franka_tests::lockstep::{Lockstep, Part, Wander};
 use nalgebra::Translation3;

@@ -8,9 +8,9 @@ use franka_model::{Model, READY};
 use franka_proto::{
     ControllerMode, MotionGeneratorMode, RobotError, RobotMode, RobotState, Version,
 };
-use franka_rt::control::{ActiveControl, Callback, Command, Finish, Next, Torques};
+use franka_rt::control::{ActiveControl, Callback, Command, Finish, Modes, Next, Torques};
 use franka_rt::driver::{
-    Activity, ControlLog, Driver, Event, LINK_TIMEOUT, Modes, MotionId, Order, Program,
+    Activity, ControlLog, Driver, Event, LINK_TIMEOUT, MotionId, Order, Program,
 };
 use franka_rt::session::{Goal, GoalId, OnArrival, Target, TargetSession};
 use franka_rt::slot;

@@ -11,14 +11,11 @@ use std::time::Duration;
 use franka_proto::{
     ControllerMode, MotionGeneratorMode, RobotCommand, RobotMode, RobotState, Version,
 };
-use franka_rt::control::{ActiveControl, Command, Torques};
-use franka_rt::driver::{
-    ControlLog, Driver, Event, LinkTimeout, Modes, MotionId, MotionStatistics, Order, Program,
-    Record,
-};
+use franka_rt::control::{ActiveControl, Command, Modes, Torques};
+use franka_rt::driver::{ControlLog, Driver, Event, LinkTimeout, MotionId, Order, Program, Record};
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, Scheduling};
-use franka_rt::stats::{Arrival, CycleTimes};
+use franka_rt::stats::{Arrival, CycleTimes, MotionStatistics};
 use franka_rt::thread::{self, Core, Handle, Notice, ThreadConfig};
 
 const VERSION: Version = Version::V10;

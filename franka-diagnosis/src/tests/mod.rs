@@ -12,7 +12,8 @@ use franka_proto::{
 
 use super::evidence::Evidence;
 use super::{Commander, Diagnosis, Finding};
-use franka_rt::driver::{LogEntry, MotionStatistics};
+use franka_rt::driver::LogEntry;
+use franka_rt::stats::MotionStatistics;
 
 /// A log in the making: a state, then pairs of a command and the state after it.
 struct Story {

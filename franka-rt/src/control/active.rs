@@ -1,7 +1,7 @@
 //! Control from outside: somebody reads a state, and writes the command that answers it.
 
 use super::{Command, Misfit};
-use crate::driver::Modes;
+use crate::control::Modes;
 use crate::shaping::{InvalidCommand, check};
 
 /// The program of a motion whose commands are written from outside.

@@ -7,8 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use franka_proto::{MoveControllerMode, MoveRequest, RobotState, Version};
 
 use super::{Command, GeneratorCommand, MotionCommand, Next, Torques};
-use crate::driver::Failure;
-use crate::shaping::Shaper;
+use crate::control::{Failure, Shaper};
 
 /// A control function, boxed: a state, and the robot's time since the state before, to a command.
 type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;

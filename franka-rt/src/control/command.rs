@@ -2,7 +2,8 @@
 
 use franka_proto::{MoveGeneratorMode, RobotCommand, RobotState};
 
-use crate::shaping::{InvalidCommand, Shaper, check};
+use crate::control::Shaper;
+use crate::shaping::{InvalidCommand, check};
 
 /// Joint torques without gravity and friction, `[N m]`. The robot adds both.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use franka_proto::{MoveGeneratorMode, RobotCommand, Version};
 
 use super::{GeneratorCommand, JointVelocities, MotionCommand, Torques};
-use crate::driver::Modes;
+use crate::control::Modes;
 use crate::shaping::{InvalidCommand, check};
 
 /// What is sent in a cycle: a command to the motion generator, torques, or both, as the motion

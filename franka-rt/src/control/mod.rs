@@ -4,17 +4,23 @@
 //! * [`Next`]: what a control function answers a state with.
 //! * [`Callback`]: control functions as the program of a motion, with the order, filter and limiter
 //!   of the reference client.
+//! * [`Shaper`]: filter, limiter and check of each kind of command, as libfranka's control loops
+//!   take them.
 //! * [`ActiveControl`]: a motion whose commands are written from outside.
 //! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and what became
 //!   of them.
-//! * [`Command`]: what goes into one datagram, and whether the motion that runs takes it.
+//! * [`Command`]: what goes into one datagram, and whether a motion in given [`Modes`] takes it.
+//! * [`Failure`]: why a program could not go on.
 
 mod active;
 mod asynchronous;
 mod callback;
 mod command;
 mod datagram;
+mod failure;
+mod modes;
 mod next;
+mod shaper;
 
 pub use active::{ActiveControl, WriteError};
 pub use asynchronous::{AbortReason, AsynchronousPositions, AsynchronousTarget, TargetStatus};
@@ -24,4 +30,7 @@ pub use command::{
     MotionCommand, Torques,
 };
 pub use datagram::{Command, Misfit};
+pub use failure::Failure;
+pub use modes::Modes;
 pub use next::{Finish, Next};
+pub use shaper::Shaper;

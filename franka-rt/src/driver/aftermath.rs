@@ -2,8 +2,8 @@
 
 use franka_proto::RobotState;
 
-use super::{Driver, Event, MotionStatistics, Phase};
-use crate::stats::{Arrival, CycleTimes};
+use super::{Driver, Event, Phase};
+use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 impl Driver {
     /// Does for a state, once [`Self::on_state`] has taken it and the command has left (or none was

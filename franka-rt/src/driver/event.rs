@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use franka_proto::{Errors, RobotMode};
 
-use crate::driver::{
-    ControlLog, Failure, MotionId, MotionStatistics, MotionTimes, Observer, Program,
-};
+use crate::control::Failure;
+use crate::driver::{ControlLog, MotionId, Observer, Program};
 use crate::session::SessionEvent;
+use crate::stats::{MotionStatistics, MotionTimes};
 use crate::together::{StartFault, StartTicket};
 
 /// Something that happened in the thread. Events cross in order and none is dropped.

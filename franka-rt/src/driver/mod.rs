@@ -36,7 +36,6 @@ mod observer;
 mod order;
 mod program;
 mod record;
-mod statistics;
 #[cfg(test)]
 mod tests;
 
@@ -44,7 +43,8 @@ use core::time::Duration;
 
 use franka_proto::{RobotCommand, RobotState, Version};
 
-use crate::control::{Command, WriteError};
+use crate::control::{Command, Failure, WriteError};
+use crate::stats::MotionStatistics;
 use crate::together::Gate;
 
 pub use commander::Commander;
@@ -52,10 +52,9 @@ pub use event::{Ended, Ending, Event};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
 pub use log::{ControlLog, LogEntry};
 pub use observer::Observer;
-pub use order::{Modes, MotionId, Order};
-pub use program::{Failure, Program};
+pub use order::{MotionId, Order};
+pub use program::Program;
 pub use record::{Activity, Record};
-pub use statistics::{MotionStatistics, MotionTimes};
 
 use event::EventQueue;
 use motion::{Motion, Phase};

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use franka_proto::{RobotCommand, RobotMode, RobotState};
 
-use super::{ControlLog, Modes, MotionId, MotionTimes, Observer, Program};
+use super::{ControlLog, MotionId, Observer, Program};
+use crate::control::Modes;
+use crate::stats::MotionTimes;
 use crate::together::{Gate, StartTicket};
 
 /// What the driver is doing.

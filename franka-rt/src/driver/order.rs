@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use franka_proto::{ControllerMode, MotionGeneratorMode, MoveRequest, RobotState};
-
-use crate::driver::{ControlLog, MotionTimes, Observer, Program};
+use crate::control::Modes;
+use crate::driver::{ControlLog, Observer, Program};
+use crate::stats::MotionTimes;
 use crate::together::StartTicket;
 
 /// Names one motion for the life of a driver, from arming to its end.
@@ -44,42 +44,4 @@ pub enum Order {
         /// The motion to leave alone.
         motion: MotionId,
     },
-}
-
-/// The two modes that the states of a running motion show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Modes {
-    /// The motion generator mode, in the state's numbering.
-    pub generator: MotionGeneratorMode,
-    /// The controller mode.
-    pub controller: ControllerMode,
-}
-
-impl Modes {
-    /// The modes of the motion that `request` asks for.
-    pub fn of(request: &MoveRequest) -> Self {
-        Self {
-            generator: request.generator.in_state(),
-            controller: request.controller.in_state(),
-        }
-    }
-
-    /// Whether a motion generator takes commands.
-    pub fn has_generator(self) -> bool {
-        !matches!(
-            self.generator,
-            MotionGeneratorMode::Idle | MotionGeneratorMode::None
-        )
-    }
-
-    /// Whether the joints take torques.
-    pub fn is_external(self) -> bool {
-        self.controller == ControllerMode::ExternalController
-    }
-
-    /// Whether `state` shows both modes. `robot_mode` is no part of it: it may still be on its way
-    /// at the start.
-    pub fn shown_by(&self, state: &RobotState) -> bool {
-        state.motion_generator_mode == self.generator && state.controller_mode == self.controller
-    }
 }

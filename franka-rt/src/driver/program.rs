@@ -1,13 +1,11 @@
 //! What answers the states of a running motion.
 
-use core::any::Any;
-
 use franka_proto::{RobotState, Version};
 
-use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command, Torques};
+use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command, Failure, Torques};
 use crate::driver::Record;
 use crate::session::{self, SessionEvent, TargetSession};
-use crate::shaping::{InvalidCommand, check};
+use crate::shaping::check;
 use crate::together::Gate;
 
 /// What answers the states of a running motion. Built outside the thread and freed outside it.
@@ -21,16 +19,6 @@ pub enum Program {
     Active(ActiveControl),
     /// Sparse targets, between which the robot plans.
     Asynchronous(AsynchronousPositions),
-}
-
-/// Why a program could not go on. The motion then gets no more commands; it is for the world
-/// outside to stop the robot.
-#[derive(Debug)]
-pub enum Failure {
-    /// Its command cannot be sent.
-    Invalid(InvalidCommand),
-    /// It panicked. What with comes along to be freed.
-    Panicked(Box<dyn Any + Send>),
 }
 
 /// What a program answers a state with.

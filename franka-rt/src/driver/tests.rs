@@ -7,10 +7,12 @@ use franka_proto::{ControllerMode, MotionGeneratorMode, RobotMode, RobotState, V
 use nalgebra::Isometry3;
 
 use super::*;
-use crate::control::{ActiveControl, AsynchronousPositions, AsynchronousTarget, Callback, Torques};
+use crate::control::{
+    ActiveControl, AsynchronousPositions, AsynchronousTarget, Callback, Modes, Shaper, Torques,
+};
 use crate::law::Gains;
 use crate::session::{Backend, Goal, GoalId, OnArrival, Setpoints, Target, TargetSession};
-use crate::shaping::{InvalidCommand, Shaper};
+use crate::shaping::InvalidCommand;
 use crate::slot;
 use crate::stats::{Arrival, CycleTimes};
 

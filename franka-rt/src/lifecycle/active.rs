@@ -9,12 +9,14 @@ use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
-use crate::driver::{Ended, Ending, Failure, MotionId, MotionTimes, Order, Program};
+use crate::control::Failure;
+use crate::driver::{Ended, Ending, MotionId, Order, Program};
 use crate::panic;
 use crate::session::{
     Backend, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Settlement, Target,
 };
 use crate::slot::SlotWriter;
+use crate::stats::MotionTimes;
 
 /// A goal, and whether its owner has taken it back.
 #[derive(Clone, Copy, Debug)]

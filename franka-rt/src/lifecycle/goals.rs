@@ -8,12 +8,13 @@ use super::active::{Engaged, Goals, Next, Settled, Waiting, Work};
 use super::engagement::Engagement;
 use super::outcome::Counted;
 use super::{Lifecycle, MotionError, MotionReport, Phase};
-use crate::driver::{MotionId, MotionStatistics, Program};
+use crate::driver::{MotionId, Program};
 use crate::session::check::check_keep_out;
 use crate::session::{
     self, Backend, Goal, GoalError, GoalId, OnArrival, SessionEvent, Target, TargetSession,
 };
 use crate::slot;
+use crate::stats::MotionStatistics;
 use crate::together::StartTicket;
 
 impl Lifecycle {

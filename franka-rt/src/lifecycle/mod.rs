@@ -34,10 +34,10 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{MoveRequest, MoveStatus, Request, Version, Violation};
 
-use crate::driver::{
-    ControlLog, Ending, Event, Modes, MotionId, MotionTimes, Observer, Order, Program,
-};
+use crate::control::Modes;
+use crate::driver::{ControlLog, Ending, Event, MotionId, Observer, Order, Program};
 use crate::session::{GoalId, KeepOut};
+use crate::stats::MotionTimes;
 use crate::together::StartTicket;
 
 use active::{Active, CommandSide, NEVER_SHOWN, Next, ThreadSide, Work};

@@ -7,10 +7,10 @@ use franka_model::Model;
 use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
 
 use super::CloseReason;
-use crate::driver::{Commander, ControlLog, Ended, MotionStatistics, MotionTimes};
+use crate::driver::{Commander, ControlLog, Ended};
 use crate::session::{GoalError, Lapse, PoseError};
 use crate::shaping::InvalidCommand;
-use crate::stats::{CycleTimes, Quantiles, Slack};
+use crate::stats::{CycleTimes, MotionStatistics, MotionTimes, Quantiles, Slack};
 use crate::together::StartFault;
 
 /// A motion that came to its end as asked.

@@ -6,8 +6,8 @@ use franka_proto::{MoveRequest, Request};
 
 use super::active::{CommandSide, Programmed, Work};
 use super::{Lifecycle, MotionError, Phase};
-use crate::control::Callback;
-use crate::driver::{Failure, MotionId, Program};
+use crate::control::{Callback, Failure};
+use crate::driver::{MotionId, Program};
 use crate::session::GoalId;
 use crate::together::StartTicket;
 

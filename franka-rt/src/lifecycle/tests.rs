@@ -4,7 +4,8 @@ use franka_model::READY;
 use franka_proto::{RobotMode, RobotState};
 
 use super::*;
-use crate::driver::{Driver, Failure};
+use crate::control::Failure;
+use crate::driver::Driver;
 use crate::session::{Goal, OnArrival, Target};
 use crate::shaping::InvalidCommand;
 

@@ -5,12 +5,12 @@ use franka_model::{EndEffector, Frame, JointVector, Model, transform};
 use franka_proto::{RobotState, Version};
 use nalgebra::Vector3;
 
-use crate::control::{CartesianPose, JointPositions, MotionCommand};
+use crate::control::{CartesianPose, JointPositions, MotionCommand, Shaper};
 use crate::session::backend::{Setpoints, elbow};
 use crate::session::guard::backstop;
 use crate::session::reference::Reference;
 use crate::session::rigid;
-use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY, Shaper};
+use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY};
 
 /// How far the robot's setpoint may be from the one that it was sent, `[rad]`, for the two to count
 /// as the same: more than its echo is rounded by, and less than any cycle of a motion that matters.

@@ -68,7 +68,7 @@ pub fn low_pass_pose(
 }
 
 /// [`low_pass_pose`] with what [`Rigid::nearest`] makes of `last`.
-pub(super) fn low_pass_rigid(
+pub(crate) fn low_pass_rigid(
     sample_time: f64,
     current: &[f64; 16],
     last: &[f64; 16],

@@ -1,12 +1,11 @@
-//! What a control loop makes of a returned command before it leaves: filtered, limited, checked.
-//! Pure functions.
+//! Filter, limiter and check: what a control loop does with a returned command before it leaves.
+//! Pure functions, composed by [`Shaper`](crate::control::Shaper).
 //!
 //! ```text
 //! command -> filter (low-pass against the state) -> limiter (velocity, acceleration, jerk) -> check -> robot
 //!            cutoff < 1000 Hz                       limit_rate
 //! ```
 //!
-//! * [`Shaper`]: the three steps for each kind of command, as libfranka's control loops take them.
 //! * [`limiter`]: commands inside bounds that are arguments: torques, scalars, joints, Cartesian
 //!   velocity and pose.
 //! * [`filter`]: first-order low-pass filters of scalars, arrays and poses.
@@ -24,13 +23,11 @@ pub mod check;
 mod error;
 pub mod filter;
 pub mod limiter;
-mod rotation;
-mod shaper;
+pub(crate) mod rotation;
 
 pub use bounds::{Bounds, VelocityBounds};
 pub use error::{FilterFault, InvalidCommand, Signal};
 pub use filter::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
-pub use shaper::Shaper;
 
 /// The cycle of the robot, `[s]`: the time between two commands, also after lost states.
 pub const CYCLE: f64 = 1e-3;

@@ -4,19 +4,19 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion, Vec
 
 /// A pose whose rotation is one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rigid {
-    pub(super) rotation: Matrix3<f64>,
+pub(crate) struct Rigid {
+    pub(crate) rotation: Matrix3<f64>,
     /// The same as a quaternion.
-    pub(super) orientation: UnitQuaternion<f64>,
+    pub(crate) orientation: UnitQuaternion<f64>,
     /// `[m]`.
-    pub(super) translation: Vector3<f64>,
+    pub(crate) translation: Vector3<f64>,
     /// Of the homogeneous matrix; for a pose `0 0 0 1`.
-    pub(super) last_row: [f64; 4],
+    pub(crate) last_row: [f64; 4],
 }
 
 impl Rigid {
     /// Of a column-major pose, which may be rounded to `f32`: with the [`nearest_rotation`].
-    pub(super) fn nearest(pose: &[f64; 16]) -> Self {
+    pub(crate) fn nearest(pose: &[f64; 16]) -> Self {
         let m = pose;
         let block = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
         let rotation = nearest_rotation(&block);
@@ -29,13 +29,13 @@ impl Rigid {
     }
 
     /// The column-major pose.
-    pub(super) fn pose(&self) -> [f64; 16] {
+    pub(crate) fn pose(&self) -> [f64; 16] {
         pose(&self.rotation, &self.translation, self.last_row)
     }
 }
 
 /// A column-major pose of its parts.
-pub(super) fn pose(
+pub(crate) fn pose(
     rotation: &Matrix3<f64>,
     translation: &Vector3<f64>,
     last_row: [f64; 4],
@@ -62,7 +62,7 @@ fn quaternion(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
 }
 
 /// The way from `from` to `to` by the share `t`, along the shorter arc.
-pub(super) fn slerp(
+pub(crate) fn slerp(
     from: &UnitQuaternion<f64>,
     to: &UnitQuaternion<f64>,
     t: f64,
@@ -85,7 +85,7 @@ pub(super) fn slerp(
 }
 
 /// The rotation about `axis`, of length 1, by `angle` radians (Rodrigues).
-pub(super) fn about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
+pub(crate) fn about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     let (sine, cosine) = angle.sin_cos();
     let (along, across) = (axis * (1.0 - cosine), axis * sine);
     let beside = |i: usize, j: usize| along[i] * axis[j];

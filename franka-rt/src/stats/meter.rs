@@ -5,8 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::arrivals::Arrivals;
-use super::{Counter, CycleTimes, Histogram, Stats};
-use crate::driver::MotionStatistics;
+use super::{Counter, CycleTimes, Histogram, MotionStatistics, Stats};
 use crate::slot::{self, SlotWriter};
 
 /// How a state came.

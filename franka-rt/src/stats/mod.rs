@@ -16,6 +16,7 @@
 //! crosses in a [`slot`](crate::slot).
 //!
 //! * [`Histogram`]: how often which duration occurred. [`CycleTimes`]: one cycle and its phases.
+//! * [`MotionStatistics`]: counts over the running time of one motion.
 //! * `arrivals`: when the next state is due. `meter`: the writing side of it all.
 
 mod arrivals;
@@ -23,17 +24,18 @@ mod cycle;
 mod histogram;
 mod laps;
 mod meter;
+mod motion;
 
 use core::sync::atomic::{AtomicU64, Ordering};
 
 pub use cycle::{CycleTimes, Phase, Phases, Slack};
 pub use histogram::{Histogram, Quantiles};
 pub use meter::Arrival;
+pub use motion::{MotionStatistics, MotionTimes};
 
 pub(crate) use laps::Laps;
 pub(crate) use meter::Meter;
 
-use crate::driver::MotionStatistics;
 use crate::slot::{Read, SlotReader, Words};
 
 /// What the loop has counted and measured since it started.

@@ -4,8 +4,8 @@ use core::time::Duration;
 
 use franka_proto::{RobotCommand, RobotState};
 
-use crate::driver::{Driver, Event, LINK_TIMEOUT, MotionStatistics, Order, Record};
-use crate::stats::{Arrival, CycleTimes};
+use crate::driver::{Driver, Event, LINK_TIMEOUT, Order, Record};
+use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 /// A pure core: states, orders and silences in; commands, records and events out.
 ///

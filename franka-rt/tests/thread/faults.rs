@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use franka_proto::{ControllerMode, MotionGeneratorMode, RobotMode};
-use franka_rt::control::{Callback, Torques};
-use franka_rt::driver::{ControlLog, Modes, MotionId, Order, Program, Record};
-use franka_rt::shaping::Shaper;
+use franka_rt::control::{Callback, Modes, Shaper, Torques};
+use franka_rt::driver::{ControlLog, MotionId, Order, Program, Record};
 
 use super::*;
 

@@ -6,10 +6,9 @@ mod steps;
 
 use franka_diagnosis::{Diagnose, Diagnosis, Origin, Quantity, Subject};
 use franka_proto::{MoveControllerMode, RobotError};
-use franka_rt::control::{Callback, JointVelocities};
+use franka_rt::control::{Callback, JointVelocities, Shaper};
 use franka_rt::driver::Program;
 use franka_rt::session::GoalId;
-use franka_rt::shaping::Shaper;
 use franka_tests::lockstep::Lockstep;
 
 /// Cycles before the fault: enough for a success rate over a hundred of them, and for a log that

@@ -1,10 +1,10 @@
 //! Functions that panic, and invalid commands.
 
 use franka_proto::MoveGeneratorMode;
-use franka_rt::control::{AsynchronousTarget, WriteError};
+use franka_rt::control::{AsynchronousTarget, Shaper, WriteError};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{GoalError, OnArrival, Target};
-use franka_rt::shaping::{FilterFault, InvalidCommand, Shaper, Signal};
+use franka_rt::shaping::{FilterFault, InvalidCommand, Signal};
 use franka_tests::lockstep::Lockstep;
 
 use crate::faults::expect::Expect;

@@ -4,10 +4,11 @@ use std::time::Duration;
 
 use franka_model::READY;
 use franka_proto::{General, MoveGeneratorMode, MoveRequest, Request, RobotMode};
-use franka_rt::control::{ActiveControl, AsynchronousPositions, AsynchronousTarget, WriteError};
+use franka_rt::control::{
+    ActiveControl, AsynchronousPositions, AsynchronousTarget, Shaper, WriteError,
+};
 use franka_rt::driver::{Activity, Program};
 use franka_rt::session::{GoalId, OnArrival, Target};
-use franka_rt::shaping::Shaper;
 use franka_rt::slot::SlotWriter;
 use franka_tests::lockstep::{Link, Lockstep, Outcome};
 use nalgebra::{Isometry3, Translation3};

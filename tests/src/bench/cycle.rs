@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use franka_proto::{MoveControllerMode, RobotCommand, RobotMode, RobotState, Version};
-use franka_rt::control::{Callback, Torques};
-use franka_rt::driver::{ControlLog, Driver, Modes, MotionId, Order, Program};
+use franka_rt::control::{Callback, Modes, Torques};
+use franka_rt::driver::{ControlLog, Driver, MotionId, Order, Program};
 
 use super::timed;
 use crate::bench::{Benchmark, Statistic};

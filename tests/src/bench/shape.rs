@@ -4,8 +4,7 @@ use std::hint::black_box;
 
 use franka_model::transform;
 use franka_proto::{RobotState, Version};
-use franka_rt::control::{CartesianPose, Torques};
-use franka_rt::shaping::Shaper;
+use franka_rt::control::{CartesianPose, Shaper, Torques};
 use nalgebra::{Isometry3, Vector3};
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 

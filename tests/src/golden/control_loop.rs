@@ -13,10 +13,9 @@ use anyhow::{Context as _, bail};
 use franka_proto::{MoveControllerMode, RobotCommand, RobotMode, RobotState, Version};
 use franka_rt::control::{
     Callback, CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions,
-    JointVelocities, Next, Torques,
+    JointVelocities, Modes, Next, Shaper, Torques,
 };
-use franka_rt::driver::{ControlLog, Driver, Modes, MotionId, Order, Program};
-use franka_rt::shaping::Shaper;
+use franka_rt::driver::{ControlLog, Driver, MotionId, Order, Program};
 use serde::Deserialize;
 
 use super::{Case, Report, Versions};

@@ -68,7 +68,7 @@ pub fn cartesian_pose(
 }
 
 /// [`cartesian_pose`] with what [`Rigid::nearest`] makes of the poses.
-pub(in crate::shaping) fn limit_rigid(
+pub(crate) fn limit_rigid(
     bounds: &CartesianBounds,
     command: &[f64; 16],
     rigid_command: &Rigid,

@@ -33,7 +33,7 @@ mod scalar;
 #[cfg(test)]
 mod tests;
 
-pub(super) use cartesian::limit_rigid;
+pub(crate) use cartesian::limit_rigid;
 pub use cartesian::{CartesianBounds, POSE_ROTATION_SHARE, cartesian_pose, cartesian_velocity};
 pub(crate) use scalar::limit_rate;
 pub use scalar::{

@@ -20,7 +20,7 @@ use crate::shaping::{
 /// ```
 /// use franka_proto::{RobotState, Version};
 /// use franka_rt::control::Torques;
-/// use franka_rt::shaping::Shaper;
+/// use franka_rt::control::Shaper;
 ///
 /// let state = RobotState::default();
 /// let shaper = Shaper::new(Version::V10, true, 1000.0);

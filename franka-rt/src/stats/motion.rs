@@ -4,8 +4,8 @@ use core::time::Duration;
 
 use franka_proto::RobotState;
 
+use super::{CycleTimes, Histogram, Slack};
 use crate::slot::Words;
-use crate::stats::{CycleTimes, Histogram, Slack};
 
 /// Counts over the running time of one motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ impl MotionStatistics {
 
     /// Counts one state of the running motion, with what is missing before it. The first and the
     /// final state of a motion report a success rate of 0 whatever happened, so zeros do not count.
-    pub(super) fn note_state(&mut self, state: &RobotState, lost: u64, skipped: u64) {
+    pub(crate) fn note_state(&mut self, state: &RobotState, lost: u64, skipped: u64) {
         if self.cycles == 0 {
             self.span.0 = state.message_id;
         }
@@ -100,7 +100,7 @@ impl MotionStatistics {
     }
 
     /// Counts one command that left.
-    pub(super) fn note_cycle(&mut self, cycle: &CycleTimes) {
+    pub(crate) fn note_cycle(&mut self, cycle: &CycleTimes) {
         if self.commands == 0 || cycle.slack < self.slack_min {
             self.slack_min = cycle.slack;
         }
