@@ -18,42 +18,19 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 use crate::workspace::Workspace;
 
-/// Circles that are known and not yet removed, as crate and modules. Nothing is added here.
-const KNOWN: &[(&str, &str)] = &[("franka_rt", "control, driver, law, session, shaping, stats")];
-
-/// Fails with each circle that is not part of a [`KNOWN`] one, and where each of its imports is;
-/// also with each that is known and gone, so that the list only shrinks.
+/// Fails with each circle, and where each of its imports is.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     let crates = workspace.crates();
-    let (mut found, mut met) = (Vec::new(), BTreeSet::new());
+    let mut found = Vec::new();
     for (name, root) in crates {
         for circle in Imports::of(root)?.circles() {
-            let known = KNOWN.iter().find(|(of, modules)| {
-                let known: BTreeSet<String> = modules.split(", ").map(str::to_owned).collect();
-                of == name && circle.modules.is_subset(&known)
-            });
-            match known {
-                Some(known) => {
-                    met.insert(known);
-                }
-                None => found.push(format!("{name}: {}", circle.tell(workspace.root()))),
-            }
+            found.push(format!("{name}: {}", circle.tell(workspace.root())));
         }
-    }
-    for known in KNOWN.iter().filter(|known| !met.contains(known)) {
-        let (name, modules) = known;
-        found.push(format!(
-            "{name}: no circle of {modules} any longer: remove it from KNOWN"
-        ));
     }
     if !found.is_empty() {
         bail!("imports in a circle between modules:\n{}", found.join("\n"));
     }
-    println!(
-        "{} crates, {} known circles, no other one",
-        crates.len(),
-        met.len()
-    );
+    println!("{} crates, no circle", crates.len());
     Ok(())
 }
 
