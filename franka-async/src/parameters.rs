@@ -146,7 +146,7 @@ impl Robot {
         self.set(Request::SetFilters(filters)).await
     }
 
-    /// Reads the virtual wall `id` as it is set up in Handoff (libfranka's `getVirtualWall`).
+    /// Reads the virtual wall `id` as it is set up in Desk (libfranka's `getVirtualWall`).
     /// Protocol 5 only (Franka Emika Robot).
     ///
     /// # Errors

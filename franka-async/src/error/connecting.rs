@@ -37,7 +37,7 @@ pub enum ConnectError<P: Protocol = Version> {
     System(#[from] io::Error),
     /// Robot: it takes no connection. FCI is off, or it is another machine.
     #[error(
-        "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Handoff."
+        "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk."
     )]
     Refused,
     /// Link: no answer.

@@ -134,7 +134,7 @@ mod tests {
         }
         check(
             ConnectError::<Version>::Refused,
-            "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Handoff.",
+            "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk.",
             Party::Robot,
         );
         check(
