@@ -286,7 +286,10 @@ async fn an_arm_on_its_way_is_braked_when_the_robot_closes_the_connection() {
     let _alone = alone();
     let peer = Peer::start(Manners::default());
     let robot = peer.connect().await;
-    let moving = tokio::spawn(long_way(&robot).into_future());
+    // Some four seconds at 0.26 rad/s.
+    let mut turned = robot.state().q_d;
+    turned[0] += 1.0;
+    let moving = tokio::spawn(robot.move_joints(turned).speed(0.5).into_future());
     let mut states = robot.states();
     let fast = |state: &RobotState| state.dq.iter().any(|dq| dq.abs() > 0.1);
     let under_way = timeout(SOON, states.wait_for(fast)).await;

@@ -163,7 +163,7 @@ impl Server {
     fn serve(&mut self, mut stream: &TcpStream) -> std::io::Result<()> {
         stream.set_nonblocking(true)?;
         stream.set_nodelay(true)?;
-        let mut received = Vec::new();
+        let (mut received, mut outgoing) = (Vec::new(), Vec::new());
         let mut deadline = Instant::now();
         // Cycles without a command since we ended the stream.
         let mut unanswered = None;
@@ -193,8 +193,13 @@ impl Server {
                 // The client may have gone.
                 let _ = self.udp.send_to(datagram.bytes, client);
             }
-            while let Some(reply) = self.robot.take_reply() {
-                let reply = (self.manners.reply)(reply.to_vec());
+            while let Some(part) = self.robot.take_reply() {
+                outgoing.extend_from_slice(&part);
+            }
+            while let Ok(Some(message)) = next_message(&outgoing) {
+                let rest = outgoing.split_off(message.size());
+                let whole = std::mem::replace(&mut outgoing, rest);
+                let reply = (self.manners.reply)(whole);
                 let portion = if self.manners.piecewise {
                     1
                 } else {
