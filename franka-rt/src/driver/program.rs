@@ -2,10 +2,9 @@
 
 use franka_proto::{RobotState, Version};
 
-use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command, Failure, Torques};
+use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command, Failure};
 use crate::driver::Record;
-use crate::session::{self, SessionEvent, TargetSession};
-use crate::shaping::check;
+use crate::session::{SessionCommand, SessionEvent, TargetSession, Trace};
 use crate::together::Gate;
 
 /// What answers the states of a running motion. Built outside the thread and freed outside it.
@@ -41,8 +40,8 @@ pub(super) enum Answer {
 }
 
 impl Program {
-    /// Whether everything that it computes with is finite in `state`. Anything made of other
-    /// numbers would go to the motors.
+    /// Whether everything that it computes with is finite in `state`. A command computed from
+    /// non-finite values must not reach the motors.
     pub(super) fn can_read(&self, state: &RobotState) -> bool {
         let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
         let finite = numbers.copied().all(f64::is_finite);
@@ -53,8 +52,8 @@ impl Program {
             }
     }
 
-    /// Whether what the motion was to begin with has been taken back or replaced. Asked only while
-    /// the motion waits.
+    /// Whether the first goal of the motion has been cancelled or replaced. Called only while the
+    /// motion waits for others.
     pub(super) fn is_withdrawn(&mut self) -> bool {
         match self {
             Self::Target(session) => session.is_withdrawn(),
@@ -62,8 +61,8 @@ impl Program {
         }
     }
 
-    /// Answers a state: holds the arm while the gate is closed, and finishes where it is if that
-    /// never opens.
+    /// Answers a state: holds the arm while the gate is closed, and finishes where the arm is if
+    /// the gate is broken. [`Command::datagram`] checks that the command is finite.
     pub(super) fn step(
         &mut self,
         gate: Gate,
@@ -78,7 +77,7 @@ impl Program {
                     Gate::Closed => session.hold(state),
                     Gate::Broken(fault) => session.give_up(fault, state),
                 };
-                let session::Trace {
+                let Trace {
                     goal,
                     reference,
                     bindings,
@@ -88,28 +87,18 @@ impl Program {
                 record.dq_ref = reference.dq.into();
                 record.ddq_ref = reference.ddq.into();
                 record.bindings = bindings;
-                let valid = match &step.answer {
-                    session::SessionCommand::Torques(Torques(torques)) => check::finite(torques),
-                    session::SessionCommand::Setpoint(setpoint) => setpoint.validate(),
+                let command = match step.answer {
+                    SessionCommand::Torques(torques) => Ok(Command::torques(version, torques)),
+                    SessionCommand::Setpoint(setpoint) => {
+                        setpoint.validate().map(|()| Command::setpoint(setpoint))
+                    }
                 };
-                if let Err(invalid) = valid {
-                    return Step {
-                        answer: Answer::Failed(Failure::Invalid(invalid)),
-                        event: None,
-                    };
-                }
+                let finished = step.finished;
                 return Step {
-                    answer: Answer::Command {
-                        command: match step.answer {
-                            session::SessionCommand::Torques(torques) => {
-                                Command::torques(version, torques)
-                            }
-                            session::SessionCommand::Setpoint(setpoint) => {
-                                Command::setpoint(setpoint)
-                            }
-                        },
-                        finished: step.finished,
-                    },
+                    answer: command.map_or_else(
+                        |invalid| Answer::Failed(Failure::Invalid(invalid)),
+                        |command| Answer::Command { command, finished },
+                    ),
                     event: step.event,
                 };
             }

@@ -84,7 +84,7 @@ impl Guide {
     /// One nominal millisecond on; tells whether something pushed the arm off what stays, by more
     /// than the leash.
     pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> (Reference, bool) {
-        let begun = match &mut self.stage {
+        let (away, leashed) = match &mut self.stage {
             GuideStage::Braking(generator) if !generator.is_done() => {
                 let State {
                     position,
@@ -98,16 +98,16 @@ impl Guide {
                 };
                 return (braking, false);
             }
-            GuideStage::Floating(floating) if floating.cycle < u32::MAX => floating,
+            GuideStage::Floating(floating) if floating.cycle < u32::MAX => {
+                floating.step(self.free, arm)
+            }
             GuideStage::Braking(_) | GuideStage::Floating(_) => {
-                self.stage = GuideStage::Floating(Floating::begin(reference, arm));
-                match &mut self.stage {
-                    GuideStage::Floating(floating) => floating,
-                    GuideStage::Braking(_) => unreachable!("it floats"),
-                }
+                let mut floating = Floating::begin(reference, arm);
+                let stepped = floating.step(self.free, arm);
+                self.stage = GuideStage::Floating(floating);
+                stepped
             }
         };
-        let (away, leashed) = begun.step(self.free, arm);
         (Reference::at_rest(arm.q + away), leashed)
     }
 }

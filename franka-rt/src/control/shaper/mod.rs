@@ -19,8 +19,7 @@ use crate::shaping::{
 ///
 /// ```
 /// use franka_proto::{RobotState, Version};
-/// use franka_rt::control::Torques;
-/// use franka_rt::control::Shaper;
+/// use franka_rt::control::{Shaper, Torques};
 ///
 /// let state = RobotState::default();
 /// let shaper = Shaper::new(Version::V10, true, 1000.0);

@@ -12,7 +12,7 @@
 //! The last values are those of the robot's state: last command, and its first and second
 //! derivative. Only the command is checked. Last values that are not finite, and commands whose
 //! derivatives overflow, may give a result that is not finite, as in libfranka;
-//! [`Shaper`](super::Shaper) refuses it.
+//! [`Shaper`](crate::control::Shaper) refuses it.
 //!
 //! # What they do not keep
 //!
