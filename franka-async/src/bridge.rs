@@ -12,6 +12,7 @@ use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order, Program};
 use franka_rt::event_fd::EventFd;
 use franka_rt::lifecycle::{CloseReason, Lifecycle, Output};
+use franka_rt::queue::{Receiver, Sender};
 use franka_rt::session::GoalId;
 use franka_rt::thread::{Handle, Notice, Thread};
 use tokio::io::Interest;
@@ -58,8 +59,8 @@ pub(crate) async fn woken(wake: &AsyncFd<EventFd>) -> io::Result<()> {
 pub(crate) struct Bridge {
     lifecycle: Lifecycle,
     wake: AsyncFd<EventFd>,
-    orders: rtrb::Producer<Order>,
-    notices: rtrb::Consumer<Notice<Event>>,
+    orders: Sender<Order>,
+    notices: Receiver<Notice<Event>>,
     publisher: Publisher,
     telemetry: Telemetry,
     thread: Option<Thread<Driver>>,
@@ -221,7 +222,7 @@ impl Bridge {
 
     /// Passes the thread's events on to the lifecycle.
     fn take_notices(&mut self) {
-        while let Ok(notice) = self.notices.pop() {
+        while let Some(notice) = self.notices.pop() {
             match notice {
                 Notice::Core(event) => {
                     match &event {

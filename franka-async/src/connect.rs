@@ -196,7 +196,7 @@ async fn first_state(
         if let Some(state) = handle.states.newest() {
             return Ok(state);
         }
-        while let Ok(notice) = handle.notices.pop() {
+        while let Some(notice) = handle.notices.pop() {
             if let Notice::Link(fault) = notice {
                 return Err(fault.into());
             }

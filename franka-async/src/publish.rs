@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use franka_proto::RobotState;
 use franka_rt::driver::Record;
+use franka_rt::queue::Receiver;
 use franka_rt::state_wakeups::StateWakeups;
 use franka_rt::thread::{StateReader, StateSequence};
 use tokio::sync::{broadcast, watch};
@@ -28,7 +29,7 @@ pub(crate) enum Update {
 pub(crate) struct Publisher {
     pub(crate) newest: StateReader,
     pub(crate) sequence: StateSequence,
-    pub(crate) ring: rtrb::Consumer<Record>,
+    pub(crate) queue: Receiver<Record>,
     state_wakeups: StateWakeups,
     silent: Arc<Mutex<Option<Silent>>>,
     listeners: Listeners,
@@ -64,14 +65,14 @@ impl Publisher {
     pub(crate) fn new(
         newest: StateReader,
         sequence: StateSequence,
-        ring: rtrb::Consumer<Record>,
+        queue: Receiver<Record>,
         state_wakeups: StateWakeups,
         states: Arc<watch::Sender<RobotState>>,
     ) -> Self {
         Self {
             newest,
             sequence,
-            ring,
+            queue,
             state_wakeups,
             silent: Arc::default(),
             listeners: Listeners {
@@ -110,12 +111,10 @@ impl Publisher {
         while let Some(state) = self.sequence.pop() {
             let _ = self.listeners.updates.send(Update::State(Arc::new(state)));
         }
-        if self.listeners.records.receiver_count() == 0
-            && let Ok(records) = self.ring.read_chunk(self.ring.slots())
-        {
-            records.commit_all();
+        if self.listeners.records.receiver_count() == 0 {
+            self.queue.skip(self.queue.waiting());
         }
-        while let Ok(record) = self.ring.pop() {
+        while let Some(record) = self.queue.pop() {
             let _ = self.listeners.records.send(record);
         }
         self.state_wakeups.release(|| self.listeners.are_there());

@@ -16,8 +16,8 @@
 //!   Pure.
 //! * [`together`]: motions of several robots that begin at the same time.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
-//! * [`slot`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: what the loop
-//!   is built of. [`stats`] says when a state is late.
+//! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: what
+//!   the loop is built of. [`stats`] says when a state is late.
 //!
 //! This crate knows no async runtime, opens no TCP connection and reads no file but those that tell
 //! of a real-time kernel.
@@ -29,6 +29,7 @@ pub mod exchange;
 pub mod law;
 pub mod lifecycle;
 mod panic;
+pub mod queue;
 pub mod sched;
 pub mod session;
 pub mod shaping;

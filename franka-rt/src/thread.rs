@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! receive (wait <= 20 ms) -> orders -> decode -> Core::on_state -> encode -> send
-//!                                  |                 then: Core::after_send, newest-state slot, rings of states and
+//!                                  |                 then: Core::after_send, newest-state slot, queues of states and
 //!                                  +-> nothing came: on_silence            records, notices, eventfd, statistics
 //! ```
 //!
@@ -10,11 +10,6 @@
 //! allocates, frees, locks nor logs, and its only system calls are `recvfrom`, `sendto`, the clock
 //! and the `write` to the eventfd. What has to be freed (a program that ended) leaves inside
 //! an event.
-//!
-//! The queues are rtrb's, whose two ends never wait for each other. Not crossbeam's `ArrayQueue`:
-//! there, an end that finds the other in the middle of an operation spins until it is done, and if
-//! the other was preempted by this very thread, on the one processor that it may run on, that never
-//! happens.
 //!
 //! The cycle can be lent out: a thread of the user's then runs it in this one's place,
 //! through a [`Lease`], for as long as it likes.
@@ -36,8 +31,6 @@ mod handoff;
 mod lease;
 mod lifetime;
 
-use core::hint::black_box;
-use core::mem::MaybeUninit;
 use std::io;
 use std::net::{IpAddr, UdpSocket};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -61,6 +54,7 @@ use self::handoff::{Handoff, NotReturned};
 use self::lifetime::Lifetime;
 use crate::event_fd::EventFd;
 use crate::exchange::{self, Exchange};
+use crate::queue;
 use crate::sched::{SchedError, Scheduling};
 use crate::slot;
 use crate::state_wakeups::StateWakeups;
@@ -139,11 +133,11 @@ pub fn spawn<C: Core>(
     let meter = Meter::new();
     let stats = meter.stats().clone();
     let lifetime = Arc::new(Lifetime::default());
-    let (orders, order_queue) = touched_ring(capacity.orders);
-    let (notice_queue, notices) = touched_ring(capacity.notices);
-    let (record_ring, records) = touched_ring(capacity.records);
+    let (orders, order_queue) = queue::queue(capacity.orders);
+    let (notice_queue, notices) = queue::queue(capacity.notices);
+    let (record_queue, records) = queue::queue(capacity.records);
     let datagram = Datagram([0; RobotState::MAX_SIZE]);
-    let (state_ring, states) = touched_ring(capacity.states);
+    let (state_queue, states) = queue::queue(capacity.states);
     let (state_slot, state_reader) = slot::slot();
     let handoff = Arc::new(Handoff::new(exchange::TICK));
     let link_timeout = core.link_timeout();
@@ -157,8 +151,8 @@ pub fn spawn<C: Core>(
         size,
         orders: order_queue,
         notices: notice_queue,
-        records: record_ring,
-        sequence: state_ring,
+        records: record_queue,
+        sequence: state_queue,
         states: state_slot,
         datagram: Box::new(datagram),
         meter,
@@ -224,7 +218,7 @@ pub fn spawn<C: Core>(
             size,
         },
         sequence: StateSequence {
-            ring: states,
+            queue: states,
             version,
             size,
         },
@@ -239,19 +233,4 @@ pub fn spawn<C: Core>(
             link_timeout,
         },
     })
-}
-
-/// A ring of at least one element whose memory has been written to, so that no cycle meets a page
-/// of it for the first time.
-fn touched_ring<T>(capacity: usize) -> (rtrb::Producer<T>, rtrb::Consumer<T>) {
-    let capacity = capacity.max(1);
-    let (mut producer, consumer) = rtrb::RingBuffer::new(capacity);
-    if let Ok(mut unused) = producer.write_chunk_uninit(capacity) {
-        let (elements, wrapped) = unused.as_mut_slices();
-        debug_assert!(wrapped.is_empty(), "a new ring begins at its start");
-        elements.fill_with(MaybeUninit::zeroed);
-        black_box(elements);
-        // Nothing is committed: the ring stays empty.
-    }
-    (producer, consumer)
 }

@@ -11,6 +11,7 @@ use super::handle::{Datagram, Notice};
 use super::lifetime::Lifetime;
 use crate::event_fd::EventFd;
 use crate::exchange::{Exchange, Reception, SendError};
+use crate::queue::{Receiver, Sender};
 use crate::slot::SlotWriter;
 use crate::state_wakeups::StateWakeups;
 use crate::stats::{CycleTimes, Laps, Meter, Phase, Stats};
@@ -22,11 +23,11 @@ pub(super) struct Cycle<C: Core> {
     pub(super) version: Version,
     /// Size of a state, in bytes.
     pub(super) size: usize,
-    pub(super) orders: rtrb::Consumer<C::Order>,
-    pub(super) notices: rtrb::Producer<Notice<C::Event>>,
-    pub(super) records: rtrb::Producer<C::Record>,
+    pub(super) orders: Receiver<C::Order>,
+    pub(super) notices: Sender<Notice<C::Event>>,
+    pub(super) records: Sender<C::Record>,
     /// All states, as they came.
-    pub(super) sequence: rtrb::Producer<Datagram>,
+    pub(super) sequence: Sender<Datagram>,
     /// The newest state.
     pub(super) states: SlotWriter<Datagram>,
     /// That state on its way to both.
@@ -132,8 +133,8 @@ impl<C: Core> Cycle<C> {
     fn take_orders(&mut self) {
         for _ in 0..ORDERS_PER_CYCLE {
             match self.orders.pop() {
-                Ok(order) => self.core.on_order(order),
-                Err(_) => break,
+                Some(order) => self.core.on_order(order),
+                None => break,
             }
         }
     }
@@ -232,20 +233,10 @@ impl<C: Core> Cycle<C> {
         queued
     }
 
-    /// Queues what the core has to say, as far as there is room; returns whether there was
-    /// something.
+    /// Queues the core's events, as far as there is room; returns whether there was one.
     fn pass_events_on(&mut self) -> bool {
-        for passed in 0..EVENTS_PER_CYCLE {
-            if self.notices.is_full() {
-                return passed > 0;
-            }
-            let Some(event) = self.core.take_event() else {
-                return passed > 0;
-            };
-            let queued = self.notices.push(Notice::Core(event));
-            debug_assert!(queued.is_ok(), "there is room, and nobody else fills it");
-        }
-        true
+        let event = || self.core.take_event().map(Notice::Core);
+        self.notices.push_from(EVENTS_PER_CYCLE, event) > 0
     }
 }
 

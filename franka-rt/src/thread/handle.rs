@@ -12,6 +12,7 @@ use super::lifetime::Lifetime;
 use crate::driver::Driver;
 use crate::event_fd::EventFd;
 use crate::panic;
+use crate::queue::{Receiver, Sender};
 use crate::sched::Granted;
 use crate::slot::{Read, SlotReader, Words};
 use crate::state_wakeups::StateWakeups;
@@ -24,12 +25,12 @@ use crate::thread::{Core, Lender, LinkFault};
 pub struct Handle<C: Core = Driver> {
     /// Orders for the core. The thread takes them with the next state, or within
     /// [`crate::exchange::TICK`] while the robot is silent.
-    pub orders: rtrb::Producer<C::Order>,
+    pub orders: Sender<C::Order>,
     /// What the core and the loop report, oldest first.
-    pub notices: rtrb::Consumer<Notice<C::Event>>,
-    /// One record per state, oldest first. Those that find the ring full are lost, and counted in
+    pub notices: Receiver<Notice<C::Event>>,
+    /// One record per state, oldest first. Those that find the queue full are lost, and counted in
     /// [`Stats::records_lost`].
-    pub records: rtrb::Consumer<C::Record>,
+    pub records: Receiver<C::Record>,
     /// The newest state.
     pub states: StateReader,
     /// All states, oldest first. Those that find it full are missing, and counted in
@@ -176,7 +177,7 @@ impl StateReader {
 /// Takes the states that the thread has received, each once and in order.
 #[derive(Debug)]
 pub struct StateSequence {
-    pub(super) ring: rtrb::Consumer<Datagram>,
+    pub(super) queue: Receiver<Datagram>,
     pub(super) version: Version,
     pub(super) size: usize,
 }
@@ -184,7 +185,7 @@ pub struct StateSequence {
 impl StateSequence {
     /// The oldest state that has not been taken. Never waits.
     pub fn pop(&mut self) -> Option<RobotState> {
-        let datagram = self.ring.pop().ok()?;
+        let datagram = self.queue.pop()?;
         // The thread passes on only what it has decoded itself.
         RobotState::decode(self.version, &datagram.0[..self.size]).ok()
     }
@@ -192,14 +193,12 @@ impl StateSequence {
     /// How many have come and were not taken. The newest of them was the newest state before it was
     /// counted here.
     pub fn waiting(&self) -> usize {
-        self.ring.slots()
+        self.queue.waiting()
     }
 
     /// Leaves the oldest `count` out, undecoded, or as many as there are.
     pub fn skip(&mut self, count: usize) {
-        if let Ok(chunk) = self.ring.read_chunk(count.min(self.ring.slots())) {
-            chunk.commit_all();
-        }
+        self.queue.skip(count);
     }
 }
 

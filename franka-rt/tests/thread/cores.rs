@@ -68,7 +68,7 @@ fn every_state_is_answered_to_its_sender_before_its_record_is_made() {
     assert_eq!(handle.stats.commands.get(), 100);
     let stats = &handle.stats;
     assert_eq!((stats.turnaround.count(), stats.slack.count()), (100, 100));
-    let records: Vec<u64> = std::iter::from_fn(|| handle.records.pop().ok()).collect();
+    let records: Vec<u64> = std::iter::from_fn(|| handle.records.pop()).collect();
     assert_eq!(
         records,
         (1..=100).collect::<Vec<_>>(),
@@ -135,7 +135,7 @@ fn orders_arrive_in_their_order_while_the_robot_is_silent() {
         wait_for("room", || handle.orders.push(order).ok());
     }
     wait_for("empty queue", || {
-        (handle.orders.slots() == Capacity::default().orders).then_some(())
+        (handle.orders.free() == Capacity::default().orders).then_some(())
     });
     let core = handle.thread.join().expect("nothing panics");
     assert_eq!(core.orders, (0..40).collect::<Vec<_>>());
@@ -159,7 +159,7 @@ fn events_wait_for_room_and_none_is_lost() {
         },
     );
     for expected in 0..30 {
-        let notice = wait_for("event", || handle.notices.pop().ok());
+        let notice = wait_for("event", || handle.notices.pop());
         assert!(
             matches!(notice, Notice::Core(event) if event == expected),
             "{notice:?}"

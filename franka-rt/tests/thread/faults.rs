@@ -89,7 +89,7 @@ fn motions_after_the_first_begin_and_end_without_a_page_fault() {
         let mut bytes = vec![0; RobotState::MAX_SIZE];
         let size = state.encode(VERSION, &mut bytes).expect("there is room");
         robot.0.send(&bytes[..size]).expect("loopback");
-        let taken = wait_for("record", || handle.records.pop().ok());
+        let taken = wait_for("record", || handle.records.pop());
         assert_eq!(taken.0.time, message_id);
         taken.1
     };
@@ -108,7 +108,7 @@ fn motions_after_the_first_begin_and_end_without_a_page_fault() {
         counts.push(step(RobotMode::Idle, idle));
     }
     // Started and ended, for each; nobody has taken them, so that each lies in a place of its own.
-    assert!(handle.notices.slots() as u64 >= 2 * MOTIONS);
+    assert!(handle.notices.waiting() as u64 >= 2 * MOTIONS);
     let per_motion: Vec<u64> = counts.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert_eq!(per_motion, vec![0; per_motion.len()]);
     handle.thread.join().map(drop).expect("nothing panics");

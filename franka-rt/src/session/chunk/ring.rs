@@ -10,6 +10,7 @@
 //! than the way back holds, and the thread's end of it is never full.
 
 use super::value::Chunk;
+use crate::queue::{self, Receiver, Sender};
 use crate::session::GoalId;
 
 /// Chunks that may be on their way, in use, or on their way back at a time.
@@ -60,24 +61,24 @@ pub struct Full(
 /// The end that sends chunks, outside the thread.
 #[derive(Debug)]
 pub struct ChunkWriter {
-    chunks: rtrb::Producer<Sent>,
-    returns: rtrb::Consumer<Returned>,
+    chunks: Sender<Sent>,
+    returns: Receiver<Returned>,
     under_way: usize,
 }
 
 /// The end in the session.
 #[derive(Debug)]
 pub struct ChunkReader {
-    chunks: rtrb::Consumer<Sent>,
-    returns: rtrb::Producer<Returned>,
+    chunks: Receiver<Sent>,
+    returns: Sender<Returned>,
     /// The newest chunk, until it is taken up.
     newest: Option<Sent>,
 }
 
 /// The two ends of a way for chunks.
 pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
-    let (sender, receiver) = rtrb::RingBuffer::new(CHUNKS_MAX);
-    let (back, collector) = rtrb::RingBuffer::new(CHUNKS_MAX);
+    let (sender, receiver) = queue::queue(CHUNKS_MAX);
+    let (back, collector) = queue::queue(CHUNKS_MAX);
     let writer = ChunkWriter {
         chunks: sender,
         returns: collector,
@@ -112,13 +113,13 @@ impl ChunkWriter {
                 self.under_way += 1;
                 Ok(())
             }
-            Err(rtrb::PushError::Full(sent)) => Err(Full(sent.chunk)),
+            Err(queue::Full(sent)) => Err(Full(sent.chunk)),
         }
     }
 
     /// The next chunk that the thread is done with, if there is one.
     pub fn collect(&mut self) -> Option<Returned> {
-        let returned = self.returns.pop().ok()?;
+        let returned = self.returns.pop()?;
         self.under_way -= 1;
         Some(returned)
     }
@@ -165,7 +166,7 @@ impl ChunkReader {
     fn receive(&mut self) {
         // At most as many as are under way: the writer cannot add to them without collecting.
         for _ in 0..CHUNKS_MAX {
-            let Ok(sent) = self.chunks.pop() else { break };
+            let Some(sent) = self.chunks.pop() else { break };
             if let Some(before) = self.newest.replace(sent) {
                 self.give_back(before.goal, before.chunk, Fate::Superseded);
             }
@@ -175,7 +176,7 @@ impl ChunkReader {
     /// Gives back a chunk that is done with.
     pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
         let returned = Returned { goal, fate, chunk };
-        if let Err(rtrb::PushError::Full(returned)) = self.returns.push(returned) {
+        if let Err(queue::Full(returned)) = self.returns.push(returned) {
             // The writer lets out as many as fit. Were it not so, memory would rather be lost than
             // freed on this thread.
             core::mem::forget(returned);
