@@ -105,7 +105,8 @@ impl Builder {
 
     /// Stack of the control thread that gets its pages before the first cycle, in bytes: 512 KiB by
     /// default, 64 MiB at most. The thread's stack is larger by a reserve. For control functions
-    /// that use more; see [`ConnectError::Realtime`](crate::error::ConnectError::Realtime) for what is out of range.
+    /// that use more; see [`ConnectError::Realtime`](crate::error::ConnectError::Realtime) for what
+    /// is out of range.
     pub fn prefault_stack(mut self, bytes: usize) -> Self {
         self.scheduling.prefault_stack = bytes;
         self
@@ -121,8 +122,9 @@ impl Builder {
     }
 
     /// Silence of the robot after which a running motion fails with `LinkLost`: 20 ms to 1 s, 1 s
-    /// by default. Anything else is refused as [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). It is noticed late by
-    /// a quarter of it at most.
+    /// by default. Anything else is refused as
+    /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). It is noticed late
+    /// by a quarter of it at most.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self
@@ -138,8 +140,8 @@ impl Builder {
     }
 
     /// How many of its last cycles an error carries when the robot ends a motion: see
-    /// [`ControlError::log`](crate::error::ControlError::log). 50 by default; 0 for none, and then without
-    /// the success rate in its text.
+    /// [`ControlError::log`](crate::error::ControlError::log). 50 by default; 0 for none, and then
+    /// without the success rate in its text.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self

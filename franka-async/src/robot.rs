@@ -108,9 +108,9 @@ impl Robot {
 
     /// The model of the connected arm, which control computes with. A Franka Research 3 describes
     /// itself: its masses and limits are those of the description ([`Robot::urdf`]), unless the
-    /// feature `urdf` is off or [`Builder::nominal_model`](crate::Builder::nominal_model) is chosen.
-    /// A Franka Emika Robot does not: it has the constants that its own library is known to compute
-    /// with, [`Model::fer`].
+    /// feature `urdf` is off or [`Builder::nominal_model`](crate::Builder::nominal_model) is
+    /// chosen. A Franka Emika Robot does not: it has the constants that its own library is known to
+    /// compute with, [`Model::fer`].
     pub fn model(&self) -> &Model {
         &self.shared.model
     }

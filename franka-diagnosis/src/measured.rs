@@ -194,5 +194,5 @@ fn unbounded(
 /// contact, and how long before is not published.
 const NEAR: f64 = 0.1;
 
-/// Velocity that is none, `[rad/s]`: several times what an arm at rest shows.
+/// Velocity that counts as rest, `[rad/s]`: several times what an arm at rest shows.
 const STILL: f64 = 0.02;

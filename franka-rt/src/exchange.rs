@@ -230,7 +230,7 @@ impl Exchange {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SendError {
-    /// No state has been received, so nobody is to be answered.
+    /// No state has been received, so there is no address to answer.
     #[error("libfranka: could not send UDP data")]
     NobodyToAnswer,
     /// The system took only a part. The text is libfranka's.

@@ -110,7 +110,7 @@ struct Shared {
 #[derive(Debug)]
 pub struct SlotWriter<T> {
     shared: Arc<Shared>,
-    /// The writer's own copy of the count: nobody else changes it.
+    /// The writer's own copy of the count: no other thread changes it.
     count: u64,
     scratch: Box<[u64]>,
     value: core::marker::PhantomData<fn(&T)>,
@@ -123,13 +123,13 @@ impl<T: Words> SlotWriter<T> {
         // Relaxed: the word stores below carry it.
         self.shared.count.store(self.count + 1, Ordering::Relaxed);
         for (word, &new) in self.shared.words.iter().zip(&self.scratch) {
-            // Release, pairs with the Acquire load of this word: who sees it also sees the odd
-            // count.
+            // Release, pairs with the Acquire load of this word: a reader that sees it also sees
+            // the odd count.
             word.store(new, Ordering::Release);
         }
         self.count += 2;
-        // Release, pairs with the reader's first load of the count: who sees it sees every word of
-        // this value.
+        // Release, pairs with the reader's first load of the count: a reader that sees it sees
+        // every word of this value.
         self.shared.count.store(self.count, Ordering::Release);
     }
 }

@@ -84,7 +84,7 @@ pub struct Capacity {
 
 impl Default for Capacity {
     /// 16 orders (a motion takes two), 64 notices (a motion causes a handful), 2048 records and
-    /// 1024 states: two seconds and one in which nobody need read them.
+    /// 1024 states: two seconds, and one more in which no reader is needed.
     fn default() -> Self {
         Self {
             orders: 16,
@@ -174,7 +174,7 @@ pub fn spawn<C: Core>(
             Ok(granted)
         });
         let refused = answer.is_err();
-        // The one who waits for the answer cannot have gone: it does nothing else.
+        // The caller that waits for the answer cannot have gone: it does nothing else.
         let _ = granted.send(answer);
         drop(granted);
         let lifetime = cycle.lifetime.clone();

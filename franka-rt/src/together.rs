@@ -14,7 +14,7 @@
 //! every state with a command that holds the arm, as the robot wants it of a motion's first
 //! commands, until the last member has arrived. Each thread looks once in each of its own cycles,
 //! so the motions begin within a millisecond of each other: the robots' clocks are not
-//! synchronised, and nobody can do better than the next state of each.
+//! synchronised, and no start can be closer than the next state of each.
 //!
 //! All of it is one atomic word, which leaves `waiting` once and for all. No thread ever waits for
 //! another one: looking is a load, arriving and leaving a compare-and-exchange, repeated only if
@@ -358,7 +358,8 @@ impl Shared {
     }
 }
 
-/// Bits of the word: 0 to 15 who is present, 16 to 31 who has left, 32 to 39 why (0: nobody has).
+/// Bits of the word: 0 to 15 members present, 16 to 31 members that left, 32 to 39 why (0: none
+/// has).
 impl From<Word> for u64 {
     fn from(word: Word) -> Self {
         match word {

@@ -111,7 +111,7 @@ async fn what_names_no_robot_is_refused_before_anything_is_sent() {
     let _alone = alone();
     let connect = async |endpoint: &str| {
         let builder = Robot::builder(endpoint).realtime(Realtime::Ignore);
-        builder.connect().await.expect_err("nobody is there")
+        builder.connect().await.expect_err("no server is there")
     };
     for endpoint in ["", "robot:fci", "172.16.2", "fd00:::2", "fe80::2%nowhere0"] {
         let error = connect(endpoint).await;
@@ -123,7 +123,7 @@ async fn what_names_no_robot_is_refused_before_anything_is_sent() {
     }
     let error = connect("no-such-robot.invalid").await;
     let timely = matches!(error, ConnectError::Network { .. } | ConnectError::Timeout);
-    assert!(timely, "a name that nobody has: {error}");
+    assert!(timely, "an unknown name: {error}");
 }
 
 #[tokio::test]
@@ -134,7 +134,7 @@ async fn a_link_timeout_out_of_range_is_refused_with_the_range() {
         Duration::from_millis(19),
         Duration::from_secs(2),
     ] {
-        // Nobody need be there.
+        // No server is needed there.
         let builder = Robot::builder("127.0.0.1:1").link_timeout(timeout);
         let error = builder.connect().await.expect_err("out of range");
         assert_eq!(

@@ -218,7 +218,7 @@ async fn without_a_real_time_kernel_enforcing_fails_before_anything_is_sent() {
     if franka_rt::sched::kernel_is_realtime() {
         return;
     }
-    // Nobody listens there: the host is asked first.
+    // No server listens there: the host is asked first.
     let error = Robot::connect("127.0.0.1:1").await.expect_err("refused");
     let ConnectError::Realtime(error) = error else {
         panic!("{error:?}")

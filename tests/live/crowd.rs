@@ -1,4 +1,4 @@
-//! Ten simulators and ten driven robots in one process: nobody gets what is another's, and
+//! Ten simulators and ten driven robots in one process: none gets what belongs to another, and
 //! everything resolves.
 //!
 //! The arms keep to lanes of their own, have loads and tools of their own, and go from goal to

@@ -1,4 +1,4 @@
-//! Futures dropped at any of their polls, and more of them at once than anybody would.
+//! Futures dropped at any of their polls, and more of them at once than a program would.
 
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};

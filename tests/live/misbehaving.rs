@@ -277,7 +277,7 @@ async fn no_pose_is_followed_after_the_robot_has_gone() {
     );
     assert!(
         sender.send(Pose::identity()).is_err(),
-        "nobody follows any more"
+        "no program follows any more"
     );
 }
 

@@ -15,7 +15,7 @@ use franka_sim::Config;
 pub(crate) enum Treatment {
     /// The robot gets it.
     Pass,
-    /// Nobody gets it.
+    /// It is thrown away.
     Swallow,
     /// The robot does not get it, and yet there is an answer with this status.
     Answer(u8),

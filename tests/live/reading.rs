@@ -133,7 +133,7 @@ async fn a_slow_reader_is_told_how_many_states_it_missed() {
     assert!(lagged.missed > 300, "{} before the first", lagged.missed);
 }
 
-/// While nobody waits for states, what was published last may be fifty of them old.
+/// While no subscriber waits for states, the newest published one may be fifty states old.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_watch_begins_with_the_newest_state_and_changes_to_newer_ones() {
     let _alone = alone();

@@ -231,7 +231,7 @@ impl Running {
             {
                 let Ok(line) = line else { return };
                 println!("[franka-sim] {line}");
-                // After the first line nobody listens any more.
+                // After the first line the output is not read.
                 let _ = sender.send(line);
             }
         });

@@ -95,7 +95,7 @@ pub enum AbortReason {
     /// The robot stopped itself.
     #[error("Control aborted due to reflex.")]
     Reflex,
-    /// Somebody pressed the user stop.
+    /// The user stop was pressed.
     #[error("Control aborted due to user stop.")]
     UserStop,
     /// The motion had ended before.

@@ -81,7 +81,7 @@ pub struct Ended {
     pub log: ControlLog,
     /// Its ticket, if it was to begin together with others.
     pub ticket: Option<StartTicket>,
-    /// Who saw its cycles.
+    /// The observer of its cycles.
     pub observer: Option<Observer>,
 }
 
@@ -128,7 +128,7 @@ impl EventQueue {
     const CAPACITY: usize = 16;
 
     /// Appends. A full queue leaks the event: what it carries must not be freed on the thread, and
-    /// no motion can start without somebody outside who listens.
+    /// no motion can start without a listener outside.
     pub(super) fn push(&mut self, event: Event) {
         let newest = (self.first + self.count + Self::CAPACITY - 1) % Self::CAPACITY;
         if let (Event::LinkLost { silence }, Some(Event::LinkLost { silence: told })) =

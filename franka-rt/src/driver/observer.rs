@@ -35,7 +35,7 @@ impl Observer {
         if self.panicked.is_some() {
             return false;
         }
-        // One that has panicked is never called again, so nobody sees what it left half done.
+        // One that has panicked is never called again, so no caller sees what it left half done.
         let seen = catch_unwind(AssertUnwindSafe(|| (self.function)(record, state)));
         self.panicked = seen.err();
         self.panicked.is_some()

@@ -30,7 +30,7 @@ pub enum Order {
         ticket: Option<StartTicket>,
         /// Where the times of its cycles are counted; empty.
         times: Arc<MotionTimes>,
-        /// Who sees its cycles.
+        /// The observer of its cycles.
         observer: Option<Observer>,
     },
     /// Forget the armed motion: its `Move` was refused. Has no effect once the motion runs.
@@ -38,7 +38,7 @@ pub enum Order {
         /// The motion to forget.
         motion: MotionId,
     },
-    /// Answer no more states of the motion: nobody is in charge of its program any more. The robot
+    /// Answer no more states of the motion: its program is no longer in control. The robot
     /// stops by itself when its commands stay away. An armed motion is disarmed.
     Silence {
         /// The motion to leave alone.

@@ -89,21 +89,21 @@ pub(super) struct Goals {
     pub(super) bad_tool: bool,
     /// The session that the goals belong to, if it goes on from goal to goal.
     pub(super) engaged: Option<Engaged>,
-    /// Who turns setpoints into torques.
+    /// What turns setpoints into torques.
     pub(super) backend: Backend,
     /// The way of chunks to that session.
     pub(super) chunks: Option<ChunkWriter>,
     /// The goal that its newest chunk belongs to.
     pub(super) chunk_goal: GoalId,
-    /// Goals that came for that session when it had ended, and nobody knew yet how.
+    /// Goals that came for that session after it had ended and before its outcome was known.
     pub(super) late: Vec<GoalId>,
 }
 
 /// A session that goes on from goal to goal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Engaged {
-    /// Names whoever awaits its end. Between goals it is the name of the goal that the arm holds,
-    /// too.
+    /// Names the caller that awaits its end. Between goals it is the name of the goal that the arm
+    /// holds, too.
     pub(super) id: GoalId,
     /// Whether its end is what was asked for.
     pub(super) disengaged: bool,
@@ -112,9 +112,9 @@ pub(super) struct Engaged {
 /// A motion under a program of the user's.
 #[derive(Debug)]
 pub(super) struct Programmed {
-    /// Names whoever awaits its end.
+    /// Names the caller that awaits its end.
     pub(super) id: GoalId,
-    /// Whoever else awaits the end, having asked for it.
+    /// Other callers that asked for the end and await it.
     pub(super) stops: Vec<GoalId>,
 }
 
@@ -212,7 +212,7 @@ impl Active {
             || matches!(self.command, CommandSide::Ended(_) | CommandSide::Cancelled)
     }
 
-    /// Whether it is coming to its end, and nobody wants it to go on.
+    /// Whether it is coming to its end, and no caller wants it to go on.
     pub(super) fn is_letting_go(&self) -> bool {
         self.is_ending()
             || self.stopped.is_some()
@@ -231,7 +231,7 @@ impl Active {
     }
 
     /// Has the thread end the motion by what is in its hands, and returns the order that this
-    /// takes: nobody waits for it any more. Goals come to rest; a program is left alone, and the
+    /// takes: no caller waits for it any more. Goals come to rest; a program is left alone, and the
     /// robot stops for want of commands.
     pub(super) fn abandon(&mut self) -> Option<Order> {
         let motion = self.motion;
@@ -284,7 +284,7 @@ impl Goals {
     }
 
     /// Takes note that a goal of the session `engaged` has come to its end, and is held from now
-    /// on. Returns how it turned out, unless somebody has been told of its end before.
+    /// on. Returns how it turned out, unless a caller has been told of its end before.
     pub(super) fn reach(
         &mut self,
         engaged: GoalId,

@@ -25,7 +25,7 @@ pub struct Engagement {
     pub keep_out: Option<Vec<Obstacle>>,
     /// What turns setpoints into torques.
     pub backend: Backend,
-    /// Who sees its cycles.
+    /// The observer of its cycles.
     pub observer: Option<Observer>,
 }
 
@@ -60,7 +60,7 @@ impl Tuning {
 impl Lifecycle {
     /// Starts a session that holds the arm where it is and then goes from goal to goal, with the
     /// gains and the budget of `goal`, whose `id` becomes the name of the session. It resolves when
-    /// the session has ended. While a motion comes to its end that nobody wants any more, the
+    /// the session has ended. While a motion comes to its end that is no longer wanted, the
     /// session waits for that.
     ///
     /// # Errors
@@ -178,7 +178,7 @@ impl Lifecycle {
         while let Some(done) = chunks.collect() {
             drop(done);
         }
-        // One that was taken back is on its way to rest, and nobody's any more.
+        // One that was taken back is on its way to rest, and belongs to no caller any more.
         let goes_on = goals.current.goal.id == goals.chunk_goal && !goals.current.cancelled;
         let of = if goes_on { goals.chunk_goal } else { goal.id };
         chunks

@@ -207,7 +207,7 @@ impl Lifecycle {
             return self.start_goal(waiting, None, engagement, now);
         }
         let result = match before {
-            // Nobody knows, or the robot sees to it, whether the arm rests.
+            // Whether the arm rests is unknown, or up to the robot.
             Err(error)
                 if !error.is_ready_for_more() && !matches!(error, MotionError::Rejected(_)) =>
             {

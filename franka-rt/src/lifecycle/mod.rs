@@ -65,12 +65,12 @@ pub enum Output {
         /// The request.
         request: Request,
     },
-    /// Tell whoever began this program or session, if they want to know, that it runs now.
+    /// Tell the caller that began this program or session, if it asked, that it runs now.
     Began {
         /// Its name.
         id: GoalId,
     },
-    /// Tell whoever awaits this goal. Each goal that was taken is told exactly once.
+    /// Tell the caller that awaits this goal. Each goal that was taken is told exactly once.
     Resolve {
         /// The goal.
         goal: GoalId,
@@ -172,7 +172,7 @@ impl Lifecycle {
         self.conclude(now);
     }
 
-    /// Takes note that a reply to the `Move` of `motion` could not be read: nobody knows what the
+    /// Takes note that a reply to the `Move` of `motion` could not be read: it is unknown what the
     /// robot is doing, so the arm is braked, the robot told to stop, and the goal resolves.
     pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
         if self.active(motion).is_some() {
@@ -352,8 +352,8 @@ impl Lifecycle {
         self.outputs.push_back(Output::Order(order));
     }
 
-    /// Tells everybody who awaits a motion how it turned out; those who asked for its stop, whether
-    /// it rests.
+    /// Tells every caller that awaits a motion how it turned out; those who asked for its stop,
+    /// whether it rests.
     fn resolve_work(
         &mut self,
         work: Work,
@@ -378,8 +378,8 @@ impl Lifecycle {
         }
     }
 
-    /// Tells everybody who awaits the session of a motion how it turned out, and goals that came
-    /// too late for it.
+    /// Tells every caller that awaits the session of a motion how it turned out, and goals that
+    /// came too late for it.
     fn resolve_session(
         &mut self,
         late: Vec<GoalId>,

@@ -1,4 +1,4 @@
-//! How a motion turned out, for whoever awaited it.
+//! How a motion ended: the value that its future resolves with.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -102,7 +102,7 @@ pub enum MotionError {
     Held(Lapse),
     /// The goal was given up and the arm braked, for this reason. It holds where it came to rest.
     /// Caller: its targets stopped coming, or lead too near to the arm itself or to a region to
-    /// keep out of; or somebody carried the arm off.
+    /// keep out of; or the arm was pushed off its way.
     #[error("braked: {0}")]
     Braked(Lapse),
     /// Caller: the session that the goal is for has ended, or is about to. Nothing was sent.
@@ -179,7 +179,7 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    /// Whether the robot accepts a new motion afterwards without anybody's doing.
+    /// Whether the robot accepts a new motion afterwards without help from outside.
     ///
     /// After a reflex the robot has to be recovered first; after a lost link or connection,
     /// reconnected to. A control function that fails may have left it without commands for long
@@ -231,20 +231,20 @@ impl MotionError {
     }
 }
 
-/// Who can act on an error.
+/// Where an error can be acted on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Party {
     /// The program: it asked for what cannot be, or it ended something itself.
     Caller,
-    /// Whoever stands at the robot: it refused, stopped itself, or something is in its way.
+    /// At the robot: it refused, stopped itself, or something is in its way.
     Robot,
-    /// Whoever looks after the network.
+    /// In the network.
     Link,
-    /// Whoever looks after this computer: privileges, kernel, resources.
+    /// On this computer: privileges, kernel, resources.
     Host,
-    /// Nobody but a developer: the other side does not keep to the protocol, or is of another
+    /// In the code of one side: the other side does not keep to the protocol, or is of another
     /// version.
     Peer,
 }

@@ -122,7 +122,7 @@ impl Meter {
             .note(cycle.slack.left().unwrap_or_default());
         if let Some(overrun) = cycle.slack.overrun() {
             self.overran.write(cycle);
-            // After the cycle itself: who sees the count finds a cycle.
+            // After the cycle itself: a reader that sees the count finds a cycle.
             self.stats.overrun.note(overrun);
         }
         if cycle.total() > self.longest {

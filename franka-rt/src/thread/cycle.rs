@@ -105,7 +105,7 @@ impl<C: Core> Cycle<C> {
 
     /// Sends a command that answers the newest state, from outside of a turn.
     pub(super) fn send(&mut self, command: &RobotCommand) -> Result<(), SendError> {
-        // Since the end of the turn, somebody has thought about it.
+        // The caller has computed since the end of the turn.
         self.laps.end(Phase::Program);
         let departed = self.transmit(command)?;
         self.note(self.meter.answered(departed));

@@ -58,7 +58,7 @@ pub(super) enum NotReturned {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BorrowError {
-    /// Somebody else has it.
+    /// Another borrower has it.
     #[error("another thread runs the control cycle")]
     Lent,
     /// There is none any more.
@@ -77,7 +77,7 @@ impl<T> Handoff<T> {
         }
     }
 
-    /// Whether somebody wants to borrow. Relaxed: the hand-over itself goes through the lock.
+    /// Whether a borrower waits. Relaxed: the hand-over itself goes through the lock.
     pub(super) fn is_wanted(&self) -> bool {
         self.wanted.load(Ordering::Relaxed)
     }
@@ -90,7 +90,7 @@ impl<T> Handoff<T> {
         mut stop_wanted: impl FnMut() -> bool,
     ) -> Result<T, NotReturned> {
         let mut state = self.lock();
-        // Under the lock: whoever wants it later finds it on offer, or lent.
+        // Under the lock: a later borrower finds it on offer, or lent.
         self.wanted.store(false, Ordering::Relaxed);
         *state = HandoffState::Offered(value);
         self.changed.notify_all();
@@ -148,7 +148,7 @@ impl<T> Handoff<T> {
     }
 
     fn lock(&self) -> MutexGuard<'_, HandoffState<T>> {
-        // Nobody panics while holding it.
+        // No holder panics.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -31,8 +31,8 @@ impl Lifetime {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Release, pairs with the Acquire in [`Self::has_ended`]: who sees the end sees what the
-    /// thread left.
+    /// Release, pairs with the Acquire in [`Self::has_ended`]: a reader that sees the end sees what
+    /// the thread left.
     pub(super) fn note_end(&self) {
         self.ended.store(true, Ordering::Release);
     }

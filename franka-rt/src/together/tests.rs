@@ -14,7 +14,7 @@ fn the_gate_opens_for_all_when_the_last_has_arrived() {
     for ticket in &mut tickets {
         assert_eq!(ticket.pass(4), Gate::Open);
     }
-    // Whatever happens to one of them now concerns nobody else.
+    // Whatever happens to one of them now concerns no other.
     drop(tickets.remove(0));
     tickets[0].end();
     for ticket in &mut tickets {

@@ -83,7 +83,7 @@ fn the_end_is_seen_with_all_that_was_left_before_it() {
             })
         };
         lifetime.ask_to_stop();
-        // Somebody looks without having been told.
+        // A reader looks without having been told.
         if lifetime.has_ended() {
             assert_eq!(left.load(Ordering::Relaxed), 7);
         }

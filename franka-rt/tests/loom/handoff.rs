@@ -14,13 +14,13 @@ use loom::thread;
 
 use self::handoff::{BorrowError, Handoff};
 
-/// Ticks that never end: whoever waits for a change has to be told of it.
+/// Ticks that never end: a thread that waits for a change has to be told of it.
 const FOREVER: Duration = Duration::MAX;
 
 /// Ticks that are over at once.
 const AT_ONCE: Duration = Duration::ZERO;
 
-/// The owner's loop, for as long as somebody wants the value or `goes_on` says so; then it closes
+/// The owner's loop, for as long as a borrower wants the value or `goes_on` says so; then it closes
 /// the handoff. Returns the turns that were run in all, if the value is back.
 fn own(handoff: &Handoff<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
     let mut turns = Some(0);
@@ -42,7 +42,7 @@ fn take_a_turn(handoff: &Handoff<u64>) -> Result<(), BorrowError> {
     Ok(())
 }
 
-/// With ticks that never end, a notification that gets lost would leave somebody waiting for good,
+/// With ticks that never end, a notification that gets lost would leave a thread waiting for good,
 /// which loom reports.
 #[test]
 fn whoever_wants_it_gets_it() {
@@ -82,7 +82,7 @@ fn two_borrowers_get_it_or_hear_that_the_other_has_it() {
         let turns = own(&handoff, || left.load(Ordering::Relaxed) > 0);
         let got = borrowers.map(|borrower| borrower.join().expect("no panic"));
         let served = got.iter().filter(|got| got.is_ok()).count();
-        assert!(served >= 1, "somebody gets it: {got:?}");
+        assert!(served >= 1, "one borrower gets it: {got:?}");
         assert!(
             got.iter()
                 .all(|got| matches!(got, Ok(()) | Err(BorrowError::Lent))),
@@ -92,7 +92,8 @@ fn two_borrowers_get_it_or_hear_that_the_other_has_it() {
     });
 }
 
-/// The owner is told to stop at any moment: nobody waits for good, and the value ends in one state.
+/// The owner is told to stop at any moment: no thread waits for good, and the value ends in one
+/// state.
 #[test]
 fn a_stop_at_any_moment_leaves_nobody_waiting() {
     loom::model(|| {
@@ -115,7 +116,11 @@ fn a_stop_at_any_moment_leaves_nobody_waiting() {
             (Err(BorrowError::Ended), Some(0)) => {}
             other => panic!("{other:?}"),
         }
-        assert_eq!(handoff.borrow(), Err(BorrowError::Ended), "nobody later");
+        assert_eq!(
+            handoff.borrow(),
+            Err(BorrowError::Ended),
+            "no borrower later"
+        );
     });
 }
 

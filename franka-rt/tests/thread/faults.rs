@@ -107,7 +107,7 @@ fn motions_after_the_first_begin_and_end_without_a_page_fault() {
         step(RobotMode::Idle, idle);
         counts.push(step(RobotMode::Idle, idle));
     }
-    // Started and ended, for each; nobody has taken them, so that each lies in a place of its own.
+    // Started and ended, for each; none has been taken, so that each lies in a place of its own.
     assert!(handle.notices.waiting() as u64 >= 2 * MOTIONS);
     let per_motion: Vec<u64> = counts.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert_eq!(per_motion, vec![0; per_motion.len()]);

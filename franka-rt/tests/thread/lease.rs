@@ -13,7 +13,7 @@ fn whoever_borrows_the_cycle_runs_it_and_gives_it_back() {
     robot.send(1);
     assert_eq!(robot.command().message_id, 1, "the thread answers");
 
-    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let mut lease = handle.lender.borrow().expect("no other borrower has it");
     assert_eq!(handle.lender.borrow().unwrap_err(), BorrowError::Lent);
     assert_eq!(lease.turn(), Ok(None), "no state, a tick later");
     for message_id in 2..=20 {
@@ -65,7 +65,7 @@ fn a_borrower_that_runs_no_turn_is_reported_until_it_does() {
     let driver = Driver::new(VERSION).with_link_timeout(timeout);
     let (handle, robot) = start(config(), driver);
     assert_eq!(handle.thread.stalled(), None);
-    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let mut lease = handle.lender.borrow().expect("no other borrower has it");
     let stalled = wait_for("report", || handle.thread.stalled());
     assert_eq!(stalled, LinkTimeout::MIN);
     wait_for("ring", || (handle.event_fd.drain() > 0).then_some(()));
@@ -85,7 +85,7 @@ fn a_borrower_that_runs_no_turn_is_reported_until_it_does() {
 #[test]
 fn a_thread_that_is_stopped_does_not_wait_for_its_borrower() {
     let (handle, _robot) = start(config(), Probe::default());
-    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let mut lease = handle.lender.borrow().expect("no other borrower has it");
     assert_eq!(handle.thread.join().expect_err("no core"), Lost::Lent);
     assert_eq!(lease.turn(), Err(BorrowError::Ended));
     drop(lease);
@@ -95,7 +95,7 @@ fn a_thread_that_is_stopped_does_not_wait_for_its_borrower() {
 #[test]
 fn a_borrower_that_panics_gives_the_cycle_back() {
     let (handle, robot) = start(config(), Probe::default());
-    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let mut lease = handle.lender.borrow().expect("no other borrower has it");
     robot.send(1);
     let borrower = std::thread::spawn(move || {
         let state = lease.turn().expect("the thread lives").expect("a state");
@@ -117,7 +117,7 @@ fn a_core_that_panics_with_its_borrower_ends_the_thread() {
         ..Probe::default()
     };
     let (handle, robot) = start(config(), core);
-    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let mut lease = handle.lender.borrow().expect("no other borrower has it");
     robot.send(3);
     let turned = catch_unwind(AssertUnwindSafe(|| lease.turn()));
     assert!(turned.is_err(), "the panic is the borrower's");
@@ -131,7 +131,7 @@ fn a_core_that_panics_with_its_borrower_ends_the_thread() {
 #[test]
 fn a_command_without_a_motion_is_refused() {
     let (handle, robot) = start(config(), Driver::new(VERSION));
-    let mut lease = handle.lender.borrow().expect("nobody else has it");
+    let mut lease = handle.lender.borrow().expect("no other borrower has it");
     robot.send(1);
     lease.turn().expect("the thread lives").expect("a state");
     let refused = lease.write(&Command::default(), false).unwrap_err();

@@ -1,4 +1,4 @@
-//! What comes in: states, datagrams that are none, and silence.
+//! What comes in: states, invalid datagrams, and silence.
 
 use super::*;
 

@@ -99,7 +99,7 @@ fn ms(ms: u64) -> Duration {
     Duration::from_millis(ms)
 }
 
-/// A chunk that nobody should send: wherever points may be, however far apart.
+/// A chunk that no program should send: wherever points may be, however far apart.
 #[derive(Clone, Debug)]
 struct Wild {
     /// Milliseconds after the point before, and seven numbers in -1..1.
