@@ -21,6 +21,11 @@
 //! The words are atomics, so a torn read is a wrong value and not a data race, and no `unsafe` is
 //! needed. Memory order is argued at the two loops; `tests/loom/main.rs` explores the
 //! interleavings.
+//!
+//! The count has no cache line of its own. With a reader on a second core, and the count padded to
+//! 128 bytes or not, a write of 330 words, a state, takes 71 ns in the median of most runs, and one
+//! of 64 words 29 ns; the tails differ more between runs than between the two (a busy virtual
+//! machine with two cores). A write comes once per millisecond: padding saves nothing that counts.
 
 #[cfg(loom)]
 use loom::sync::{

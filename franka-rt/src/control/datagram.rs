@@ -72,7 +72,7 @@ impl Command {
     /// Every command that leaves is made here, whatever program commands it.
     ///
     /// # Errors
-    /// [`InvalidCommand::NotFinite`] if any of its numbers is not finite.
+    /// [`InvalidCommand::NotFinite`] if any of its values is non-finite.
     pub fn datagram(
         &self,
         message_id: u64,

@@ -1,4 +1,4 @@
-//! What the driver tells the world outside.
+//! Events of the driver.
 
 use core::time::Duration;
 use std::sync::Arc;

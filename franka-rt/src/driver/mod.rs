@@ -15,9 +15,8 @@
 //! it finishes.
 //!
 //! A program that fails, in place of finishing, leaves the motion `Silent`: no command, until the
-//! robot has left its modes. So does a command with a number that is not finite, whatever program
-//! made it, and `Order::Silence`, when nobody is in charge of the program any
-//! more.
+//! robot has left its modes. So does a command with a non-finite value, whatever program made it,
+//! and `Order::Silence`, when the program has no owner any more.
 //!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are
 //! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. What can
@@ -116,7 +115,7 @@ impl Driver {
         &self.record
     }
 
-    /// The next thing that the world outside has to hear, oldest first.
+    /// The oldest event that has not been taken.
     pub fn take_event(&mut self) -> Option<Event> {
         self.events.pop()
     }
@@ -188,7 +187,7 @@ impl Driver {
     ///
     /// Bounded work: at most one step of the program. A state that is not newer than the newest so
     /// far is ignored, as the robot numbers its cycles strictly upwards. A motion does not answer a
-    /// state in which a number that its program computes with is not finite: the robot bridges the
+    /// state in which a value that its program computes with is non-finite: the robot bridges the
     /// gap, or stops by itself if more of them follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let missing = match self.newest {

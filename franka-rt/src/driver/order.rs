@@ -1,4 +1,4 @@
-//! What the world outside asks of the driver.
+//! Orders to the driver.
 
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@ use crate::shaping::InvalidCommand;
 /// `kOrthonormalThreshold`).
 pub const ORTHONORMAL_TOLERANCE: f64 = 1e-5;
 
-/// Refuses numbers that are not finite.
+/// Refuses non-finite values.
 ///
 /// # Errors
 /// [`InvalidCommand::NotFinite`].

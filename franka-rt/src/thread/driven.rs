@@ -14,9 +14,10 @@ use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 /// allocate, free, lock, log or wait: they run on the real-time thread. Those with a body are for
 /// cores that keep counts.
 pub trait Core: Send + 'static {
-    /// What the world outside asks for.
+    /// What other threads ask for.
     type Order: Send + 'static;
-    /// What the world outside has to hear. Whatever has to be freed travels inside.
+    /// What is reported to other threads. Memory that is no longer needed leaves inside, to be
+    /// freed there.
     type Event: Send + 'static;
     /// What a cycle saw and did.
     type Record: Copy + Send + 'static;

@@ -19,8 +19,8 @@ use crate::state_wakeups::StateWakeups;
 use crate::stats::Stats;
 use crate::thread::{Core, Lender, LinkFault};
 
-/// Everything that connects the world outside to one running thread. Take it apart: each field has
-/// its own user.
+/// Everything that connects other threads to one running control thread. Take it apart: each field
+/// has its own user.
 #[derive(Debug)]
 pub struct Handle<C: Core = Driver> {
     /// Orders for the core. The thread takes them with the next state, or within

@@ -54,14 +54,14 @@ pub(super) enum NotReturned {
     Spoilt,
 }
 
-/// Why the cycle cannot be had.
+/// Why the cycle cannot be borrowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BorrowError {
     /// Another borrower has it.
     #[error("another thread runs the control cycle")]
     Lent,
-    /// There is none any more.
+    /// The control thread has ended.
     #[error("the control thread has ended")]
     Ended,
 }
@@ -157,7 +157,7 @@ impl<T> Handoff<T> {
         &'a self,
         state: MutexGuard<'a, HandoffState<T>>,
     ) -> MutexGuard<'a, HandoffState<T>> {
-        // loom knows no time. A tick of zero stands for one that is over once somebody else has
+        // loom knows no time. A tick of zero stands for one that is over once another thread has
         // run, and its condition variable takes any other for one that never ends.
         #[cfg(loom)]
         if self.tick.is_zero() {

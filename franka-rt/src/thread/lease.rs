@@ -6,8 +6,8 @@
 //! ```
 //!
 //! The thread hands the cycle over between two turns and waits until it comes back, or until it is
-//! told to stop. The lock of the [`Handoff`] is taken at the two hand-overs only; a turn, whoever
-//! runs it, takes none.
+//! told to stop. The lock of the [`Handoff`] is taken at the two hand-overs only; a turn takes
+//! none, on either thread.
 
 use std::sync::Arc;
 

@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 #[cfg(loom)]
 use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Whether the thread is to stop, whether it has ended, and whether whoever has borrowed its cycle
-/// runs it.
+/// Whether the thread is to stop, whether it has ended, and whether the borrower of its cycle runs
+/// it.
 #[derive(Debug, Default)]
 pub(super) struct Lifetime {
     stop: AtomicBool,
