@@ -2,7 +2,8 @@
 //!
 //! A motion towards goals is braked within the robot's limits, a session likewise before it ends,
 //! and a control function or program has the robot stop. All of it is one input to the bridge,
-//! which carries it out after `cancel` or `drop` has returned.
+//! which carries it out after `cancel` or `drop` has returned. The `Drop` of a motion's future is
+//! that of `Moving`, in `motion`; the brake is planned by `franka_rt::lifecycle`.
 
 use franka_rt::session::GoalId;
 use tokio::sync::oneshot;

@@ -1,4 +1,5 @@
-//! The handshake on a new command connection.
+//! The handshake on a new command connection: sending and waiting. Its messages and verdict are
+//! those of `franka_proto::client::Session`.
 
 use franka_proto::Protocol;
 use franka_proto::client::{Event, Session};

@@ -1,4 +1,4 @@
-//! Motions to one target: built, then awaited.
+//! Motions to one target: built, then awaited; braked when their future is dropped.
 
 use std::future::IntoFuture;
 use std::pin::Pin;

@@ -1,4 +1,4 @@
-//! What led up to the end of a motion.
+//! The causes that a diagnosis can name, and their text. `rules` selects them.
 
 use core::fmt;
 use core::time::Duration;

@@ -1,5 +1,5 @@
-//! Why a Franka robot ended a motion: which limit was exceeded, by how much, since when, what led
-//! up to it and what to change.
+//! Why a Franka robot ended a motion, by a reflex or otherwise: which limit was exceeded, by how
+//! much, since when, what led up to it and what to change. `rules` holds the reasoning.
 //!
 //! ```text
 //! errors, log, model --> finding (one error: commanded | measured | contact | lost cycles)

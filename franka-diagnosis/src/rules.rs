@@ -1,4 +1,5 @@
-//! From errors to a finding, from a finding to its causes, from causes to advice.
+//! How the reason of a reflex is worked out: from errors to a finding, from a finding to its
+//! causes, from causes to advice.
 
 use franka_proto::{Errors, RobotError as E};
 

@@ -1,5 +1,5 @@
-//! The UDP side of a connection: the robot's newest state in, one command back to where that state
-//! came from.
+//! The UDP side of a connection: the robot's newest state in (late and duplicate ones are dropped
+//! and counted), one command back to where that state came from.
 //!
 //! The robot sends one state per millisecond, and a host that was held up finds several of them
 //! waiting. The newest one wins: [`Exchange::receive`] waits for a datagram, then takes all that

@@ -1,4 +1,5 @@
-//! The connection of one client to a device: stream bytes in, requests out.
+//! The connection of one client to a device: the handshake is answered; stream bytes in, requests
+//! out.
 
 use std::collections::VecDeque;
 

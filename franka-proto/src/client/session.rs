@@ -1,4 +1,4 @@
-//! The session of a client.
+//! The session of a client: the handshake, then requests and their replies.
 
 use crate::command::CommandId;
 use crate::command::ServiceCommand;

@@ -1,4 +1,4 @@
-//! The session of a robot.
+//! The session of a robot: answers the handshake, then requests.
 
 use crate::command::CommandId;
 use crate::command::ServiceCommand;

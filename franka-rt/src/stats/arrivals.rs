@@ -1,4 +1,5 @@
-//! When states are due.
+//! When states are due, and how late each arrived. A late state is answered like any other; one
+//! that a newer state has overtaken is dropped in `exchange`.
 
 use core::time::Duration;
 use std::time::Instant;

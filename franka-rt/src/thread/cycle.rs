@@ -1,4 +1,5 @@
-//! One turn of the loop, and everything that it needs.
+//! One turn of the loop: receive, answer, publish, count. Which state is the newest is decided in
+//! `exchange`.
 
 use std::sync::Arc;
 use std::time::Instant;

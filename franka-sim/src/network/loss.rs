@@ -1,4 +1,5 @@
-//! Which packets are lost.
+//! Whether the next packet is lost, from a seed. What that does to a datagram of several packets:
+//! `path`.
 
 use super::conditions::Loss;
 use crate::noise::Random;

@@ -1,4 +1,5 @@
-//! One direction of a network.
+//! One direction of a network: datagrams are cut into packets (an FER's state into two IP
+//! fragments), and one that loses a fragment is lost as a whole.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;

@@ -1,4 +1,5 @@
-//! The torque-rate limit: the commanded torque changes no faster than the robot accepts.
+//! The torque-rate limit of target control: the commanded torque changes no faster than the robot
+//! accepts. Control functions have theirs in `control::shaper`.
 
 use franka_model::JointVector;
 use franka_model::limits::CLIENT_MARGIN;
