@@ -180,7 +180,7 @@ impl<T> Source<T> {
 
     /// What the function returns, and whether it is done. A panic of it stays inside.
     fn call(&mut self, state: &RobotState, step: Duration) -> Result<(T, bool), Failure> {
-        // A function that has panicked is never called again, so nobody sees what it left half
+        // A function that has panicked is never called again, so nothing reads what it left half
         // done.
         let called = catch_unwind(AssertUnwindSafe(|| (self.function)(state, step)));
         called.map(Next::into_parts).map_err(Failure::Panicked)

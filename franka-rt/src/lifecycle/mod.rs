@@ -220,8 +220,8 @@ impl Lifecycle {
                 active.deadline = Some(now + END_TIMEOUT);
                 self.conclude(now);
             }
-            // A motion that the silence ended has been told by its own event; one that nobody
-            // observes goes on.
+            // A motion that the silence ended has an event of its own; one without an observer goes
+            // on.
             Event::LinkLost { .. } | Event::Unobserved { .. } => {}
         }
     }
