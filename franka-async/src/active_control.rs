@@ -10,14 +10,13 @@ use franka_rt::control::{
     JointVelocities, Next, Torques,
 };
 use franka_rt::driver::Program;
-use franka_rt::lifecycle::{MotionError, MotionReport};
+use franka_rt::lifecycle::{MotionError, MotionReport, Outcome};
 use franka_rt::session::GoalId;
 use franka_rt::thread::{BorrowError, Lease};
 use futures::FutureExt;
 use tokio::sync::oneshot;
 
 use crate::error::ActiveError;
-use crate::input::Outcome;
 use crate::robot::Robot;
 
 impl Robot {

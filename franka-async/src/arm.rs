@@ -7,13 +7,13 @@ use std::sync::Arc;
 use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 use franka_rt::driver::{Observer, Record};
-use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, Tuning};
+use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, NewMotion, Tuning};
 use franka_rt::session::{Backend, Chunk, DeadmanMonitor, Free, Goal, OnArrival, Target};
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
 use crate::follow::{Follow, Targets, watched};
-use crate::input::{EndReply, Input, NewMotion, Replies};
+use crate::input::{EndReply, Input, Replies};
 use crate::motion::Motion;
 use crate::options::{GoalOptions, goal_options};
 use crate::robot::{Pose, Robot};
@@ -298,11 +298,12 @@ impl Arm {
     }
 
     async fn take(&self, target: Target) -> Result<(), MotionError> {
-        let id = self.session.id();
-        let goal = Box::new(self.goal(target));
-        self.session
-            .ask(|taken| Input::Set { id, goal, taken })
-            .await
+        let motion = NewMotion::Goal {
+            goal: Box::new(self.goal(target)),
+            ticket: None,
+            session: Some(self.session.id()),
+        };
+        self.session.ask(|taken| Input::Set { motion, taken }).await
     }
 }
 

@@ -5,14 +5,13 @@ use std::sync::{Mutex, PoisonError};
 use franka_proto::{RequestError, RobotState};
 use franka_rt::control::{AbortReason, AsynchronousPositions, AsynchronousTarget, TargetStatus};
 use franka_rt::driver::Program;
-use franka_rt::lifecycle::MotionError;
+use franka_rt::lifecycle::{MotionError, Outcome};
 use franka_rt::session::GoalId;
 use franka_rt::shaping::check;
 use franka_rt::slot::SlotWriter;
 use futures::FutureExt;
 use futures::future::{BoxFuture, Shared};
 
-use crate::input::Outcome;
 use crate::robot::Robot;
 
 /// Options of [`Robot::asynchronous_joint_positions`].

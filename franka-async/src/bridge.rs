@@ -9,9 +9,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use franka_proto::RobotState;
-use franka_rt::driver::{Driver, Event, Order, Program};
+use franka_rt::driver::{Driver, Event, Order};
 use franka_rt::event_fd::EventFd;
-use franka_rt::lifecycle::{CloseReason, Lifecycle, Output};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
 use franka_rt::session::GoalId;
 use franka_rt::thread::{Handle, Notice, Thread};
@@ -22,7 +22,7 @@ use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use crate::command_channel::{Channel, Connection, Report};
-use crate::input::{BridgeHandle, EndReply, Input, NewMotion, Outcome, Replies};
+use crate::input::{BridgeHandle, EndReply, Input, Replies};
 use crate::publish::Publisher;
 use crate::telemetry::{self, Telemetry};
 
@@ -75,7 +75,7 @@ pub(crate) struct Bridge {
 }
 
 impl Bridge {
-    /// `states` has the receivers of the driver itself, and no subscriber yet.
+    /// Returns a bridge. `states` has the receivers of the driver itself, and no subscriber yet.
     pub(crate) fn new(
         lifecycle: Lifecycle,
         handle: Handle,
@@ -286,58 +286,17 @@ impl Bridge {
 
     fn on_input(&mut self, input: Input) {
         let now = self.now();
-        // Without wake-ups per state, what was published last is not the newest.
+        // If no wake-up per state is requested, the state that was published last is old.
         self.publisher.refresh();
-        // What is asked for may follow on what the thread has said, before the eventfd wakes this
-        // task.
+        // The caller may react to an event that is in the queue and not yet read by this task: the
+        // queue is read before the input is handled.
         self.look_for_a_stall();
         self.take_notices();
         match input {
             Input::Begin { motion, replies } => {
                 let id = motion.id();
-                let begun = match motion {
-                    NewMotion::Goal {
-                        goal,
-                        ticket,
-                        within,
-                    } => {
-                        let state = &self.publisher.state();
-                        let lifecycle = &mut self.lifecycle;
-                        match (ticket, within) {
-                            (Some(ticket), _) => {
-                                lifecycle.submit_together(*goal, ticket, state, now)
-                            }
-                            (None, Some(id)) => lifecycle.submit_within(id, *goal, state, now),
-                            (None, None) => lifecycle.submit(*goal, state, now),
-                        }
-                    }
-                    NewMotion::Session { goal, engagement } => {
-                        let state = &self.publisher.state();
-                        self.lifecycle.engage(*goal, engagement, state, now)
-                    }
-                    NewMotion::Function {
-                        id,
-                        callback,
-                        request,
-                        ticket: Some(ticket),
-                    } => self
-                        .lifecycle
-                        .control_together(id, callback, *request, ticket, now),
-                    NewMotion::Function {
-                        id,
-                        callback,
-                        request,
-                        ticket: None,
-                    } => self
-                        .lifecycle
-                        .control(id, Program::Callback(callback), *request, now),
-                    NewMotion::Program {
-                        id,
-                        program,
-                        request,
-                    } => self.lifecycle.control(id, program, *request, now),
-                    NewMotion::Refused { error, .. } => Err(error.into()),
-                };
+                let state = &self.publisher.state();
+                let begun = self.lifecycle.begin(motion, state, now);
                 match begun {
                     Ok(()) => {
                         self.replies.insert(id, replies);
@@ -357,9 +316,9 @@ impl Bridge {
                 let updated = self.lifecycle.update(goal, target, &self.publisher.state());
                 let _ = taken.send(updated);
             }
-            Input::Set { id, goal, taken } => {
+            Input::Set { motion, taken } => {
                 let state = &self.publisher.state();
-                let _ = taken.send(self.lifecycle.submit_within(id, *goal, state, now));
+                let _ = taken.send(self.lifecycle.begin(motion, state, now));
             }
             Input::Chunk {
                 id,
@@ -368,13 +327,13 @@ impl Bridge {
                 taken,
             } => {
                 let state = &self.publisher.state();
-                let _ = taken.send(self.lifecycle.chunk(id, *goal, *chunk, state, now));
+                let _ = taken.send(self.lifecycle.chunk(id, *goal, *chunk, state));
             }
             Input::Tune { id, tuning, taken } => {
                 let state = &self.publisher.state();
                 let _ = taken.send(self.lifecycle.tune(id, *tuning, state));
             }
-            Input::Disengage { id } => self.lifecycle.disengage(id, now),
+            Input::Disengage { id } => self.lifecycle.disengage(id),
             Input::Close { goal } => self.lifecycle.close(goal),
             Input::Cancel { goal } => self.lifecycle.cancel(goal, now),
             Input::Stop { goal, ended } => {
@@ -401,7 +360,7 @@ impl Bridge {
 
     /// Brakes what moves. Returns when to give up on it.
     fn begin_closing(&mut self) -> Instant {
-        // A name that no handle gives out: they count up from 1.
+        // An id that no handle uses: handles count up from 1.
         self.lifecycle.stop(GoalId(u64::MAX), self.now());
         Instant::now() + CLOSING_TIMEOUT
     }

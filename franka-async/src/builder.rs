@@ -141,7 +141,9 @@ impl Builder {
 
     /// How many of its last cycles an error carries when the robot ends a motion: see
     /// [`ControlError::log`](crate::error::ControlError::log). 50 by default; 0 for none, and then
-    /// without the success rate in its text.
+    /// without the success rate in its text; 10 000 at most, ten seconds. More is refused as
+    /// [`ConnectError::LogSize`](crate::error::ConnectError::LogSize):
+    /// [`Robot::records`](crate::Robot::records) has the cycles of whole motions.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self

@@ -3,16 +3,18 @@
 //! A motion towards goals is braked within the robot's limits, a session likewise before it ends,
 //! and a control function or program has the robot stop. All of it is one input to the bridge,
 //! which carries it out after `cancel` or `drop` has returned. The `Drop` of a motion's future is
-//! that of `Moving`, in `motion`; the brake is planned by `franka_rt::lifecycle`.
+//! that of `Moving`, in `motion`; what happens is decided by `Lifecycle::cancel`, in
+//! `franka_rt::lifecycle::goals`.
 
+use franka_rt::lifecycle::{NewMotion, Outcome};
 use franka_rt::session::GoalId;
 use tokio::sync::oneshot;
 use tokio_util::sync::CancellationToken;
 
-use crate::input::{NewMotion, Outcome};
 use crate::robot::Robot;
 
-/// Brakes a motion. Clones brake the same one.
+/// Takes a motion back: an arm on its way to a goal brakes, and a control function or program has
+/// the robot stop. Clones take back the same motion.
 #[derive(Clone, Debug)]
 pub struct Canceller {
     robot: Robot,

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicU64;
 
 use franka_proto::client::Session;
 use franka_proto::{RobotState, Version};
-use franka_rt::driver::{Driver, LinkTimeout};
+use franka_rt::driver::{ControlLog, Driver, LinkTimeout};
 use franka_rt::event_fd::EventFd;
 use franka_rt::exchange;
 use franka_rt::lifecycle::Lifecycle;
@@ -59,6 +59,10 @@ impl Builder {
 
 async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     LinkTimeout::new(builder.link_timeout)?;
+    if builder.log_size > ControlLog::CAPACITY_MAX {
+        let got = builder.log_size;
+        return Err(ConnectError::LogSize { got });
+    }
     // Refused before anything is sent, as the reference client does; the thread asks again for
     // itself.
     let scheduling = builder.scheduling.clone();

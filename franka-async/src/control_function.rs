@@ -8,11 +8,12 @@ use franka_rt::control::{
     Callback, CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions,
     JointVelocities, Next, Shaper, Torques,
 };
+use franka_rt::driver::Program;
+use franka_rt::lifecycle::NewMotion;
 use franka_rt::shaping::DEFAULT_CUTOFF_FREQUENCY;
 use franka_rt::together::StartTicket;
 
 use crate::cancel::Canceller;
-use crate::input::NewMotion;
 use crate::motion::Moving;
 use crate::robot::Robot;
 
@@ -166,9 +167,9 @@ impl Control {
         let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency)
             .with_limits_of(robot.model().joint_limits());
         let request = self.callback.request(version, self.controller);
-        NewMotion::Function {
+        NewMotion::Program {
             id: self.canceller.id(),
-            callback: Box::new(self.callback.with_shaper(shaper)),
+            program: Program::Callback(Box::new(self.callback.with_shaper(shaper))),
             request: Box::new(request),
             ticket: self.ticket,
         }
@@ -180,6 +181,6 @@ impl IntoFuture for Control {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        Moving::new(self.canceller.clone(), None, self.begin())
+        Moving::new(self.canceller.clone(), None, Ok(self.begin()))
     }
 }

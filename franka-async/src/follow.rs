@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Duration;
 
-use franka_rt::lifecycle::{MotionError, MotionReport};
+use franka_rt::lifecycle::{MotionError, MotionReport, NewMotion};
 use franka_rt::session::{Goal, Lead, OnArrival, OnTimeout, Target, Watchdog};
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
@@ -15,7 +15,7 @@ use tokio_stream::wrappers::WatchStream;
 use tokio_stream::{Stream, StreamExt};
 
 use crate::cancel::Canceller;
-use crate::input::{Input, NewMotion};
+use crate::input::Input;
 use crate::motion::Moving;
 use crate::options::{GoalOptions, goal_options};
 use crate::robot::Robot;
@@ -134,9 +134,9 @@ impl Follow {
         let motion = NewMotion::Goal {
             goal: Box::new(towards(first)?),
             ticket,
-            within: session.as_deref().map(Session::id),
+            session: session.as_deref().map(Session::id),
         };
-        let mut moving = Moving::new(Canceller::new(robot.clone(), id), session, motion);
+        let mut moving = Moving::new(Canceller::new(robot.clone(), id), session, Ok(motion));
         loop {
             let next = tokio::select! {
                 biased;

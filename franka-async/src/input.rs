@@ -1,55 +1,10 @@
 //! What handles and motions ask of the bridge, and how it answers.
 
-use franka_proto::MoveRequest;
-use franka_rt::control::Callback;
-use franka_rt::driver::Program;
-use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, Tuning};
+use franka_rt::lifecycle::{MotionError, NewMotion, Outcome, Tuning};
 use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target};
-use franka_rt::together::StartTicket;
 use tokio::sync::{mpsc, oneshot, watch};
 
 use crate::publish::Subscriptions;
-
-/// How a motion ended.
-pub(crate) type Outcome = Result<MotionReport, MotionError>;
-
-/// A motion to begin.
-#[derive(Debug)]
-pub(crate) enum NewMotion {
-    Goal {
-        goal: Box<Goal>,
-        ticket: Option<StartTicket>,
-        /// The session that the goal is for; `None` begins a motion of its own.
-        within: Option<GoalId>,
-    },
-    Session {
-        goal: Box<Goal>,
-        engagement: Engagement,
-    },
-    Function {
-        id: GoalId,
-        callback: Box<Callback>,
-        request: Box<MoveRequest>,
-        ticket: Option<StartTicket>,
-    },
-    Program {
-        id: GoalId,
-        program: Program,
-        request: Box<MoveRequest>,
-    },
-    /// Options that are not accepted.
-    Refused { id: GoalId, error: GoalError },
-}
-
-impl NewMotion {
-    /// Returns the name under which the motion is cancelled and resolved.
-    pub(crate) fn id(&self) -> GoalId {
-        match self {
-            Self::Goal { goal, .. } | Self::Session { goal, .. } => goal.id,
-            Self::Function { id, .. } | Self::Program { id, .. } | Self::Refused { id, .. } => *id,
-        }
-    }
-}
 
 /// What handles and motions ask of the bridge.
 #[derive(Debug)]
@@ -64,13 +19,13 @@ pub(crate) enum Input {
         target: Target,
         taken: oneshot::Sender<Result<bool, GoalError>>,
     },
-    /// Sets a goal without an outcome, for the session `id`. The reply, as of the next two, is
-    /// whether it is accepted.
+    /// Begins a motion whose outcome is not awaited. The reply, as of the next two, is whether it
+    /// is accepted.
     Set {
-        id: GoalId,
-        goal: Box<Goal>,
+        motion: NewMotion,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
+    /// Sends a chunk to the session `id`.
     Chunk {
         id: GoalId,
         goal: Box<Goal>,

@@ -1,17 +1,17 @@
-//! Motions to one target: built, then awaited; braked when their future is dropped.
+//! Motions to one target, and [`Moving`], the future of these, of followed targets and of control
+//! functions. What dropping it does to the arm: `cancel`.
 
 use std::future::IntoFuture;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
 
-use franka_rt::lifecycle::{MotionError, MotionReport};
-use franka_rt::session::{Goal, GoalId, OnArrival, Target};
+use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
+use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Target};
 use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
 use crate::cancel::Canceller;
-use crate::input::{NewMotion, Outcome};
 use crate::options::{GoalOptions, goal_options};
 use crate::robot::{Pose, Robot};
 use crate::session::Session;
@@ -85,8 +85,10 @@ impl Motion {
     /// Begins the motion without a future: it runs on, and its outcome is only logged. It is no
     /// handle: the last handle of its session or robot, dropped, still brakes it.
     pub fn detach(mut self) {
-        let motion = self.begin();
-        self.canceller.begin(motion);
+        match self.begin() {
+            Ok(motion) => drop(self.canceller.begin(motion)),
+            Err(error) => tracing::info!(goal = self.canceller.id().0, %error, "motion ended"),
+        }
     }
 
     /// Returns a handle that brakes the motion from elsewhere.
@@ -94,17 +96,14 @@ impl Motion {
         self.canceller.clone()
     }
 
-    fn begin(&mut self) -> NewMotion {
+    fn begin(&mut self) -> Result<NewMotion, GoalError> {
         let (id, model) = (self.canceller.id(), self.canceller.robot().model());
         let goal = Goal::new(id, self.target, self.on_arrival, model.joint_limits());
-        match self.options.apply(goal, model) {
-            Ok(goal) => NewMotion::Goal {
-                goal: Box::new(goal),
-                ticket: self.ticket.take(),
-                within: self.session.as_deref().map(Session::id),
-            },
-            Err(error) => NewMotion::Refused { id, error },
-        }
+        Ok(NewMotion::Goal {
+            goal: Box::new(self.options.apply(goal, model)?),
+            ticket: self.ticket.take(),
+            session: self.session.as_deref().map(Session::id),
+        })
     }
 }
 
@@ -121,7 +120,7 @@ impl Clone for Motion {
 }
 
 impl IntoFuture for Motion {
-    type Output = Result<MotionReport, MotionError>;
+    type Output = Outcome;
     type IntoFuture = Moving;
 
     fn into_future(mut self) -> Moving {
@@ -150,7 +149,8 @@ pub struct Moving {
 
 #[derive(Debug)]
 enum Progress {
-    Ready(NewMotion),
+    /// Or options that are not accepted.
+    Ready(Result<NewMotion, GoalError>),
     Begun(oneshot::Receiver<Outcome>),
     Over,
 }
@@ -160,9 +160,10 @@ impl Moving {
     pub(crate) fn new(
         canceller: Canceller,
         session: Option<Arc<Session>>,
-        motion: NewMotion,
+        motion: Result<NewMotion, GoalError>,
     ) -> Self {
-        debug_assert_eq!(canceller.id(), motion.id());
+        let named = |motion: &NewMotion| motion.id() == canceller.id();
+        debug_assert!(motion.as_ref().ok().is_none_or(named));
         Self {
             canceller,
             session,
@@ -180,7 +181,8 @@ impl Future for Moving {
 
     fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Outcome> {
         let mut outcome = match std::mem::replace(&mut self.progress, Progress::Over) {
-            Progress::Ready(motion) => match self.canceller.begin(motion) {
+            Progress::Ready(Err(error)) => return Poll::Ready(Err(error.into())),
+            Progress::Ready(Ok(motion)) => match self.canceller.begin(motion) {
                 Some(outcome) => outcome,
                 None => return Poll::Ready(Err(MotionError::Stopped)),
             },

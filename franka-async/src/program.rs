@@ -2,12 +2,12 @@
 
 use franka_proto::MoveRequest;
 use franka_rt::driver::Program;
-use franka_rt::lifecycle::MotionError;
+use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
 use franka_rt::session::GoalId;
 use tokio::sync::oneshot;
 
 use crate::cancel::CancelOnDrop;
-use crate::input::{EndReply, Input, NewMotion, Outcome, Replies};
+use crate::input::{EndReply, Input, Replies};
 use crate::robot::Robot;
 
 impl Robot {
@@ -29,6 +29,7 @@ impl Robot {
                 id,
                 program,
                 request: Box::new(request),
+                ticket: None,
             },
             replies: Replies {
                 began: Some(began),

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::Record;
-use franka_rt::lifecycle::{CloseReason, MotionError};
+use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome};
 use franka_rt::sched::Granted;
 use franka_rt::session::GoalId;
 use franka_rt::stats::Stats;
@@ -16,7 +16,7 @@ use franka_rt::thread::Lender;
 use tokio::sync::{broadcast, oneshot};
 
 use crate::command_channel::Channel;
-use crate::input::{BridgeHandle, EndReply, Input, NewMotion, Outcome, Replies};
+use crate::input::{BridgeHandle, EndReply, Input, Replies};
 use crate::newest_state::Newest;
 use crate::publish::Subscriptions;
 use crate::states::States;

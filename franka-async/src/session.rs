@@ -3,11 +3,11 @@
 use std::future::Future;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::lifecycle::{MotionError, Outcome, Tuning};
 use franka_rt::session::GoalId;
 use tokio::sync::{oneshot, watch};
 
-use crate::input::{Input, Outcome};
+use crate::input::Input;
 use crate::robot::Robot;
 
 /// A session of target control. Dropping it brakes the arm and ends the session.

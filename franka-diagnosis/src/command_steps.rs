@@ -1,13 +1,13 @@
 //! Commands that leap: at the start, at the end, and between.
 
 use franka_model::limits::MotionLimits;
-use franka_model::{JointVector, Twist, rotation, transform};
+use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
 use franka_proto::{MotionGeneratorMode as Generator, RobotError};
 use nalgebra::Vector3;
 
 use super::cause::Cause;
 use super::commanded::{self, Derivatives, Which};
-use super::evidence::{CYCLE, Evidence, Sample};
+use super::evidence::{Evidence, Sample};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
 /// How far the first command is from where the robot was; for the errors that say so.

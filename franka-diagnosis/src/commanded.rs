@@ -5,11 +5,11 @@
 
 use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::limits::MotionLimits;
-use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation, transform};
+use franka_model::{CYCLE, EndEffector, Frame, JointVector, Model, Twist, rotation, transform};
 use franka_proto::{MotionGeneratorMode as Generator, RobotState};
 use nalgebra::{Isometry3, SVector, Vector3};
 
-use super::evidence::{CYCLE, Evidence, Reading, Sample, positions, velocities};
+use super::evidence::{Evidence, Reading, Sample, positions, velocities};
 use super::finding::{Origin, Quantity, Subject};
 
 /// A command with its derivatives.

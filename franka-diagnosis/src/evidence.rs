@@ -8,9 +8,6 @@ use franka_rt::driver::Commander;
 use franka_rt::driver::LogEntry;
 use franka_rt::stats::MotionStatistics;
 
-/// Duration of a control cycle, `[s]`.
-pub(super) const CYCLE: f64 = 1e-3;
-
 /// What there is to judge by.
 pub(super) struct Evidence<'a> {
     pub(super) commander: Commander,

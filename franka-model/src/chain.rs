@@ -8,7 +8,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::JointVector;
-use crate::geometry::{ELBOW, FLANGE, FOREARM, UPPER_ARM, WRIST};
+use crate::geometry::{ELBOW, FLANGE, FOREARM, SHOULDER, UPPER_ARM, WRIST};
 use crate::inertia::cross;
 use crate::scalar::sin_cos;
 
@@ -102,6 +102,31 @@ impl Chain {
                 cross(&p7, &f7.z),
             ],
         }
+    }
+
+    /// All frames at the positions `q` of an arm whose joint frames, at zero, are at `origins`:
+    /// rotation and translation in the frame of the link before.
+    pub(crate) fn through(origins: &[(Matrix3<f64>, Vector3<f64>); 7], q: &JointVector) -> Self {
+        let mut chain = Self {
+            rotation: [Matrix3::identity(); 7],
+            origin: [Vector3::zeros(); 7],
+            axis: [Vector3::zeros(); 7],
+            moment: [Vector3::zeros(); 7],
+        };
+        let mut rotation = Matrix3::identity();
+        let mut origin = Vector3::new(0.0, 0.0, -SHOULDER);
+        for (i, (turn, shift)) in origins.iter().enumerate() {
+            origin += rotation * shift;
+            let (sin, cos) = sin_cos(q[i]);
+            let joint = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+            rotation *= turn * joint;
+            let axis = rotation.column(2).into_owned();
+            chain.rotation[i] = rotation;
+            chain.origin[i] = origin;
+            chain.axis[i] = axis;
+            chain.moment[i] = cross(&origin, &axis);
+        }
+        chain
     }
 
     /// Origin of the flange, from the shoulder.

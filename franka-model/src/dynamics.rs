@@ -44,7 +44,7 @@ impl Dynamics {
         let bodies = placed(chain, links);
         let placement = Placement::of(chain, Frame::EndEffector, ee);
         let (mass, gravity) = mass_and_gravity(chain, &bodies, gravity_earth);
-        let motion = Motion::of(chain, dq, None, &Vector3::zeros());
+        let motion = LinkMotions::of(chain, dq, None, &Vector3::zeros());
         let tip =
             motion.accelerations[6] + motion.spin[6].times(&(placement.origin - chain.origin[6]));
         let turn = motion.spin[6].angular_acceleration;
@@ -108,7 +108,7 @@ pub(crate) fn gravity(
 
 #[inline(always)]
 pub(crate) fn coriolis(chain: &Chain, links: &[RigidBody; 7], dq: &JointVector) -> JointVector {
-    Motion::of(chain, dq, None, &Vector3::zeros()).torques(chain, &placed(chain, links))
+    LinkMotions::of(chain, dq, None, &Vector3::zeros()).torques(chain, &placed(chain, links))
 }
 
 #[inline(always)]
@@ -119,7 +119,7 @@ pub(crate) fn inverse_dynamics(
     ddq: &JointVector,
     gravity_earth: &Vector3<f64>,
 ) -> JointVector {
-    Motion::of(chain, dq, Some(ddq), gravity_earth).torques(chain, &placed(chain, links))
+    LinkMotions::of(chain, dq, Some(ddq), gravity_earth).torques(chain, &placed(chain, links))
 }
 
 pub(crate) fn forward_dynamics(
@@ -132,7 +132,7 @@ pub(crate) fn forward_dynamics(
 ) -> Option<JointVector> {
     let bodies = placed(chain, links);
     let (mut mass, gravity) = mass_and_gravity(chain, &bodies, gravity_earth);
-    let coriolis = Motion::of(chain, dq, None, &Vector3::zeros()).torques(chain, &bodies);
+    let coriolis = LinkMotions::of(chain, dq, None, &Vector3::zeros()).torques(chain, &bodies);
     for i in 0..7 {
         mass[(i, i)] += armature[i];
     }
@@ -157,13 +157,13 @@ impl Spin {
 }
 
 /// Velocities and accelerations of the seven link frames, in base axes.
-struct Motion {
+struct LinkMotions {
     /// Acceleration of each frame's origin, less that of gravity.
     accelerations: [Vector3<f64>; 7],
     spin: [Spin; 7],
 }
 
-impl Motion {
+impl LinkMotions {
     /// Outward recursion; `ddq` absent counts as zero.
     #[inline(always)]
     fn of(

@@ -144,6 +144,21 @@ impl RigidBody {
         }
     }
 
+    /// A body of the same shape with `factor` times the density.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let Symmetric3 {
+            xx,
+            xy,
+            xz,
+            yy,
+            yz,
+            zz,
+        } = self.inertia;
+        let inertia = [xx, xy, xz, yy, yz, zz].map(|moment| moment * factor);
+        Self::new(self.mass * factor, self.com.into(), inertia)
+    }
+
     /// Both bodies as one; `self` where the total has no mass.
     pub(crate) fn joined(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;

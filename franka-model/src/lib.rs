@@ -69,6 +69,7 @@
 #[cfg(any(test, feature = "urdf", feature = "model-library"))]
 extern crate std;
 
+mod as_built;
 mod bodies;
 mod box_qp;
 mod chain;
@@ -110,6 +111,7 @@ mod oracle;
 #[cfg(test)]
 mod random;
 
+pub use as_built::AsBuilt;
 pub use dynamics::Dynamics;
 pub use frame::{EndEffector, Frame};
 pub use inertia::{RigidBody, Symmetric3};
@@ -136,6 +138,10 @@ pub type Twist = SVector<f64, 6>;
 
 /// `[force; torque]`, `[N, N·m]`.
 pub type Wrench = SVector<f64, 6>;
+
+/// Duration of a control cycle, `[s]`: the time from one state of the robot to the next, and from
+/// one command to the next, also after lost states.
+pub const CYCLE: f64 = 1e-3;
 
 /// Gravitational acceleration in the base frame of an upright robot, `[m/s²]`.
 ///

@@ -25,8 +25,8 @@ impl Load {
     };
 
     /// Both loads as one rigid body, with the rules of the vendor's totals (`m_total`,
-    /// `F_x_Ctotal`, `I_total` of libfranka 0.21): the inertia of a load without mass counts as
-    /// zero, the centre of mass of a total without mass is zero.
+    /// `F_x_Ctotal`, `I_total` of libfranka 0.21) to the last bit: the inertia of a load without
+    /// mass counts as zero, the centre of mass of a total without mass is zero.
     pub fn combine(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         let com = if mass > 0.0 {
@@ -37,7 +37,7 @@ impl Load {
         let inertia = if mass == 0.0 {
             Matrix3::zeros()
         } else {
-            self.inertia_about_flange() + other.inertia_about_flange() - steiner(mass, &com)
+            self.inertia_about_flange() + other.inertia_about_flange() + skew_squared(mass, &com)
         };
         Self { mass, com, inertia }
     }
@@ -55,7 +55,7 @@ impl Load {
         if self.mass == 0.0 {
             Matrix3::zeros()
         } else {
-            self.inertia + steiner(self.mass, &self.com)
+            self.inertia - skew_squared(self.mass, &self.com)
         }
     }
 }
@@ -66,9 +66,11 @@ impl Default for Load {
     }
 }
 
-/// What moving the reference point by `r` from the centre of mass adds to an inertia.
-fn steiner(mass: f64, r: &Vector3<f64>) -> Matrix3<f64> {
-    (Matrix3::from_diagonal_element(r.norm_squared()) - r * r.transpose()) * mass
+/// `mass * S(r)^2` with the skew matrix `S`: minus the inertia of a point mass at `r` about the
+/// origin. The vendor multiplies the first factor by the mass, which decides the last bit.
+fn skew_squared(mass: f64, r: &Vector3<f64>) -> Matrix3<f64> {
+    let skew = r.cross_matrix();
+    skew * mass * skew
 }
 
 #[cfg(test)]

@@ -172,7 +172,7 @@ impl Model {
         Dynamics::of(&Chain::at(q), &self.links_with(load), dq, ee, gravity_earth)
     }
 
-    fn links_with(&self, load: &Load) -> [RigidBody; 7] {
+    pub(crate) fn links_with(&self, load: &Load) -> [RigidBody; 7] {
         let mut links = self.links;
         if let Some(load) = load.on_link_7() {
             links[6] = self.merge.join(&links[6], &load);

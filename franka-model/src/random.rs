@@ -1,27 +1,23 @@
 //! Seeded numbers for tests, so that a failure repeats.
 
 use nalgebra::{Matrix3, Vector3};
+use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use crate::{JointVector, Load, Model};
 
-/// SplitMix64: Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators, 2014.
-pub(crate) struct Random(u64);
+pub(crate) struct Random(SmallRng);
 
 impl Random {
     pub(crate) fn new(seed: u64) -> Self {
-        Self(seed)
+        Self(SmallRng::seed_from_u64(seed))
     }
 
     pub(crate) fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.random()
     }
 
     pub(crate) fn uniform(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+        low + (high - low) * self.0.random::<f64>()
     }
 
     pub(crate) fn vector3(&mut self, bound: f64) -> Vector3<f64> {

@@ -24,14 +24,14 @@ pub(crate) struct Axis {
     brake: Pieces,
     /// Duration of the brake, in that unit.
     braking: f64,
-    motion: Motion,
+    motion: ToTarget,
 }
 
 /// The motion after the brake.
 #[derive(Debug, Clone, Copy)]
-enum Motion {
-    ToRest(LeastTime),
-    ToMoving(MovingTarget),
+enum ToTarget {
+    AtRest(LeastTime),
+    Moving(MovingTarget),
 }
 
 /// Why an axis has no plan.
@@ -53,7 +53,7 @@ impl Axis {
         let (task, unit) = Task::new(start, target.position, limits).ok_or(Refusal::OutOfRange)?;
         let (brake, task) = into_limits(task);
         let motion = if target.is_at_rest() {
-            Motion::ToRest(least_time(task))
+            ToTarget::AtRest(least_time(task))
         } else {
             let v = target.velocity / (limits.acceleration * unit);
             let a = target.acceleration / limits.acceleration;
@@ -68,7 +68,7 @@ impl Axis {
                 fuzz: ROUNDING * size / (limits.jerk * unit * unit * unit),
                 ..task
             };
-            Motion::ToMoving(MovingTarget::new(&task, v, a))
+            ToTarget::Moving(MovingTarget::new(&task, v, a))
         };
         Ok(Self {
             start,
@@ -84,8 +84,8 @@ impl Axis {
     /// Its least duration, in seconds.
     pub(crate) fn least_duration(&self) -> f64 {
         let least = match &self.motion {
-            Motion::ToRest(least) => least.duration,
-            Motion::ToMoving(moving) => moving.least(),
+            ToTarget::AtRest(least) => least.duration,
+            ToTarget::Moving(moving) => moving.least(),
         };
         self.unit * (self.braking + least)
     }
@@ -93,7 +93,7 @@ impl Axis {
     /// The least duration that it can take and that is not less than `duration`, which is not less
     /// than the least.
     pub(crate) fn from(&self, duration: f64) -> f64 {
-        let Motion::ToMoving(moving) = &self.motion else {
+        let ToTarget::Moving(moving) = &self.motion else {
             return duration;
         };
         let left = duration / self.unit - self.braking;
@@ -107,7 +107,7 @@ impl Axis {
 
     /// The last duration before `duration` that it can take, if it cannot take `duration`.
     pub(crate) fn before(&self, duration: f64) -> Option<f64> {
-        let Motion::ToMoving(moving) = &self.motion else {
+        let ToTarget::Moving(moving) = &self.motion else {
             return None;
         };
         let earlier = moving.before(duration / self.unit - self.braking)?;
@@ -118,8 +118,8 @@ impl Axis {
     pub(crate) fn can_take(&self, duration: f64) -> bool {
         let left = duration / self.unit - self.braking;
         match &self.motion {
-            Motion::ToMoving(moving) => moving.can_take(left),
-            Motion::ToRest(least) => least.duration <= left || earlier(least, left).is_some(),
+            ToTarget::Moving(moving) => moving.can_take(left),
+            ToTarget::AtRest(least) => least.duration <= left || earlier(least, left).is_some(),
         }
     }
 
@@ -127,7 +127,7 @@ impl Axis {
     /// does not.
     pub(crate) fn round_to(&mut self, duration: f64) {
         let left = duration / self.unit - self.braking;
-        if let Motion::ToRest(least) = &mut self.motion
+        if let ToTarget::AtRest(least) = &mut self.motion
             && least.duration > left
             && let Some(earlier) = earlier(least, left)
         {
@@ -142,14 +142,14 @@ impl Axis {
     pub(crate) fn lay_out(&self, duration: f64, profile: &mut Profile) {
         let left = duration / self.unit - self.braking;
         match &self.motion {
-            Motion::ToRest(least) => {
+            ToTarget::AtRest(least) => {
                 self.begin(profile);
                 let solution = stretched(least, left);
                 let jerk = least.sign * self.limits.jerk;
                 profile.push_pieces(&solution.before, jerk, self.unit);
                 self.lay_out_shape(least.sign * solution.sign, &solution.shape, 0.0, profile);
             }
-            Motion::ToMoving(moving) => {
+            ToTarget::Moving(moving) => {
                 match moving.solve(left.max(moving.least())) {
                     Solution::Shape(sign, shape) => {
                         self.begin(profile);

@@ -4,7 +4,7 @@ use crate::axis::can_stop;
 use crate::cycle::CYCLE;
 use crate::error::{PlanError, Quantity};
 use crate::limits::Limits;
-use crate::plan::{Plan, Start, Synchronisation};
+use crate::plan::{Plan, PlanStart, Synchronisation};
 use crate::state::{State, check_finite};
 
 /// Moves `N` axes to a target that may change at any time, inside limits of velocity, acceleration
@@ -116,7 +116,7 @@ impl<const N: usize> Generator<N> {
     ) -> Result<(), PlanError> {
         state.check()?;
         check_range(&state, &limits)?;
-        let start = Start {
+        let start = PlanStart {
             state,
             line: None,
             limits: &limits,
@@ -320,7 +320,7 @@ impl<const N: usize> Generator<N> {
     }
 
     fn plan_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
-        let start = Start {
+        let start = PlanStart {
             state: self.state,
             line: self.plan.line_at(self.elapsed()),
             limits: &self.limits,
@@ -332,7 +332,7 @@ impl<const N: usize> Generator<N> {
     }
 
     fn plan_stop(&mut self) {
-        let start = Start {
+        let start = PlanStart {
             state: self.state,
             line: self.plan.line_at(self.elapsed()),
             limits: &self.limits,

@@ -59,7 +59,7 @@ pub(crate) fn least_time(task: Task) -> LeastTime {
         (sign, task.mirrored(sign), false)
     };
     task.top = task.top.max(0.0);
-    let start = Start::of(&task);
+    let start = ExtendedStart::of(&task);
     let shape = if is_stop {
         start.turning_at(start.least_ramp())
     } else {
@@ -74,7 +74,7 @@ pub(crate) fn least_time(task: Task) -> LeastTime {
 }
 
 /// A start with its first jerk extended to zero acceleration.
-struct Start {
+struct ExtendedStart {
     a: f64,
     /// Velocity there.
     c: f64,
@@ -83,7 +83,7 @@ struct Start {
     top: f64,
 }
 
-impl Start {
+impl ExtendedStart {
     fn of(task: &Task) -> Self {
         let a = task.a;
         Self {

@@ -43,7 +43,7 @@ enum Path<const N: usize> {
 }
 
 /// What a plan starts from.
-pub(crate) struct Start<'a, const N: usize> {
+pub(crate) struct PlanStart<'a, const N: usize> {
     pub(crate) state: State<N>,
     /// The straight line that the state is on, and the state along it.
     pub(crate) line: Option<(StraightLine<N>, AxisState)>,
@@ -70,7 +70,7 @@ impl<const N: usize> Plan<N> {
     pub(crate) fn go_to(
         &mut self,
         target: &State<N>,
-        start: &Start<'_, N>,
+        start: &PlanStart<'_, N>,
         synchronisation: Synchronisation,
     ) -> Result<(), PlanError> {
         // A single axis is its own line.
@@ -161,7 +161,7 @@ impl<const N: usize> Plan<N> {
 
     /// Replaces the plan by the least-time stop: along the line that the state is on, else of each
     /// axis on its own.
-    pub(crate) fn stop(&mut self, start: &Start<'_, N>) {
+    pub(crate) fn stop(&mut self, start: &PlanStart<'_, N>) {
         if let Some((line, along)) = &start.line {
             lay_out_stop(
                 *along,

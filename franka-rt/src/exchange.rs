@@ -1,5 +1,5 @@
-//! The UDP side of a connection: the robot's newest state in (late and duplicate ones are dropped
-//! and counted), one command back to where that state came from.
+//! The UDP side of a connection: the robot's newest state in (those that a newer one has overtaken
+//! and duplicates are dropped and counted), one command back to where that state came from.
 //!
 //! The robot sends one state per millisecond, and a host that was held up finds several of them
 //! waiting. The newest one wins: [`Exchange::receive`] waits for a datagram, then takes all that
@@ -36,8 +36,8 @@ pub const TICK: Duration = Duration::from_millis(20);
 /// How long to wait for a state where silences of `link_timeout` have to be noticed: a quarter of
 /// it, a [`TICK`] at most.
 ///
-/// So a loss shows late by a quarter, and by the kernel's clock tick (4 ms at 250 Hz), in which it
-/// counts such waits.
+/// So a loss shows late by a quarter, and by two of the kernel's clock ticks (4 ms at 250 Hz), in
+/// which it counts such waits.
 pub fn wait_for(link_timeout: Duration) -> Duration {
     (link_timeout / 4).clamp(MIN_WAIT, TICK)
 }
@@ -58,6 +58,8 @@ pub struct Exchange {
     message_id: Option<u64>,
     /// Sender of `newest`, whom a command answers.
     reply_to: Option<SockAddr>,
+    /// How long each receive waits for a datagram.
+    wait: Duration,
     /// Whether the last receive failed, rather than found nothing.
     failed: bool,
 }
@@ -69,7 +71,7 @@ pub struct Reception {
     pub fresh: bool,
     /// States that were newer than before and gave way to a still newer one.
     pub skipped: u64,
-    /// States not newer than the best so far: late or duplicate ones.
+    /// States not newer than the newest: overtaken or duplicate ones.
     pub stale: u64,
     /// Datagrams from elsewhere than the robot.
     pub foreign: u64,
@@ -80,6 +82,8 @@ pub struct Reception {
     /// `message_id` of the last state that was dropped for being more than [`LEAP_MAX`] above the
     /// newest; `None` without one.
     pub leap: Option<u64>,
+    /// The wait, if it passed in full without a datagram; zero otherwise.
+    pub waited: Duration,
     /// errno value of a receive that failed otherwise than by finding nothing.
     pub error: Option<i32>,
 }
@@ -109,6 +113,7 @@ impl Exchange {
             incoming: vec![0; state_size].into(),
             message_id: None,
             reply_to: None,
+            wait: TICK,
             failed: false,
         })
     }
@@ -118,8 +123,9 @@ impl Exchange {
     ///
     /// # Errors
     /// If the system refuses the option.
-    pub fn with_wait(self, wait: Duration) -> io::Result<Self> {
-        self.socket.set_read_timeout(Some(wait.max(MIN_WAIT)))?;
+    pub fn with_wait(mut self, wait: Duration) -> io::Result<Self> {
+        self.wait = wait.max(MIN_WAIT);
+        self.socket.set_read_timeout(Some(self.wait))?;
         Ok(self)
     }
 
@@ -159,13 +165,17 @@ impl Exchange {
             match sys::recv_from(&self.socket, &mut self.incoming, flags) {
                 Ok((length, sender)) => self.sort(length, sender, &mut reception),
                 Err(error) => {
-                    reception.error = match error.kind() {
-                        // Nothing there (at once, or after the wait), or a signal came between.
-                        io::ErrorKind::WouldBlock
-                        | io::ErrorKind::TimedOut
-                        | io::ErrorKind::Interrupted => None,
-                        _ => error.raw_os_error(),
-                    };
+                    match error.kind() {
+                        // Nothing there: after the wait, or at once.
+                        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
+                            if flags == 0 {
+                                reception.waited = self.wait;
+                            }
+                        }
+                        // A signal, or a stop of the process, came between.
+                        io::ErrorKind::Interrupted => {}
+                        _ => reception.error = error.raw_os_error(),
+                    }
                     break;
                 }
             }

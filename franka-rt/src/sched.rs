@@ -18,7 +18,7 @@ use crate::sys;
 pub use kernel::{Kernel, kernel_is_realtime};
 pub use stack::{DEFAULT as PREFAULT_DEFAULT, MAX as PREFAULT_MAX};
 
-/// Whether the thread may run without what it asked the operating system for.
+/// Whether a refusal of the operating system is an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Realtime {
     /// Every request must be granted, and the kernel must be a real-time one (`PREEMPT_RT`).
@@ -42,16 +42,16 @@ pub struct Scheduling {
     /// Off by default: under a small `RLIMIT_MEMLOCK` later allocations anywhere in the process
     /// would fail.
     pub lock_memory: bool,
-    /// Stack to touch before the loop starts, in bytes, so that no cycle meets a page of it for the
-    /// first time: at most [`PREFAULT_MAX`], [`PREFAULT_DEFAULT`] by default. The thread gets a
-    /// larger one by a reserve. Control functions of the user's run on this stack.
+    /// Stack to touch before the loop starts, in bytes, so that no cycle has a page fault there: at
+    /// most [`PREFAULT_MAX`], [`PREFAULT_DEFAULT`] by default. The thread gets a larger one by a
+    /// reserve. Control functions of the user's run on this stack.
     pub prefault_stack: usize,
     /// How long a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`), in
     /// whole microseconds and at most [`BUSY_POLL_MAX`]; not at all if `None`.
     ///
-    /// Spares the interrupt's and the wake-up's way to the thread, and costs the processor that it
-    /// polls on. Only cards whose driver takes part are polled: the loopback device is not. Raising
-    /// it above the system's default (`net.core.busy_read`, 0) takes `CAP_NET_ADMIN`.
+    /// Saves the latency of interrupt and wake-up, and occupies the processor while it polls. Only
+    /// cards whose driver takes part are polled: the loopback device is not. Raising it above the
+    /// system's default (`net.core.busy_read`, 0) takes `CAP_NET_ADMIN`.
     pub busy_poll: Option<Duration>,
 }
 
@@ -123,13 +123,13 @@ pub enum SchedError {
         /// Why not.
         errno: i32,
     },
-    /// Caller: such a busy poll leaves the thread no time. Under either [`Realtime`].
+    /// Caller: a busy poll this long leaves the thread no time. Under either [`Realtime`].
     #[error("a busy poll of {} us is out of range: expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
     BusyPollRange {
         /// What was asked for.
         got: Duration,
     },
-    /// Caller: such a stack is not touched. Under either [`Realtime`].
+    /// Caller: the stack to touch is larger than allowed. Under either [`Realtime`].
     #[error("a stack of {got} bytes is out of range: expected at most {PREFAULT_MAX} bytes")]
     PrefaultRange {
         /// What was asked for, in bytes.
@@ -138,7 +138,7 @@ pub enum SchedError {
 }
 
 impl SchedError {
-    /// Whether the caller asked for what no host grants.
+    /// Whether the caller asked for an option that is out of range, which no host grants.
     pub fn is_misuse(&self) -> bool {
         matches!(
             self,

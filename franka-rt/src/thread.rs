@@ -14,13 +14,13 @@
 //! The cycle can be lent out: a thread of the user's then runs it in this one's place,
 //! through a [`Lease`], for as long as it likes.
 //!
-//! The clock is read for this loop and for nothing else in the crate: how long the robot has been
+//! This loop is the only reader of the clock in the crate: it measures how long the robot has been
 //! silent, how far apart its states arrive, and how long an answer takes and (feature
-//! `cycle-phases`) each part of it. Control itself lives by the robot's clock, in the core.
+//! `cycle-phases`) each part of it. Control itself uses the robot's clock, in the core.
 //!
 //! A panic in the core ends the loop and nothing else: the robot misses its commands and stops by
-//! itself, the eventfd is notified, and [`Thread::join`] tells. Printing the panic is the business
-//! of the process's panic hook.
+//! itself, the eventfd is notified, and [`Thread::join`] returns the panic's message. The process's
+//! panic hook prints it.
 
 mod borrower;
 mod cycle;
@@ -84,7 +84,7 @@ pub struct Capacity {
 
 impl Default for Capacity {
     /// 16 orders (a motion takes two), 64 notices (a motion causes a handful), 2048 records and
-    /// 1024 states: two seconds, and one more in which no reader is needed.
+    /// 1024 states: what comes in two seconds and in one.
     fn default() -> Self {
         Self {
             orders: 16,
@@ -174,18 +174,19 @@ pub fn spawn<C: Core>(
             Ok(granted)
         });
         let refused = answer.is_err();
-        // The caller that waits for the answer cannot have gone: it does nothing else.
+        // Cannot fail: the caller does nothing but wait for the answer.
         let _ = granted.send(answer);
         drop(granted);
         let lifetime = cycle.lifetime.clone();
         let event_fd = cycle.event_fd.clone();
-        // The core panics, if at all, in its own methods, and is not used after that.
+        // Only a method of the core can panic, and the core is not used after that.
         let ended = catch_unwind(AssertUnwindSafe(|| {
             while !refused && !lifetime.stop_wanted() {
                 if handoff.is_wanted() {
-                    let mut watch = BorrowerWatch::new(&lifetime, &event_fd, link_timeout);
+                    let now = Instant::now();
+                    let mut watch = BorrowerWatch::new(&lifetime, &event_fd, link_timeout, now);
                     cycle = handoff.lend(cycle, || {
-                        watch.look();
+                        watch.look(Instant::now());
                         lifetime.stop_wanted()
                     })?;
                 }

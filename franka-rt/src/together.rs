@@ -16,7 +16,7 @@
 //! so the motions begin within a millisecond of each other: the robots' clocks are not
 //! synchronised, and no start can be closer than the next state of each.
 //!
-//! All of it is one atomic word, which leaves `waiting` once and for all. No thread ever waits for
+//! The state is one atomic word, which leaves `waiting` once at most. No thread ever waits for
 //! another one: looking is a load, arriving and leaving a compare-and-exchange, repeated only if
 //! another member changed the word in between. Each member does that twice at most, which bounds
 //! the repetitions.
@@ -106,23 +106,23 @@ impl StartBarrier {
     }
 }
 
-/// The right, and the duty, of one motion to begin together with others. Dropping it before the
-/// start lets the others go, with an error.
+/// The part of one motion in a common start. Dropping it before the start ends the wait of the
+/// others with an error.
 #[derive(Debug)]
 #[must_use = "dropping a ticket ends the common start"]
 pub struct StartTicket {
     shared: Arc<Shared>,
     member: u16,
-    step: Step,
+    state: MemberState,
 }
 
-/// How far a member has come.
+/// The part of a member in the start so far.
 #[derive(Clone, Copy, Debug)]
-enum Step {
+enum MemberState {
     Outside,
     /// It waits since this time of its robot, `[ms]`.
     Arrived(u64),
-    /// It waits no more.
+    /// Its wait is over, with this result.
     Decided(Gate),
 }
 
@@ -191,7 +191,7 @@ impl StartTicket {
         Self {
             shared,
             member: member as u16,
-            step: Step::Outside,
+            state: MemberState::Outside,
         }
     }
 
@@ -200,7 +200,7 @@ impl StartTicket {
         self.member.into()
     }
 
-    /// Why there will be no common start, if that is so already.
+    /// Why the common start has failed; `None` if it has not.
     pub fn fault(&self) -> Option<StartFault> {
         match self.shared.gate() {
             Gate::Broken(fault) => Some(fault),
@@ -208,15 +208,15 @@ impl StartTicket {
         }
     }
 
-    /// Arrives, the first time, and tells whether the motion may begin at `now`, `[ms]` of its
-    /// robot's clock. Never waits.
+    /// Returns whether the motion may begin at `now`, `[ms]` of its robot's clock. The first call
+    /// is the arrival. Never waits.
     pub fn pass(&mut self, now: u64) -> Gate {
-        let since = match self.step {
-            Step::Decided(gate) => return gate,
-            Step::Arrived(since) => since,
-            Step::Outside => {
+        let since = match self.state {
+            MemberState::Decided(gate) => return gate,
+            MemberState::Arrived(since) => since,
+            MemberState::Outside => {
                 self.shared.arrive();
-                self.step = Step::Arrived(now);
+                self.state = MemberState::Arrived(now);
                 now
             }
         };
@@ -227,34 +227,35 @@ impl StartTicket {
             gate = self.shared.gate();
         }
         if gate != Gate::Closed {
-            self.step = Step::Decided(gate);
+            self.state = MemberState::Decided(gate);
         }
         gate
     }
 
     /// Whether it is still to be decided whether the motion begins.
     pub fn is_undecided(&self) -> bool {
-        !matches!(self.step, Step::Decided(_))
+        !matches!(self.state, MemberState::Decided(_))
     }
 
-    /// Why the motion that has this ticket did not begin, if that is why.
+    /// Why the common start failed for this motion; `None` if it did not.
     pub fn refusal(&self) -> Option<StartFault> {
-        match self.step {
-            Step::Decided(Gate::Broken(fault)) => Some(fault),
+        match self.state {
+            MemberState::Decided(Gate::Broken(fault)) => Some(fault),
             _ => None,
         }
     }
 
-    /// Takes the motion out of the common start: it goes on by itself. The others are let go, if
-    /// they wait still.
+    /// Takes the motion out of the common start: it goes on alone. Ends the wait of the others with
+    /// an error.
     pub fn withdraw(&mut self) {
         if self.is_undecided() {
             self.shared.leave(self.member, Cause::Withdrawn);
-            self.step = Step::Decided(Gate::Open);
+            self.state = MemberState::Decided(Gate::Open);
         }
     }
 
-    /// Takes note that the motion has ended. The others are let go, if they wait still.
+    /// Notes that the motion has ended. Ends the wait of the others, if they still wait, with an
+    /// error.
     pub fn end(&mut self) {
         self.leave(Cause::Ended);
     }
@@ -262,7 +263,7 @@ impl StartTicket {
     fn leave(&mut self, cause: Cause) {
         if self.is_undecided() {
             self.shared.leave(self.member, cause);
-            self.step = Step::Decided(self.shared.gate());
+            self.state = MemberState::Decided(self.shared.gate());
         }
     }
 }
@@ -280,7 +281,7 @@ struct Shared {
     timeout: Duration,
 }
 
-/// What the word says.
+/// The content of the word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Word {
     /// Or open, once all are present.
@@ -295,8 +296,8 @@ enum Word {
 
 impl Shared {
     fn gate(&self) -> Gate {
-        // Relaxed, here and below: nothing but the word itself is read on the strength of it, and
-        // the changes of one atomic have one order that every thread sees.
+        // Relaxed, here and below: no other memory is read depending on the word, and all threads
+        // see the changes of one atomic in the same order.
         match Word::from(self.word.load(Ordering::Relaxed)) {
             Word::Waiting { present } if present == self.members => Gate::Open,
             Word::Waiting { .. } => Gate::Closed,
@@ -336,8 +337,7 @@ impl Shared {
         });
     }
 
-    /// Replaces the word while it is neither open nor broken; what it says afterwards stays
-    /// otherwise.
+    /// Replaces the word unless it is open or broken: both are final.
     fn change(&self, to: impl Fn(u16) -> Word) {
         let mut word = self.word.load(Ordering::Relaxed);
         while let Word::Waiting { present } = Word::from(word)

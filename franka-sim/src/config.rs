@@ -12,6 +12,8 @@ use franka_model::{JointVector, Load, READY, RobotKind};
 use franka_proto::VirtualWall;
 use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 
+use crate::arm::Arm;
+
 /// The model of one simulated robot. [`Default`] is a Franka Research 3 with a bare flange in the
 /// ready pose, as strict as a robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,8 +26,9 @@ pub struct Config {
     pub tool: Tool,
     /// What the flange carries besides, undeclared; a client declares it with `SetLoad`.
     pub payload: Load,
-    /// Sensor noise.
-    pub noise: Noise,
+    /// The arm: friction, drives, sensors, and how it differs from its model. `None` for the
+    /// [ideal](Arm::ideal) one of its kind, which no real arm is like.
+    pub arm: Option<Arm>,
     /// Seed of all randomness: the same seed and the same input give the same states.
     pub seed: u64,
     /// `message_id` of the last cycle before the first: milliseconds since the robot started.
@@ -54,6 +57,13 @@ pub struct Config {
     pub unpublished: Unpublished,
 }
 
+impl Config {
+    /// The arm, ideal unless [`arm`](Self::arm) is another one.
+    pub fn chosen_arm(&self) -> Arm {
+        self.arm.clone().unwrap_or_else(|| Arm::ideal(self.kind))
+    }
+}
+
 impl Default for Config {
     fn default() -> Self {
         Self {
@@ -61,7 +71,7 @@ impl Default for Config {
             q: READY,
             tool: Tool::NONE,
             payload: Load::NONE,
-            noise: Noise::NONE,
+            arm: None,
             seed: 1,
             clock: 100_000,
             enforce_limits: true,
@@ -116,32 +126,4 @@ impl Tool {
             has_hand_shape: true,
         }
     }
-}
-
-/// Standard deviations of the sensors' noise, white from one millisecond to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise {
-    /// Of measured joint positions, `[rad]`.
-    pub position: f64,
-    /// Of measured joint velocities, `[rad/s]`.
-    pub velocity: f64,
-    /// Of measured joint torques, `[N·m]`.
-    pub torque: f64,
-}
-
-impl Noise {
-    /// Perfect sensors.
-    pub const NONE: Self = Self {
-        position: 0.0,
-        velocity: 0.0,
-        torque: 0.0,
-    };
-
-    /// Sensors with a noise that a controller has to cope with. The magnitudes are choices of this
-    /// simulator, not measurements.
-    pub const MODERATE: Self = Self {
-        position: 5e-6,
-        velocity: 2e-3,
-        torque: 0.05,
-    };
 }

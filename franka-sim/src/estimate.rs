@@ -5,7 +5,7 @@ use franka_proto::{CollisionBehavior, Errors, RobotError};
 use nalgebra::Cholesky;
 
 use crate::config::ForceAxes;
-use crate::generator::Arm;
+use crate::generator::ArmModel;
 use crate::signal::{halves, stack};
 
 /// The external torques observed, the wrench that they mean, and what exceeded its thresholds.
@@ -43,7 +43,7 @@ impl Estimate {
 
     /// Updates the estimate from the external joint torques of the observer, `[N·m]`, at the joint
     /// positions `q`.
-    pub(crate) fn update(&mut self, external: &JointVector, q: &JointVector, arm: &Arm<'_>) {
+    pub(crate) fn update(&mut self, external: &JointVector, q: &JointVector, arm: &ArmModel<'_>) {
         self.torque = -external;
         let jacobian = arm.model.body_jacobian(Frame::Stiffness, q, arm.frames);
         self.wrench_stiffness = wrench(&jacobian, &self.torque);

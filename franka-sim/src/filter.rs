@@ -1,10 +1,9 @@
 //! The robot's own low-pass filters on what clients command.
 
-use franka_model::{JointVector, rotation, transform};
+use franka_model::{CYCLE, JointVector, rotation, transform};
 use franka_proto::{Filters, RobotCommand};
 
 use crate::generator::Desired;
-use crate::signal::CYCLE;
 
 /// A command after the filters, which start from what is desired and from the last torques,
 /// `[N·m]`.
@@ -68,14 +67,14 @@ const OFF: f64 = 1000.0;
 mod tests {
     use super::*;
     use crate::config::Config;
-    use crate::generator::Arm;
+    use crate::generator::ArmModel;
     use crate::kind::Description;
     use franka_model::{EndEffector, Model, READY, RobotKind};
 
     fn resting() -> Desired {
         let (frames, config) = (EndEffector::default(), Config::default());
         let kind = Description::of(RobotKind::Fer);
-        Desired::resting(&Arm::new(kind, Model::fer(), &frames, &config), READY)
+        Desired::resting(&ArmModel::new(kind, Model::fer(), &frames, &config), READY)
     }
 
     #[test]

@@ -12,9 +12,10 @@
 //! | [`serve`] | the robot on sockets: [`Sim::fr3`]`().start().await`, [`Sim::fer`] |
 //! | [`robot`] | the robot as a value, without clock and sockets: what tests in virtual time drive |
 //! | [`end_effector`] | the Franka Hand and the vacuum gripper as values, with servers of their own |
+//! | [`arm`] | one arm's friction, drives, sensors and errors, and families of arms |
 //! | [`plant`] | the physics of the arm |
 //! | [`network`] | what is between a robot and its client, as a value: loss, delay, stalls |
-//! | [`config`] | what a robot is like: pose, tool, load, noise, strictness |
+//! | [`config`] | what a robot is like: arm, pose, tool, load, strictness |
 //!
 //! The binary `franka-sim` is [`serve`] with a command line, for clients in any language.
 //!
@@ -55,14 +56,16 @@
 //!   Franka Hand and of no other tool when it keeps off itself.
 //! - Errors that never come by themselves: those of the force controller, of Desk's own motions and
 //!   of the base's acceleration. [`Robot::trip`] raises any.
-//! - Physics: links and joints do not bend. Around the rigid-body plant there is nothing but what a
-//!   [`Touch`] puts there, itself included; around that of MuJoCo (feature `mujoco`) is a scene.
+//! - Physics: links do not bend, and joints only if the [`Arm`] says so. Around the rigid-body
+//!   plant there is nothing but what a [`Touch`] puts there, itself included; around that of MuJoCo
+//!   (feature `mujoco`) is a scene.
 //! - The end effectors: kinematics, unless the plant has fingers. Without, they and the arm know
 //!   nothing of each other, and what they hold has neither mass nor pose.
 //! - What a robot keeps to itself (tolerances, thresholds and gains by default, the gain of its
 //!   force estimate, what counts as unstable) has values chosen here, which are options:
 //!   [`Unpublished`]. None has been measured on a robot.
 
+pub mod arm;
 mod brake;
 pub mod config;
 mod connection;
@@ -83,7 +86,8 @@ mod signal;
 mod success_rate;
 mod urdf;
 
-pub use config::{Config, Noise, Tool, Unpublished};
+pub use arm::Arm;
+pub use config::{Config, Tool, Unpublished};
 pub use end_effector::{Fingers, Hand, Suction, VacuumGripper};
 pub use network::Network;
 pub use robot::{Datagram, Robot, SessionError, Touch, TouchId};

@@ -2,8 +2,11 @@
 
 use franka_model::JointVector;
 
-/// A small generator of numbers: SplitMix64 (Steele, Lea and Flood, 2014), and the Box-Muller
-/// transform for those that are normally distributed.
+/// SplitMix64 (Steele, Lea and Flood, 2014) and, for normally distributed values, the Box-Muller
+/// transform.
+///
+/// Written here so that a seed gives the same run with every version and on every platform: the
+/// algorithm of `rand`'s small generator may change with either.
 #[derive(Debug, Clone)]
 pub(crate) struct Random {
     state: u64,
@@ -14,15 +17,15 @@ impl Random {
         Self { state: seed }
     }
 
-    /// Seven independent values of standard deviation `deviation`.
-    pub(crate) fn joints(&mut self, deviation: f64) -> JointVector {
-        if deviation == 0.0 {
-            return JointVector::zeros();
+    /// Seven independent values of these standard deviations.
+    pub(crate) fn joints(&mut self, deviations: &JointVector) -> JointVector {
+        if *deviations == JointVector::zeros() {
+            return *deviations;
         }
-        JointVector::from_fn(|_, _| self.normal() * deviation)
+        deviations.map(|deviation| self.normal() * deviation)
     }
 
-    fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         // In (0, 1], so that the logarithm is finite.
         let u = 1.0 - self.uniform();
         let angle = core::f64::consts::TAU * self.uniform();
@@ -55,7 +58,7 @@ mod tests {
         let mut sum = JointVector::zeros();
         let mut squares = JointVector::zeros();
         for _ in 0..count {
-            let sample = random.joints(2.0);
+            let sample = random.joints(&JointVector::repeat(2.0));
             sum += sample;
             squares += sample.component_mul(&sample);
         }
@@ -67,7 +70,8 @@ mod tests {
     #[test]
     fn a_seed_repeats_itself() {
         let (mut a, mut b) = (Random::new(9), Random::new(9));
-        assert_eq!(a.joints(1.0), b.joints(1.0));
-        assert_eq!(a.joints(0.0), JointVector::zeros());
+        let one = JointVector::repeat(1.0);
+        assert_eq!(a.joints(&one), b.joints(&one));
+        assert_eq!(a.joints(&JointVector::zeros()), JointVector::zeros());
     }
 }

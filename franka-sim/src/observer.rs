@@ -1,8 +1,6 @@
 //! External joint torques from momentum.
 
-use franka_model::{Dynamics, JointVector, MassMatrix};
-
-use crate::signal::CYCLE;
+use franka_model::{CYCLE, Dynamics, JointVector, MassMatrix};
 
 /// A momentum observer (De Luca, Albu-Schäffer, Haddadin and Hirzinger, "Collision detection and
 /// safe reaction with the DLR-III lightweight manipulator arm", IROS 2006, section III).

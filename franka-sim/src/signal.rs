@@ -4,14 +4,11 @@
 //! published before (FCI documentation, control parameters). A cycle whose command is lost
 //! continues with the acceleration of the last one.
 
-use franka_model::{JointVector, Twist, rotation, transform};
+use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
 
 use crate::config::Extrapolation;
 use crate::kind::Precision;
-
-/// Duration of a control cycle, `[s]`.
-pub(crate) const CYCLE: f64 = 1e-3;
 
 /// Positions of the seven joints.
 #[derive(Debug, Clone, Copy, PartialEq)]

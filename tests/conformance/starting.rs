@@ -4,7 +4,7 @@ use franka_model::READY;
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus, Version};
 use franka_rt::control::{ActiveControl, Callback, Finish, JointVelocities};
 use franka_rt::driver::{Activity, Program};
-use franka_rt::lifecycle::MotionError;
+use franka_rt::lifecycle::{MotionError, NewMotion};
 use franka_rt::session::{Goal, OnArrival, Target};
 
 use crate::for_each_version;
@@ -214,8 +214,7 @@ fn scenario_16_the_second_caller_is_refused_while_a_motion_runs() {
         assert_eq!(error, MotionError::Busy);
         assert_eq!(error.to_string(), BUSY);
         let goal = to_ready(&mut pair);
-        let (state, now) = (pair.client.state, pair.client.now);
-        let error = pair.client.lifecycle.submit(goal, &state, now).unwrap_err();
+        let error = pair.client.begin(NewMotion::to(goal)).unwrap_err();
         assert_eq!(error, MotionError::Busy);
         pair.settle();
         assert_eq!(pair.robot.take_request(), None);
@@ -238,9 +237,7 @@ fn scenario_16_a_control_function_does_not_supersede_a_goal() {
         pair.robot.state.F_T_EE = pair.robot.state.O_T_EE;
         pair.step();
         let goal = to_ready(&mut pair);
-        let (state, now) = (pair.client.state, pair.client.now);
-        let submitted = pair.client.lifecycle.submit(goal, &state, now);
-        assert_eq!(submitted, Ok(()));
+        assert_eq!(pair.client.begin(NewMotion::to(goal)), Ok(goal.id));
         let (program, request) = standing(version, 100);
         let error = pair.client.control(program, request).unwrap_err();
         assert_eq!(error, MotionError::Busy);

@@ -127,6 +127,24 @@ async fn what_names_no_robot_is_refused_before_anything_is_sent() {
 }
 
 #[tokio::test]
+async fn a_log_of_more_than_ten_seconds_is_refused_with_the_bound() {
+    let _alone = alone();
+    for (cycles, refused) in [(10_000, false), (10_001, true), (usize::MAX, true)] {
+        // No server is needed there.
+        let builder = Robot::builder("127.0.0.1:1").log_size(cycles);
+        let builder = builder.realtime(Realtime::Ignore);
+        let error = builder.connect().await.expect_err("nothing listens");
+        if refused {
+            let text = format!("a log of {cycles} cycles is too long: expected 10000 at most");
+            assert_eq!(error.to_string(), text);
+            assert_eq!(error.party(), Party::Caller);
+        } else {
+            assert!(!matches!(error, ConnectError::LogSize { .. }), "{error}");
+        }
+    }
+}
+
+#[tokio::test]
 async fn a_link_timeout_out_of_range_is_refused_with_the_range() {
     let _alone = alone();
     for timeout in [

@@ -30,7 +30,7 @@ type Outcome = Result<MotionReport, MotionError>;
 
 /// What one of them has been through.
 #[derive(Debug, Default)]
-struct Tally {
+struct Counts {
     arrived: u32,
     superseded: u32,
     stopped: u32,
@@ -47,7 +47,7 @@ struct Member {
     number: usize,
     robot: Robot,
     sim: Running,
-    tally: Tally,
+    counts: Counts,
 }
 
 /// `READY`, turned at the base into this robot's lane.
@@ -104,9 +104,11 @@ impl Member {
             mass: mass(number),
             ..franka_model::Load::NONE
         };
-        let sim = sim.tool(Tool::hand()).q(home(number).into());
-        let sim = sim.configure(|config| config.payload = payload);
-        let sim = sim.enforce_communication(strict);
+        let sim = sim.tool(Tool::hand()).configure(|config| {
+            config.q = home(number).into();
+            config.payload = payload;
+            config.enforce_communication = strict;
+        });
         let sim = sim.start().await.expect("a simulator starts");
         let robot = connect(&sim).await;
         let expected = [Version::V10, Version::V5][number % 2];
@@ -123,9 +125,9 @@ impl Member {
             number,
             robot,
             sim,
-            tally: Tally {
+            counts: Counts {
                 success_rate_min: 1.0,
-                ..Tally::default()
+                ..Counts::default()
             },
         }
     }
@@ -148,8 +150,12 @@ impl Member {
 
     /// Notes how a motion ended that was to end as `expected` says. A robot that lacked commands is
     /// recovered.
-    async fn note(&mut self, outcome: Outcome, expected: fn(&mut Tally, &Outcome) -> bool) -> bool {
-        if expected(&mut self.tally, &outcome) {
+    async fn note(
+        &mut self,
+        outcome: Outcome,
+        expected: fn(&mut Counts, &Outcome) -> bool,
+    ) -> bool {
+        if expected(&mut self.counts, &outcome) {
             return true;
         }
         let number = self.number;
@@ -161,7 +167,7 @@ impl Member {
             reasons.contains(RobotError::CommunicationConstraintsViolation),
             "robot {number}: {error}"
         );
-        self.tally.starved += 1;
+        self.counts.starved += 1;
         let recovered = timeout(LONGEST, self.robot.recover()).await;
         recovered.expect("it resolves").expect("it takes motions");
         false
@@ -191,10 +197,10 @@ impl Member {
 
     /// A motion of each kind of end.
     async fn round(&mut self, round: u32) {
-        let arrived = |tally: &mut Tally, outcome: &Outcome| match outcome {
+        let arrived = |counts: &mut Counts, outcome: &Outcome| match outcome {
             Ok(report) => {
-                tally.arrived += 1;
-                tally.success_rate_min = tally.success_rate_min.min(report.success_rate_min);
+                counts.arrived += 1;
+                counts.success_rate_min = counts.success_rate_min.min(report.success_rate_min);
                 true
             }
             Err(_) => false,
@@ -217,8 +223,8 @@ impl Member {
             self.assert_there(&goal).await;
         }
         let outcome = timeout(LONGEST, slow).await.expect("it resolves");
-        let superseded = |tally: &mut Tally, outcome: &Outcome| {
-            tally.superseded += 1;
+        let superseded = |counts: &mut Counts, outcome: &Outcome| {
+            counts.superseded += 1;
             matches!(outcome, Err(MotionError::Superseded))
         };
         self.note(outcome.expect("no panic"), superseded).await;
@@ -229,8 +235,8 @@ impl Member {
         let halted = timeout(LONGEST, self.robot.stop()).await;
         let halted = halted.expect("it resolves");
         let outcome = timeout(LONGEST, slow).await.expect("it resolves");
-        let stopped = |tally: &mut Tally, outcome: &Outcome| {
-            tally.stopped += 1;
+        let stopped = |counts: &mut Counts, outcome: &Outcome| {
+            counts.stopped += 1;
             matches!(outcome, Err(MotionError::Stopped))
         };
         if self.note(outcome.expect("no panic"), stopped).await {
@@ -239,7 +245,7 @@ impl Member {
     }
 
     /// Round after round until `end`; says goodbye, and tells.
-    async fn run(mut self, end: Instant) -> (usize, Tally) {
+    async fn run(mut self, end: Instant) -> (usize, Counts) {
         // States from before what was set have arrived.
         robot_time(&self.robot, 100).await;
         let watching = watch(self.number, &self.robot);
@@ -251,12 +257,12 @@ impl Member {
         assert_own(self.number, &self.sim.state().await.expect("it runs"));
         self.robot.shutdown().await;
         let states = timeout(LONGEST, watching).await.expect("it ends");
-        self.tally.states = states.expect("no state of another robot");
+        self.counts.states = states.expect("no state of another robot");
         let (stats, pace) = (self.robot.stats(), self.sim.pace().await.expect("it runs"));
         println!(
             "robot {}: {:?}; {} states, {} commands, {} lost, {} skipped, {} foreign; {pace:?}",
             self.number,
-            self.tally,
+            self.counts,
             stats.states.get(),
             stats.commands.get(),
             stats.lost.get(),
@@ -266,7 +272,7 @@ impl Member {
         assert_eq!(stats.foreign.get(), 0, "robot {}", self.number);
         assert_eq!(stats.malformed.get(), 0, "robot {}", self.number);
         self.sim.stop().await;
-        (self.number, self.tally)
+        (self.number, self.counts)
     }
 }
 
@@ -287,10 +293,10 @@ async fn ten_robots_in_one_process_mind_their_own_business() {
     }
     let mut told = 0;
     while let Some(done) = running.join_next().await {
-        let (number, tally) = done.expect("nothing goes wrong");
+        let (number, counts) = done.expect("nothing goes wrong");
         told += 1;
-        assert!(tally.arrived > 0, "robot {number}: {tally:?}");
-        assert!(tally.states > 0, "robot {number}: {tally:?}");
+        assert!(counts.arrived > 0, "robot {number}: {counts:?}");
+        assert!(counts.states > 0, "robot {number}: {counts:?}");
     }
     assert_eq!(told, ROBOTS);
 }

@@ -67,7 +67,10 @@ async fn at_the_clients_pace(sim: Sim) -> (Robot, Running) {
 /// missing. Its thread stands for another computer: it does not wait for this one's load where that
 /// is granted.
 async fn by_the_clock(sim: Sim) -> (Robot, Running) {
-    let sim = sim.enforce_limits(false).enforce_communication(false);
+    let sim = sim.configure(|config| {
+        config.enforce_limits = false;
+        config.enforce_communication = false;
+    });
     let sim = sim.realtime(true).start().await;
     let sim = sim.expect("a simulator starts");
     (connect(&sim).await, sim)

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::{Mutex, Once, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use franka_async::control::{Finish, Torques};
 use franka_async::stats::Phase;
@@ -84,6 +84,7 @@ async fn dawdle(robot: &Robot) -> MotionReport {
 async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
     let _alone = alone();
     listen();
+    let begun = Instant::now();
     let (robot, _sim) = by_the_clock(Sim::fr3().tool(Tool::hand())).await;
     let report = dawdle(&robot).await;
 
@@ -96,13 +97,18 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
         "{slack}"
     );
     let worst = report.worst_cycle.expect("commands left");
-    assert!(worst.turnaround >= Duration::from_millis(20), "{worst:?}");
+    assert!(worst.total() >= Duration::from_millis(20), "{worst:?}");
     let phase = if cfg!(feature = "cycle-phases") {
         Phase::Program
     } else {
         Phase::Answer
     };
-    assert_eq!(worst.longest().0, phase, "{worst:?}");
+    // Unless the host held the thread up elsewhere, for longer than the function dawdled.
+    let (longest, took) = worst.longest();
+    assert!(
+        longest == phase || took >= Duration::from_millis(20),
+        "{worst:?}"
+    );
     let turnaround = report.turnaround.expect("commands left");
     assert_eq!(turnaround.max, report.worst_turnaround);
     assert!(turnaround.p50 < turnaround.max, "{turnaround:?}");
@@ -129,12 +135,16 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
     assert_eq!(field("skipped"), report.skipped_states.to_string());
     assert_eq!(field("overruns"), report.overruns.to_string());
     assert_eq!(field("worst_time"), worst.time.to_string());
-    assert_eq!(field("worst_phase"), phase.to_string());
+    assert_eq!(field("worst_phase"), longest.to_string());
     let warned: u64 = of(Level::WARN)
         .map(|told| told.fields["overruns"].parse::<u64>().unwrap())
         .sum();
     assert_eq!(warned, stats.overrun.count(), "each is told of once");
-    assert!(of(Level::WARN).count() <= 4, "once a second at most");
+    let seconds = begun.elapsed().as_secs() as usize;
+    assert!(
+        of(Level::WARN).count() <= seconds + 2,
+        "once a second at most"
+    );
 }
 
 /// Shows that the test above could fail: the control thread has the name that it looks for.

@@ -19,7 +19,7 @@ const MOST_TURNS: u32 = 15;
 
 #[test]
 fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
-    let start = Lockstep::ready().true_pose();
+    let start = Lockstep::ready().arm_pose();
     let turned = |x, z, angle| {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angle);
         Isometry3::from_parts(
@@ -114,12 +114,12 @@ fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
     lockstep.request(&Request::SetCollisionBehavior(tolerant));
     lockstep.run(5);
     // A soft ceiling 5 cm above the hand; the target is 20 cm above it.
-    let start = lockstep.true_pose();
+    let start = lockstep.arm_pose();
     let ceiling = start.translation.z + 0.05;
     let goal = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.2) * start));
     let mut leashed = 0;
     while lockstep.client.outcome(goal).is_none() {
-        let pressed = (lockstep.true_pose().translation.z - ceiling).max(0.0);
+        let pressed = (lockstep.arm_pose().translation.z - ceiling).max(0.0);
         lockstep.robot.let_go();
         lockstep
             .robot

@@ -22,7 +22,7 @@ fn goal(lockstep: &mut Lockstep, turn: u64, on_arrival: OnArrival, joints: bool)
         q[3] += way * 0.02;
         Target::Joints(q)
     } else {
-        (Translation3::new(0.0, 0.0, way * 0.005) * lockstep.true_pose()).into()
+        (Translation3::new(0.0, 0.0, way * 0.005) * lockstep.arm_pose()).into()
     };
     let goal = lockstep.goal(target, on_arrival);
     Goal {

@@ -93,7 +93,7 @@ fn room_to(kind: RobotKind, region: &Obstacle, q: &JointVector) -> f64 {
 fn a_hand_stays_out_of_a_region_and_leaves_it() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         let kind = lockstep.robot.config().kind;
         let table = block(start.translation.z - 0.15);
         let mut regions = KeepOut::default();
@@ -125,7 +125,7 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
 /// function that returns the distance left.
 fn above_a_table(ready: &dyn Fn() -> Lockstep) -> (Lockstep, GoalId, impl Fn(&Lockstep) -> f64) {
     let mut lockstep = ready();
-    let table = block(lockstep.true_pose().translation.z - 0.12);
+    let table = block(lockstep.arm_pose().translation.z - 0.12);
     let kind = lockstep.robot.config().kind;
     let engaged = lockstep.engage_with(Engagement {
         keep_out: Some(vec![table]),
@@ -144,7 +144,7 @@ fn successive_chunks_come_no_nearer_than_one_does() {
     for_each_robot(|ready| {
         for joints in [false, true] {
             let (mut lockstep, engaged, margin) = above_a_table(ready);
-            let start = lockstep.true_pose();
+            let start = lockstep.arm_pose();
             let mut least = f64::INFINITY;
             let mut bound = 0;
             for call in 0..50_u32 {
@@ -196,7 +196,7 @@ fn a_gentler_goal_that_takes_over_comes_no_nearer() {
             let mut least = f64::INFINITY;
             for after in (300..700).step_by(20) {
                 let (mut lockstep, engaged, margin) = above_a_table(ready);
-                let start = lockstep.true_pose();
+                let start = lockstep.arm_pose();
                 let below = |z: f64| Target::Pose(Translation3::new(0.0, 0.0, z) * start);
                 let mut quick = lockstep.goal(below(-0.3), OnArrival::ReportAndHold);
                 quick.budget = quick.budget.scaled(1.5);

@@ -15,7 +15,7 @@ use nalgebra::Translation3;
 
 fn moving(ready: &dyn Fn() -> Lockstep) -> (Lockstep, franka_rt::session::GoalId) {
     let mut lockstep = ready();
-    let target = Translation3::new(0.0, 0.0, 0.12) * lockstep.true_pose();
+    let target = Translation3::new(0.0, 0.0, 0.12) * lockstep.arm_pose();
     let goal = lockstep.begin(Target::Pose(target));
     lockstep.run(500);
     assert!(lockstep.robot.dq().norm() > 0.05, "under way");
@@ -44,7 +44,7 @@ fn a_cancelled_goal_brakes_at_any_moment_of_its_life() {
     for_each_robot(|ready| {
         for after in (0..1600).step_by(37) {
             let mut lockstep = ready();
-            let target = Translation3::new(0.05, 0.0, 0.05) * lockstep.true_pose();
+            let target = Translation3::new(0.05, 0.0, 0.05) * lockstep.arm_pose();
             let goal = lockstep.begin(Target::Pose(target));
             lockstep.run(after);
             if lockstep.client.outcome(goal).is_some() {
@@ -192,7 +192,7 @@ fn losses_that_the_robot_tolerates_do_not_end_a_motion() {
         for seed in 1..=10 {
             let mut lockstep = ready();
             lockstep.link = Link::lossy(seed, 0.02, 0.02);
-            let target = Translation3::new(0.05, 0.05, -0.05) * lockstep.true_pose();
+            let target = Translation3::new(0.05, 0.05, -0.05) * lockstep.arm_pose();
             let goal = lockstep.begin(Target::Pose(target));
             let report = lockstep
                 .until_resolved(goal, 8000)
@@ -222,7 +222,7 @@ fn downward(newtons: f64) -> Wrench {
 fn an_arm_kept_from_its_target_is_reported_and_released_without_a_torque_step() {
     for_each_robot(|ready| {
         let mut lockstep = tolerant(ready);
-        let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
+        let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.arm_pose();
         let goal = lockstep.begin(Target::Pose(target));
         lockstep.robot.push_end_effector(downward(12.0), 1_000_000);
         let error = lockstep.until_resolved(goal, 20_000).unwrap_err();
@@ -243,7 +243,7 @@ fn an_arm_kept_from_its_target_is_reported_and_released_without_a_torque_step() 
 fn a_pushed_arm_keeps_its_reference_on_the_leash_and_returns() {
     for_each_robot(|ready| {
         let mut lockstep = tolerant(ready);
-        let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.true_pose();
+        let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.arm_pose();
         let goal = lockstep.begin(Target::Pose(target));
         lockstep.run(300);
         lockstep.robot.push_end_effector(downward(40.0), 250);
@@ -264,7 +264,7 @@ fn bad_goals_are_named_and_change_nothing() {
     beyond[3] = 0.5;
     let mut nan: [f64; 7] = READY.into();
     nan[2] = f64::NAN;
-    let far = Translation3::new(2.0, 0.0, 0.0) * lockstep.true_pose();
+    let far = Translation3::new(2.0, 0.0, 0.0) * lockstep.arm_pose();
     for (target, expected) in [
         (
             Target::Joints(beyond),

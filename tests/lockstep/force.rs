@@ -16,8 +16,7 @@ use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{ForceCap, Goal, GoalId, Guard, Lapse, OnArrival, Target, Tolerance};
-use franka_sim::plant::ArmParameters;
-use franka_sim::{Touch, TouchId};
+use franka_sim::{Arm, Touch, TouchId};
 use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
 use franka_tests::push::{PUSH, STIFFNESS, hand};
 use nalgebra::{SMatrix, Translation3, Vector3};
@@ -86,7 +85,7 @@ fn on_a_wall(
     force_cap: ForceCap,
 ) -> (f64, f64) {
     let mut lockstep = tolerant(ready);
-    let start = lockstep.true_pose();
+    let start = lockstep.arm_pose();
     let engaged = lockstep.engage();
     let at = start.translation.vector + way * 0.03;
     let wall = lockstep
@@ -129,7 +128,7 @@ fn an_arm_held_at_its_leash_pulls_with_no_more_than_the_cap() {
 struct ArmInertia {
     model: &'static Model,
     load: Load,
-    parameters: ArmParameters,
+    arm: Arm,
     ee: EndEffector,
 }
 
@@ -140,7 +139,7 @@ impl ArmInertia {
         Self {
             model: Model::of(config.kind),
             load: config.tool.load,
-            parameters: ArmParameters::of(config.kind),
+            arm: config.chosen_arm(),
             ee: EndEffector {
                 f_t_ee: transform::matrix(&f_t_ee.expect("a rigid frame")),
                 ..EndEffector::default()
@@ -150,9 +149,9 @@ impl ArmInertia {
 
     /// The force of a hand at the end effector that accelerates the joints by `ddq`.
     fn inertial(&self, q: &JointVector, dq: &JointVector, ddq: &JointVector) -> Vector3<f64> {
-        let gravity = &self.parameters.gravity_earth;
+        let gravity = &self.arm.body.gravity_earth;
         let dynamics = self.model.dynamics(q, dq, &self.ee, &self.load, gravity);
-        let mass = dynamics.mass + SMatrix::from_diagonal(&self.parameters.armature);
+        let mass = dynamics.mass + SMatrix::from_diagonal(&self.arm.drive.felt_inertia());
         let inverse = mass.try_inverse().expect("positive definite");
         let jacobian = dynamics.jacobian.fixed_rows::<3>(0).into_owned();
         let mobility = jacobian * inverse * jacobian.transpose();
@@ -183,10 +182,10 @@ fn pushed(
     let mut lockstep = tolerant(ready);
     let body = ArmInertia::of(&lockstep);
     let engaged = lockstep.engage();
-    let start = lockstep.true_pose();
+    let start = lockstep.arm_pose();
     head_for(&mut lockstep, engaged, start.into(), gains, force_cap);
     lockstep.run(500);
-    let from = lockstep.true_pose().translation.vector;
+    let from = lockstep.arm_pose().translation.vector;
     let push = Touch::carry(move |t| from + way * hand(t), STIFFNESS);
     let push = lockstep.robot.touch(push);
     let mut felt = ContactForces::default();
@@ -357,7 +356,7 @@ fn the_sinking_of_a_held_arm_is_reported() {
         for mass in [3.3, 5.0] {
             for stiff in [false, true] {
                 let mut lockstep = tolerant(ready);
-                let start = lockstep.true_pose();
+                let start = lockstep.arm_pose();
                 let engaged = lockstep.engage();
                 let target = if stiff {
                     Target::Joints((*lockstep.robot.q()).into())

@@ -12,7 +12,7 @@ use franka_tests::lockstep::{Lockstep, for_each_robot, pose_of, self_distance};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 fn assert_near(lockstep: &Lockstep, target: &Isometry3<f64>) {
-    let error = PoseError::between(&lockstep.true_pose(), target);
+    let error = PoseError::between(&lockstep.arm_pose(), target);
     assert!(
         error.translation < 1e-3 && error.rotation < 2e-3,
         "{error:?}"
@@ -30,7 +30,7 @@ fn hand() -> EndEffector {
 fn a_pose_is_reached_and_the_arm_rests_there() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let target = Translation3::new(0.0, 0.0, 0.05) * lockstep.true_pose();
+        let target = Translation3::new(0.0, 0.0, 0.05) * lockstep.arm_pose();
         let goal = lockstep.begin(Target::Pose(target));
         let report = lockstep.until_resolved(goal, 6000).unwrap();
         assert_near(&lockstep, &target);
@@ -46,7 +46,7 @@ fn a_pose_is_reached_and_the_arm_rests_there() {
 fn the_hand_moves_on_a_straight_line() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         let way = Vector3::new(0.06, -0.09, 0.04);
         let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.1, 0.2, -0.3));
         let target = Isometry3::from_parts(
@@ -68,7 +68,7 @@ fn the_hand_moves_on_a_straight_line() {
                     &hand(),
                 )));
             }
-            arm = arm.max(aside(&lockstep.true_pose()));
+            arm = arm.max(aside(&lockstep.arm_pose()));
         }
         assert!(lockstep.client.outcome(goal).unwrap().is_ok());
         assert_near(&lockstep, &target);
@@ -101,7 +101,7 @@ fn joints_arrive_at_the_same_time() {
 fn a_newer_goal_takes_over_without_a_stop() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         let first = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.1) * start));
         lockstep.run(400);
         let second = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.1, 0.05) * start));
@@ -124,7 +124,7 @@ fn a_newer_goal_takes_over_without_a_stop() {
 fn the_kind_of_goal_changes_in_mid_motion() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         lockstep.begin(Target::Pose(Translation3::new(0.1, 0.0, 0.0) * start));
         lockstep.run(500);
         let mut q: [f64; 7] = READY.into();
@@ -143,7 +143,7 @@ fn a_goal_submitted_while_a_motion_ends_gets_its_own_motion() {
         // Client and robot take some ten milliseconds to end a motion. Each of them is tried.
         for after in 0..40 {
             let mut lockstep = ready();
-            let start = lockstep.true_pose();
+            let start = lockstep.arm_pose();
             let target = Translation3::new(0.0, 0.0, 0.01) * start;
             let first = lockstep.begin(Target::Pose(target));
             while lockstep.client.record.activity != Activity::Finishing {
@@ -167,7 +167,7 @@ fn a_goal_submitted_while_a_motion_ends_gets_its_own_motion() {
 fn a_followed_target_may_step_arbitrarily() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         let goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
         let id = lockstep.submit(goal).unwrap();
         let mut last = start;
@@ -244,7 +244,7 @@ fn a_goal_of_any_speed_is_planned_or_refused() {
     for_each_robot(|ready| {
         for pace in [1e-2, 1e-3, 1e-4, 1e-6, 1e-12, 1e-60] {
             let mut lockstep = ready();
-            let up = Translation3::new(0.0, 0.0, 0.05) * lockstep.true_pose();
+            let up = Translation3::new(0.0, 0.0, 0.05) * lockstep.arm_pose();
             let mut q: [f64; 7] = READY.into();
             q[0] += 0.1;
             for target in [Target::Pose(up), Target::Joints(q)] {

@@ -19,9 +19,9 @@ fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
 /// Pulls the arm aside against spring and damper, at constant velocity, until the deviation guard
 /// binds: it must not swing back by itself. Returns how far, `[m]`.
 fn pull_aside(lockstep: &mut Lockstep) -> f64 {
-    let start = lockstep.true_pose().translation.y;
+    let start = lockstep.arm_pose().translation.y;
     loop {
-        let off = lockstep.true_pose().translation.y - start;
+        let off = lockstep.arm_pose().translation.y - start;
         lockstep.robot.let_go();
         if lockstep.client.record.bindings.contains(Guard::Deviation) {
             return off;
@@ -40,7 +40,7 @@ fn a_displaced_arm_stays_where_it_is_released() {
     for_each_robot(|ready| {
         for then in [OnArrival::ReportAndFinish, OnArrival::Hold] {
             let mut lockstep = tolerant(ready);
-            let start = lockstep.true_pose();
+            let start = lockstep.arm_pose();
             let goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
             let id = lockstep.submit(goal).expect("it is there already");
             if then == OnArrival::ReportAndFinish {
@@ -53,7 +53,7 @@ fn a_displaced_arm_stays_where_it_is_released() {
             let outcome = lockstep.until_resolved(id, 20_000);
             assert_eq!(outcome, Err(MotionError::Braked(Lapse::Displaced)));
             lockstep.run(500);
-            let at = lockstep.true_pose().translation.vector - start.translation.vector;
+            let at = lockstep.arm_pose().translation.vector - start.translation.vector;
             assert!(at.y > off - 0.06, "from {off} m to {} m aside", at.y);
             let back = lockstep.begin(Target::Pose(start));
             lockstep.until_resolved(back, 10_000).expect("asked back");
@@ -71,7 +71,7 @@ const LEAD: Lead = Lead {
 fn a_distant_target_moves_the_arm_at_most_by_the_lead_after_the_stream_stops() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         let mut goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
         goal.lead = Some(LEAD);
         let id = lockstep.submit(goal).expect("it is there already");
@@ -81,7 +81,7 @@ fn a_distant_target_moves_the_arm_at_most_by_the_lead_after_the_stream_stops() {
         assert_eq!(lockstep.update(id, Target::Pose(wild)), Ok(true));
         lockstep.run(Lead::FRESH_MS + 1);
         assert!(lockstep.client.record.bindings.contains(Guard::Lead));
-        let aside = |lockstep: &Lockstep| lockstep.true_pose().translation.y - start.translation.y;
+        let aside = |lockstep: &Lockstep| lockstep.arm_pose().translation.y - start.translation.y;
         let then = aside(&lockstep);
         lockstep.run(3000);
         let now = aside(&lockstep);
@@ -111,7 +111,7 @@ fn a_lead_without_a_bound_in_some_directions_binds_in_the_others() {
         let free = f64::INFINITY;
         for (translation, rotation) in [(0.05, free), (free, 0.2)] {
             let mut lockstep = ready();
-            let start = lockstep.true_pose();
+            let start = lockstep.arm_pose();
             let mut goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
             goal.lead = Some(Lead {
                 translation,
@@ -128,7 +128,7 @@ fn a_lead_without_a_bound_in_some_directions_binds_in_the_others() {
             };
             assert_eq!(lockstep.update(id, Target::Pose(wild)), Ok(true));
             lockstep.run(3000);
-            let moved = PoseError::between(&lockstep.true_pose(), &start);
+            let moved = PoseError::between(&lockstep.arm_pose(), &start);
             let (moved, most) = if rotation == free {
                 (moved.translation, 0.2)
             } else {
@@ -146,7 +146,7 @@ fn tuning_does_not_send_an_arm_back_that_was_displaced_after_its_arrival() {
     for_each_robot(|ready| {
         let mut lockstep = tolerant(ready);
         let engaged = lockstep.engage();
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         let goal = lockstep
             .within(engaged, Target::Pose(start), OnArrival::ReportAndHold)
             .expect("it is there already");
@@ -154,11 +154,11 @@ fn tuning_does_not_send_an_arm_back_that_was_displaced_after_its_arrival() {
         let off = pull_aside(&mut lockstep);
         assert!(off > 0.2, "{off} m aside");
         lockstep.run(3000);
-        let at = lockstep.true_pose();
+        let at = lockstep.arm_pose();
         assert!(at.translation.y - start.translation.y > 0.2, "it is held");
         assert_eq!(lockstep.tune(engaged, Tuning::default()), Ok(()));
         lockstep.run(3000);
-        let moved = PoseError::between(&lockstep.true_pose(), &at);
+        let moved = PoseError::between(&lockstep.arm_pose(), &at);
         assert!(moved.translation < 5e-3, "{moved:?}");
     });
 }

@@ -33,7 +33,7 @@ fn poses_are_reached_under_every_law() {
     for_each_robot(|ready| {
         for gains in laws() {
             let mut lockstep = ready();
-            let home = lockstep.true_pose();
+            let home = lockstep.arm_pose();
             for (x, y, z, turn) in [(0.1, 0.1, -0.05, 0.3), (-0.08, -0.15, 0.1, -0.3)] {
                 let target = Isometry3::from_parts(
                     Translation3::from(home.translation.vector + nalgebra::Vector3::new(x, y, z)),
@@ -46,7 +46,7 @@ fn poses_are_reached_under_every_law() {
                 lockstep
                     .until_resolved(id, 10_000)
                     .unwrap_or_else(|error| panic!("{gains:?}: {error}"));
-                let error = PoseError::between(&lockstep.true_pose(), &target);
+                let error = PoseError::between(&lockstep.arm_pose(), &target);
                 assert!(
                     error.translation < 1e-3 && error.rotation < 2e-3,
                     "{error:?}"
@@ -60,7 +60,7 @@ fn poses_are_reached_under_every_law() {
 /// whether the cap bound. The floor dissipates no energy, so a light arm bounces on it for a while.
 fn force_on_floor(gains: Gains, force_cap: ForceCap) -> (f64, bool) {
     let mut lockstep = tolerant(Lockstep::ready());
-    let start = lockstep.true_pose();
+    let start = lockstep.arm_pose();
     let floor = start.translation.z - 0.04;
     let goal = lockstep.goal(
         Target::Pose(Translation3::new(0.0, 0.0, -0.1) * start),
@@ -74,7 +74,7 @@ fn force_on_floor(gains: Gains, force_cap: ForceCap) -> (f64, bool) {
     lockstep.submit(goal).expect("within reach");
     let (mut sum, mut bound) = (0.0, false);
     for cycle in 0..3000 {
-        let force = 3000.0 * (floor - lockstep.true_pose().translation.z).max(0.0);
+        let force = 3000.0 * (floor - lockstep.arm_pose().translation.z).max(0.0);
         if cycle >= 2000 {
             sum += force;
             bound |= lockstep.client.record.bindings.contains(Guard::ForceCap);
@@ -111,7 +111,7 @@ fn an_arm_presses_on_an_obstacle_with_the_capped_force() {
 #[test]
 fn a_change_of_law_or_cap_under_load_does_not_step_the_torque() {
     let mut lockstep = tolerant(Lockstep::ready());
-    let home = lockstep.true_pose();
+    let home = lockstep.arm_pose();
     let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
     lockstep.submit(goal).expect("the arm is there");
     lockstep.run(50);

@@ -10,6 +10,7 @@ mod faults;
 mod force;
 mod goals;
 mod guards;
+mod holds;
 mod laws;
 mod mishaps;
 mod random_targets;

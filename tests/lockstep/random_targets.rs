@@ -70,7 +70,7 @@ fn two_hundred_random_targets(kind: RobotKind) {
             outcome => outcome
                 .unwrap_or_else(|error| panic!("{kind:?}, seed {seed}, case {case}: {error}")),
         };
-        let error = PoseError::between(&lockstep.true_pose(), &target);
+        let error = PoseError::between(&lockstep.arm_pose(), &target);
         assert!(
             error.translation < 1e-3 && error.rotation < 2e-3,
             "{kind:?}, seed {seed}, case {case}: {error:?} after {:?}",

@@ -14,16 +14,22 @@ fn provoke(lockstep: &mut Lockstep, callback: Callback) -> ControlError {
     error.control().expect("ended by the robot").clone()
 }
 
-/// Asserts that the log is full, that only its last entry has the command that `stepped`
-/// recognises, and that the state of that entry, the first after the command, is the one with the
-/// errors.
-fn assert_shown(error: &ControlError, errors: Errors, stepped: impl Fn(&LogEntry) -> bool) {
+/// Asserts that the text names `cause`, that the log is full, that only its last entry has the
+/// command that `stepped` recognises, and that the state of that entry, the first after the
+/// command, is the one with the error.
+fn assert_shown(error: &ControlError, cause: RobotError, stepped: impl Fn(&LogEntry) -> bool) {
+    let text = format!(
+        "libfranka: Move command aborted: motion aborted by reflex! [\"{}\"]\n\
+         control_command_success_rate: 1",
+        cause.name()
+    );
+    assert_eq!(error.to_string(), text);
     let log = &error.log;
     assert_eq!(log.len(), ControlLog::DEFAULT_CAPACITY);
     let mut newest = log.iter().rev();
     let last = newest.next().expect("it is full");
     assert!(stepped(last), "{:?}", last.command);
-    assert_eq!(last.state.reflex_reason, errors);
+    assert_eq!(last.state.reflex_reason, Errors::from(cause));
     assert_eq!(last.state.message_id, last.command.message_id + 1);
     for (before, after) in newest.zip(log.iter().rev()) {
         assert!(!stepped(before), "{:?}", before.command);
@@ -46,14 +52,8 @@ fn a_torque_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
         let mut torques = stepping(0, 10.0);
         let callback = Callback::torques(lockstep.client.version(), move |_, _| Torques(torques()));
         let error = provoke(&mut lockstep, callback);
-        assert_eq!(
-            error.to_string(),
-            "libfranka: Move command aborted: motion aborted by reflex! \
-             [\"controller_torque_discontinuity\"]\n\
-             control_command_success_rate: 1"
-        );
-        let errors = RobotError::ControllerTorqueDiscontinuity.into();
-        assert_shown(&error, errors, |entry| entry.command.tau_J_d[0] == 10.0);
+        let cause = RobotError::ControllerTorqueDiscontinuity;
+        assert_shown(&error, cause, |entry| entry.command.tau_J_d[0] == 10.0);
     });
 }
 
@@ -65,14 +65,8 @@ fn a_velocity_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
         let callback =
             Callback::motion(lockstep.client.version(), move |_, _| JointVelocities(dq()));
         let error = provoke(&mut lockstep, callback);
-        assert_eq!(
-            error.to_string(),
-            "libfranka: Move command aborted: motion aborted by reflex! \
-             [\"joint_motion_generator_acceleration_discontinuity\"]\n\
-             control_command_success_rate: 1"
-        );
-        let errors = RobotError::JointMotionGeneratorAccelerationDiscontinuity.into();
-        assert_shown(&error, errors, |entry| entry.command.dq_c[3] == 0.25);
+        let cause = RobotError::JointMotionGeneratorAccelerationDiscontinuity;
+        assert_shown(&error, cause, |entry| entry.command.dq_c[3] == 0.25);
     });
 }
 

@@ -22,7 +22,7 @@ fn a_motion_survives_a_silence_below_the_timeout_and_no_longer_one() {
                 let timeout = LinkTimeout::new(timeout).expect("in range");
                 let driver = Driver::new(lockstep.client.version());
                 lockstep.client.driver = driver.with_link_timeout(timeout);
-                let target = Translation3::new(0.0, 0.0, 0.2) * lockstep.true_pose();
+                let target = Translation3::new(0.0, 0.0, 0.2) * lockstep.arm_pose();
                 let goal = lockstep.begin(Target::Pose(target));
                 lockstep.run(400);
                 let silence = timeout.get().as_millis() as u64;

@@ -23,7 +23,7 @@ fn step(
     way: Vector3<f64>,
     then: impl FnOnce(&mut Lockstep, Target),
 ) -> Figures {
-    let target = Translation3::from(way) * lockstep.true_pose();
+    let target = Translation3::from(way) * lockstep.arm_pose();
     then(lockstep, Target::Pose(target));
     let begin = lockstep.now();
     let mut figures = Figures {
@@ -35,7 +35,7 @@ fn step(
     while lockstep.now() < begin + 2500 {
         lockstep.tick();
         let elapsed = (lockstep.now() - begin) as f64 * 1e-3;
-        let arm = lockstep.true_pose().translation.vector;
+        let arm = lockstep.arm_pose().translation.vector;
         let reference = lockstep.reference_pose().translation.vector;
         figures.off = (arm - target.translation.vector).norm();
         figures.lag = figures.lag.max((arm - reference).norm());

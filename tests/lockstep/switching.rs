@@ -56,7 +56,7 @@ impl Switching {
         Self {
             random: SmallRng::seed_from_u64(seed),
             engaged,
-            home: lockstep.true_pose(),
+            home: lockstep.arm_pose(),
             jerk: Model::of(kind).joint_limits().jerk.into(),
             last: (record.time, record.ddq_ref),
             worst: 0.0,

@@ -1,8 +1,9 @@
 //! A goal, a stop or a failure that comes while the arm moves, and how motions end.
 
 use franka_model::READY;
-use franka_proto::{RobotError, RobotMode};
-use franka_rt::driver::{Activity, LINK_TIMEOUT};
+use franka_proto::{MoveControllerMode, RobotError, RobotMode};
+use franka_rt::control::{Callback, Finish, Next, Torques};
+use franka_rt::driver::{Activity, LINK_TIMEOUT, Program};
 use franka_rt::lifecycle::{CloseReason, MotionError, START_TIMEOUT};
 use franka_rt::session::{GoalId, OnArrival, PoseError, Target};
 use franka_tests::lockstep::Lockstep;
@@ -30,7 +31,7 @@ fn fastest(lockstep: &Lockstep) -> f64 {
 fn a_goal_that_comes_while_the_motion_ends_may_be_slow() {
     let first_motion = || {
         let mut lockstep = Lockstep::ready();
-        let near = Translation3::new(0.0, 0.0, 0.01) * lockstep.true_pose();
+        let near = Translation3::new(0.0, 0.0, 0.01) * lockstep.arm_pose();
         let goal = lockstep.begin(Target::Pose(near));
         (lockstep, goal)
     };
@@ -42,7 +43,7 @@ fn a_goal_that_comes_while_the_motion_ends_may_be_slow() {
     // Torques fade out over the last tenth of a second before the finish.
     let (mut lockstep, first) = first_motion();
     lockstep.run(rehearsal.now() - lockstep.now() - 50);
-    let target = Translation3::new(0.0, 0.1, 0.0) * lockstep.true_pose();
+    let target = Translation3::new(0.0, 0.1, 0.0) * lockstep.arm_pose();
     assert_eq!(lockstep.client.outcome(first), None);
     let slow = submit_at(&mut lockstep, Target::Pose(target), 0.03);
     assert!(lockstep.client.outcome(first).unwrap().is_ok());
@@ -54,10 +55,10 @@ fn a_goal_that_comes_while_the_motion_ends_may_be_slow() {
 fn an_arm_brakes_when_its_motion_is_aborted() {
     for how in 0..2 {
         let mut lockstep = Lockstep::ready();
-        let target = Translation3::new(0.0, 0.0, 0.3) * lockstep.true_pose();
+        let target = Translation3::new(0.0, 0.0, 0.3) * lockstep.arm_pose();
         let goal = lockstep.begin(Target::Pose(target));
         lockstep.run(500);
-        let here = lockstep.true_pose();
+        let here = lockstep.arm_pose();
         if how == 0 {
             lockstep
                 .client
@@ -69,10 +70,82 @@ fn an_arm_brakes_when_its_motion_is_aborted() {
         lockstep.run(700);
         assert!(lockstep.client.outcome(goal).unwrap().is_err());
         assert!(lockstep.robot.dq().amax() < 0.02, "way {how}");
-        let passed = PoseError::between(&lockstep.true_pose(), &here).translation;
+        let passed = PoseError::between(&lockstep.arm_pose(), &here).translation;
         assert!(passed < 0.06, "way {how}: {passed} m further");
         lockstep.run(2000);
         assert!(lockstep.client.driver.is_watching(), "way {how}");
+    }
+}
+
+/// The robot has been told to stop the first motion, and has not ended it yet.
+#[test]
+fn a_motion_that_comes_after_an_unreadable_reply_waits_for_the_end_of_the_one_before() {
+    for after in [0, 1, 2, 3, 5, 300] {
+        let mut lockstep = Lockstep::ready();
+        let first = lockstep.begin(Target::Joints(ready_turned(0, 0.3)));
+        lockstep.run(after);
+        lockstep.client.violate();
+        let outcome = lockstep.client.outcome(first);
+        assert!(
+            matches!(outcome, Some(Err(MotionError::Violation(_)))),
+            "{outcome:?}"
+        );
+        let next = lockstep.begin(Target::Joints(ready_turned(0, 0.1)));
+        let report = lockstep.until_resolved(next, 8000);
+        report.unwrap_or_else(|error| panic!("after {after} ms: {error}"));
+        let off = lockstep.client.state.q[0] - ready_turned(0, 0.1)[0];
+        assert!(off.abs() < 2e-3, "after {after} ms: {off} rad off");
+    }
+}
+
+/// Has a function command no torques for 100 ms.
+fn hold(lockstep: &mut Lockstep) -> Result<GoalId, MotionError> {
+    let version = lockstep.client.version();
+    let mut calls = 0;
+    let function = Callback::torques(version, move |_, _| -> Next<Torques> {
+        calls += 1;
+        let torques = Torques([0.0; 7]);
+        if calls < 100 {
+            torques.into()
+        } else {
+            torques.finish()
+        }
+    });
+    let request = function.request(version, MoveControllerMode::JointImpedance);
+    lockstep.control(Program::Callback(Box::new(function)), request)
+}
+
+#[test]
+fn a_program_that_comes_after_an_unreadable_reply_waits_for_the_end_of_the_one_before() {
+    for after in [0, 1, 2, 3, 5, 50] {
+        let mut lockstep = Lockstep::ready();
+        hold(&mut lockstep).expect("nothing moves");
+        lockstep.run(after);
+        lockstep.client.violate();
+        let next = hold(&mut lockstep).expect("it waits");
+        let report = lockstep.until_resolved(next, 8000);
+        report.unwrap_or_else(|error| panic!("after {after} ms: {error}"));
+    }
+}
+
+#[test]
+fn a_program_waits_for_the_end_of_what_was_taken_back() {
+    let move_joint = |lockstep: &mut Lockstep| lockstep.begin(Target::Joints(ready_turned(0, 0.3)));
+    let program = |lockstep: &mut Lockstep| hold(lockstep).expect("nothing moves");
+    let befores: [&dyn Fn(&mut Lockstep) -> GoalId; 2] = [&program, &move_joint];
+    for (before, after) in befores
+        .iter()
+        .flat_map(|before| [0, 1, 2, 3, 50].map(|ms| (before, ms)))
+    {
+        let mut lockstep = Lockstep::ready();
+        let first = before(&mut lockstep);
+        lockstep.run(after);
+        assert_eq!(hold(&mut lockstep), Err(MotionError::Busy));
+        lockstep.cancel(first);
+        let next = hold(&mut lockstep).expect("it waits");
+        let report = lockstep.until_resolved(next, 8000);
+        report.unwrap_or_else(|error| panic!("after {after} ms: {error}"));
+        assert!(lockstep.client.outcome(first).is_some(), "after {after} ms");
     }
 }
 
@@ -101,7 +174,7 @@ fn a_slow_joint_goal_supersedes_a_fast_one_without_overrunning() {
 fn a_slow_pose_supersedes_any_fast_motion_without_overrunning() {
     for (kind, after) in [(0, 100), (0, 500), (1, 50), (1, 350)] {
         let mut lockstep = Lockstep::ready();
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         let fast = if kind == 0 {
             Target::Pose(Translation3::new(0.0, 0.3, 0.1) * start)
         } else {
@@ -109,10 +182,10 @@ fn a_slow_pose_supersedes_any_fast_motion_without_overrunning() {
         };
         submit_at(&mut lockstep, fast, 1.4);
         lockstep.run(after);
-        let here = lockstep.true_pose();
+        let here = lockstep.arm_pose();
         let slow = submit_at(&mut lockstep, Target::Pose(start), 0.05);
         lockstep.run(1500);
-        let passed = PoseError::between(&lockstep.true_pose(), &here).translation;
+        let passed = PoseError::between(&lockstep.arm_pose(), &here).translation;
         assert!(passed < 0.2, "kind {kind}, after {after} ms: {passed} m on");
         lockstep.stop();
         lockstep.until_idle(3000);
@@ -125,7 +198,7 @@ fn a_stop_is_quick_for_any_speed_of_the_goal() {
     for speed in [0.05, 0.3, 1.0, 1.4] {
         for target in [
             Target::Joints(ready_turned(1, 0.5)),
-            Target::Pose(Translation3::new(0.1, 0.2, 0.0) * Lockstep::ready().true_pose()),
+            Target::Pose(Translation3::new(0.1, 0.2, 0.0) * Lockstep::ready().arm_pose()),
         ] {
             let mut lockstep = Lockstep::ready();
             submit_at(&mut lockstep, target, speed);
@@ -146,7 +219,7 @@ fn a_stop_is_quick_for_any_speed_of_the_goal() {
 #[test]
 fn pending_updates_of_a_cancelled_goal_move_nothing() {
     let mut lockstep = Lockstep::ready();
-    let start = lockstep.true_pose();
+    let start = lockstep.arm_pose();
     let goal = lockstep.goal(Target::Pose(start), OnArrival::Hold);
     let id = lockstep.submit(goal).unwrap();
     lockstep.run(100);
@@ -155,7 +228,7 @@ fn pending_updates_of_a_cancelled_goal_move_nothing() {
     assert_eq!(lockstep.update(id, late), Ok(false));
     lockstep.client.lifecycle.close(id);
     assert_eq!(lockstep.until_resolved(id, 3000), Err(MotionError::Stopped));
-    let moved = PoseError::between(&lockstep.true_pose(), &start).translation;
+    let moved = PoseError::between(&lockstep.arm_pose(), &start).translation;
     assert!(moved < 1e-3, "{moved}");
 }
 
@@ -164,7 +237,7 @@ fn a_stop_or_a_cancel_while_a_motion_ends_starts_no_new_one() {
     for after in 0..20 {
         for cancelled in [false, true] {
             let mut lockstep = Lockstep::ready();
-            let start = lockstep.true_pose();
+            let start = lockstep.arm_pose();
             let first = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.01) * start));
             while lockstep.client.record.activity != Activity::Finishing {
                 lockstep.tick();

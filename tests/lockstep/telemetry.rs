@@ -79,7 +79,7 @@ fn the_success_rate_of_the_report_is_that_of_the_states() {
     for seed in 0..4 {
         let mut lockstep = Lockstep::ready();
         lockstep.link = Link::lossy(seed, 0.02, 0.02);
-        let target = Translation3::new(0.04, 0.0, 0.02) * lockstep.true_pose();
+        let target = Translation3::new(0.04, 0.0, 0.02) * lockstep.arm_pose();
         let goal = lockstep.begin(Target::Pose(target));
         let (outcome, rates) = watch(&mut lockstep, goal, 8000);
         let report = outcome.unwrap_or_else(|error| panic!("seed {seed}: {error}"));

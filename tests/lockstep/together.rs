@@ -79,7 +79,7 @@ fn goals_begin_in_the_same_millisecond_for_any_delay_of_the_second() {
     for late in [0, 1, 137, 4000] {
         let mut two = Two::new();
         let [left, right] = StartBarrier::new().tickets();
-        let up = Translation3::new(0.0, 0.0, 0.05) * two.left.true_pose();
+        let up = Translation3::new(0.0, 0.0, 0.05) * two.left.arm_pose();
         let first = submit(&mut two.left, Target::Pose(up), left);
         two.run(late);
         assert!(

@@ -29,6 +29,11 @@ fn served_with(number: &str, other: &str) -> String {
     text.replace(number, other)
 }
 
+/// A robot that serves this description.
+fn serving(text: String) -> Sim {
+    Sim::fr3().configure(|config| config.urdf = Some(text))
+}
+
 #[tokio::test]
 async fn an_fr3_is_asked_for_its_model_over_the_network() {
     let (robot, _sim) = connected(Sim::fr3()).await;
@@ -39,7 +44,7 @@ async fn an_fr3_is_asked_for_its_model_over_the_network() {
 #[tokio::test]
 async fn other_numbers_in_the_description_change_the_model() {
     let mass = format!("mass value=\"{}\"", Model::fr3().links()[6].mass);
-    let (robot, _sim) = connected(Sim::fr3().urdf(served_with(&mass, "mass value=\"0.75\""))).await;
+    let (robot, _sim) = connected(serving(served_with(&mass, "mass value=\"0.75\""))).await;
     assert_eq!(robot.model().links()[6].mass, 0.75);
     assert_eq!(robot.model().joint_limits(), Model::fr3().joint_limits());
     robot.shutdown().await;
@@ -58,7 +63,7 @@ async fn goals_keep_the_range_that_the_description_gives() {
         q[0] = Model::fr3().joint_limits().upper[0] - 1e-4;
         q
     };
-    let (robot, _sim) = connected(Sim::fr3().urdf(narrower())).await;
+    let (robot, _sim) = connected(serving(narrower())).await;
     let refused = robot.move_joints(beyond).await;
     assert!(
         matches!(
@@ -77,7 +82,7 @@ async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
     let mut start = READY;
     start[0] = 1.2;
     let text = served_with("upper=\"2.7501\"", "upper=\"1.5\"");
-    let (robot, _sim) = connected(Sim::fr3().q(start).urdf(text)).await;
+    let (robot, _sim) = connected(serving(text).configure(|config| config.q = start)).await;
     let limits = *robot.model().joint_limits();
     let (mut worst, mut time) = (f64::NEG_INFINITY, Duration::ZERO);
     let (told, hear) = std::sync::mpsc::channel();
@@ -107,7 +112,7 @@ async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
 #[tokio::test]
 async fn a_description_of_something_else_is_refused_unless_the_constants_are_chosen() {
     let text = served_with("<robot name=\"fr3\"", "<robot name=\"tmr_platform\"");
-    let sim = Sim::fr3().urdf(text).start().await.expect("it starts");
+    let sim = serving(text).start().await.expect("it starts");
     let builder = || Robot::builder(sim.addr()).realtime(Realtime::Ignore);
     let error = builder().connect().await.expect_err("no arm");
     assert!(

@@ -42,7 +42,7 @@ fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
 #[test]
 fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothing() {
     let mut lockstep = Lockstep::ready();
-    let home = lockstep.true_pose();
+    let home = lockstep.arm_pose();
     let q = lockstep.robot.state().q;
     let (mut cycles, mut calls, mut arrived) = (0, 0, 0);
     for round in 0.. {

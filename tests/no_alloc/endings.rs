@@ -37,16 +37,19 @@ enum End {
     /// Its program returns a non-finite value.
     Failed,
     /// Its owner has dropped it.
-    LeftAlone,
+    Abandoned,
+    /// Its owner has dropped it before it ran.
+    Unwanted,
     LinkLost,
 }
 
-const ENDS: [End; 6] = [
+const ENDS: [End; 7] = [
     End::Disarmed,
     End::Finished,
     End::Reflex,
     End::Failed,
-    End::LeftAlone,
+    End::Abandoned,
+    End::Unwanted,
     End::LinkLost,
 ];
 
@@ -198,13 +201,21 @@ impl Counted {
             self.order(Order::Disarm { motion });
             return self.hear();
         }
+        if matches!(end, End::Unwanted) {
+            self.order(Order::Abandon { motion });
+            for _ in 0..20 {
+                assert!(!self.driver.is_watching(), "the robot may begin it");
+                self.state(RobotMode::Idle);
+            }
+            return assert!(self.driver.is_watching());
+        }
         for _ in 0..=RUNNING {
             self.state(RobotMode::Move);
         }
         // A program that comes while another runs is returned.
         self.arm(Program::Active(ActiveControl));
-        if let End::LeftAlone = end {
-            self.order(Order::Silence { motion });
+        if let End::Abandoned = end {
+            self.order(Order::Abandon { motion });
         }
         for _ in 0..10 {
             self.state(RobotMode::Move);

@@ -142,7 +142,7 @@ fn sessions_under_every_order_of_their_owners_allocate_and_free_nothing() {
         Backend::RobotController(Setpoints::Poses),
     ] {
         let mut engaged = Engaged::with(backend);
-        let home = engaged.lockstep.true_pose();
+        let home = engaged.lockstep.arm_pose();
         let up = Target::Pose(Translation3::new(0.0, 0.0, 0.05) * home);
         let poses = backend == Backend::RobotController(Setpoints::Poses);
         let there = if poses { up } else { turned(0.2) };

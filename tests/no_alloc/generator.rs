@@ -3,21 +3,14 @@
 use std::hint::black_box;
 
 use franka_otg::{CYCLE, Generator, Limits, State, Synchronisation};
-
-/// A pseudo-random number in -1..1 (an LCG with the constants of MMIX).
-fn next(seed: &mut u64) -> f64 {
-    *seed = seed
-        .wrapping_mul(6_364_136_223_846_793_005)
-        .wrapping_add(1_442_695_040_888_963_407);
-    (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-}
+use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 #[test]
 fn a_hundred_thousand_plans_and_cycles_allocate_and_free_nothing() {
     let limits = |pace: f64| {
         Limits::from_arrays([2.0 * pace; 7], [10.0 * pace; 7], [5000.0 * pace; 7]).unwrap()
     };
-    let (mut seed, mut planned) = (7, 0);
+    let (mut random, mut planned) = (SmallRng::seed_from_u64(7), 0);
     let before = crate::calls();
     for synchronisation in [Synchronisation::Time, Synchronisation::Straight] {
         let mut generator = Generator::new(State::at_rest([0.0; 7]), limits(1.0))
@@ -25,8 +18,8 @@ fn a_hundred_thousand_plans_and_cycles_allocate_and_free_nothing() {
             .with_synchronisation(synchronisation);
         for k in 0..50_000 {
             let target = State {
-                position: core::array::from_fn(|_| next(&mut seed)),
-                velocity: core::array::from_fn(|_| next(&mut seed)),
+                position: core::array::from_fn(|_| random.random_range(-1.0..1.0)),
+                velocity: core::array::from_fn(|_| random.random_range(-1.0..1.0)),
                 acceleration: [0.0; 7],
             };
             match k % 10 {
@@ -35,7 +28,7 @@ fn a_hundred_thousand_plans_and_cycles_allocate_and_free_nothing() {
                 8 => generator.brake(),
                 _ => {
                     generator
-                        .set_limits(limits(1.5 + 0.3 * next(&mut seed)))
+                        .set_limits(limits(random.random_range(1.2..1.8)))
                         .unwrap();
                     let now = *generator.state();
                     generator.set_state(now).unwrap();

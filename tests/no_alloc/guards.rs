@@ -70,7 +70,7 @@ fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
     // Away from there, and then pulled aside.
     let back = lockstep.begin(Target::Joints(READY.into()));
     lockstep.until_resolved(back, 20_000).expect("a way out");
-    let home = lockstep.true_pose();
+    let home = lockstep.arm_pose();
     let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
     lockstep.submit(goal).expect("it is there already");
     lockstep.run(20);

@@ -1,7 +1,6 @@
 """Motions that scripts command cycle by cycle, and the robot's report of them.
 
-A robot extrapolates lost commands with constant acceleration, and does not smooth the next command, so every command
-here continues the setpoint that the robot reports.
+A robot does not smooth commands, so every command here continues the setpoint that the robot reports.
 """
 
 import numpy
@@ -10,24 +9,16 @@ from pylibfranka import CartesianPose, CartesianVelocities, JointPositions, Join
 from steps import column_major, equal, matrix
 
 CYCLE = 1e-3
-# How fast a setpoint returns to its plan, 1/s, and how long that takes at the end of a motion, s: longer if most commands
-# come late.
+# How fast a setpoint returns to its plan, 1/s, and how long that takes at the end of a motion, s.
 RETURN = 20.0
-SETTLE, SETTLE_MAX = 0.3, 3.0
-# Below this a setpoint may stop from one cycle to the next, rad/s or m/s: the jerk of 5000 rad/s³ allows 5e-3.
-REST = 1e-3
+SETTLE = 0.3
 # States carry setpoints in single precision; steering from them ends this close to the plan, rad or m.
 SETPOINT_TOLERANCE = 5e-4
 
 
 def arrive(control, command, duration):
     """Commands along a plan of so many seconds, finishes the motion once its setpoint rests, and returns the states."""
-
-    def is_over(t, state):
-        velocities = [*state.dq_d, *state.O_dP_EE_c]
-        return t >= duration + SETTLE and (max(map(abs, velocities)) < REST or t >= duration + SETTLE_MAX)
-
-    return cycles(control, command, is_over, finish=True)
+    return follow(control, command, duration + SETTLE)
 
 
 def follow(control, command, duration, finish=True):
@@ -36,19 +27,14 @@ def follow(control, command, duration, finish=True):
     `command` maps the time since the first cycle and the state to the command of a cycle; the last one finishes the
     motion unless `finish` is false.
     """
-    return cycles(control, command, lambda t, state: t >= duration, finish)
-
-
-def cycles(control, command, is_over, finish):
-    """Commands until `is_over`, which has the arguments of `command`; the last command is that of the final cycle."""
     t, states, over = 0.0, [], False
     while not over:
         state, step = control.readOnce()
         t += step.to_sec()
         equal("mode in a motion", state.robot_mode, RobotMode.Move)
         states.append(state)
+        over = t >= duration
         cycle = command(t, state)
-        over = is_over(t, state)
         cycle.motion_finished = finish and over
         control.writeOnce(cycle)
     return states

@@ -1,11 +1,11 @@
 """Asynchronous joint positions with pylibfranka: pylibfranka_async.py ADDRESS
 
-The robot plans the path to each target itself; the client sends targets at any time. No command can be late, so no step
-is ever repeated.
+The robot plans the path to each target itself; the client sends targets at any time, so that none is late. The simulator
+keeps the clock on the wall, since no answer is awaited. What has to happen in mid-motion happens early on a way that takes
+seconds.
 """
 
 import gc
-import time
 
 import numpy
 from pylibfranka import AsyncPositionControlHandler as Handler
@@ -17,9 +17,13 @@ from pylibfranka._pylibfranka import TargetStatus
 from steps import Session, check, equal, near, refuses, script, spread
 
 OFFSET = numpy.array([0.2, -0.1, 0.1, 0.2, 0.1, 0.1, 0.3])
+# Takes some seconds, of which those below this velocity, rad/s, are the least part.
+FAR = numpy.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.0])
+UNDER_WAY = 0.2
 # The velocities of the vendor's example, rad/s.
 SPEED = [0.655] * 4 + [1.315] * 3
 TOLERANCE = 1e-3
+# Robot time, s.
 TIME_MAX = 5.0
 # The accelerations of the joints of the Franka Research 3, rad/s².
 ACCELERATION = 10.0
@@ -54,10 +58,10 @@ def feedback(handler, state=None):
 def statuses(session, handler, target):
     """Every status until the target is reached, repetitions left out, and the states until then."""
     seen, states = [], []
-    end = time.monotonic() + TIME_MAX
     while not seen or seen[-1] == TargetStatus.kExecuting:
-        check(time.monotonic() < end, f"{target} is reached, after {seen}")
         states.append(session.robot.read_once())
+        took = states[-1].time.to_sec() - states[0].time.to_sec()
+        check(took < TIME_MAX, f"{target} is reached, after {seen}")
         status, error = feedback(handler, states[-1])
         equal("error on the way", error, None)
         equal("mode on the way", states[-1].robot_mode, RobotMode.Move)
@@ -65,6 +69,16 @@ def statuses(session, handler, target):
             seen.append(status)
     near("q_d at the target", states[-1].q_d, target, TOLERANCE)
     return seen, states
+
+
+def on_a_far_way(session):
+    """A handler that has set the arm in motion, far from the target, and the newest state."""
+    handler = configure(session)
+    command(handler, session.home + FAR)
+    session.fresh_state()
+    while abs((state := session.robot.read_once()).dq_d[6]) < UNDER_WAY:
+        equal("feedback", feedback(handler, state), (TargetStatus.kExecuting, None))
+    return handler, state
 
 
 def wrong_velocities_are_answered_with_an_error(session):
@@ -95,7 +109,6 @@ def reaches_a_target_and_says_so(session):
         equal("statuses", seen, [TargetStatus.kExecuting, TargetStatus.kTargetReached])
     fastest = numpy.max(numpy.abs([state.dq_d for state in states]), axis=0)
     check(numpy.all(fastest <= numpy.array(SPEED) + 1e-3), f"{fastest} keeps {SPEED}")
-    check(numpy.max(fastest / SPEED) > 0.5, f"{fastest} makes use of {SPEED}")
     near("success rate without a cycle", [state.control_command_success_rate for state in states], 0.0, 0.0)
     handler.stop_control()
     near("q", session.state_at_rest().q, target, 5e-3)
@@ -103,25 +116,23 @@ def reaches_a_target_and_says_so(session):
 
 
 def goes_slower_where_told(session):
-    handler = configure(session, [0.3] * 7)
+    limit = 0.8
+    handler = configure(session, [limit] * 7)
+    command(handler, session.home + FAR)
+    session.fresh_state()
+    _, states = statuses(session, handler, session.home + FAR)
+    fastest = numpy.max(numpy.abs([state.dq_d for state in states]))
+    # Seconds at the limit, so that a client that misses states sees it nevertheless.
+    near("fastest joint", fastest, limit, 0.01)
     command(handler, session.home)
     session.fresh_state()
-    _, states = statuses(session, handler, session.home)
+    statuses(session, handler, session.home)
     handler.stop_control()
-    fastest = numpy.max(numpy.abs([state.dq_d for state in states]))
-    near("fastest joint", fastest, 0.3, 0.01)
     return f"fastest joint at {fastest:.3f} rad/s"
 
 
 def turns_round_in_mid_motion(session):
-    handler = configure(session)
-    command(handler, session.home + OFFSET)
-    session.fresh_state()
-    # Far enough to be at full speed, and not yet at the target.
-    while (state := session.robot.read_once()).q_d[6] < session.home[6] + 0.4 * OFFSET[6]:
-        equal("feedback", feedback(handler, state), (TargetStatus.kExecuting, None))
-    speed = state.dq_d[6]
-    check(speed > 0.2, f"{speed:.2f} rad/s in mid-motion")
+    handler, state = on_a_far_way(session)
     command(handler, session.home)
     seen, states = statuses(session, handler, session.home)
     equal("statuses", seen, [TargetStatus.kExecuting, TargetStatus.kTargetReached])
@@ -131,7 +142,7 @@ def turns_round_in_mid_motion(session):
     times = numpy.diff([state.time.to_sec() for state in states])
     check(numpy.all(steps < ACCELERATION * times + 1e-4), f"velocity goes on without a step of {max(steps)} rad/s")
     near("q", session.state_at_rest().q, session.home, 5e-3)
-    return f"from {speed:.2f} rad/s"
+    return f"from {state.dq_d[6]:.2f} rad/s"
 
 
 def has_reached_a_target_where_it_is(session):
@@ -143,35 +154,28 @@ def has_reached_a_target_where_it_is(session):
 
 
 def stops_in_mid_motion_and_is_of_no_use_after(session):
-    handler = configure(session)
-    command(handler, session.home + OFFSET)
-    time.sleep(0.2)
-    check(max(map(abs, session.fresh_state().dq_d)) > 0.1, "moving")
+    handler, _ = on_a_far_way(session)
     handler.stop_control()
     state = session.state_at_rest()
     check(not state.last_motion_errors, f"errors {state.last_motion_errors}")
     equal("feedback", feedback(handler), (TargetStatus.kAborted, ABORTED))
     result = handler.set_joint_position_target(Handler.JointPositionTarget(session.home))
     equal("target after the end", (result.was_successful, result.error_message), (False, ABORTED))
-    travel = state.q_d[0] - session.home[0]
-    check(0.0 < travel < OFFSET[0], f"between start and target, after {travel:.3f} rad")
+    travel = state.q_d[6] - session.home[6]
+    check(FAR[6] < travel < 0.0, f"between start and target, after {travel:.3f} rad")
     return f"after {travel:.3f} rad"
 
 
 def goes_on_at_once_after_a_stop(session):
     """The arm still brakes when the next motion is requested, which accepts its first target nevertheless."""
     turns = 5
-    for turn in range(turns):
-        target = session.home + (OFFSET if turn % 2 == 0 else 0.0)
-        handler = configure(session)
-        command(handler, target)
-        time.sleep(0.15)
-        check(max(map(abs, session.fresh_state().dq_d)) > 0.1, "moving")
+    for _ in range(turns):
+        handler, _ = on_a_far_way(session)
         handler.stop_control()
         handler = configure(session)
-        command(handler, target)
+        command(handler, session.home)
         session.fresh_state()
-        statuses(session, handler, target)
+        statuses(session, handler, session.home)
         handler.stop_control()
     return f"{turns} times"
 
@@ -191,9 +195,7 @@ def shares_the_robot_with_no_other_motion(session):
 
 
 def ends_when_the_robot_is_stopped(session):
-    handler = configure(session)
-    command(handler, session.home + OFFSET)
-    time.sleep(0.2)
+    handler, _ = on_a_far_way(session)
     session.robot.stop()
     session.state_at_rest()
     status = feedback(handler)
@@ -205,9 +207,9 @@ def aborts_beyond_the_range_of_the_joints(session):
     handler = configure(session)
     command(handler, [10.0] * 7)
     session.fresh_state()
-    end = time.monotonic() + TIME_MAX
+    end = session.fresh_state().time.to_sec() + TIME_MAX
     while (state := session.robot.read_once()).robot_mode == RobotMode.Move:
-        check(time.monotonic() < end, "a reflex")
+        check(state.time.to_sec() < end, "a reflex")
     equal("errors", str(state.current_errors), '["joint_position_limits_violation"]')
     equal("by a state", feedback(handler, state), (TargetStatus.kAborted, "Control aborted due to reflex."))
     # The second call reads the answer to the motion, of which there is only one.

@@ -26,7 +26,7 @@ SHIFT, TURN = numpy.array([0.03, 0.03, 0.05]), numpy.array([0.1, -0.1, 0.2])
 DURATION = 1.0
 # The lag of the motors, in joint positions, rad, and of the end effector, m.
 JOINT_LAG, TIP_LAG = 5e-3, 2e-3
-# Twists are integrated, so errors from lost commands are corrected from the pose that the robot reports.
+# Twists are integrated, from the pose that the robot reports.
 TURN_TOLERANCE = 1e-3
 
 
@@ -101,7 +101,7 @@ def to_joints(session, start, commands, controller, target):
     near("q", after.q, target, JOINT_LAG)
     lag = max(spread(state.q, state.q_d) for state in states)
     check(lag < JOINT_LAG, f"joints lag by {lag:.2e} rad")
-    # At the steepest of the plan; steering back after lost commands may be somewhat faster.
+    # At the steepest of the plan.
     peak = numpy.max(numpy.abs([state.dq_d for state in states]), axis=0)
     steepest = numpy.abs(plan(DURATION / 2)[1])
     near("fastest dq_d", peak, steepest, 0.1 * steepest.max() + 0.01)

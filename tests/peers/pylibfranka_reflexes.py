@@ -5,8 +5,6 @@ after which the arm moves again. Errors are named after the commanded quantity: 
 is one in its derivatives too.
 """
 
-import time
-
 import numpy
 from pylibfranka import (
     CartesianPose,
@@ -32,7 +30,7 @@ from plans import (
     standing_pose,
     turn,
 )
-from steps import LATE, Session, check, column_major, equal, matrix, near, refuses, script, spread
+from steps import Session, check, column_major, equal, matrix, near, refuses, script, spread
 
 ABORTED = "libfranka: Move command aborted: motion aborted by reflex!"
 REFUSED = 'libfranka: Move command rejected: command not possible in the current mode ("Reflex")!'
@@ -121,14 +119,6 @@ def torques_may_not_make_a_joint_too_fast(session):
     return summary
 
 
-def commands_have_to_come_in_time(session):
-    def sleepy(t, state):
-        time.sleep(0.05)
-        return by_joints(0.0)(t, state)
-
-    return violates(session, joint_motion(session), standing_joints(), sleepy, [LATE])
-
-
 def a_moving_arm_cannot_finish(session):
     start = numpy.array(session.state_at_rest().q_d)
     control = session.robot.start_joint_velocity_control(ControllerMode.JointImpedance)
@@ -137,7 +127,7 @@ def a_moving_arm_cannot_finish(session):
     try:
         follow(control, joint_velocities(plan), 0.5)
     except ControlException as error:
-        equal("text", first_line(error, text), text)
+        equal("text", first_line(error), text)
     else:
         raise AssertionError("the motion finished")
     del control
@@ -206,9 +196,7 @@ def violates(session, start, calm, violation, errors, others=None, noticed=NOTIC
             state, _ = control.readOnce()
             control.writeOnce(calm(cycle * CYCLE, state) if calm and cycle < CALM else violation(0.0, state))
     except ControlException as error:
-        if LATE in str(error) and LATE not in errors:
-            raise
-        text = first_line(error, ABORTED)
+        text = first_line(error)
     check(text is not None, "no exception")
     del control
     state = session.fresh_state()
@@ -229,10 +217,8 @@ def violates(session, start, calm, violation, errors, others=None, noticed=NOTIC
     return ", ".join(named)
 
 
-def first_line(error, text):
-    """The text without statistics of the connection, which may follow; raises errors of late commands again."""
-    if LATE in str(error) and LATE not in text and "still moving" in text:
-        raise error
+def first_line(error):
+    """The text without statistics of the connection, which may follow."""
     return str(error).splitlines()[0]
 
 
@@ -313,7 +299,6 @@ if __name__ == "__main__":
             torques_may_not_begin_with_a_jump,
             torques_may_not_jump,
             torques_may_not_make_a_joint_too_fast,
-            commands_have_to_come_in_time,
             a_moving_arm_cannot_finish,
             a_push_is_a_contact_and_then_a_collision,
             recovery_without_a_reflex_does_nothing,

@@ -1,10 +1,10 @@
-"""Shared code of the scripts in this directory: steps that are run, repeated and counted, and checks of results.
+"""Shared code of the scripts in this directory: steps that are run and counted, and checks of results.
 
 A step is a function; its name says what it proves, and its return value is printed. Each prints one line, the last line
 counts them, and the exit code of a script is 0 only if none failed.
 
-Client and simulator share a machine that may be busy. Twenty commands lost in a row end any motion. This is no fault of
-the simulator, so the step is then repeated, a few times at most, and the output says so.
+Client and simulator share a machine that may be busy, and no result depends on that. Where the client commands in cycles,
+the simulator is in virtual time: the next millisecond begins with the command. Limits of time are in robot time.
 """
 
 import sys
@@ -12,10 +12,8 @@ import time
 import traceback
 
 import numpy
-from pylibfranka import ControlException, RealtimeConfig, Robot, RobotMode
+from pylibfranka import RealtimeConfig, Robot, RobotMode
 
-LATE = "communication_constraints_violation"
-REPEATS_MAX = 4
 # Beyond this the arm still moves, rad/s; the robot's own motions and reflexes end within this, s.
 REST = 1e-3
 REST_TIME_MAX = 3.0
@@ -35,7 +33,7 @@ def run(steps, session):
         name = step.__name__.replace("_", " ")
         start = time.monotonic()
         try:
-            summary = repeat_if_late(step, session)
+            summary = step(session)
         except Exception as error:  # Any exception of any step is a failure of that step.
             print(f"FAIL  {name}: {type(error).__name__}: {error}", flush=True)
             traceback.print_exc()
@@ -50,25 +48,13 @@ def run(steps, session):
     return 1 if failed else 0
 
 
-def repeat_if_late(step, session):
-    for _ in range(REPEATS_MAX):
-        try:
-            return step(session)
-        except ControlException as error:
-            if LATE not in str(error):
-                raise
-            print(f"      repeated for late commands: {error}", flush=True)
-        session.clear()
-    return step(session)
-
-
 class Session:
     """A connection to the robot that the steps share."""
 
     def __init__(self, address):
         self.address = address
         self.connect()
-        # Joint positions to which motions are relative, so that a repeated motion ends at the same place.
+        # Joint positions to which motions are relative.
         self.home = numpy.array(self.fresh_state().q_d)
 
     def connect(self):

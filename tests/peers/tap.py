@@ -5,7 +5,6 @@ on as it is, but for the port to which states are to go, and notes the modes of 
 """
 
 import multiprocessing
-import os
 import select
 import socket
 import struct
@@ -19,8 +18,6 @@ CONNECT_REQUEST, MOVE_REQUEST = struct.Struct("<HH"), struct.Struct("<II")
 # Offsets of the modes in a state of protocol 10.
 GENERATOR_MODE, CONTROLLER_MODE, ROBOT_MODE = 1288, 1289, 1372
 STATE_SIZE = 1377
-# Below the client, and equal to the simulator.
-PRIORITY = 10
 CLIENT_TIME_MAX = 30.0
 
 
@@ -45,10 +42,6 @@ class Tap:
 
 def serve(listener, robot, here, notes):
     """Serves one client until it disconnects."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-    except OSError:
-        pass  # Late on a busy machine, like the simulator.
     # Without a client by then, the process that made the relay has ended.
     listener.settimeout(CLIENT_TIME_MAX)
     client, _ = listener.accept()

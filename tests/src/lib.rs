@@ -4,6 +4,7 @@
 //! | module | what it is |
 //! |---|---|
 //! | [`mod@bench`] | what the work of one control cycle costs |
+//! | [`broken_socket`] | receives that fail on a socket of another thread |
 //! | [`cycle_counts`] | cycles, calls and success rates that a control function counts |
 //! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
 //! | [`mishaps`] | networks with one kind of fault each |
@@ -11,6 +12,7 @@
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
 pub mod bench;
+pub mod broken_socket;
 pub mod cycle_counts;
 pub mod golden;
 pub mod lockstep;

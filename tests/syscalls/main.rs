@@ -72,7 +72,7 @@ fn assert_clean(threads: &[Calls]) {
         panic!("one control thread: {threads:?}")
     };
     assert_eq!(forbidden(thread), BTreeMap::new());
-    // A second or more, with at least three calls per millisecond.
+    // At least three calls for each of a thousand states.
     assert!(thread.of_the_cycle().len() > 2000, "the trace is too short");
 }
 
@@ -141,6 +141,28 @@ fn a_users_thread_makes_allowed_calls_only_while_it_is_the_cycle() {
             // The driver's own thread only waits meanwhile.
             let driver = forbidden(called(CONTROL).expect("it ran"));
             assert_eq!(driver.keys().collect::<Vec<_>>(), ["futex"]);
+        },
+    );
+}
+
+#[test]
+fn failing_receives_and_an_idle_borrower_cause_allowed_calls_and_a_wait_for_the_borrower() {
+    trace(
+        failing_receives_and_an_idle_borrower_cause_allowed_calls_and_a_wait_for_the_borrower,
+        &[CONTROL],
+        scenarios::failing(),
+        |threads| {
+            let [thread] = threads else {
+                panic!("one control thread: {threads:?}")
+            };
+            assert_eq!(forbidden(thread).keys().collect::<Vec<_>>(), ["futex"]);
+            let calls = counted(thread.of_the_cycle());
+            let pauses = calls.get("poll").or(calls.get("ppoll"));
+            assert!(pauses >= Some(&1000), "{calls:?}");
+            assert!(
+                calls.contains_key("write to anon_inode:[eventfd]"),
+                "{calls:?}"
+            );
         },
     );
 }

@@ -1,9 +1,12 @@
 //! What the traced child does: it controls a simulated robot in the same process, in every way.
 
 use std::future::IntoFuture;
+use std::net::{IpAddr, Ipv4Addr};
+use std::ops::ControlFlow;
+use std::os::fd::AsRawFd;
 use std::os::unix::process::parent_id;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use franka_async::control::{
@@ -12,11 +15,16 @@ use franka_async::control::{
 use franka_async::error::Lapse;
 use franka_async::goal::{Backend, Chunk, Deadman, Free, Gains, OnTimeout, Setpoints, Tuning};
 use franka_async::{
-    Active, Arm, AsynchronousOptions, Control, Engage, MotionError, Pose, Realtime, Robot,
+    Active, Arm, AsynchronousOptions, Control, Engage, Motion, MotionError, Pose, Realtime, Robot,
     RobotState,
 };
-use franka_proto::{MoveControllerMode, RobotError};
+use franka_proto::{MoveControllerMode, RobotError, Version};
+use franka_rt::driver::Driver;
+use franka_rt::exchange;
+use franka_rt::sched::Scheduling;
+use franka_rt::thread::{self, ThreadConfig};
 use franka_sim::{Running, Sim, Tool};
+use franka_tests::broken_socket::BrokenSocket;
 use tokio::sync::watch;
 use tokio::time::sleep;
 
@@ -26,7 +34,10 @@ pub(crate) const ACTIVE: &str = "active-control";
 /// A simulated FR3 and a handle on it. Tracing makes commands late, which this robot tolerates.
 async fn simulated() -> (Robot, Running) {
     let sim = Sim::fr3().tool(Tool::hand());
-    let sim = sim.enforce_limits(false).enforce_communication(false);
+    let sim = sim.configure(|config| {
+        config.enforce_limits = false;
+        config.enforce_communication = false;
+    });
     let sim = sim.start().await.expect("a simulator starts");
     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
     let builder = builder.link_timeout(Duration::from_millis(500));
@@ -34,18 +45,51 @@ async fn simulated() -> (Robot, Running) {
     (robot, sim)
 }
 
+/// A motion that takes the robot some twenty seconds.
+fn long_way(robot: &Robot) -> <Motion as IntoFuture>::IntoFuture {
+    robot.move_to(above(robot, 0.1)).speed(0.05).into_future()
+}
+
 fn above(robot: &Robot, metres: f64) -> Pose {
     Pose::translation(0.0, 0.0, metres) * robot.pose()
+}
+
+/// Waits until the control thread has taken so many states more.
+async fn states(robot: &Robot, count: u64) {
+    let states = &robot.stats().states;
+    let end = states.get() + count;
+    until(|| states.get() >= end).await;
+}
+
+async fn until(holds: impl Fn() -> bool) {
+    while !holds() {
+        sleep(Duration::from_millis(1)).await;
+    }
+}
+
+/// Holds the simulator up until `noticed` completes.
+async fn in_silence<T>(sim: &Running, noticed: impl Future<Output = T>) -> T {
+    let (go_on, held) = mpsc::channel::<()>();
+    let noticed = async {
+        let noticed = noticed.await;
+        drop(go_on);
+        noticed
+    };
+    let (silence, noticed) = tokio::join!(sim.with(move |_| held.recv()), noticed);
+    silence
+        .expect("it comes back")
+        .expect_err("nothing is sent");
+    noticed
 }
 
 /// No motion; then no states either.
 pub(crate) async fn watching() {
     let (robot, sim) = simulated().await;
-    sleep(Duration::from_secs(1)).await;
-    // Longer than the link timeout.
-    let silence = sim.with(|_| std::thread::sleep(Duration::from_millis(900)));
-    silence.await.expect("it comes back");
-    sleep(Duration::from_millis(300)).await;
+    states(&robot, 1000).await;
+    let reading = robot.read(|_| ControlFlow::<()>::Continue(()));
+    let lost = in_silence(&sim, reading).await;
+    lost.expect_err("the link is lost");
+    states(&robot, 300).await;
     robot.shutdown().await;
 }
 
@@ -53,8 +97,8 @@ pub(crate) async fn watching() {
 pub(crate) async fn targets() {
     let (robot, sim) = simulated().await;
     let start = robot.pose();
-    let first = tokio::spawn(robot.move_to(above(&robot, 0.1)).into_future());
-    sleep(Duration::from_millis(300)).await;
+    let first = tokio::spawn(long_way(&robot));
+    states(&robot, 300).await;
     let mut q = robot.state().q_d;
     q[0] += 0.1;
     robot.move_joints(q).await.expect("it arrives");
@@ -65,21 +109,20 @@ pub(crate) async fn targets() {
     for step in 1..=5 {
         let pose = Pose::translation(0.0, 0.004 * f64::from(step), 0.0) * start;
         sender.send(pose).expect("the motion goes on");
-        sleep(Duration::from_millis(100)).await;
+        states(&robot, 100).await;
     }
     drop(sender);
     following.await.expect("no panic").expect("it arrives");
 
-    let stopped = tokio::spawn(robot.move_to(above(&robot, 0.1)).into_future());
-    sleep(Duration::from_millis(400)).await;
+    let stopped = tokio::spawn(long_way(&robot));
+    states(&robot, 400).await;
     robot.stop().await.expect("the arm rests");
     stopped.await.expect("no panic").expect_err("stopped");
 
-    let lost = tokio::spawn(robot.move_to(above(&robot, 0.1)).into_future());
-    sleep(Duration::from_millis(400)).await;
-    let silence = sim.with(|_| std::thread::sleep(Duration::from_millis(900)));
-    silence.await.expect("it comes back");
-    lost.await.expect("no panic").expect_err("the link is lost");
+    let lost = tokio::spawn(long_way(&robot));
+    states(&robot, 400).await;
+    let lost = in_silence(&sim, lost).await;
+    lost.expect("no panic").expect_err("the link is lost");
     robot.shutdown().await;
 }
 
@@ -87,46 +130,53 @@ pub(crate) async fn targets() {
 /// times out.
 pub(crate) async fn engaged() {
     let (robot, _sim) = simulated().await;
-    let (deadman, monitor) = Deadman::new(Duration::from_millis(500));
-    let seen = Arc::new(AtomicU64::new(0));
-    let count = seen.clone();
-    let engage = Engage::default().deadman(monitor).observer(move |_, _| {
-        count.fetch_add(1, Ordering::Relaxed);
-    });
+    let (engage, alive) = kept_alive();
     let arm = robot.engage(engage).await.expect("it begins");
-    every_kind_of_goal(&robot, &arm, &deadman).await;
+    every_kind_of_goal(&robot, &arm).await;
     arm.guide(Free::ALL).await.expect("it floats");
-    still(&deadman).await;
+    states(&robot, 500).await;
     let tuning = Tuning {
         gains: Some(Gains::cartesian()),
         budget: None,
         ..Tuning::default()
     };
     arm.tune(tuning).await.expect("gains within their bounds");
-    still(&deadman).await;
-    let records = seen.load(Ordering::Relaxed);
-    assert!(records > 500, "{records} cycles seen");
+    states(&robot, 500).await;
     // The arm is held when the deadman times out.
-    let held = arm.move_to(above(&robot, 0.1)).await;
+    alive.store(false, Ordering::Relaxed);
+    let held = arm.move_to(above(&robot, 0.1)).speed(0.05).await;
     assert_eq!(held, Err(MotionError::Held(Lapse::Deadman)));
-    deadman.keep_alive();
+    alive.store(true, Ordering::Relaxed);
     arm.disengage().await.expect("it ends");
 
-    let (deadman, monitor) = Deadman::new(Duration::from_millis(500));
+    let (engage, _alive) = kept_alive();
     let backend = Backend::RobotController(Setpoints::Joints);
-    let engage = Engage::default().deadman(monitor).backend(backend);
-    let arm = robot.engage(engage).await.expect("it begins");
-    every_kind_of_goal(&robot, &arm, &deadman).await;
+    let arm = robot.engage(engage.backend(backend)).await;
+    let arm = arm.expect("it begins");
+    every_kind_of_goal(&robot, &arm).await;
     arm.disengage().await.expect("it ends");
     robot.shutdown().await;
 }
 
+/// A session with a deadman that its observer keeps alive while the flag is set.
+fn kept_alive() -> (Engage, Arc<AtomicBool>) {
+    let (deadman, monitor) = Deadman::new(Duration::from_millis(500));
+    let alive = Arc::new(AtomicBool::new(true));
+    let seen = alive.clone();
+    let engage = Engage::default().deadman(monitor).observer(move |_, _| {
+        if seen.load(Ordering::Relaxed) {
+            deadman.keep_alive();
+        }
+    });
+    (engage, alive)
+}
+
 /// Joint positions, a chunk, and a stream of poses that times out.
-async fn every_kind_of_goal(robot: &Robot, arm: &Arm, deadman: &Deadman) {
+async fn every_kind_of_goal(robot: &Robot, arm: &Arm) {
     let mut q = robot.state().q_d;
     q[0] += 0.05;
     arm.set_joints(q).await.expect("the session takes it");
-    still(deadman).await;
+    states(robot, 500).await;
     let q = robot.state().q_d;
     let points = (0..6).map(|k| {
         let mut q = q;
@@ -135,19 +185,16 @@ async fn every_kind_of_goal(robot: &Robot, arm: &Arm, deadman: &Deadman) {
     });
     let chunk = Chunk::joints(points).expect("finite points");
     arm.chunk(chunk).await.expect("the session takes it");
-    still(deadman).await;
+    states(robot, 500).await;
     let (sender, targets) = watch::channel(robot.pose());
     let silence = Duration::from_millis(200);
     let following = arm.follow(targets).watchdog(silence, OnTimeout::Brake);
     let following = tokio::spawn(following.into_future());
     for step in 1..=3 {
-        sender
-            .send(above(robot, 0.01 * f64::from(step)))
-            .expect("it goes on");
-        sleep(Duration::from_millis(100)).await;
-        deadman.keep_alive();
+        // On a slow host it has timed out before.
+        let _ = sender.send(above(robot, 0.01 * f64::from(step)));
+        states(robot, 100).await;
     }
-    still(deadman).await;
     let lapse = following
         .await
         .expect("no panic")
@@ -156,15 +203,6 @@ async fn every_kind_of_goal(robot: &Robot, arm: &Arm, deadman: &Deadman) {
         matches!(lapse, MotionError::Braked(Lapse::Silent { .. })),
         "{lapse}"
     );
-    deadman.keep_alive();
-}
-
-/// Half a second in which the deadman is kept alive.
-async fn still(deadman: &Deadman) {
-    for _ in 0..10 {
-        sleep(Duration::from_millis(50)).await;
-        deadman.keep_alive();
-    }
 }
 
 /// A control function that answers so many states with a command, and calls `also` each time.
@@ -214,15 +252,16 @@ pub(crate) async fn functions() {
         let report = function.limit_rate(true).await.expect("it finishes");
         assert!(report.duration > Duration::from_millis(100), "{report:?}");
     }
-    let tripped = tokio::spawn(robot.control_torques(torques()).into_future());
-    sleep(Duration::from_millis(100)).await;
+    let endless = |_: &RobotState, _: Duration| Next::from(Torques([0.0; 7]));
+    let tripped = tokio::spawn(robot.control_torques(endless).into_future());
+    states(&robot, 100).await;
     let trip = sim.with(|robot| robot.trip(RobotError::CartesianReflex));
     trip.await.expect("the simulator runs");
     let error = tripped.await.expect("no panic").expect_err("a reflex");
     let control = error.control().expect("ended by the robot");
     assert!(!control.log.is_empty(), "{control:?}");
     robot.recover().await.expect("it recovers");
-    sleep(Duration::from_millis(200)).await;
+    states(&robot, 200).await;
     robot.shutdown().await;
 }
 
@@ -261,11 +300,38 @@ pub(crate) async fn asynchronous() {
     for way in [0.1, 0.1, -0.15] {
         q[0] += way;
         control.set_target(q).expect("it takes the target");
-        sleep(Duration::from_millis(500)).await;
+        states(&robot, 500).await;
     }
     control.reached().await.expect("it arrives");
     control.finish().await.expect("it ends");
     robot.shutdown().await;
+}
+
+/// A control thread whose receives fail, and whose borrower runs no turn.
+pub(crate) async fn failing() {
+    let robot = IpAddr::V4(Ipv4Addr::LOCALHOST);
+    let socket = exchange::bind(robot).expect("a free port");
+    let descriptor = socket.as_raw_fd();
+    let config = ThreadConfig {
+        scheduling: Scheduling {
+            realtime: Realtime::Ignore,
+            ..Scheduling::default()
+        },
+        ..ThreadConfig::default()
+    };
+    let version = Version::V10;
+    let handle = thread::spawn(config, Driver::new(version), socket, robot, version);
+    let handle = handle.expect("nothing is enforced");
+    let broken = BrokenSocket::new(descriptor).expect("a descriptor");
+    until(|| handle.stats.receive_errors.get() >= 1000).await;
+    drop(broken);
+    let lease = handle.lender.borrow().expect("the cycle is not lent");
+    until(|| handle.thread.stalled().is_some()).await;
+    drop(lease);
+    until(|| handle.thread.stalled().is_none()).await;
+    // The cycle is back with its thread.
+    drop(handle.lender.borrow().expect("the cycle is not lent"));
+    handle.thread.join().map(drop).expect("nothing panics");
 }
 
 /// A control function that makes another system call: `getppid`.

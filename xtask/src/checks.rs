@@ -90,8 +90,9 @@ impl Check {
                 };
                 let features = mujoco::features(workspace)?;
                 deny(&["--workspace", "--all-targets", "--features", &features])?;
-                deny(&["--workspace"])?;
-                deny(&["--package", "franka-async", "--no-default-features"])?;
+                // What is there only without a feature.
+                let driver_and_simulator = ["--package", "franka-async", "--package", "franka-sim"];
+                deny(&[&driver_and_simulator[..], &["--no-default-features"]].concat())?;
             }
             Self::Doc => {
                 let mut command = workspace.cargo();

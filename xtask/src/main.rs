@@ -127,7 +127,7 @@ fn run(task: Task) -> anyhow::Result<()> {
         } => live::run_simulator(&workspace, seconds),
         Task::Bench {
             starvation: true, ..
-        } => workspace.run(&mut workspace.cargo_release_binary("starvation")),
+        } => workspace.run(workspace.cargo_release_binary("live").arg("starvation")),
         Task::Bench { rounds, .. } => {
             let output = workspace.target().join("bench.json");
             // Without MuJoCo its row is missing.

@@ -1,15 +1,20 @@
 //! A simulated robot in the process of the test, which observes and disturbs it while a program
 //! controls it.
 
-use std::sync::mpsc;
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, mpsc};
+use std::time::Duration;
 
-use franka_async::{Realtime, RobotError, RobotMode, RobotState};
+use franka_async::{RobotError, RobotMode, RobotState};
 use franka_model::{EndEffector, Frame, JointVector, Load, Model, READY, Wrench};
-use franka_rt::sched::Scheduling;
-use franka_sim::{Sim, Tool};
-use tokio::sync::oneshot;
+use franka_sim::{Robot, Running, Sim, Tool};
+use tokio::runtime::{self, Runtime};
+
+/// How long a cycle waits for its command: less than the silence after which a client gives up.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// From one recorded state to the next, `[ms]`.
+pub(crate) const SAMPLE: u64 = 5;
 
 /// The initial state of a robot, and the events while a program moves it.
 #[derive(Clone)]
@@ -18,8 +23,9 @@ pub(crate) struct Scene {
     pub(crate) q: JointVector,
     /// The events while it moves, in order.
     pub(crate) events: Vec<(When, Event)>,
-    /// Whether lost commands end a motion.
-    pub(crate) strict: bool,
+    /// Whether the robot keeps the clock on the wall, and waits for late commands. In virtual time
+    /// otherwise, so that no command is late.
+    pub(crate) on_the_wall: bool,
 }
 
 /// Whether the next event is due, from the state and the milliseconds since the motion began.
@@ -37,12 +43,12 @@ pub(crate) enum Event {
 }
 
 impl Default for Scene {
-    /// In the ready pose, without disturbances, as strict as a real robot.
+    /// In the ready pose, without disturbances, in virtual time.
     fn default() -> Self {
         Self {
             q: READY,
             events: Vec::new(),
-            strict: true,
+            on_the_wall: false,
         }
     }
 }
@@ -50,115 +56,134 @@ impl Default for Scene {
 /// A running simulated robot.
 pub(crate) struct Arm {
     pub(crate) address: String,
-    end: oneshot::Sender<()>,
-    watching: JoinHandle<Course>,
+    sim: Running,
+    runtime: Runtime,
+    watch: Arc<Mutex<Watch>>,
 }
 
 /// The simulator's states, every few milliseconds.
-pub(crate) struct Course(Vec<Moment>);
-
-struct Moment {
-    at: Instant,
-    state: RobotState,
-}
+#[derive(Default)]
+pub(crate) struct Course(Vec<RobotState>);
 
 impl Arm {
     /// Starts the robot of this name.
     pub(crate) fn start(robot: &str, scene: Scene) -> Self {
+        Self::start_with(robot, scene, || {})
+    }
+
+    /// Starts a robot of each kind, whose milliseconds are the same.
+    pub(crate) fn in_step([one, other]: [Scene; 2]) -> [Self; 2] {
+        let (to_other, from_one) = mpsc::channel();
+        let (to_one, from_other) = mpsc::channel();
+        // Neither waits for a robot that has been stopped.
+        let meet = |sender: mpsc::Sender<()>, receiver: mpsc::Receiver<()>| {
+            move || {
+                let _ = sender.send(());
+                let _ = receiver.recv();
+            }
+        };
+        [
+            Self::start_with("fr3", one, meet(to_other, from_other)),
+            Self::start_with("fer", other, meet(to_one, from_one)),
+        ]
+    }
+
+    /// Starts the robot of this name, which calls `meet` every millisecond.
+    fn start_with(robot: &str, scene: Scene, mut meet: impl FnMut() + Send + 'static) -> Self {
         let sim = match robot {
             "fr3" => Sim::fr3(),
             "fer" => Sim::fer(),
             other => panic!("no robot is called {other}"),
         };
-        let sim = sim.tool(Tool::hand()).q(scene.q);
-        let sim = sim.enforce_communication(scene.strict);
-        let (started, address) = mpsc::channel();
-        let (end, ended) = oneshot::channel();
-        let watching = std::thread::spawn(move || {
-            // The simulator's thread inherits the scheduling of this one. With real-time
-            // scheduling, other work on this machine costs no cycles, as on a real robot.
-            let scheduling = Scheduling {
-                realtime: Realtime::Ignore,
-                priority: Some(10),
-                ..Scheduling::default()
-            };
-            scheduling.enter().expect("refusals are accepted");
-            let runtime = tokio::runtime::Builder::new_current_thread()
-                .enable_all()
-                .build()
-                .expect("a runtime starts");
-            runtime.block_on(async {
-                let sim = sim.start().await.expect("a simulator starts");
-                started
-                    .send(sim.addr().to_string())
-                    .expect("the test waits");
-                let watched = watch(&sim, &scene.events, ended).await;
-                sim.stop().await;
-                watched
-            })
+        let sim = sim.tool(Tool::hand()).configure(|config| {
+            config.q = scene.q;
+            config.enforce_communication = !scene.on_the_wall;
         });
+        let sim = match scene.on_the_wall {
+            true => sim,
+            false => sim.virtual_time(PATIENCE),
+        };
+        let watch = Arc::new(Mutex::new(Watch {
+            events: scene.events.into(),
+            moving: None,
+            course: Course::default(),
+        }));
+        let seen = watch.clone();
+        let sim = sim.every_millisecond(move |robot| {
+            meet();
+            seen.lock().expect("no panic").see(robot);
+        });
+        let mut runtime = runtime::Builder::new_multi_thread();
+        let runtime = runtime.worker_threads(1).enable_all().build();
+        let runtime = runtime.expect("a runtime starts");
+        let sim = runtime.block_on(sim.start()).expect("a simulator starts");
         Self {
-            address: address.recv().expect("the simulator has an address"),
-            end,
-            watching,
+            address: sim.addr().to_string(),
+            sim,
+            runtime,
+            watch,
         }
     }
 
     /// Ends the simulation and returns what the arm has done.
     pub(crate) fn stop(self) -> Course {
-        self.end.send(()).expect("the simulator runs");
-        self.watching.join().expect("no panic")
+        let last = self.runtime.block_on(self.sim.state());
+        self.runtime.block_on(self.sim.stop());
+        let mut watch = self.watch.lock().expect("no panic");
+        assert!(
+            watch.events.is_empty(),
+            "the motion ended before all events were due"
+        );
+        watch.course.0.push(last.expect("the simulator runs"));
+        std::mem::take(&mut watch.course)
     }
 }
 
-async fn watch(
-    sim: &franka_sim::Running,
-    events: &[(When, Event)],
-    mut ended: oneshot::Receiver<()>,
-) -> Course {
-    let mut moments = Vec::new();
-    let mut events = events.iter();
-    let mut next = events.next();
-    // The beginning of the present motion, in the robot's time.
-    let mut moving = None;
-    loop {
-        let state = sim.state().await.expect("the simulator runs");
-        let at = Instant::now();
-        moments.push(Moment { at, state });
-        if state.robot_mode == RobotMode::Move {
-            let since = *moving.get_or_insert(state.message_id);
-            let moving_for = state.message_id - since;
-            if let Some((_, event)) = next.filter(|(when, _)| when(&state, moving_for)) {
-                let event = *event;
-                sim.with(move |robot| match event {
-                    Event::PushHand([x, y, z], duration) => {
-                        let wrench = Wrench::new(x, y, z, 0.0, 0.0, 0.0);
-                        robot.push_end_effector(wrench, duration);
-                    }
-                    Event::SwingElbow(torque, duration) => {
-                        let (q, load) = (*robot.q(), Load::NONE);
-                        let torques = Model::fr3().mass(&q, &load) * self_motion(&q);
-                        robot.push_joints(torques * (torque / torques[2]), duration);
-                    }
-                    Event::Trip(error) => robot.trip(error),
-                })
-                .await
-                .expect("the simulator runs");
-                next = events.next();
-            }
-        } else {
-            moving = None;
+/// The observer of a robot.
+struct Watch {
+    /// Those that are not yet due.
+    events: VecDeque<(When, Event)>,
+    /// The beginning of the present motion, in the robot's time.
+    moving: Option<u64>,
+    course: Course,
+}
+
+impl Watch {
+    /// Records the state, and disturbs the robot if that is due.
+    fn see(&mut self, robot: &mut Robot) {
+        let state = robot.state();
+        let now = state.message_id;
+        if now.is_multiple_of(SAMPLE) {
+            self.course.0.push(*state);
         }
-        tokio::select! {
-            _ = &mut ended => break,
-            () = tokio::time::sleep(Duration::from_millis(5)) => {}
+        if state.robot_mode != RobotMode::Move {
+            self.moving = None;
+            return;
+        }
+        let moving_for = now - *self.moving.get_or_insert(now);
+        let next = self.events.front();
+        if let Some((_, event)) = next.copied().filter(|(when, _)| when(state, moving_for)) {
+            self.events.pop_front();
+            event.happen(robot);
         }
     }
-    assert!(
-        next.is_none(),
-        "the motion ended before all events were due"
-    );
-    Course(moments)
+}
+
+impl Event {
+    fn happen(self, robot: &mut Robot) {
+        match self {
+            Self::PushHand([x, y, z], duration) => {
+                let wrench = Wrench::new(x, y, z, 0.0, 0.0, 0.0);
+                robot.push_end_effector(wrench, duration);
+            }
+            Self::SwingElbow(torque, duration) => {
+                let (q, load) = (*robot.q(), Load::NONE);
+                let torques = Model::fr3().mass(&q, &load) * self_motion(&q);
+                robot.push_joints(torques * (torque / torques[2]), duration);
+            }
+            Self::Trip(error) => robot.trip(error),
+        }
+    }
 }
 
 /// The direction in which the joints at `q` can move without the hand, joint 3 forwards; of length
@@ -175,12 +200,12 @@ fn self_motion(q: &JointVector) -> JointVector {
 impl Course {
     /// The state at the end.
     pub(crate) fn last(&self) -> &RobotState {
-        &self.0.last().expect("there is one at least").state
+        self.0.last().expect("there is one at least")
     }
 
     /// The smallest and the greatest value of a quantity.
     pub(crate) fn extent(&self, of: impl Fn(&RobotState) -> f64) -> (f64, f64) {
-        let values = self.0.iter().map(|moment| of(&moment.state));
+        let values = self.0.iter().map(of);
         values.fold(
             (f64::INFINITY, f64::NEG_INFINITY),
             |(least, most), value| (least.min(value), most.max(value)),
@@ -190,14 +215,14 @@ impl Course {
     /// The displacement of the hand from its start along an axis of the base, `[m]`: smallest,
     /// greatest, and last.
     pub(crate) fn hand(&self, axis: usize) -> (f64, f64, f64) {
-        let of = |state: &RobotState| state.O_T_EE[12 + axis] - self.0[0].state.O_T_EE[12 + axis];
+        let of = |state: &RobotState| state.O_T_EE[12 + axis] - self.0[0].O_T_EE[12 + axis];
         let (least, most) = self.extent(of);
         (least, most, of(self.last()))
     }
 
     /// The displacement of a joint from its start, `[rad]`: smallest, greatest, and last.
     pub(crate) fn joint(&self, joint: usize) -> (f64, f64, f64) {
-        let of = |state: &RobotState| state.q[joint] - self.0[0].state.q[joint];
+        let of = |state: &RobotState| state.q[joint] - self.0[0].q[joint];
         let (least, most) = self.extent(of);
         (least, most, of(self.last()))
     }
@@ -213,9 +238,9 @@ impl Course {
         (least, most, of(self.last()))
     }
 
-    /// The first time at which a condition held.
-    pub(crate) fn first(&self, so: impl Fn(&RobotState) -> bool) -> Option<Instant> {
-        let moment = self.0.iter().find(|moment| so(&moment.state));
-        moment.map(|moment| moment.at)
+    /// The first millisecond of the robot, as recorded, in which a condition held.
+    pub(crate) fn first(&self, so: impl Fn(&RobotState) -> bool) -> Option<u64> {
+        let state = self.0.iter().find(|state| so(state));
+        state.map(|state| state.message_id)
     }
 }

@@ -8,11 +8,10 @@ mod program;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Stdio};
 
-use program::{ROBOTS, alone, example};
+use program::{ROBOTS, example};
 
 /// Runs an example with its own simulator, and returns its output.
 fn run(name: &str, robot: &str) -> String {
-    let _alone = alone();
     let said = program::run(name, &["--sim", robot], "");
     assert_eq!(said.code, Some(0), "{name} on {robot}: {said:?}");
     said.stdout
@@ -67,7 +66,6 @@ impl Drop for Service {
 
 #[test]
 fn the_web_service_moves_the_arm() {
-    let _alone = alone();
     for robot in ROBOTS {
         let child = example("axum_service")
             .args(["--sim", robot, "--listen", "127.0.0.1:0"])

@@ -7,7 +7,7 @@ use std::net::SocketAddr;
 use franka_model::urdf::UrdfError;
 use franka_proto::framing::FrameError;
 use franka_proto::{IncompatibleVersion, Protocol, Version, Violation};
-use franka_rt::driver::LinkTimeoutError;
+use franka_rt::driver::{ControlLog, LinkTimeoutError};
 use franka_rt::lifecycle::{CloseReason, Party};
 use franka_rt::sched::SchedError;
 use franka_rt::thread::{LinkFault, StartError};
@@ -32,6 +32,16 @@ pub enum ConnectError<P: Protocol = Version> {
     /// [`Builder::link_timeout`](crate::Builder::link_timeout).
     #[error(transparent)]
     LinkTimeout(#[from] LinkTimeoutError),
+    /// Caller: the log of a motion is to hold more cycles than there is memory for, see
+    /// [`Builder::log_size`](crate::Builder::log_size). Nothing was sent.
+    #[error(
+        "a log of {got} cycles is too long: expected {} at most",
+        ControlLog::CAPACITY_MAX
+    )]
+    LogSize {
+        /// Cycles asked for.
+        got: usize,
+    },
     /// Host: no thread, socket or descriptor.
     #[error("the connection cannot be set up: {0}")]
     System(#[from] io::Error),
@@ -95,7 +105,7 @@ impl<P: Protocol> ConnectError<P> {
     /// Who can act on it.
     pub fn party(&self) -> Party {
         match self {
-            Self::Endpoint(_) | Self::LinkTimeout(_) => Party::Caller,
+            Self::Endpoint(_) | Self::LinkTimeout(_) | Self::LogSize { .. } => Party::Caller,
             // One that refuses is there, the others need not be.
             Self::NoAddress { attempts } => attempts
                 .iter()

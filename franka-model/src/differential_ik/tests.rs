@@ -3,7 +3,7 @@ use crate::analytic_ik::reach;
 use crate::jacobian::squared_manipulabilities;
 use crate::oracle::minimum_by_enumeration;
 use crate::random::Random;
-use crate::{EndEffector, Frame, Model, READY, RobotKind, joint_vector, rotation};
+use crate::{CYCLE, EndEffector, Frame, Model, READY, RobotKind, joint_vector, rotation};
 use nalgebra::{Isometry3, Vector3};
 
 const UNBOUNDED: JointVector = joint_vector([f64::INFINITY; 7]);
@@ -205,7 +205,6 @@ struct Follower {
 }
 
 impl Follower {
-    const CYCLE: f64 = 1e-3;
     /// Rate at which errors are fed back, `[1/s]`.
     const FEEDBACK: f64 = 100.0;
     /// Deceleration of the braking envelope, `[rad/s²]`.
@@ -229,7 +228,7 @@ impl Follower {
         let limits = model.joint_limits();
         let speed = |i: usize, distance: f64| {
             let braking = (2.0 * Self::BRAKING * distance.max(0.0)).sqrt();
-            let there = distance.max(0.0) / Self::CYCLE;
+            let there = distance.max(0.0) / CYCLE;
             braking.min(there).min(limits.velocity[i])
         };
         let bounds = JointBox::new(
@@ -249,10 +248,9 @@ impl Follower {
             speed(i, self.q[i] - limits.lower[i]).min(speed(i, limits.upper[i] - self.q[i])) < 1e-3
         };
         self.pinned += u32::from((0..7).any(|i| self.active[i] != Side::Free && at_limit(i)));
-        self.q += solution.velocity * Self::CYCLE;
+        self.q += solution.velocity * CYCLE;
         assert!(limits.contains(&self.q));
-        (flange(&self.q).translation.vector - target.translation.vector - velocity * Self::CYCLE)
-            .norm()
+        (flange(&self.q).translation.vector - target.translation.vector - velocity * CYCLE).norm()
     }
 
     /// Follows a straight line of `length` at `speed` from where it is, orientation kept; the
@@ -260,11 +258,11 @@ impl Follower {
     fn line(&mut self, model: &Model, direction: &Vector3<f64>, length: f64, speed: f64) -> f64 {
         let mut target = flange(&self.q);
         let velocity = direction * speed;
-        let cycles = (length / speed / Self::CYCLE) as u32;
+        let cycles = (length / speed / CYCLE) as u32;
         let mut worst = 0.0_f64;
         for _ in 0..cycles {
             worst = worst.max(self.step(model, &target, &velocity));
-            target.translation.vector += velocity * Self::CYCLE;
+            target.translation.vector += velocity * CYCLE;
         }
         worst
     }

@@ -1,6 +1,7 @@
 //! How far the searches stay below the ceilings that bound them.
 
-use super::random::{beside_one_that_takes, stop_point};
+use super::allowed::beside_one_that_takes;
+use super::random::stop_point;
 use crate::{AxisLimits, AxisState, Generator, Limits, Synchronisation, search_passes};
 
 /// The most passes, in percent of what a search may take, over the motions from one state to a

@@ -97,21 +97,23 @@ proptest! {
     }
 }
 
+/// About those of an arm's joint.
+const JOINT: AxisLimits = AxisLimits {
+    velocity: 2.0,
+    acceleration: 10.0,
+    jerk: 5000.0,
+};
+
 #[test]
 fn a_target_at_the_stop_point_is_a_stop() {
-    let limits = AxisLimits {
-        velocity: 2.0,
-        acceleration: 10.0,
-        jerk: 5000.0,
-    };
     let state = AxisState {
         position: 0.1,
         velocity: 1.5,
         acceleration: -3.0,
     };
-    let stopping = Generator::new(one(state), Limits::per_axis([limits]).unwrap()).unwrap();
+    let stopping = Generator::new(one(state), Limits::per_axis([JOINT]).unwrap()).unwrap();
     let case = Case {
-        limits,
+        limits: JOINT,
         state,
         target: stopping.target()[0],
     };
@@ -120,13 +122,8 @@ fn a_target_at_the_stop_point_is_a_stop() {
 
 #[test]
 fn the_smallest_distance_is_moved() {
-    let limits = AxisLimits {
-        velocity: 2.0,
-        acceleration: 10.0,
-        jerk: 5000.0,
-    };
     let case = Case {
-        limits,
+        limits: JOINT,
         state: AxisState::at_rest(1.0),
         target: 1.0 + f64::EPSILON,
     };

@@ -1,5 +1,6 @@
 //! Properties of whole motions. The parts have their tests beside them.
 
+mod allowed;
 mod bounds;
 mod closed_loop;
 mod extreme;
@@ -14,3 +15,5 @@ mod stretched;
 mod walk;
 
 pub(super) use random::cases;
+
+use crate::{AxisLimits, AxisState, Limits, State};

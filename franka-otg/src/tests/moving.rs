@@ -4,10 +4,8 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 
-use super::random::{
-    arm_limits, beside_one_that_takes, cases, extreme_limits, many, many_moving, mixed_limits,
-    target_motion,
-};
+use super::allowed::{beside_one_that_takes, target_motion};
+use super::random::{arm_limits, cases, extreme_limits, many, many_moving, mixed_limits};
 use super::walk::{check_motion, check_step};
 use crate::{AxisLimits, AxisState, CYCLE, Generator, Limits, State, Synchronisation};
 

@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 
+use super::allowed::{inside, target_motion, way_to_speed};
 use crate::{AxisLimits, AxisState, Generator, Limits, State};
 
 /// A number whose logarithm is uniform over `10^low..10^high`.
@@ -64,22 +65,6 @@ pub(super) fn one(state: AxisState) -> State<1> {
     }
 }
 
-/// A state inside `limits` that can stay there: `coasting` and `bend` are fractions of what it may
-/// have.
-fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64) -> AxisState {
-    let sign = 1_f64.copysign(bend);
-    let coasting = limits.velocity * coasting;
-    // The velocity on the way to zero acceleration must not start outside either.
-    let room = (2.0 * limits.jerk * (limits.velocity + sign * coasting)).sqrt();
-    let acceleration = bend * limits.acceleration.min(room);
-    let lost = 0.5 * acceleration * acceleration.abs() / limits.jerk;
-    AxisState {
-        position,
-        velocity: (coasting - lost).clamp(-limits.velocity, limits.velocity),
-        acceleration,
-    }
-}
-
 /// The position at which an axis with these limits comes to rest if it stops.
 pub(super) fn stop_point(limits: AxisLimits, state: AxisState) -> f64 {
     let limits = Limits::per_axis([limits]).unwrap();
@@ -93,14 +78,7 @@ pub(super) fn problems(limits: impl Strategy<Value = AxisLimits>) -> impl Strate
     (limits, fraction(), fraction(), distance).prop_map(
         |(limits, coasting, bend, (exponent, up))| {
             let state = inside(limits, 0.25, coasting, bend);
-            let AxisLimits {
-                velocity,
-                acceleration,
-                jerk,
-            } = limits;
-            let scale = velocity
-                * (velocity / acceleration + acceleration.min((velocity * jerk).sqrt()) / jerk);
-            let distance = scale * 10_f64.powf(exponent);
+            let distance = way_to_speed(limits) * 10_f64.powf(exponent);
             let stop = stop_point(limits, state);
             Case {
                 limits,
@@ -126,13 +104,6 @@ pub(super) fn many<const N: usize>(
     })
 }
 
-/// A motion that a target may have: it can be met inside `limits`, and left.
-pub(super) fn target_motion(limits: AxisLimits, speed: f64, bend: f64) -> (f64, f64) {
-    let velocity = speed * limits.velocity;
-    let room = 2.0 * limits.jerk * (limits.velocity - velocity.abs());
-    (velocity, bend * limits.acceleration.min(room.sqrt()))
-}
-
 /// Limits, states and targets in motion of `N` axes; some targets move with constant velocity, some
 /// rest.
 pub(super) fn many_moving<const N: usize>(
@@ -151,32 +122,6 @@ pub(super) fn many_moving<const N: usize>(
             }
             (limits, state, target)
         },
-    )
-}
-
-/// One axis on its way to a target, beside one that takes `duration` from rest to rest.
-pub(super) fn beside_one_that_takes(
-    duration: f64,
-    limits: AxisLimits,
-    state: AxisState,
-    target: AxisState,
-) -> (Limits<2>, State<2>, State<2>) {
-    // Four ramps of the jerk that neither velocity nor acceleration limit: distance 2 ramp^3.
-    let ramp = 0.25 * duration;
-    let beside = AxisLimits {
-        velocity: 2.0 * ramp * ramp,
-        acceleration: 2.0 * ramp,
-        jerk: 1.0,
-    };
-    let both = |one: AxisState, position| State {
-        position: [one.position, position],
-        velocity: [one.velocity, 0.0],
-        acceleration: [one.acceleration, 0.0],
-    };
-    (
-        Limits::per_axis([limits, beside]).unwrap(),
-        both(state, 0.0),
-        both(target, 2.0 * ramp.powi(3)),
     )
 }
 

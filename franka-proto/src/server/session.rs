@@ -1,4 +1,5 @@
-//! The session of a robot: answers the handshake, then requests.
+//! The device's side of a session: the verdict on the handshake, then requests and the order of
+//! their replies.
 
 use crate::command::CommandId;
 use crate::command::ServiceCommand;

@@ -42,8 +42,7 @@ pub enum WriteError {
 }
 
 impl ActiveControl {
-    /// Whether a motion in `modes` takes `command`, in the order in which the reference client
-    /// asks.
+    /// Checks that a motion in `modes` takes `command`, in the order of the reference client.
     pub(crate) fn check(
         &self,
         command: &Command,

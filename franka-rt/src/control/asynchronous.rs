@@ -12,7 +12,7 @@ pub struct AsynchronousPositions {
     targets: SlotReader<AsynchronousTarget>,
 }
 
-/// What goes through the slot.
+/// A target as it crosses in the slot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AsynchronousTarget {
     /// Where to go, and to stay, `[rad]`.
@@ -71,7 +71,7 @@ impl Words for AsynchronousTarget {
     }
 }
 
-/// How far a target has been followed.
+/// The progress of the newest target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -92,7 +92,7 @@ impl Callback {
         }
     }
 
-    /// The request for a motion that it can run. `controller` counts where it commands no torques.
+    /// The request for a motion that it can run. `controller` is used where it commands no torques.
     pub fn request(&self, version: Version, controller: MoveControllerMode) -> MoveRequest {
         let controller = match &self.torques {
             Some(_) => MoveControllerMode::ExternalController,
@@ -178,7 +178,8 @@ impl<T> Source<T> {
         }
     }
 
-    /// What the function returns, and whether it is done. A panic of it stays inside.
+    /// Returns the function's command, and whether it is the last. A panic of the function is
+    /// caught.
     fn call(&mut self, state: &RobotState, step: Duration) -> Result<(T, bool), Failure> {
         // A function that has panicked is never called again, so nothing reads what it left half
         // done.

@@ -63,7 +63,7 @@ impl MotionCommand {
     }
 
     /// The command to the same generator that changes nothing: where the robot desires to be, at no
-    /// velocity. It is what the robot wants to see first.
+    /// velocity. The robot expects it at the start of a motion.
     pub(super) fn holding(&self, state: &RobotState) -> Self {
         match self {
             Self::JointPositions(_) => JointPositions(state.q_d).into(),
@@ -77,7 +77,7 @@ impl MotionCommand {
         }
     }
 
-    /// Whether the robot can take its numbers.
+    /// Checks that the robot can take its numbers.
     ///
     /// # Errors
     /// [`InvalidCommand`], the first that applies.

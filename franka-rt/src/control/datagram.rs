@@ -1,4 +1,4 @@
-//! From commands to the datagram that says them, with the checks of the reference client.
+//! Encodes commands as a datagram, with the checks of the reference client.
 
 use franka_proto::{MoveGeneratorMode, RobotCommand, Version};
 
@@ -51,7 +51,7 @@ impl Command {
         }
     }
 
-    /// Whether a motion in `modes` takes it.
+    /// Checks that a motion in `modes` takes it.
     ///
     /// # Errors
     /// [`Misfit`], the first that applies in its order.

@@ -32,14 +32,17 @@ impl Driver {
         }
     }
 
-    /// Takes the times of a cycle whose command has left, when all of them are known.
-    pub fn note_cycle(&mut self, cycle: &CycleTimes) {
-        if let Phase::Running(motion) | Phase::Finishing(motion) | Phase::Silent(motion) =
+    /// Notes the times of a cycle whose command has left, when all of them are known. Returns the
+    /// counts of the motion that runs; `None` if none does.
+    pub fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
+        let (Phase::Running(motion) | Phase::Finishing(motion) | Phase::Silent(motion)) =
             &self.phase
-        {
-            self.statistics.note_cycle(cycle);
-            motion.times.turnaround.note(cycle.turnaround);
-        }
+        else {
+            return None;
+        };
+        self.statistics.note_cycle(cycle);
+        motion.times.turnaround.note(cycle.turnaround);
+        Some(&self.statistics)
     }
 
     /// Counts of the motion that runs; `None` if none does.

@@ -42,6 +42,10 @@ impl ControlLog {
     /// Cycles kept unless asked otherwise. Source: `log_size` of libfranka 0.21, `robot.h`.
     pub const DEFAULT_CAPACITY: usize = 50;
 
+    /// The most cycles that a motion of a connected robot may ask for: ten seconds. A log of so
+    /// many takes 30 MB, and is laid out anew for each motion.
+    pub const CAPACITY_MAX: usize = 10_000;
+
     /// An empty log of the newest `capacity` cycles; 0 keeps none.
     pub fn with_capacity(capacity: usize) -> Self {
         let entries = if capacity == 0 { 0 } else { capacity + 1 };

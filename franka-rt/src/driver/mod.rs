@@ -1,4 +1,4 @@
-//! What one robot state calls for: the core that the real-time thread drives.
+//! The state machine that returns the command for each robot state; the real-time thread runs it.
 //!
 //! ```text
 //!              Order::Arm            first state in the motion's modes
@@ -10,13 +10,13 @@
 //!              the state leaves the motion's modes, or the link falls silent
 //! ```
 //!
-//! A motion with a ticket (see [`together`](crate::together)) begins its run by holding the arm,
-//! until all that have one of the same start are there, or one of them is not to come; in that case
-//! it finishes.
+//! A motion with a ticket (see [`together`](crate::together)) first holds the arm until all robots
+//! of the common start are ready. If one withdraws, the motion finishes without its program.
 //!
-//! A program that fails, in place of finishing, leaves the motion `Silent`: no command, until the
-//! robot has left its modes. So does a command with a non-finite value, whatever program made it,
-//! and `Order::Silence`, when the program has no owner any more.
+//! Two phases are not in the picture. `Silent`: no command is sent until the robot leaves the
+//! motion's modes, because the program failed, a command was not finite, or a program that does not
+//! brake was abandoned (`Order::Abandon`). `Unwanted`: an armed motion was abandoned; it ends when
+//! the states show that the robot did not begin it.
 //!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are
 //! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. What can
@@ -56,7 +56,7 @@ pub use program::Program;
 pub use record::{Activity, Record};
 
 use event::EventQueue;
-use motion::{Motion, Phase};
+use motion::{Execution, Phase, UNWANTED_STATES};
 use program::Answer;
 
 /// The pure core of one robot's control thread.
@@ -71,7 +71,7 @@ pub struct Driver {
     link_timeout: LinkTimeout,
     /// How many states gave way to the one that comes next.
     skipped: u64,
-    /// Counts of the motion in the phase, from the moment it is armed.
+    /// Counts of the present motion, from arming on.
     statistics: MotionStatistics,
     record: Record,
     events: EventQueue,
@@ -132,7 +132,7 @@ impl Driver {
                 times,
                 observer,
             } => {
-                let armed = Motion {
+                let armed = Execution {
                     id: motion,
                     modes,
                     program,
@@ -163,17 +163,20 @@ impl Driver {
                     other => self.phase = other,
                 }
             }
-            Order::Silence { motion } => {
-                match core::mem::replace(&mut self.phase, Phase::Watching) {
-                    Phase::Armed(armed) if armed.id == motion => {
-                        self.end(armed, Ending::Disarmed);
+            Order::Abandon { motion } => {
+                self.phase = match core::mem::replace(&mut self.phase, Phase::Watching) {
+                    Phase::Armed(mut abandoned) if abandoned.id == motion => {
+                        abandoned.leave();
+                        Phase::Unwanted(abandoned, 0)
                     }
-                    Phase::Running(mut left) | Phase::Finishing(mut left) if left.id == motion => {
-                        left.leave();
-                        self.phase = Phase::Silent(left);
+                    Phase::Running(mut abandoned) | Phase::Finishing(mut abandoned)
+                        if abandoned.id == motion && !abandoned.program.brakes() =>
+                    {
+                        abandoned.leave();
+                        Phase::Silent(abandoned)
                     }
-                    other => self.phase = other,
-                }
+                    other => other,
+                };
             }
         }
     }
@@ -212,13 +215,26 @@ impl Driver {
                     motion: motion.id,
                     time: state.message_id,
                 });
-                // What is missing before its first state is not the motion's loss.
+                // States lost before the motion's first one are not counted.
                 self.statistics.note_state(state, 0, 0);
                 self.run(motion, state)
             }
             Phase::Armed(motion) => {
                 self.record.activity = Activity::Armed;
                 self.phase = Phase::Armed(motion);
+                None
+            }
+            Phase::Unwanted(motion, quiet) => {
+                let quiet = if motion.is_left_by(state) {
+                    quiet + 1
+                } else {
+                    0
+                };
+                if quiet == UNWANTED_STATES {
+                    return self.end_at(state, motion, Ending::Disarmed);
+                }
+                self.record.activity = Activity::Silent;
+                self.phase = Phase::Unwanted(motion, quiet);
                 None
             }
             Phase::Running(motion) => {
@@ -292,6 +308,7 @@ impl Driver {
         match core::mem::replace(&mut self.phase, Phase::Watching) {
             Phase::Watching => {}
             Phase::Armed(motion)
+            | Phase::Unwanted(motion, _)
             | Phase::Running(motion)
             | Phase::Finishing(motion)
             | Phase::Silent(motion) => {
@@ -301,7 +318,7 @@ impl Driver {
         self.events.push(Event::LinkLost { silence });
     }
 
-    fn run(&mut self, mut motion: Motion, state: &RobotState) -> Option<RobotCommand> {
+    fn run(&mut self, mut motion: Execution, state: &RobotState) -> Option<RobotCommand> {
         let gate = motion.gate(state);
         let step = motion
             .program
@@ -345,7 +362,7 @@ impl Driver {
     }
 
     /// Leaves a motion without commands from now on, as its program cannot go on.
-    fn fail(&mut self, motion: Motion, failure: Failure) -> Option<RobotCommand> {
+    fn fail(&mut self, motion: Execution, failure: Failure) -> Option<RobotCommand> {
         self.record.activity = Activity::Silent;
         self.events.push(Event::Failed {
             motion: motion.id,
@@ -360,7 +377,7 @@ impl Driver {
     fn end_at(
         &mut self,
         state: &RobotState,
-        mut motion: Motion,
+        mut motion: Execution,
         ending: Ending,
     ) -> Option<RobotCommand> {
         motion.log.note_state(state);
@@ -368,14 +385,14 @@ impl Driver {
         None
     }
 
-    fn end(&mut self, motion: Motion, ending: Ending) {
+    fn end(&mut self, motion: Execution, ending: Ending) {
         self.phase = Phase::Watching;
         self.give_back(motion, ending, self.statistics);
     }
 
-    fn give_back(&mut self, mut motion: Motion, ending: Ending, statistics: MotionStatistics) {
+    fn give_back(&mut self, mut motion: Execution, ending: Ending, statistics: MotionStatistics) {
         motion.leave();
-        let Motion {
+        let Execution {
             id,
             program,
             log,

@@ -13,18 +13,25 @@ use crate::together::{Gate, StartTicket};
 #[derive(Debug)]
 pub(super) enum Phase {
     Watching,
-    Armed(Motion),
-    Running(Motion),
+    Armed(Execution),
+    /// Abandoned while it was armed, and the number of states in a row since then that show no
+    /// motion: the robot may begin it all the same. Nothing is sent.
+    Unwanted(Execution, u32),
+    Running(Execution),
     /// The finishing command is repeated until the robot leaves the motion's modes.
-    Finishing(Motion),
+    Finishing(Execution),
     /// The program has failed, or was left alone: nothing is sent until the robot leaves the
     /// motion's modes.
-    Silent(Motion),
+    Silent(Execution),
 }
+
+/// States in a row without a motion after which a robot that was told to stop is taken not to begin
+/// it any more. A reply and a state that cross on their way are apart by less than that.
+pub(super) const UNWANTED_STATES: u32 = 20;
 
 /// What a motion owns from arming to its end.
 #[derive(Debug)]
-pub(super) struct Motion {
+pub(super) struct Execution {
     pub(super) id: MotionId,
     pub(super) modes: Modes,
     pub(super) program: Program,
@@ -36,7 +43,7 @@ pub(super) struct Motion {
     pub(super) sent: RobotCommand,
 }
 
-impl Motion {
+impl Execution {
     /// Whether it may begin, or has begun, at this state.
     pub(super) fn gate(&mut self, state: &RobotState) -> Gate {
         let Some(ticket) = &mut self.ticket else {

@@ -38,10 +38,12 @@ pub enum Order {
         /// The motion to forget.
         motion: MotionId,
     },
-    /// Answer no more states of the motion: its program is no longer in control. The robot
-    /// stops by itself when its commands stay away. An armed motion is disarmed.
-    Silence {
-        /// The motion to leave alone.
+    /// End the motion: no caller waits for it any more. Goals brake by themselves, as the newest
+    /// one says. Any other program gets no more states, and the robot stops by itself when its
+    /// commands stay away. An armed motion ends once the robot has shown no motion for 20 states in
+    /// a row.
+    Abandon {
+        /// The motion to end.
         motion: MotionId,
     },
 }

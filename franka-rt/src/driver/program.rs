@@ -21,7 +21,7 @@ pub enum Program {
 }
 
 /// What a program answers a state with.
-pub(super) struct Step {
+pub(super) struct ProgramStep {
     pub(super) answer: Answer,
     pub(super) event: Option<SessionEvent>,
 }
@@ -61,6 +61,11 @@ impl Program {
         }
     }
 
+    /// Whether it brings an arm that it moves to rest by itself once its goal asks for that.
+    pub(super) fn brakes(&self) -> bool {
+        matches!(self, Self::Target(_))
+    }
+
     /// Answers a state: holds the arm while the gate is closed, and finishes where the arm is if
     /// the gate is broken. [`Command::datagram`] checks that the command is finite.
     pub(super) fn step(
@@ -69,7 +74,7 @@ impl Program {
         version: Version,
         state: &RobotState,
         record: &mut Record,
-    ) -> Step {
+    ) -> ProgramStep {
         let answer = match self {
             Self::Target(session) => {
                 let step = match gate {
@@ -94,7 +99,7 @@ impl Program {
                     }
                 };
                 let finished = step.finished;
-                return Step {
+                return ProgramStep {
                     answer: command.map_or_else(
                         |invalid| Answer::Failed(Failure::Invalid(invalid)),
                         |command| Answer::Command { command, finished },
@@ -118,7 +123,7 @@ impl Program {
                 None => Answer::Open,
             },
         };
-        Step {
+        ProgramStep {
             answer,
             event: None,
         }

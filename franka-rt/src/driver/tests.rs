@@ -258,28 +258,37 @@ fn a_command_that_is_not_finite_fails_the_motion_whatever_program_made_it() {
 }
 
 #[test]
-fn a_motion_told_to_be_silent_gets_no_more_commands_in_any_phase() {
-    let silence = || Order::Silence {
+fn an_abandoned_program_gets_no_more_states_in_any_phase() {
+    let abandon = || Order::Abandon {
         motion: MotionId(1),
     };
     let mut armed = armed_with(torques(|_| 1.0));
-    armed.on_order(silence());
+    armed.on_order(abandon());
+    let quiet = u64::from(UNWANTED_STATES);
+    for id in 101..100 + quiet {
+        assert!(answer(&mut armed, &resting(id)).is_none());
+    }
+    assert!(answer(&mut armed, &moving(100 + quiet)).is_none());
+    for id in 101 + quiet..=100 + 2 * quiet {
+        assert!(!armed.is_watching(), "the robot began it all the same");
+        assert!(armed.take_event().is_none());
+        assert!(answer(&mut armed, &resting(id)).is_none());
+    }
     assert!(armed.is_watching());
     assert!(
         matches!(armed.take_event(), Some(Event::Ended(ended)) if ended.ending == Ending::Disarmed)
     );
-    assert!(answer(&mut armed, &moving(101)).is_none());
 
     let mut running = armed_with(torques(|_| 1.0));
     assert!(answer(&mut running, &moving(101)).is_some());
-    running.on_order(Order::Silence {
+    running.on_order(Order::Abandon {
         motion: MotionId(2),
     });
     assert!(
         answer(&mut running, &moving(102)).is_some(),
         "another is meant"
     );
-    running.on_order(silence());
+    running.on_order(abandon());
     assert!(answer(&mut running, &moving(103)).is_none());
     assert!(answer(&mut running, &resting(104)).is_none());
     assert!(running.is_watching());
@@ -289,7 +298,7 @@ fn a_motion_told_to_be_silent_gets_no_more_commands_in_any_phase() {
     let command = Command::torques(Version::V10, Torques([0.0; 7]));
     assert!(finishing.write(&command, true).is_ok());
     assert!(answer(&mut finishing, &moving(102)).is_some());
-    finishing.on_order(silence());
+    finishing.on_order(abandon());
     assert!(answer(&mut finishing, &moving(103)).is_none());
 }
 

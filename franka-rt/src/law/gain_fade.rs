@@ -87,7 +87,7 @@ pub(crate) struct GainFade {
 }
 
 impl GainFade {
-    /// At its end from the start.
+    /// A fade that is over from the start.
     pub(crate) fn at(gains: BlendedGains) -> Self {
         Self {
             from: gains,
@@ -107,7 +107,7 @@ impl GainFade {
         }
     }
 
-    /// Goes one cycle on.
+    /// Advances by one cycle.
     pub(crate) fn step(&mut self) -> BlendedGains {
         self.cycle = self.cycle.saturating_add(1);
         self.now()

@@ -1,4 +1,4 @@
-//! Both laws as one: what the springs and dampers do about how far the arm is from its reference.
+//! The torques of springs and dampers for the error between arm and reference, by either law.
 
 use franka_model::{Jacobian, JointVector};
 use nalgebra::Matrix6;
@@ -67,7 +67,7 @@ impl<'a> Interaction<'a> {
         }
     }
 
-    /// What they do about an error of the joints, `[N m]`.
+    /// Returns their torques for an error of the joints, `[N m]`.
     pub(crate) fn torques(&self, error: &JointVector) -> JointVector {
         let at_joints = self.joint.component_mul(error);
         let mut at_end_effector = self.cartesian * (self.jacobian * error);

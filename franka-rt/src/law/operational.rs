@@ -25,7 +25,8 @@
 //! for position and for rotation by themselves, each with the other left free; for both together
 //! the arm weighs five times as much at the ready pose, since position and rotation of a hand hang
 //! together. In the null-space projection of the joints' springs, `Lambda6` is the full one, damped
-//! near singularities: there the springs of the joints act also on what the end effector has lost.
+//! near singularities: there the springs of the joints act also in the directions that the end
+//! effector has lost.
 //!
 //! A wall on which nothing holds the arm by friction is met with forces across as well: the arm
 //! slides along it until they are balanced, about two thirds as far as its goal is deep behind the

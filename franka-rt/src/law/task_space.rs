@@ -1,4 +1,4 @@
-//! The inertia at the end effector, factorised once a cycle for all that need it.
+//! The inertia at the end effector, factorised once a cycle for law and guards.
 //!
 //! With the joint-space inertia `M` and the Jacobian `J`, `W = J M^-1 J'` is the mobility of the
 //! end effector and `Lambda = W^-1` its inertia (Khatib, IEEE Journal on Robotics and Automation

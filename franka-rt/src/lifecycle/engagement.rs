@@ -1,12 +1,10 @@
 //! A session that goes on from goal to goal.
 
-use core::time::Duration;
-
 use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 
-use super::active::Waiting;
-use super::{Lifecycle, MotionError, Phase};
+use super::goal_progress::Goals;
+use super::{Lifecycle, LifecyclePhase, MotionError};
 use crate::driver::Observer;
 use crate::law::Gains;
 use crate::session::check::{check_keep_out, check_silence};
@@ -27,6 +25,21 @@ pub struct Engagement {
     pub backend: Backend,
     /// The observer of its cycles.
     pub observer: Option<Observer>,
+}
+
+impl Engagement {
+    /// Checks the options of a session that begins with `goal`, for a robot in `state`.
+    pub(super) fn check(&self, goal: &Goal, state: &RobotState) -> Result<(), GoalError> {
+        self.backend.check(goal)?;
+        self.backend.check_start(&state.q_d.into())?;
+        if let Some(deadman) = &self.deadman {
+            check_silence(deadman.silence())?;
+        }
+        if let Some(regions) = &self.keep_out {
+            check_keep_out(regions)?;
+        }
+        Ok(())
+    }
 }
 
 /// Changes to the goal under way, and nothing to where it goes.
@@ -58,80 +71,24 @@ impl Tuning {
 }
 
 impl Lifecycle {
-    /// Starts a session that holds the arm where it is and then goes from goal to goal, with the
-    /// gains and the budget of `goal`, whose `id` becomes the name of the session. It resolves when
-    /// the session has ended. While a motion comes to its end that is no longer wanted, the
-    /// session waits for that.
-    ///
-    /// # Errors
-    /// [`MotionError::Goal`] for gains, a budget, regions or a posture that are not accepted,
-    /// [`MotionError::Busy`] while anything controls the arm or waits for it,
-    /// [`MotionError::ConnectionClosed`] after the connection was lost. Nothing is resolved then.
-    pub fn engage(
-        &mut self,
-        goal: Goal,
-        engagement: Engagement,
-        state: &RobotState,
-        now: Duration,
-    ) -> Result<(), MotionError> {
-        self.check_open()?;
-        let is_free = match &self.phase {
-            Phase::Active(active) => active.is_letting_go(),
-            Phase::Idle | Phase::Closed(_) => true,
-        };
-        if !is_free || self.next.is_some() {
-            return Err(MotionError::Busy);
-        }
-        let goal = Goal {
-            target: Target::Rest,
-            on_arrival: OnArrival::Hold,
-            watchdog: None,
-            ..goal
-        };
-        goal.check(&self.model, state)?;
-        engagement.backend.check(&goal)?;
-        engagement.backend.check_start(&state.q_d.into())?;
-        if let Some(deadman) = &engagement.deadman {
-            check_silence(deadman.silence())?;
-        }
-        if let Some(regions) = &engagement.keep_out {
-            check_keep_out(regions)?;
-        }
-        let waiting = Waiting::new(goal);
-        if self.is_idle() {
-            self.start_goal(waiting, None, Some(engagement), now);
-        } else {
-            self.wait(waiting, Some(engagement), MotionError::Superseded);
-        }
-        Ok(())
-    }
-
     /// Takes a goal for the session `engaged`. It supersedes the goal before it.
-    ///
-    /// # Errors
-    /// [`MotionError::Goal`] for a goal that is not accepted; what ended the session, if that was
-    /// not its owner's wish, and [`MotionError::Disengaged`] otherwise. Nothing is resolved in any
-    /// of these cases, and a goal under way goes on.
-    pub fn submit_within(
+    pub(super) fn submit_within(
         &mut self,
         engaged: GoalId,
         goal: Goal,
         state: &RobotState,
-        now: Duration,
     ) -> Result<(), MotionError> {
         self.check_engaged(engaged)?;
         goal.check(&self.model, state)?;
-        if let Some(goals) = self.goals() {
+        let is_ending = self.is_ending();
+        if let Some(goals) = self.goals_mut() {
             goals.backend.check(&goal)?;
-        }
-        if self.is_ending() {
-            if let Some(goals) = self.goals() {
-                goals.late.push(goal.id);
+            if is_ending {
+                goals.after_end.push(goal.id);
+                return Ok(());
             }
-            return Ok(());
         }
-        let waiting = Waiting::new(goal);
-        self.replace(waiting, MotionError::Superseded, now);
+        self.replace(goal, MotionError::Superseded);
         Ok(())
     }
 
@@ -140,7 +97,7 @@ impl Lifecycle {
     /// goal comes, and says how fast and how stiff. The arm rests at the last point.
     ///
     /// # Errors
-    /// As [`Self::submit_within`]; [`GoalError::Late`] for a chunk whose points have all passed,
+    /// As [`Self::begin`]; [`GoalError::Late`] for a chunk whose points have all passed,
     /// [`GoalError::Chunks`] if too many are under way.
     pub fn chunk(
         &mut self,
@@ -148,7 +105,6 @@ impl Lifecycle {
         goal: Goal,
         chunk: Chunk,
         state: &RobotState,
-        now: Duration,
     ) -> Result<(), MotionError> {
         self.check_engaged(engaged)?;
         chunk.check(&self.model, state)?;
@@ -163,7 +119,7 @@ impl Lifecycle {
         };
         goal.check(&self.model, state)?;
         let ending = self.is_ending();
-        let Some(goals) = self.goals() else {
+        let Some(goals) = self.goals_mut() else {
             return Err(MotionError::Disengaged);
         };
         goals.backend.check(&Goal {
@@ -172,22 +128,21 @@ impl Lifecycle {
         })?;
         let Some(chunks) = goals.chunks.as_mut().filter(|_| !ending) else {
             // The session has ended, and says so when it is known how.
-            goals.late.push(goal.id);
+            goals.after_end.push(goal.id);
             return Ok(());
         };
         while let Some(done) = chunks.collect() {
             drop(done);
         }
         // One that was taken back is on its way to rest, and belongs to no caller any more.
-        let goes_on = goals.current.goal.id == goals.chunk_goal && !goals.current.cancelled;
+        let goes_on = goals.current.id == goals.chunk_goal && !goals.cancelled;
         let of = if goes_on { goals.chunk_goal } else { goal.id };
         chunks
             .send(of, chunk)
             .map_err(|_| GoalError::from(TooManyChunks))?;
         goals.chunk_goal = of;
         if !goes_on {
-            let waiting = Waiting::new(goal);
-            self.replace(waiting, MotionError::Superseded, now);
+            self.replace(goal, MotionError::Superseded);
         }
         Ok(())
     }
@@ -195,7 +150,7 @@ impl Lifecycle {
     /// Changes how the session `engaged` goes about the goal that it has, without a step in torque.
     ///
     /// # Errors
-    /// As [`Self::submit_within`]; everything stays as it was then.
+    /// As [`Self::begin`]; everything stays as it was then.
     pub fn tune(
         &mut self,
         engaged: GoalId,
@@ -206,7 +161,7 @@ impl Lifecycle {
         let Some(goals) = self.goals() else {
             return Err(MotionError::Disengaged);
         };
-        let tuned = tuning.apply(goals.current.goal);
+        let tuned = tuning.apply(goals.current);
         goals.backend.check(&tuned)?;
         tuned.check(&self.model, state)?;
         // Gains that a guiding hand has no use for have to be fit for the goals after it.
@@ -220,8 +175,8 @@ impl Lifecycle {
             later.check(&self.model, state)?;
         }
         // Also a goal that was taken back: it is held until the next one comes.
-        if let Some(goals) = self.goals() {
-            goals.current.goal = tuned;
+        if let Some(goals) = self.goals_mut() {
+            goals.current = tuned;
             goals.slot.write(&tuned);
         }
         Ok(())
@@ -230,21 +185,19 @@ impl Lifecycle {
     /// Ends the session `engaged` as asked: brakes, lets the arm go, ends the motion. Its goal
     /// resolves as [`MotionError::Stopped`], the session itself well. Without effect on one that is
     /// ending or has ended.
-    pub fn disengage(&mut self, engaged: GoalId, now: Duration) {
+    pub fn disengage(&mut self, engaged: GoalId) {
         if self.check_engaged(engaged).is_ok() {
-            self.release(engaged, now);
+            self.release(engaged);
         }
     }
 
     /// What follows the end of a goal: more goals, if it is one of a session that goes from goal to
     /// goal. A session that is to end ends, also if the goal that ends it is taken back: its owner
     /// may have been told that it takes no more goals.
-    pub(super) fn end_of(&mut self, id: GoalId) -> OnArrival {
-        let goes_on = match &self.next {
-            Some(next) if next.waiting.goal.id == id => next.engagement.is_some(),
-            _ => self.is_engaged_for_more(),
-        };
-        if goes_on {
+    pub(super) fn end_of(&self, id: GoalId) -> OnArrival {
+        let waits = self.next.as_ref().is_some_and(|next| next.id() == id);
+        let of_session = |goals: &Goals| goals.engaged.is_some() && goals.goes_on();
+        if !waits && self.goals().is_some_and(of_session) {
             OnArrival::ReportAndHold
         } else {
             OnArrival::ReportAndFinish
@@ -252,25 +205,19 @@ impl Lifecycle {
     }
 
     /// Whether the motion under way has ended on one side.
-    fn is_ending(&self) -> bool {
-        matches!(&self.phase, Phase::Active(active) if active.is_ending())
+    pub(super) fn is_ending(&self) -> bool {
+        matches!(&self.phase, LifecyclePhase::UnderWay(current) if current.is_ending())
     }
 
     /// Whether a session that goes from goal to goal has the arm.
-    pub(super) fn is_engaged(&mut self) -> bool {
+    pub(super) fn is_engaged(&self) -> bool {
         self.goals().is_some_and(|goals| goals.engaged.is_some())
     }
 
-    /// Whether a session has the arm that takes more goals.
-    pub(super) fn is_engaged_for_more(&mut self) -> bool {
-        self.goals()
-            .is_some_and(|goals| goals.engaged.is_some() && goals.goes_on())
-    }
-
     /// Ends the session of that name. Returns whether it has the arm.
-    pub(super) fn release(&mut self, engaged: GoalId, now: Duration) -> bool {
+    pub(super) fn release(&mut self, engaged: GoalId) -> bool {
         let ending = self.is_ending();
-        let Some(goals) = self.goals() else {
+        let Some(goals) = self.goals_mut() else {
             return false;
         };
         let goes_on = goals.goes_on() && !ending;
@@ -286,28 +233,27 @@ impl Lifecycle {
             let goal = Goal {
                 id: engaged,
                 watchdog: None,
-                revision: goals.current.goal.revision + 1,
-                ..goals.current.goal.at_rest(OnArrival::ReportAndFinish)
+                revision: goals.current.revision + 1,
+                ..goals.current.at_rest(OnArrival::ReportAndFinish)
             };
-            let waiting = Waiting::new(goal);
-            self.replace(waiting, MotionError::Stopped, now);
+            self.replace(goal, MotionError::Stopped);
         }
         true
     }
 
-    fn check_engaged(&mut self, engaged: GoalId) -> Result<(), MotionError> {
-        self.check_open()?;
-        match self.goals() {
-            Some(goals)
-                if goals.goes_on()
-                    && goals.engaged.is_some_and(|session| session.id == engaged) =>
-            {
-                Ok(())
-            }
-            _ => Err(match &self.ended {
-                Some((ended, error)) if *ended == engaged => error.clone(),
-                _ => MotionError::Disengaged,
-            }),
+    fn check_engaged(&self, engaged: GoalId) -> Result<(), MotionError> {
+        let of_session = |goals: &Goals| {
+            goals.goes_on() && goals.engaged.is_some_and(|session| session.id == engaged)
+        };
+        if self.goals().is_some_and(of_session) {
+            return Ok(());
         }
+        if let LifecyclePhase::Closed { .. } | LifecyclePhase::Stalled { .. } = self.phase {
+            self.check_open()?;
+        }
+        Err(match &self.ended {
+            Some((ended, error)) if *ended == engaged => error.clone(),
+            _ => MotionError::Disengaged,
+        })
     }
 }

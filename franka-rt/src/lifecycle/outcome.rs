@@ -13,6 +13,9 @@ use crate::shaping::InvalidCommand;
 use crate::stats::{CycleTimes, MotionStatistics, MotionTimes, Quantiles, Slack};
 use crate::together::StartFault;
 
+/// How a motion ended.
+pub type Outcome = Result<MotionReport, MotionError>;
+
 /// A motion that came to its end as asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

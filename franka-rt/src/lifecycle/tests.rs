@@ -1,11 +1,11 @@
 //! The lifecycle beside a driver whose states a test makes up.
 
 use franka_model::READY;
-use franka_proto::{RobotMode, RobotState};
+use franka_proto::{CommandId, MoveStatus, RobotMode, RobotState, Violation};
 
 use super::*;
-use crate::control::Failure;
-use crate::driver::Driver;
+use crate::control::{Failure, Modes};
+use crate::driver::{Driver, Event};
 use crate::session::{Goal, OnArrival, Target};
 use crate::shaping::InvalidCommand;
 
@@ -16,7 +16,7 @@ struct Pair {
     lifecycle: Lifecycle,
     driver: Driver,
     sent: Vec<Request>,
-    resolved: Vec<(GoalId, Result<MotionReport, MotionError>)>,
+    resolved: Vec<(GoalId, Outcome)>,
     state: RobotState,
 }
 
@@ -76,7 +76,7 @@ impl Pair {
             OnArrival::ReportAndFinish,
             limits,
         );
-        let begun = pair.lifecycle.submit(goal, &pair.state, NOW);
+        let begun = pair.lifecycle.begin(NewMotion::to(goal), &pair.state, NOW);
         begun.expect("it is accepted");
         pair.settle();
         let [Request::Move(request)] = &pair.sent[..] else {
@@ -135,7 +135,7 @@ fn an_arm_on_its_way_is_braked_after_the_connection_is_gone() {
 }
 
 #[test]
-fn a_borrower_that_stalls_ends_the_motion_and_none_begins_until_it_goes_on() {
+fn a_borrower_that_stalls_ends_the_motion_and_none_is_taken_until_it_goes_on() {
     let (mut pair, _, goal) = Pair::moving();
     let silence = Duration::from_millis(100);
     pair.lifecycle.on_stall(Some(silence), NOW);
@@ -150,16 +150,53 @@ fn a_borrower_that_stalls_ends_the_motion_and_none_begins_until_it_goes_on() {
         let limits = Model::fr3().joint_limits();
         let target = Target::Joints(READY.into());
         let goal = Goal::new(GoalId(id), target, OnArrival::ReportAndFinish, limits);
-        lifecycle.submit(goal, &state, NOW)
+        lifecycle.begin(NewMotion::to(goal), &state, NOW)
     };
     assert_eq!(submit(&mut pair.lifecycle, 2), Err(MotionError::Busy));
     pair.lifecycle.on_stall(None, NOW);
-    let too_early = submit(&mut pair.lifecycle, 3);
-    assert_eq!(
-        too_early,
-        Err(MotionError::Busy),
-        "the cycle is in the motion"
-    );
+    assert_eq!(submit(&mut pair.lifecycle, 3), Ok(()), "it waits");
+    assert_eq!(pair.lifecycle.poll().map(drop), None, "the robot moves");
     pair.cycle(RobotMode::Idle);
-    assert_eq!(submit(&mut pair.lifecycle, 4), Ok(()));
+    assert!(matches!(pair.sent.last(), Some(Request::Move(_))));
+}
+
+/// The robot is told to stop the first motion, and goes on showing it.
+#[test]
+fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_not_come() {
+    let (mut pair, motion, first) = Pair::moving();
+    let violation = Violation::SecondMotionStarted { id: CommandId(1) };
+    pair.lifecycle.on_move_violation(motion, violation, NOW);
+    let begin = |pair: &mut Pair, id| {
+        let limits = Model::fr3().joint_limits();
+        let goal = Goal::new(GoalId(id), Target::Rest, OnArrival::Hold, limits);
+        let begun = pair.lifecycle.begin(NewMotion::to(goal), &pair.state, NOW);
+        pair.settle();
+        begun
+    };
+    assert_eq!(begin(&mut pair, 2), Ok(()));
+    assert_eq!(begin(&mut pair, 3), Ok(()));
+    let moves = |pair: &Pair| {
+        let sent = pair.sent.iter();
+        sent.filter(|sent| matches!(sent, Request::Move(_))).count()
+    };
+    assert_eq!(moves(&pair), 1);
+    assert!(!pair.lifecycle.is_idle());
+    let deadline = pair
+        .lifecycle
+        .deadline()
+        .expect("it does not wait for ever");
+    pair.lifecycle.on_time(deadline);
+    assert_eq!(begin(&mut pair, 4), Err(STILL_SHOWN));
+    assert_eq!(
+        pair.resolved,
+        [
+            (first, Err(MotionError::Violation(violation))),
+            (GoalId(2), Err(MotionError::Superseded)),
+            (GoalId(3), Err(STILL_SHOWN)),
+        ]
+    );
+    assert!(pair.lifecycle.is_idle(), "it is not waited for any more");
+    pair.cycle(RobotMode::Idle);
+    assert_eq!(begin(&mut pair, 5), Ok(()));
+    assert_eq!(moves(&pair), 2);
 }

@@ -4,6 +4,9 @@
 //! `/sys/kernel/realtime`. Since 6.12 it is an option of the kernel itself, mostly without that
 //! file. The version text of `uname` names the option in both. The release name (`-rt`) is chosen
 //! freely and proves nothing.
+//!
+//! `/proc/config.gz` is not read: decompressing takes a crate more in the driver, and a kernel that
+//! has this file has a version text that its build made of the same options.
 
 use core::fmt;
 use std::fs;
@@ -74,7 +77,8 @@ impl fmt::Display for Kernel {
             None => {
                 let [boot, modules] = configuration_files(&self.release);
                 let (boot, modules) = (boot.display(), modules.display());
-                write!(f, "; {boot} and {modules}: cannot be read")
+                write!(f, "; {boot} and {modules}: cannot be read")?;
+                write!(f, "; /proc/config.gz: not read, since compressed")
             }
         }
     }
@@ -140,7 +144,8 @@ mod tests {
         assert_eq!(
             kernel("#1 SMP PREEMPT", None, None).to_string(),
             "uname: `#1 SMP PREEMPT`, expected PREEMPT_RT in it; /sys/kernel/realtime: cannot be \
-             read; /boot/config-6.12.43 and /lib/modules/6.12.43/config: cannot be read"
+             read; /boot/config-6.12.43 and /lib/modules/6.12.43/config: cannot be read; \
+             /proc/config.gz: not read, since compressed"
         );
         assert_eq!(
             kernel("#2", Some("0"), Some(false)).to_string(),

@@ -1,5 +1,4 @@
-//! The stack of the thread: how much there is, and how much of it has its pages before the loop
-//! starts.
+//! The stack of the thread: its size, and how much of it is touched before the loop starts.
 
 use core::hint::black_box;
 
@@ -7,15 +6,15 @@ use core::hint::black_box;
 /// uses some tens of kilobytes, a control function of the user's whatever it likes.
 pub const DEFAULT: usize = 512 * 1024;
 
-/// The most that can be asked for, in bytes. More belongs on the heap, before the loop.
+/// The most that can be asked for, in bytes. Larger buffers belong on the heap, allocated before
+/// the loop.
 pub const MAX: usize = 64 * 1024 * 1024;
 
-/// What the thread gets beyond what is touched, in bytes: for frames that only unoptimised builds
-/// need.
+/// Stack beyond what is touched, in bytes: for the larger frames of unoptimised builds.
 const RESERVE: usize = 1536 * 1024;
 
-/// What one frame of the walk covers, in bytes: a few pages, so that even the smallest wish is met
-/// to the page.
+/// Bytes that one frame of the walk covers: a few pages, so that little more than asked for is
+/// touched.
 const FRAME: usize = 16 * 1024;
 
 /// Size of a stack of which `touched` bytes are to be touched.
@@ -24,7 +23,7 @@ pub(super) const fn size(touched: usize) -> usize {
 }
 
 /// Writes to `bytes` of stack below the caller, rounded up to frames. A page that was written to
-/// once stays the thread's: no cycle meets it for the first time.
+/// stays mapped: no cycle faults on it.
 #[inline(never)]
 pub(super) fn touch(bytes: usize) {
     if bytes == 0 {
@@ -41,8 +40,7 @@ pub(super) fn touch(bytes: usize) {
 mod tests {
     use super::*;
 
-    /// Pages that the calling thread has met for the first time so far: minor faults, field 10 of
-    /// proc_pid_stat(5).
+    /// Minor page faults of the calling thread so far: field 10 of proc_pid_stat(5).
     fn faults() -> u64 {
         let stat = std::fs::read_to_string("/proc/thread-self/stat").expect("Linux has /proc");
         let fields = &stat[stat.rfind(')').expect("a name") + 1..];
@@ -50,12 +48,12 @@ mod tests {
         field.and_then(|count| count.parse().ok()).expect("a count")
     }
 
-    /// First meetings with a page while `used` bytes of stack are used, by a thread that has
-    /// touched `touched` before.
+    /// Page faults while `used` bytes of stack are used, by a thread that has touched `touched`
+    /// before.
     fn faults_of(touched: usize, used: usize) -> u64 {
         let thread = std::thread::Builder::new().stack_size(size(MAX / 16));
         let run = move || {
-            faults(); // Whatever reading the count needs is there then.
+            faults(); // Maps the pages that reading the count needs.
             touch(touched);
             let before = faults();
             touch(used);

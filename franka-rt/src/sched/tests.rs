@@ -278,7 +278,7 @@ fn the_texts_are_those_of_libfranka() {
             SchedError::KernelNotRealtime(Box::default()),
             "libfranka: Running kernel does not have realtime capabilities. (uname: ``, expected \
              PREEMPT_RT in it; /sys/kernel/realtime: cannot be read; /boot/config- and \
-             /lib/modules//config: cannot be read)",
+             /lib/modules//config: cannot be read; /proc/config.gz: not read, since compressed)",
         ),
     ] {
         assert_eq!(error.to_string(), text);

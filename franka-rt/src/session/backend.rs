@@ -50,7 +50,7 @@ pub enum Setpoints {
     /// A stretched arm is refused, and joint 4 stays on its side of [`FLIP_ANGLE`]: the robot takes
     /// the elbow's side for that of the beginning. Where joint 3 rests while the arm moves about
     /// its pose, which takes wide turns of the joints 3 and 5, an elbow tells little about the
-    /// others: there the robot is the judge, and [`Self::Joints`] the better choice.
+    /// others: there only the robot's own check applies, and [`Self::Joints`] is the better choice.
     Poses,
 }
 
@@ -100,7 +100,7 @@ impl Backend {
         }
     }
 
-    /// Whether it can do what `goal` asks for.
+    /// Checks that this backend can pursue `goal`.
     ///
     /// # Errors
     /// [`GoalError::Backend`].
@@ -117,7 +117,7 @@ impl Backend {
         Err(GoalError::Backend { why })
     }
 
-    /// Whether it can take over an arm at these joint positions.
+    /// Checks that this backend can take over an arm at these joint positions.
     ///
     /// # Errors
     /// [`GoalError::Backend`].
@@ -129,8 +129,8 @@ impl Backend {
         Ok(())
     }
 
-    /// What it allows the joints of `model`: the elbow that goes with poses has limits of its own,
-    /// and no backstop stands between these joints and the robot.
+    /// The limits of the joints of `model` under this backend: the elbow that goes with poses has
+    /// limits of its own, and no backstop stands between these joints and the robot.
     pub(super) fn limited(self, model: &Model) -> Option<Model> {
         if self != Self::RobotController(Setpoints::Poses) {
             return None;

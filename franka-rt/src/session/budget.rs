@@ -50,8 +50,8 @@ impl Budget {
         }
     }
 
-    /// The same paths, walked `factor` times as fast: velocities times `factor`, accelerations
-    /// times its square, jerks times its cube.
+    /// Returns the budget for the same paths at `factor` times the speed: velocities times
+    /// `factor`, accelerations times its square, jerks times its cube.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         let scale = |l: AxisLimits| AxisLimits {
@@ -188,7 +188,7 @@ pub(crate) fn keeps(limits: &AxisLimits, velocity: f64, acceleration: f64) -> bo
     velocity.abs() <= 1.01 * limits.velocity && acceleration.abs() <= 1.01 * limits.acceleration
 }
 
-/// The way that three axes have to go, and how they move where they begin it.
+/// The distance of three axes to their target, and their motion at its start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leg {
     pub(crate) way: Vector3<f64>,

@@ -14,6 +14,11 @@ use crate::session::reference::Reference;
 use crate::session::running::Measured;
 use crate::session::{Budget, Goal, Target, approach, budget, rigid};
 
+const _: () = assert!(
+    franka_otg::CYCLE == franka_model::CYCLE,
+    "generators advance by the control cycle"
+);
+
 /// What moves the reference.
 #[derive(Debug)]
 pub(super) enum Course {
@@ -29,18 +34,18 @@ pub(super) enum Course {
 #[derive(Debug)]
 pub(super) struct CourseStep {
     pub(super) reference: Reference,
-    /// What held joints back that follow a pose.
+    /// The bounds that held joints back on the way to a pose.
     pub(super) bounds: BoundsReached,
-    /// Whether the pose had to wait for joints that were held back.
+    /// Whether the pose was held at joints that did not keep up.
     pub(super) held: bool,
     /// Whether a leash of the course's own moved the reference with the arm.
     pub(super) leashed: bool,
-    /// Whether the pose that waits could not be planned on from where it is.
+    /// Whether no plan could be made for a pose that was held.
     pub(super) failed: bool,
 }
 
 impl CourseStep {
-    /// One that nothing holds back.
+    /// A step that no bound changed.
     pub(super) fn free(reference: Reference) -> Self {
         Self {
             reference,
@@ -108,8 +113,8 @@ impl Course {
         Ok(())
     }
 
-    /// How the pose moves, and what is left of motions before it: what a course begins with that
-    /// goes on over poses.
+    /// Returns the moving pose, and the drift of earlier motions, that a course over poses starts
+    /// from.
     pub(super) fn pose(
         &self,
         model: &Model,
@@ -124,7 +129,7 @@ impl Course {
         followed.unwrap_or_else(|| (end_effector(model, ee, reference), Drift::of(reference.dq)))
     }
 
-    /// One nominal millisecond on, in the answer to the state `now`, `message_id`.
+    /// Advances by one nominal millisecond, for the answer to the state `now`, `message_id`.
     pub(super) fn step(
         &mut self,
         model: &Model,
@@ -203,8 +208,8 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
     })
 }
 
-/// What a plan for the joints from the reference to `target`, or to rest in the least time, begins
-/// with, and its limits.
+/// Returns the start and the limits of a plan for the joints from the reference to `target`, or to
+/// rest in the least time.
 fn joints(
     model: &Model,
     reference: &Reference,

@@ -28,11 +28,11 @@ pub(super) struct Effort {
     inertia: Inertia,
 }
 
-/// The acceleration that the arm is given the torque for.
+/// The acceleration that is fed forward as a torque.
 ///
-/// At the leash the reference goes where the arm is pushed, and its acceleration is that of the
-/// joints' bounds: torques for it would push back. There it fades, and comes back with the time for
-/// which the reference has been free.
+/// While the leash moves the reference with an arm that is pushed, the reference accelerates as
+/// fast as the joints' bounds allow, and torques for that would push back. So the feedforward fades
+/// out there, and in again while the reference is free.
 #[derive(Debug)]
 struct Inertia {
     /// `[rad/s^2]`.
@@ -42,7 +42,7 @@ struct Inertia {
 }
 
 impl Inertia {
-    /// The acceleration in a cycle in which the reference has that of `reference`.
+    /// Returns the acceleration to feed forward in a cycle with this `reference`.
     fn step(&mut self, reference: &JointVector, leashed: bool) -> JointVector {
         self.free = if leashed {
             0
@@ -64,7 +64,7 @@ const RETURN: u32 = 300;
 const FADE: f64 = 0.1;
 
 impl Effort {
-    /// With the gains of the first goal, for a reference at rest.
+    /// Starts with the gains of the first goal, for a reference at rest.
     pub(super) fn new(goal: &Goal) -> Self {
         Self {
             fade: GainFade::at(BlendedGains::new(&goal.gains, goal.force_cap.newtons())),
@@ -76,7 +76,7 @@ impl Effort {
         }
     }
 
-    /// Goes over to the gains and the force cap of another goal.
+    /// Starts the fade to the gains and the force cap of another goal.
     pub(super) fn take_up(&mut self, goal: &Goal) {
         self.fade
             .towards(BlendedGains::new(&goal.gains, goal.force_cap.newtons()));
@@ -110,13 +110,13 @@ impl Effort {
         let (tau, clamped) = clamp(&(springs + dampers), &most);
         let (tau, capped) = match (tuning.force_cap(), &space) {
             (Some(cap), Some(space)) => {
-                // The clamp leaves the dampers what the springs do not take.
+                // The dampers get the part of the clamp that the springs leave.
                 let (springs, _) = clamp(&springs, &most);
                 force_cap::hold(&springs, &(tau - springs), cap, jacobian, space)
             }
             _ => (tau, false),
         };
-        // What the motion itself takes stays outside the clamp and the cap, which are for the
+        // The torques of the motion itself are added after clamp and cap, which bound the
         // interaction.
         let leashed = bindings.contains(Guard::Leash);
         let acceleration = self.inertia.step(&reference.ddq, leashed);

@@ -10,8 +10,8 @@ use crate::law::Gains;
 use crate::session::{Budget, ForceCap, Lead, OnTimeout, Watchdog};
 use crate::slot::Words;
 
-/// Names one goal for the life of a connection. Updates of a followed target keep the name of the
-/// goal they belong to.
+/// Identifies one goal for the life of a connection. Updates of a followed target keep the id of
+/// their goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GoalId(pub u64);
@@ -27,8 +27,7 @@ pub enum Target {
     Joints([f64; 7]),
     /// To a pose of the end effector in the base frame, `O_T_EE`, metres.
     Pose(Isometry3<f64>),
-    /// Wherever a hand takes it: the reference goes with the arm along the free axes, and stays on
-    /// the others.
+    /// Hand guiding: the reference goes with the arm along the free axes, and stays on the others.
     Guide(Free),
 }
 
@@ -118,7 +117,7 @@ pub struct Goal {
     pub gains: Gains,
     /// How near counts as arrived.
     pub tolerance: Tolerance,
-    /// What happens if its updates stay away; of goals that are held.
+    /// What happens if its updates stop coming; only for goals that are held.
     pub watchdog: Option<Watchdog>,
     /// With how much force springs and dampers may press at the end effector.
     pub force_cap: ForceCap,
@@ -155,7 +154,7 @@ impl Goal {
         }
     }
 
-    /// The goal with rest as its target. The gains of a guide give way to those that hold.
+    /// Returns the goal with rest as its target. Gains for guiding are replaced by gains that hold.
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),
@@ -172,6 +171,9 @@ impl Goal {
 
 /// Name, revision, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of
 /// budget, the gains, 2 of tolerance, the force cap, 3 of the lead, which are zero without one.
+///
+/// Written by hand: generated code needs an implementation for the type of each field, which comes
+/// to as many lines. The test below fails if a field is left out.
 impl Words for Goal {
     const WORDS: usize = 6 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
 

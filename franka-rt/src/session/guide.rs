@@ -33,7 +33,7 @@ impl Gains {
     }
 }
 
-/// Brings the reference to rest, then lets it go.
+/// Brings the reference to rest, then lets it follow the arm.
 #[derive(Debug)]
 pub(super) struct Guide {
     free: Free,
@@ -56,7 +56,8 @@ struct Floating {
     pose: Isometry3<f64>,
     /// Where the joints stay, as far as the end effector lets them.
     q: JointVector,
-    /// How the reference stood from the arm when it was let go, and that at the end effector.
+    /// Offset of the reference from the arm when it was let go, at the joints and at the end
+    /// effector.
     offset: JointVector,
     offset_at_ee: Twist,
     cycle: u32,
@@ -71,7 +72,7 @@ impl Guide {
         }
     }
 
-    /// Lets other axes go, from where the arm is. Those that stay, stay where they are now.
+    /// Frees other axes. The rest is held where the arm is now.
     pub(super) fn free(&mut self, free: Free) {
         if free != self.free {
             self.free = free;
@@ -81,8 +82,8 @@ impl Guide {
         }
     }
 
-    /// One nominal millisecond on; tells whether something pushed the arm off what stays, by more
-    /// than the leash.
+    /// Advances by one nominal millisecond. Returns also whether the arm was pushed off a held axis
+    /// by more than the leash.
     pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> (Reference, bool) {
         let (away, leashed) = match &mut self.stage {
             GuideStage::Braking(generator) if !generator.is_done() => {

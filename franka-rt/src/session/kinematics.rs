@@ -48,8 +48,8 @@ impl Drift {
     }
 }
 
-/// Moves the joints of `reference` towards `pose` for one cycle, and tells which bounds held them
-/// back.
+/// Moves the joints of `reference` towards `pose` for one cycle. Returns also which bounds held
+/// them back.
 pub(super) fn follow(
     model: &Model,
     ee: &EndEffector,
@@ -63,8 +63,8 @@ pub(super) fn follow(
     let now = rigid(&now);
     let offset = pose.pose.translation.vector - now.translation.vector;
     let turn = rotation::error(&pose.pose.rotation, &now.rotation);
-    // What the pose itself moves by in this cycle is no error. Counted as one, it would kick
-    // whatever begins to follow it.
+    // The motion of the pose in this cycle is no error. Counted as one, it would make the velocity
+    // step where following begins.
     let error =
         Twist::new(offset.x, offset.y, offset.z, turn.x, turn.y, turn.z) - pose.twist * CYCLE;
     let twist = pose.twist + error * FEEDBACK;
@@ -97,8 +97,9 @@ pub(super) fn follow(
     }
     let dq = solution.velocity;
     let next = Reference {
-        // As a plan of the joints goes on, which may have come before: a robot differences
-        // positions, and would take another rule for half of the acceleration in one cycle.
+        // The same rule as in a plan of the joints, which may have come before: the robot
+        // differences positions, and would see a change of rule as half of the acceleration in one
+        // cycle.
         q: reference.q + (reference.dq + dq) * (0.5 * CYCLE),
         dq,
         ddq: (dq - reference.dq) / CYCLE,

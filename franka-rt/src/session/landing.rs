@@ -61,7 +61,7 @@ pub(super) struct Landing {
 
 pub(super) enum Verdict {
     Settling,
-    /// How it settled, and for how many cycles it has been so.
+    /// How it settled, and how many cycles ago.
     Settled(Settlement, u64),
 }
 
@@ -96,7 +96,7 @@ impl Landing {
     }
 }
 
-/// Lets the spring go: the reference goes to where the arm was, so that the motion ends without a
+/// Releases the spring: the reference moves to where the arm was, so that the motion ends without a
 /// step in torque. An arm whose load is not what was declared still hangs on the spring then, and
 /// does not fall.
 #[derive(Debug)]

@@ -157,7 +157,7 @@ pub(crate) struct SessionStep {
     pub(crate) event: Option<SessionEvent>,
 }
 
-/// What is told of a cycle in its record; all zero where no goal is followed.
+/// What the record of a cycle has of the session; all zero where no goal is followed.
 #[derive(Debug, Default)]
 pub(crate) struct Trace {
     pub(crate) goal: GoalId,
@@ -260,7 +260,7 @@ impl TargetSession {
         self
     }
 
-    /// The newest goal that the session has taken up, for telling goals that came too late.
+    /// The newest goal that the session has taken up. An older goal came too late.
     pub fn last_goal(&self) -> Option<GoalId> {
         let active = self.active.as_ref().map(|active| active.goal.id);
         self.held.map(|held| held.id).or(active)

@@ -28,7 +28,7 @@ pub(crate) struct PoseState {
     pub(crate) acceleration: Twist,
 }
 
-/// Where a pose is and how fast it moves: what joints need to know that follow it.
+/// A pose and its velocity, for the joints that follow it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovingPose {
     /// `O_T_EE`, `[m]`.
@@ -47,7 +47,7 @@ impl PoseState {
     }
 }
 
-/// Walks the pose to its target, one nominal millisecond a step.
+/// Moves the pose to its target, one nominal millisecond per step.
 #[derive(Debug)]
 pub(crate) struct PoseGenerator {
     axes: Generator<6>,

@@ -13,16 +13,16 @@ use crate::session::{Budget, Chunk, Goal, Target};
 /// Share of its velocity that a goal keeps where something is near.
 const SLOW: f64 = 0.3;
 
-/// Cycles without anything near ahead after which a goal goes on at its own pace.
+/// Cycles without anything near ahead after which a goal has its full velocity again.
 const CLEAR: u32 = 100;
 
-/// Cycles after a brake after which the way is tried again: it may have been another one.
+/// Cycles from a brake to the next attempt at the goal.
 const RETRY: u32 = 100;
 
-/// Cycles for which a course that was braked counts as held back.
+/// Cycles for which a course counts as hindered after a brake.
 const HINDERED: u32 = 250;
 
-/// Moves the reference, as long as the way is clear.
+/// Moves the reference along a course, and brakes it before anything too near.
 #[derive(Debug)]
 pub(super) struct Route {
     pub(super) course: Course,
@@ -33,10 +33,10 @@ pub(super) struct Route {
     repaced: bool,
     /// Cycles for which it still counts as hindered.
     hindered: u32,
-    /// The budget of the brake from which the way to rest was last seen to be clear.
+    /// The budget with which the way to rest was last found clear.
     judged: Budget,
-    /// A chunk that another course has taken the place of. It is not freed here, but goes back in
-    /// the next cycle.
+    /// A chunk whose course has been replaced. It is returned in the next cycle, to be freed
+    /// outside the thread.
     pub(super) retired_chunk: Option<ChunkCourse>,
     /// Where the goal's last chunk has ended, if none runs.
     pub(super) chunk_end: Option<Target>,
@@ -48,9 +48,9 @@ pub(super) struct Route {
 enum Pace {
     /// As the goal asks.
     Full,
-    /// Slowly; so many cycles without anything near ahead.
+    /// Slowly; the number of cycles without anything near ahead.
     Slow(u32),
-    /// Braked before something too near, so many cycles ago.
+    /// Braked before something too near; the number of cycles since.
     Braked(u32),
 }
 
@@ -59,7 +59,7 @@ enum Pace {
 const AT_REST: f64 = 1e-4;
 
 impl Route {
-    /// For an arm at rest, which begins with this budget.
+    /// Returns the route of an arm at rest, which begins with this budget.
     pub(super) fn new(clearance: Clearance, budget: Budget) -> Self {
         Self {
             course: Course::Rest,
@@ -74,7 +74,8 @@ impl Route {
         }
     }
 
-    /// See [`Course::head_for`]. What was near stays near for now.
+    /// Plans the course towards `goal` from the reference. The pace is kept; after a brake it is
+    /// slow.
     pub(super) fn head_for(
         &mut self,
         model: &Model,
@@ -86,7 +87,7 @@ impl Route {
         self.plan(model, ee, reference, &paced);
     }
 
-    /// Turns the course towards `goal`, or notes that it could not.
+    /// Plans the course towards `goal`, or notes that no plan could be made.
     fn plan(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
         let planned = self.course.head_for(model, ee, reference, goal);
         self.failed |= planned.is_err();
@@ -97,8 +98,7 @@ impl Route {
         core::mem::take(&mut self.failed)
     }
 
-    /// Follows a chunk towards its end, `goal`. What was near stays near for now. Gives back the
-    /// chunk before it.
+    /// Follows a chunk towards its end, `goal`, at the present pace. Returns the chunk before it.
     pub(super) fn follow(
         &mut self,
         model: &Model,
@@ -138,8 +138,8 @@ impl Route {
         }
     }
 
-    /// The goal at the pace that what is near allows; one that was braked before something sets out
-    /// slowly.
+    /// Returns `goal` with less velocity if something is near. Also ends a brake: the goal goes on
+    /// slowly, and may be paced anew.
     fn paced(&mut self, goal: &Goal) -> Goal {
         self.repaced = false;
         if matches!(self.pace, Pace::Braked(_)) {
@@ -152,8 +152,8 @@ impl Route {
         }
     }
 
-    /// A goal that begins with a brake, which is to be no longer than the one that was seen to be
-    /// clear.
+    /// Returns `goal` with its joint limits raised to those of the last clear check, where they are
+    /// lower: the way of the brake is then no longer than the one that was checked.
     fn braking(&self, goal: &Goal) -> Goal {
         let mut budget = goal.budget;
         for (joint, judged) in budget.joints.iter_mut().zip(&self.judged.joints) {
@@ -164,8 +164,8 @@ impl Route {
         Goal { budget, ..*goal }
     }
 
-    /// Heads on for `goal` from a reference that something else has moved, if it is on its way or
-    /// has been set moving.
+    /// Plans anew towards `goal` from a reference that something else has moved, unless it has
+    /// arrived and rests.
     pub(super) fn begin_again(
         &mut self,
         model: &Model,
@@ -210,13 +210,14 @@ impl Route {
         self.plan(model, ee, reference, &rest);
     }
 
-    /// Stays where it is.
+    /// Clears course and pace; the reference stays where it is.
     pub(super) fn rest(&mut self) {
         self.course = Course::Rest;
         self.pace = Pace::Full;
     }
 
-    /// Stays for a cycle, and looks around: the first step has less to do then.
+    /// Keeps the reference for one cycle and checks the clearance, whose result the first step can
+    /// then use.
     pub(super) fn stay(&mut self, reference: &Reference) -> course::CourseStep {
         let Reference { q, .. } = reference;
         // Nothing comes nearer to an arm that stays.
@@ -224,7 +225,7 @@ impl Route {
         course::CourseStep::free(*reference)
     }
 
-    /// One nominal millisecond on towards `goal`, or away from what is too near.
+    /// Advances by one nominal millisecond towards `goal`, or brakes before something too near.
     pub(super) fn step(
         &mut self,
         model: &Model,
@@ -252,15 +253,15 @@ impl Route {
         let step = self
             .course
             .step(model, ee, posture, reference, arm, arm.time);
-        // The way of a brake was checked before the step that it begins from. A person who guides
-        // the arm sees where it goes.
+        // The way of a brake was checked before the step that it begins from. Hand guiding is left
+        // to the person who guides.
         if matches!(goal.target, Target::Rest | Target::Guide(_)) {
             return step;
         }
         let next = &step.reference;
         let end = course::end_of_brake(model, next, &goal.budget);
         if repaced && self.clearance.is_known_safe(&next.q, &end) {
-            // What is near has just been looked at, and the plan took its time.
+            // Planning has used the time of this cycle; the result of the last check is enough.
             self.judged = goal.budget;
             return step;
         }
@@ -308,7 +309,8 @@ impl Route {
     }
 }
 
-/// The goal at a slower pace. What joints may do on the way to a pose stays.
+/// Returns `goal` with its velocities scaled by [`SLOW`]; those of the joints only for a joint
+/// target.
 fn slowed(goal: &Goal) -> Goal {
     let slow = |limits: AxisLimits| AxisLimits {
         velocity: limits.velocity * SLOW,

@@ -52,9 +52,8 @@ impl SetpointStream {
         }
     }
 
-    /// Where the robot takes its setpoint to be, if that is not where `reference` is. Of Cartesian
-    /// setpoints it is what was commanded that is compared, and the robot's own joints that are
-    /// taken over.
+    /// Returns the setpoint as the robot has it, if it differs from `reference`. Cartesian
+    /// setpoints are compared as commanded, and the robot's own joints are taken over.
     pub(super) fn echo(
         &self,
         model: &Model,
@@ -119,9 +118,9 @@ impl SetpointStream {
 
     /// The pose and elbow of `reference` within the limits of both, and whether that took a change.
     ///
-    /// What the limiter makes of a pose is another one, for which the robot finds other joints,
-    /// within no limits. So it is the joints that are held back, towards where they get without a
-    /// jerk, by as much as the limiter held back their pose.
+    /// A pose changed by the limiter would make the robot find other joints, with no limits
+    /// applied. So the joints are held back instead, towards where they get without a jerk, by as
+    /// much as the limiter held back their pose.
     fn eased(
         &self,
         pose: impl Fn(&JointVector) -> CartesianPose,

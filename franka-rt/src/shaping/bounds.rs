@@ -1,4 +1,4 @@
-//! What the limiters of libfranka keep, for both robots.
+//! The bounds of the limiters of libfranka, for both robots.
 
 use franka_model::limits::{CLIENT_MARGIN, CartesianLimits, JointLimits, MotionLimits};
 use franka_model::{JointVector, RobotKind};

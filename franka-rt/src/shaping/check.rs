@@ -1,4 +1,4 @@
-//! Whether a command is one at all: finite, a transformation, an elbow.
+//! Checks that a command is valid: finite, a transformation, an elbow.
 
 use crate::shaping::InvalidCommand;
 
@@ -18,7 +18,7 @@ pub fn finite(values: &[f64]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// Refuses what is no pose in column-major order.
+/// Refuses an array that is not a pose in column-major order.
 ///
 /// # Errors
 /// [`InvalidCommand::NotFinite`], then [`InvalidCommand::Transformation`].
@@ -31,7 +31,7 @@ pub fn pose(column_major: &[f64; 16]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// Refuses what is no elbow: an angle of joint 3 `[rad]` and a sign of joint 4, -1 or +1.
+/// Refuses an elbow that is not an angle of joint 3 `[rad]` and a sign of joint 4, -1 or +1.
 ///
 /// # Errors
 /// [`InvalidCommand::NotFinite`], then [`InvalidCommand::ElbowSign`].

@@ -53,13 +53,13 @@ pub enum InvalidCommand {
 /// What a low-pass filter is applied to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Signal {
-    /// Numbers on their own.
+    /// Scalars.
     Scalar,
     /// A pose.
     Pose,
 }
 
-/// How it stands in a text, before the name of the filter.
+/// Its name in an error text, before that of the filter.
 impl fmt::Display for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

@@ -9,8 +9,8 @@
 //! * [`limiter`]: commands inside bounds that are arguments: torques, scalars, joints, Cartesian
 //!   velocity and pose.
 //! * [`filter`]: first-order low-pass filters of scalars, arrays and poses.
-//! * [`Bounds`]: what the limiters of libfranka keep, for both robots.
-//! * [`check`]: whether a command is one at all.
+//! * [`Bounds`]: the bounds of the limiters of libfranka, for both robots.
+//! * [`check`]: whether a command is valid.
 //!
 //! The references of filters and limiters are the *last commanded* values of the robot's state.
 //! Everything is arithmetic on arrays: nothing allocates, and nothing panics for any input.
@@ -29,8 +29,7 @@ pub use bounds::{Bounds, VelocityBounds};
 pub use error::{FilterFault, InvalidCommand, Signal};
 pub use filter::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
 
-/// The cycle of the robot, `[s]`: the time between two commands, also after lost states.
-pub const CYCLE: f64 = 1e-3;
+pub use franka_model::CYCLE;
 
 /// `y` if it is less, else `x`: with a NaN the first, where [`f64::min`] gives the other.
 const fn lo(x: f64, y: f64) -> f64 {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion, Vector3};
 
-/// A pose whose rotation is one.
+/// A pose with an orthogonal rotation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rigid {
     pub(crate) rotation: Matrix3<f64>,
@@ -213,9 +213,9 @@ const POLISH_STEPS_MAX: usize = 4;
 /// What is this close to orthogonal, such as rotations rounded to `f32`, is as close after one more
 /// step as rounding allows.
 const CUBES_AWAY: f64 = 5e-6;
-/// What products of rotations are off by.
+/// The rounding error of products of rotations.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Far more than a symmetric 4x4 matrix takes.
+/// Far more than a symmetric 4x4 matrix needs.
 const EIGEN_STEPS_MAX: usize = 200;
 
 #[cfg(test)]

@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use super::cycle::CYCLE_NANOS;
 
-/// Learns from the arrivals of states when the next one is due.
+/// Estimates from the arrivals of states when the next one is due.
 ///
-/// The robot sends on its own clock, a state per millisecond, and a state can only come later than
-/// it left. So the offset between the two clocks is that of the most punctual state of the recent
-/// past, and how much later than that one another came is what network, kernel and scheduler have
-/// added to it. The past is short, so that two clocks that drift apart (100 ppm make 6 us in 64 ms)
-/// and a robot that stood still for a while (a simulated one) do no harm for long.
+/// The robot sends one state per millisecond of its own clock, and no state arrives before it was
+/// sent. So the offset between the two clocks is taken from the most punctual state of a recent
+/// window; what another state is later than that is the delay of network, kernel and scheduler. The
+/// window is short, so that clock drift (100 ppm make 6 us in 64 ms) and pauses of the robot (a
+/// simulated one) are soon forgotten.
 #[derive(Debug, Default)]
 pub(super) struct Arrivals {
     /// `message_id` and arrival that all offsets are counted from.
@@ -24,7 +24,7 @@ pub(super) struct Arrivals {
 }
 
 impl Arrivals {
-    /// Takes the arrival of a state and returns how late it was.
+    /// Returns how late a state was that arrived at `now`.
     pub(super) fn note(&mut self, time: u64, now: Instant) -> Duration {
         let (first, start) = *self.origin.get_or_insert((time, now));
         let elapsed = now.saturating_duration_since(start).as_nanos();
@@ -43,7 +43,7 @@ impl Arrivals {
     }
 }
 
-/// States in a window: between this many and twice as many are remembered.
+/// States in a window. The estimate covers between one window and two.
 const WINDOW: u32 = 32;
 
 #[cfg(test)]

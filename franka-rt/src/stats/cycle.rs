@@ -1,11 +1,13 @@
-//! How long one cycle took, and in what.
+//! How long one cycle took, as a whole and by phase.
 
 use core::fmt;
 use core::time::Duration;
 
+use franka_model::CYCLE;
+
 use crate::slot::Words;
 
-/// One cycle that sent a command: how long it took, and in what.
+/// The times of one cycle that sent a command, as a whole and by phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -110,7 +112,7 @@ impl CycleTimes {
 }
 
 impl Slack {
-    /// What is left of a cycle of which so much is gone.
+    /// Returns what `late` and `turnaround` leave of a cycle.
     pub(crate) fn of(late: Duration, turnaround: Duration) -> Self {
         let gone = late.saturating_add(turnaround).as_nanos();
         let gone = i64::try_from(gone).unwrap_or(i64::MAX);
@@ -147,7 +149,7 @@ impl fmt::Display for Slack {
 }
 
 impl Phases {
-    /// Where the time of a phase is kept; `None` for what is no part of these.
+    /// The duration of a phase; `None` for one that is not among these.
     #[cfg(feature = "cycle-phases")]
     pub(super) fn part_mut(&mut self, phase: Phase) -> Option<&mut Duration> {
         match phase {
@@ -230,13 +232,13 @@ impl Words for CycleTimes {
     }
 }
 
-/// In nanoseconds, up to 585 years.
+/// Returns a duration in nanoseconds, up to 585 years.
 fn nanos(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// Time from one state to the next, in nanoseconds.
-pub(super) const CYCLE_NANOS: i64 = 1_000_000;
+/// [`CYCLE`] in nanoseconds: the time from one state to the next.
+pub(super) const CYCLE_NANOS: i64 = (CYCLE * 1e9) as i64;
 
 #[cfg(test)]
 mod tests {

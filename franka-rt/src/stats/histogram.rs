@@ -1,12 +1,12 @@
-//! How often which duration occurred.
+//! A histogram of durations with logarithmic buckets.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
 
 use super::Counter;
 
-/// How often which duration occurred, to 1/16 of its value (exact below 16 ns), with exact minimum
-/// and maximum.
+/// A histogram of durations with a resolution of 1/16 of their value (1 ns below 16 ns), and their
+/// exact minimum and maximum.
 ///
 /// A value with its highest bit at position e >= 4 falls in one of 16 equal buckets of
 /// `[2^e, 2^(e+1))` nanoseconds. Durations of 2^40 ns (18 minutes) and more share the last bucket.
@@ -31,8 +31,8 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// The numbers that a report names; `None` if there was no duration. Not for the real-time
-    /// thread.
+    /// Median, 99th percentile and maximum; `None` if no duration was counted. Not for the
+    /// real-time thread.
     pub fn quantiles(&self) -> Option<Quantiles> {
         Some(Quantiles {
             p50: self.quantile(0.5)?,
@@ -45,7 +45,7 @@ impl Histogram {
     pub(crate) fn note(&self, duration: Duration) {
         let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
         let bucket = &self.buckets[bucket_of(nanos)];
-        // Relaxed throughout: see the module's word on half-counted cycles.
+        // Relaxed throughout: see the module on half-counted cycles.
         bucket.store(
             bucket.load(Ordering::Relaxed).wrapping_add(1),
             Ordering::Relaxed,
@@ -61,25 +61,25 @@ impl Histogram {
         self.count.add(1);
     }
 
-    /// How many durations there were.
+    /// The number of durations counted.
     pub fn count(&self) -> u64 {
         self.count.get()
     }
 
-    /// The shortest one, exactly; `None` if there was none.
+    /// The shortest duration, exactly; `None` if none was counted.
     pub fn min(&self) -> Option<Duration> {
-        // Not by the count, which a reader may see before the minimum.
+        // The count does not tell: a reader may see it before the minimum.
         let min = self.min.load(Ordering::Relaxed);
         (min != u64::MAX).then(|| Duration::from_nanos(min))
     }
 
-    /// The longest one, exactly; `None` if there was none.
+    /// The longest duration, exactly; `None` if none was counted.
     pub fn max(&self) -> Option<Duration> {
         (self.count() > 0).then(|| Duration::from_nanos(self.max.load(Ordering::Relaxed)))
     }
 
-    /// A duration that the share `quantile` (in `[0, 1]`) of all did not exceed; at most 1/16 above
-    /// the exact one. `None` if there was none. Walks the buckets: not for the real-time thread.
+    /// The quantile `quantile` (in `[0, 1]`), at most 1/16 above the exact one. `None` if no
+    /// duration was counted. Walks the buckets: not for the real-time thread.
     pub fn quantile(&self, quantile: f64) -> Option<Duration> {
         let max = self.max()?;
         let wanted = (quantile.clamp(0.0, 1.0) * self.count() as f64)
@@ -100,9 +100,9 @@ impl Histogram {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Quantiles {
-    /// What half of all durations did not exceed, to 1/16.
+    /// The median, to 1/16.
     pub p50: Duration,
-    /// What 99 of 100 did not exceed, to 1/16.
+    /// The 99th percentile, to 1/16.
     pub p99: Duration,
     /// The longest one, exactly.
     pub max: Duration,
@@ -114,7 +114,7 @@ const FINENESS: u32 = 4;
 /// Buckets per power of two.
 const PER_OCTAVE: usize = 1 << FINENESS;
 
-/// log2 of the first duration that the last bucket takes for all above it, in nanoseconds.
+/// log2 of the duration, in nanoseconds, from which on all share the last bucket.
 const OCTAVES_MAX: u32 = 40;
 
 const BUCKETS: usize = (OCTAVES_MAX - FINENESS + 1) as usize * PER_OCTAVE;

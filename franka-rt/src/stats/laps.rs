@@ -1,11 +1,11 @@
-//! A stopwatch for the phases of a cycle, which stands still without the feature `cycle-phases`.
+//! A stopwatch for the phases of a cycle. It does nothing without the feature `cycle-phases`.
 
 use std::time::Instant;
 
 use super::{Phase, Phases};
 
-/// Times the phases of one cycle, each from the end of the one before. Without the feature it reads
-/// no clock, holds nothing and costs nothing.
+/// Times the phases of one cycle, each from the end of the one before. Without the feature it is
+/// empty and reads no clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Laps {
     #[cfg(feature = "cycle-phases")]
@@ -16,7 +16,7 @@ pub(crate) struct Laps {
 
 #[cfg(feature = "cycle-phases")]
 impl Laps {
-    /// The cycle begins.
+    /// Starts the first phase of a cycle.
     pub(crate) fn start(at: Instant) -> Self {
         Self {
             last: at,
@@ -24,12 +24,12 @@ impl Laps {
         }
     }
 
-    /// A phase ends now. One that comes twice, with others between, counts as a whole.
+    /// Ends a phase now. The times of a phase that comes twice add up.
     pub(crate) fn end(&mut self, phase: Phase) {
         self.end_at(phase, Instant::now());
     }
 
-    /// A phase ended at a time that was read already.
+    /// Ends a phase at a time that was read already.
     pub(crate) fn end_at(&mut self, phase: Phase, at: Instant) {
         let taken = at.saturating_duration_since(self.last);
         self.last = at;
@@ -38,7 +38,7 @@ impl Laps {
         }
     }
 
-    /// What was timed.
+    /// The phases timed so far.
     pub(crate) fn phases(&self) -> Option<Phases> {
         Some(self.phases)
     }

@@ -8,7 +8,7 @@ use super::arrivals::Arrivals;
 use super::{Counter, CycleTimes, Histogram, MotionStatistics, Stats};
 use crate::slot::{self, SlotWriter};
 
-/// How a state came.
+/// When a state arrived: after the one before it, and after it was due.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     /// Time since the state before, by this host's clock; `None` for the first.
@@ -17,7 +17,7 @@ pub struct Arrival {
     pub late: Duration,
 }
 
-/// What the thread writes the statistics with.
+/// The writing side of [`Stats`], owned by the thread.
 #[derive(Debug)]
 pub(crate) struct Meter {
     stats: Arc<Stats>,
@@ -39,7 +39,7 @@ struct Newest {
 }
 
 impl Meter {
-    /// Statistics of nothing yet. Allocates; nothing else here does.
+    /// Returns empty statistics. Allocates; nothing else here does.
     pub(crate) fn new() -> Self {
         let (worst, worst_reader) = slot::slot();
         let (overran, overran_reader) = slot::slot();
@@ -76,7 +76,7 @@ impl Meter {
         }
     }
 
-    /// What is written to.
+    /// The statistics, for their readers.
     pub(crate) fn stats(&self) -> &Arc<Stats> {
         &self.stats
     }
@@ -86,7 +86,7 @@ impl Meter {
         self.newest.map(|newest| newest.received)
     }
 
-    /// Notes a state, which came with so many others that gave way to it.
+    /// Counts a state, and `skipped` older ones that arrived with it. Returns when it arrived.
     pub(crate) fn note_arrival(&mut self, time: u64, received: Instant, skipped: u64) -> Arrival {
         let late = self.arrivals.note(time, received);
         let before = self.newest.replace(Newest {
@@ -113,8 +113,8 @@ impl Meter {
         CycleTimes::new(newest.time, newest.late, turnaround)
     }
 
-    /// Notes a cycle with a command.
-    pub(crate) fn note_cycle(&mut self, cycle: &CycleTimes) {
+    /// Notes a cycle with a command, and shows the counts of the motion that it belongs to.
+    pub(crate) fn note_cycle(&mut self, cycle: &CycleTimes, motion: Option<&MotionStatistics>) {
         self.stats.commands.add(1);
         self.stats.turnaround.note(cycle.turnaround);
         self.stats
@@ -129,11 +129,9 @@ impl Meter {
             self.longest = cycle.total();
             self.worst.write(cycle);
         }
-    }
-
-    /// Shows the numbers of the motion that runs.
-    pub(crate) fn note_motion(&mut self, motion: &MotionStatistics) {
-        self.motion.write(motion);
+        if let Some(motion) = motion {
+            self.motion.write(motion);
+        }
     }
 }
 
@@ -181,9 +179,14 @@ mod tests {
         };
         let late = CycleTimes::new(3, US(900), US(150));
         for cycle in [CycleTimes::new(1, US(30), US(100)), timed, late] {
-            meter.note_cycle(&cycle);
+            meter.note_cycle(&cycle, None);
         }
-        meter.note_cycle(&CycleTimes::new(4, US(0), US(90)));
+        assert_eq!(stats.motion(), None);
+        let last = CycleTimes::new(4, US(0), US(90));
+        let mut motion = MotionStatistics::default();
+        motion.note_cycle(&last);
+        meter.note_cycle(&last, Some(&motion));
+        assert_eq!(stats.motion(), Some(motion));
         assert_eq!(stats.worst_cycle(), Some(timed));
         assert_eq!(timed.longest(), (Phase::Publish, US(2000)));
         assert_eq!(stats.newest_overrun(), Some(late));

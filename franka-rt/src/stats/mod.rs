@@ -8,14 +8,14 @@
 //!                                                   slack
 //! ```
 //!
-//! One writer, the thread; readers anywhere, at any time, without a lock. Every cell is an atomic
-//! of its own, so a reader may see a cycle half counted: good enough for numbers that are looked
-//! at, not computed with. The histograms are arrays of atomics with logarithmic buckets rather than
-//! the `hdrhistogram` crate's, whose plain cells a reader could only see through a lock or a copy
-//! made by the thread. What only makes sense as a whole, a cycle or the numbers of a motion,
-//! crosses in a [`slot`](crate::slot).
+//! One writer, the thread; readers anywhere, at any time, without a lock. Every counter is an
+//! atomic of its own, so a reader may see a cycle half counted: the numbers are for display. The
+//! histograms are arrays of atomics with logarithmic buckets rather than the `hdrhistogram`
+//! crate's, whose plain cells a reader could only see through a lock or a copy made by the thread.
+//! Values that have to be consistent, a cycle or the counts of a motion, cross in a
+//! [`slot`](crate::slot).
 //!
-//! * [`Histogram`]: how often which duration occurred. [`CycleTimes`]: one cycle and its phases.
+//! * [`Histogram`]: durations in logarithmic buckets. [`CycleTimes`]: one cycle and its phases.
 //! * [`MotionStatistics`]: counts over the running time of one motion.
 //! * `arrivals`: when the next state is due. `meter`: the writing side of it all.
 
@@ -45,26 +45,26 @@ pub struct Stats {
     pub states: Counter,
     /// Commands sent.
     pub commands: Counter,
-    /// States that were received but gave way to a newer one that waited too.
+    /// States that were received but skipped for a newer one that had arrived too.
     pub skipped: Counter,
-    /// States that never came, by the gaps in `message_id`; those skipped are not among them.
+    /// States that never arrived, by the gaps in `message_id`, without those skipped.
     pub lost: Counter,
-    /// States not newer than the newest: late or duplicate ones.
+    /// States not newer than the newest: overtaken or duplicate ones.
     pub stale: Counter,
     /// Datagrams from elsewhere than the robot.
     pub foreign: Counter,
     /// Datagrams of the robot too short for a state, or not decodable as one.
     pub malformed: Counter,
-    /// Receives that failed otherwise than by finding nothing.
+    /// Receives that failed with an error; an empty socket is not one.
     pub receive_errors: Counter,
-    /// Commands that did not leave.
+    /// Commands that could not be sent.
     pub send_errors: Counter,
-    /// Records that found their ring full.
+    /// Records dropped because their ring was full.
     pub records_lost: Counter,
-    /// States that found the ring of all states full. They were answered, and the newest of them
-    /// published.
+    /// States dropped from the ring of all states because it was full. They were answered, and the
+    /// newest of them published.
     pub states_lost: Counter,
-    /// Reports of the loop itself (not of the driver) that found the queue full.
+    /// Reports of the loop itself (not of the driver) dropped because the queue was full.
     pub reports_lost: Counter,
     /// Times between two states in a row, by this host's clock.
     pub interval: Histogram,
@@ -74,7 +74,7 @@ pub struct Stats {
     /// [`CycleTimes::slack`]. A command that left later than that counts as zero here, and in
     /// [`Self::overrun`].
     pub slack: Histogram,
-    /// By how much commands left after the next state was due: as many as there are overruns.
+    /// By how much commands left after the next state was due; one value per overrun.
     pub overrun: Histogram,
     worst: SlotReader<CycleTimes>,
     overran: SlotReader<CycleTimes>,
@@ -99,7 +99,7 @@ impl Stats {
     }
 }
 
-/// The value in a slot whose reader here never reads: its clones do.
+/// Returns the newest value of a slot. Reads through a clone: the reader itself is shared.
 fn newest<T: Words>(slot: &SlotReader<T>) -> Option<T> {
     match slot.clone().read_retry(ATTEMPTS) {
         Read::Newer(value) => Some(value),
@@ -107,7 +107,8 @@ fn newest<T: Words>(slot: &SlotReader<T>) -> Option<T> {
     }
 }
 
-/// Attempts to read what is being replaced. A write takes some nanoseconds, once per millisecond.
+/// Attempts to read a value that is being replaced. A write takes some nanoseconds, once per
+/// millisecond.
 const ATTEMPTS: usize = 64;
 
 /// A count with one writer.
@@ -117,7 +118,7 @@ pub struct Counter(AtomicU64);
 impl Counter {
     /// The count now.
     pub fn get(&self) -> u64 {
-        // Relaxed: the number stands for itself; nothing else is read on its strength.
+        // Relaxed: no other memory is read depending on this value.
         self.0.load(Ordering::Relaxed)
     }
 

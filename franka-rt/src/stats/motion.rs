@@ -15,7 +15,7 @@ pub struct MotionStatistics {
     pub cycles: u64,
     /// States that never arrived.
     pub lost_states: u64,
-    /// States that arrived but gave way to a newer one that waited too.
+    /// States that arrived but were skipped for a newer one that had arrived too.
     pub skipped_states: u64,
     /// Lowest `control_command_success_rate` seen while running, in `[0, 1]`.
     pub success_rate_min: f64,
@@ -80,8 +80,9 @@ impl MotionStatistics {
         (self.commands > 0).then_some(self.worst)
     }
 
-    /// Counts one state of the running motion, with what is missing before it. The first and the
-    /// final state of a motion report a success rate of 0 whatever happened, so zeros do not count.
+    /// Counts one state of the running motion, and those lost and skipped before it. The first and
+    /// the final state of a motion report a success rate of 0 whatever happened, so zeros do not
+    /// count.
     pub(crate) fn note_state(&mut self, state: &RobotState, lost: u64, skipped: u64) {
         if self.cycles == 0 {
             self.span.0 = state.message_id;

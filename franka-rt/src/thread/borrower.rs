@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::lifetime::Lifetime;
 use crate::event_fd::EventFd;
+use crate::exchange::TICK;
 
 /// Watches the turns of one borrower while the thread waits for its cycle, and tells when none has
 /// come for the link timeout. It is over when it is dropped.
@@ -13,31 +14,46 @@ pub(super) struct BorrowerWatch<'a> {
     event_fd: &'a EventFd,
     timeout: Duration,
     turns: u64,
-    since: Instant,
-    /// What the last look found.
+    /// Time without a turn.
+    idle: Duration,
+    /// When the last look was.
+    looked: Instant,
+    /// What it found.
     stalled: bool,
 }
 
 impl<'a> BorrowerWatch<'a> {
-    pub(super) fn new(lifetime: &'a Lifetime, event_fd: &'a EventFd, timeout: Duration) -> Self {
+    /// A watch that begins at `now`.
+    pub(super) fn new(
+        lifetime: &'a Lifetime,
+        event_fd: &'a EventFd,
+        timeout: Duration,
+        now: Instant,
+    ) -> Self {
         Self {
             lifetime,
             event_fd,
             timeout,
             turns: lifetime.turns(),
-            since: Instant::now(),
+            idle: Duration::ZERO,
+            looked: now,
             stalled: false,
         }
     }
 
-    /// Looks whether there was a turn since the last look.
-    pub(super) fn look(&mut self) {
+    /// Looks, at `now`, whether there was a turn since the last look. A tick is due between two
+    /// looks; in what goes beyond it the host has held this thread up, and the borrower perhaps as
+    /// well.
+    pub(super) fn look(&mut self, now: Instant) {
         let turns = self.lifetime.turns();
-        if turns != self.turns {
+        if turns == self.turns {
+            self.idle += now.saturating_duration_since(self.looked).min(TICK);
+        } else {
             self.turns = turns;
-            self.since = Instant::now();
+            self.idle = Duration::ZERO;
         }
-        self.set(self.since.elapsed() >= self.timeout);
+        self.looked = now;
+        self.set(self.idle >= self.timeout);
     }
 
     /// Notifies of a change, also of one that the borrower has made by a turn.
@@ -52,5 +68,32 @@ impl<'a> BorrowerWatch<'a> {
 impl Drop for BorrowerWatch<'_> {
     fn drop(&mut self) {
         self.set(false);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_for_which_the_watch_itself_is_held_up_is_no_stall_of_the_borrower() {
+        let (lifetime, event_fd) = (Lifetime::default(), EventFd::new().expect("a descriptor"));
+        let mut now = Instant::now();
+        let mut watch = BorrowerWatch::new(&lifetime, &event_fd, 5 * TICK, now);
+        let mut look_after = |pause| {
+            now += pause;
+            watch.look(now);
+            (lifetime.is_stalled(), event_fd.drain() > 0)
+        };
+        // One long stop of the process, then four ticks in which the borrower could run a turn.
+        let stop = Duration::from_secs(10);
+        for pause in [stop, TICK, TICK, TICK] {
+            assert_eq!(look_after(pause), (false, false));
+        }
+        assert_eq!(look_after(TICK), (true, true));
+        assert_eq!(look_after(TICK), (true, false), "told once");
+        lifetime.note_turn();
+        assert_eq!(look_after(TICK), (false, true));
+        assert_eq!(look_after(stop), (false, false));
     }
 }

@@ -31,7 +31,7 @@ pub(super) struct Cycle<C: Core> {
     pub(super) sequence: Sender<Datagram>,
     /// The newest state.
     pub(super) states: SlotWriter<Datagram>,
-    /// That state on its way to both.
+    /// The buffer through which a state gets into both.
     pub(super) datagram: Box<Datagram>,
     pub(super) meter: Meter,
     /// Times the phases of the cycle.
@@ -48,9 +48,9 @@ pub(super) struct Cycle<C: Core> {
 }
 
 impl<C: Core> Cycle<C> {
-    /// Waits for a state, up to a tick, and does all that it calls for. Returns whether one came
-    /// that could be read.
+    /// Waits for a state, up to a tick, and runs one cycle. Returns whether a readable state came.
     pub(super) fn turn(&mut self) -> bool {
+        let begun = Instant::now();
         let reception = self.exchange.receive();
         let now = Instant::now();
         self.laps = Laps::start(now);
@@ -66,8 +66,12 @@ impl<C: Core> Cycle<C> {
             sent = self.answer(state, now, reception.skipped);
             self.publish();
         } else {
+            // Only time spent in the receive counts as silence. If the host held this thread up
+            // after it, states may lie in the socket: the next turn reads them first.
+            let listened = now.min(begun + reception.waited);
             let heard = self.meter.heard().unwrap_or(self.started);
-            self.core.on_silence(now.saturating_duration_since(heard));
+            self.core
+                .on_silence(listened.saturating_duration_since(heard));
         }
         self.count(&reception);
         let fault = self.fault_of(&reception, decoded.and_then(Result::err));
@@ -83,8 +87,8 @@ impl<C: Core> Cycle<C> {
         readable
     }
 
-    /// Answers a state, if the core does, and then sees to what has waited for that. Returns the
-    /// times of the command.
+    /// Sends the command of the core for a state, if there is one, then does what need not precede
+    /// it. Returns the times of the command.
     fn answer(
         &mut self,
         state: &RobotState,
@@ -96,7 +100,7 @@ impl<C: Core> Cycle<C> {
         }
         let command = self.core.on_state(state);
         self.laps.end(Phase::Program);
-        // A command that did not leave is counted and told; the next state may fare better.
+        // A failed send is counted and reported; the loop goes on.
         let departed = command.and_then(|command| self.transmit(&command).ok());
         let arrival = self.meter.note_arrival(state.message_id, received, skipped);
         let sent = departed.map(|departed| self.meter.answered(departed));
@@ -106,27 +110,24 @@ impl<C: Core> Cycle<C> {
 
     /// Sends a command that answers the newest state, from outside of a turn.
     pub(super) fn send(&mut self, command: &RobotCommand) -> Result<(), SendError> {
-        // The caller has computed since the end of the turn.
+        // The time since the end of the turn is the caller's computation.
         self.laps.end(Phase::Program);
         let departed = self.transmit(command)?;
         self.note(self.meter.answered(departed));
         Ok(())
     }
 
-    /// Notes a cycle whose command has left, when all that belongs to it is over.
+    /// Notes a cycle whose command has left, when all of its phases are over.
     fn note(&mut self, cycle: CycleTimes) {
         let cycle = CycleTimes {
             phases: self.laps.phases(),
             ..cycle
         };
-        self.core.note_cycle(&cycle);
-        self.meter.note_cycle(&cycle);
-        if let Some(motion) = self.core.statistics() {
-            self.meter.note_motion(motion);
-        }
+        let motion = self.core.note_cycle(&cycle);
+        self.meter.note_cycle(&cycle, motion);
     }
 
-    /// The newest state that could be read, if there was one.
+    /// The newest state; `None` if it cannot be decoded.
     pub(super) fn state(&self) -> Option<RobotState> {
         RobotState::decode(self.version, self.exchange.state()).ok()
     }
@@ -206,8 +207,8 @@ impl<C: Core> Cycle<C> {
             .or(reception.error.map(LinkFault::Receive))
     }
 
-    /// Whether to send a wake-up for a state: for every one if that is requested, and now and then
-    /// otherwise.
+    /// Whether to send a wake-up for a state: for every one if that is requested, for every
+    /// [`STATES_PER_WAKE_MAX`]th otherwise.
     fn is_wakeup_due(&mut self) -> bool {
         self.states_since_wake += 1;
         let due = self.state_wakeups.are_wanted() || self.states_since_wake >= STATES_PER_WAKE_MAX;
@@ -217,7 +218,7 @@ impl<C: Core> Cycle<C> {
         due
     }
 
-    /// Queues a fault of the receiving side if it is news; returns whether it did.
+    /// Queues a fault of the receiving side if it is a new one; returns whether it did.
     fn report(&mut self, fresh: bool, fault: Option<LinkFault>) -> bool {
         if !fresh && fault.is_none() {
             return false; // A tick without any datagram is neither a fault nor the end of one.

@@ -1,4 +1,4 @@
-//! What the thread drives.
+//! The interface between the loop and the core that it drives.
 
 use core::time::Duration;
 
@@ -11,13 +11,12 @@ use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 ///
 /// [`Driver`] is the one that programs use. The trait lets the loop be tested, and its allocations
 /// be counted, beside cores that panic, answer everything or hold their events back. No method may
-/// allocate, free, lock, log or wait: they run on the real-time thread. Those with a body are for
-/// cores that keep counts.
+/// allocate, free, lock, log or wait: they run on the real-time thread. Methods with a body are
+/// optional.
 pub trait Core: Send + 'static {
-    /// What other threads ask for.
+    /// An order from other threads.
     type Order: Send + 'static;
-    /// What is reported to other threads. Memory that is no longer needed leaves inside, to be
-    /// freed there.
+    /// A report to other threads. It carries memory that is no longer needed, to be freed there.
     type Event: Send + 'static;
     /// What a cycle saw and did.
     type Record: Copy + Send + 'static;
@@ -25,39 +24,37 @@ pub trait Core: Send + 'static {
     /// Takes an order.
     fn on_order(&mut self, order: Self::Order);
 
-    /// Tells that so many states came with the next one, and were skipped for it. Not called for
-    /// none.
+    /// Announces `states` older states that arrived with the next one and are skipped. Not called
+    /// for 0.
     fn on_skipped(&mut self, _states: u64) {}
 
     /// Takes a state, newer than all before it, and returns the command that answers it.
     fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand>;
 
-    /// Tells that no state has come for `silence`, of this host's clock. Comes again and again
-    /// while it lasts.
+    /// Reports that no state has come for `silence`, by this host's clock. Called repeatedly while
+    /// it lasts.
     fn on_silence(&mut self, silence: Duration);
 
-    /// The silence that the core wants to hear of in time; the thread waits for states no longer
-    /// than a fraction of it.
+    /// The silence that has to be reported in time: the thread waits for a state no longer than a
+    /// fraction of it.
     fn link_timeout(&self) -> Duration {
         LINK_TIMEOUT
     }
 
-    /// Does for a state, after [`Self::on_state`], what can wait until the command has left. `sent`
-    /// has the times of the command, if one left: all but those of what follows it.
+    /// Does the work for a state that can wait until the command has left. `sent` has the times of
+    /// the command, if one left, without the phases after it.
     fn after_send(&mut self, _state: &RobotState, _arrival: &Arrival, _sent: Option<&CycleTimes>) {}
 
     /// The record of the last cycle, after [`Self::after_send`].
     fn record(&self) -> Self::Record;
 
-    /// Takes all times of a cycle whose command has left.
-    fn note_cycle(&mut self, _cycle: &CycleTimes) {}
-
-    /// Counts of the motion that runs, if one does.
-    fn statistics(&self) -> Option<&MotionStatistics> {
+    /// Notes all times of a cycle whose command has left. Returns the counts of the motion that
+    /// runs, if one does.
+    fn note_cycle(&mut self, _cycle: &CycleTimes) -> Option<&MotionStatistics> {
         None
     }
 
-    /// The oldest event not taken yet. Only called when there is room for it outside.
+    /// Returns the oldest event not taken yet. Only called when the queue has room for it.
     fn take_event(&mut self) -> Option<Self::Event>;
 }
 
@@ -94,12 +91,8 @@ impl Core for Driver {
         *Self::record(self)
     }
 
-    fn note_cycle(&mut self, cycle: &CycleTimes) {
-        Self::note_cycle(self, cycle);
-    }
-
-    fn statistics(&self) -> Option<&MotionStatistics> {
-        Self::statistics(self)
+    fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
+        Self::note_cycle(self, cycle)
     }
 
     fn take_event(&mut self) -> Option<Event> {

@@ -1,4 +1,4 @@
-//! What can go wrong between the robot's datagrams and the core.
+//! Faults of the link: datagrams, receives and sends that fail.
 
 use franka_proto::DecodeError;
 
@@ -9,12 +9,12 @@ use crate::sys;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinkFault {
-    /// A datagram of the robot is no state. Too short a one usually means a server of another
-    /// version.
+    /// A datagram of the robot cannot be decoded. One that is too short usually means a server of
+    /// another version.
     #[error(transparent)]
     Datagram(#[from] DecodeError),
-    /// A state was dropped: its number is further above the newest one's than any robot's could be
-    /// (see [`LEAP_MAX`](crate::exchange::LEAP_MAX)).
+    /// A state was dropped: its number exceeds the newest by more than any robot's can (see
+    /// [`LEAP_MAX`](crate::exchange::LEAP_MAX)).
     #[error("a robot state numbered {got} after one numbered {newest} was dropped")]
     Leap {
         /// `message_id` of the state, `[ms]`.
@@ -22,21 +22,20 @@ pub enum LinkFault {
         /// `message_id` of the newest state, `[ms]`.
         newest: u64,
     },
-    /// A receive failed otherwise than by finding nothing; an errno value.
+    /// A receive failed, with this errno value.
     #[error("libfranka: UDP receive: {}", sys::error_text(*.0))]
     Receive(i32),
-    /// A command did not leave.
+    /// A command could not be sent.
     #[error(transparent)]
     Send(#[from] SendError),
 }
 
-/// Lets the first of several equal faults in a row through, so that one that lasts is told once and
-/// not every cycle.
+/// Passes the first of several equal faults in a row, so that a lasting one is reported once.
 #[derive(Debug, Default)]
 pub(super) struct Latch(Option<LinkFault>);
 
 impl Latch {
-    /// Takes what happened (`None`: all went well) and returns it if it is not the same as the time
+    /// Takes the fault of a cycle, if there was one, and returns it if it differs from the one
     /// before.
     pub(super) fn pass(&mut self, fault: Option<LinkFault>) -> Option<LinkFault> {
         let news = if self.0 == fault { None } else { fault };

@@ -19,8 +19,8 @@ use crate::state_wakeups::StateWakeups;
 use crate::stats::Stats;
 use crate::thread::{Core, Lender, LinkFault};
 
-/// Everything that connects other threads to one running control thread. Take it apart: each field
-/// has its own user.
+/// Everything that connects other threads to one running control thread. The fields are independent
+/// and may be moved out.
 #[derive(Debug)]
 pub struct Handle<C: Core = Driver> {
     /// Orders for the core. The thread takes them with the next state, or within
@@ -28,12 +28,12 @@ pub struct Handle<C: Core = Driver> {
     pub orders: Sender<C::Order>,
     /// What the core and the loop report, oldest first.
     pub notices: Receiver<Notice<C::Event>>,
-    /// One record per state, oldest first. Those that find the queue full are lost, and counted in
+    /// One record per state, oldest first. When the queue is full they are lost, and counted in
     /// [`Stats::records_lost`].
     pub records: Receiver<C::Record>,
     /// The newest state.
     pub states: StateReader,
-    /// All states, oldest first. Those that find it full are missing, and counted in
+    /// All states, oldest first. When the queue is full they are lost, and counted in
     /// [`Stats::states_lost`].
     pub sequence: StateSequence,
     /// Notified after every cycle that left a notice, or a state while wake-ups are requested;
@@ -56,7 +56,7 @@ pub struct Handle<C: Core = Driver> {
 pub enum Notice<E> {
     /// An event of the core. None is lost: they wait in the core while the queue is full.
     Core(E),
-    /// Something went wrong with a datagram. Told when it begins, not every cycle that it lasts.
+    /// A fault of the link. Reported when it begins, not in every cycle that it lasts.
     Link(LinkFault),
 }
 
@@ -121,7 +121,7 @@ pub enum Lost {
     /// process goes on.
     #[error("the control thread panicked: {message}")]
     Panicked {
-        /// What the panic said.
+        /// The message of the panic.
         message: String,
     },
     /// The cycle was lent when the thread was stopped, and ends with its [`Lease`](super::Lease).
@@ -161,8 +161,7 @@ pub struct StateReader {
 impl StateReader {
     /// The newest state, if this reader has not returned it yet. Never waits.
     ///
-    /// The thread may be writing at this very moment: after a few attempts the answer is `None`. A
-    /// later wake-up brings a listener back in any case.
+    /// `None` also if a few attempts all met a write of the thread; another wake-up follows then.
     pub fn newest(&mut self) -> Option<RobotState> {
         match self.slot.read_retry(ATTEMPTS) {
             // The thread publishes only what it has decoded itself.
@@ -190,13 +189,13 @@ impl StateSequence {
         RobotState::decode(self.version, &datagram.0[..self.size]).ok()
     }
 
-    /// How many have come and were not taken. The newest of them was the newest state before it was
-    /// counted here.
+    /// The number of states not taken yet. Each was readable as the newest state before it counts
+    /// here.
     pub fn waiting(&self) -> usize {
         self.queue.waiting()
     }
 
-    /// Leaves the oldest `count` out, undecoded, or as many as there are.
+    /// Discards the oldest `count` states, or all if there are fewer, without decoding them.
     pub fn skip(&mut self, count: usize) {
         self.queue.skip(count);
     }
@@ -206,8 +205,8 @@ impl StateSequence {
 /// per millisecond.
 const ATTEMPTS: usize = 16;
 
-/// A state as it came, in the front of the array. Decoded by each reader, which spares the thread a
-/// second conversion.
+/// The bytes of a state, at the front of the array. Each reader decodes them, which saves the
+/// thread a conversion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Datagram(pub(super) [u8; RobotState::MAX_SIZE]);
 

@@ -1,4 +1,4 @@
-//! Where a value changes hands between the thread that owns it and those that borrow it.
+//! Lends a value of the thread that owns it to other threads, one at a time.
 //!
 //! ```text
 //!   owner:     Running --lend--> Offered              Returned --> Running
@@ -41,7 +41,7 @@ enum HandoffState<T> {
     Lent,
     /// On its way back.
     Returned(T),
-    /// Gone: the owner has ended, or a borrower has spoilt it.
+    /// Destroyed: the owner has ended, or a borrower has left it invalid.
     Ended,
 }
 
@@ -50,7 +50,7 @@ enum HandoffState<T> {
 pub(super) enum NotReturned {
     /// The owner stopped waiting: the borrower still has it.
     Lent,
-    /// The borrower has spoilt it.
+    /// The borrower has left it invalid.
     Spoilt,
 }
 
@@ -117,7 +117,7 @@ impl<T> Handoff<T> {
         self.changed.notify_all();
     }
 
-    /// Takes the value over from its owner. Waits until that offers it.
+    /// Waits until the owner offers the value, and takes it.
     pub(super) fn borrow(&self) -> Result<T, BorrowError> {
         let mut state = self.lock();
         loop {
@@ -141,14 +141,14 @@ impl<T> Handoff<T> {
         let mut state = self.lock();
         *state = match (&*state, value) {
             (HandoffState::Lent, Some(value)) => HandoffState::Returned(value),
-            // It is spoilt, or the owner has ended: it is freed here.
+            // It is invalid, or the owner has ended: it is freed here.
             _ => HandoffState::Ended,
         };
         self.changed.notify_all();
     }
 
     fn lock(&self) -> MutexGuard<'_, HandoffState<T>> {
-        // No holder panics.
+        // No thread panics while it holds the lock.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -157,8 +157,8 @@ impl<T> Handoff<T> {
         &'a self,
         state: MutexGuard<'a, HandoffState<T>>,
     ) -> MutexGuard<'a, HandoffState<T>> {
-        // loom knows no time. A tick of zero stands for one that is over once another thread has
-        // run, and its condition variable takes any other for one that never ends.
+        // loom has no time: its condition variable treats a timeout of zero as over once another
+        // thread has run, and any other as endless.
         #[cfg(loom)]
         if self.tick.is_zero() {
             drop(state);

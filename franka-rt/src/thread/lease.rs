@@ -58,11 +58,11 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
 
 /// The cycle of a control thread, in the hands of another. Dropping it gives it back.
 ///
-/// Its holder *is* the cycle: states are read, published and counted in its turns and nowhere else.
-/// A holder that runs no turn for the link timeout is reported by
+/// While it exists, states are read, published and counted in its turns and nowhere else. If it
+/// runs no turn for the link timeout, that is reported by
 /// [`Thread::stalled`](super::Thread::stalled).
 ///
-/// A panic of the holder's gives it back as well. Only if the core itself panics, in a
+/// A panic of the borrowing thread gives it back as well. Only if the core itself panics, in a
 /// [`turn`](Self::turn) or a [`write`](Lease::write), is the cycle destroyed and the thread ended.
 pub struct Lease<C: Core = Driver> {
     handoff: Arc<Handoff<Box<Cycle<C>>>>,
@@ -96,7 +96,7 @@ impl<C: Core> Lease<C> {
         returned
     }
 
-    /// The core, to look at.
+    /// The core, read-only.
     pub fn core(&self) -> &C {
         let cycle = self.cycle.as_ref();
         &cycle.expect("it is there until the drop").core
@@ -107,14 +107,14 @@ impl<C: Core> Lease<C> {
     }
 }
 
-/// Why a command did not leave.
+/// Why a command was not sent.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteFault {
-    /// The motion does not take it.
+    /// The motion refused it.
     #[error(transparent)]
     Refused(#[from] WriteError),
-    /// The system did not send it.
+    /// The send failed.
     #[error(transparent)]
     Link(#[from] SendError),
 }

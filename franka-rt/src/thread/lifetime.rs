@@ -21,8 +21,7 @@ pub(super) struct Lifetime {
 }
 
 impl Lifetime {
-    /// Relaxed here and in [`Self::stop_wanted`]: nothing else is read on the strength of this
-    /// flag.
+    /// Relaxed here and in [`Self::stop_wanted`]: no other memory is read depending on this flag.
     pub(super) fn ask_to_stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
@@ -42,7 +41,7 @@ impl Lifetime {
     }
 
     /// Counts a turn of a borrower, which ends a stall. There is one borrower at a time, so a load
-    /// and a store do. Relaxed, as all below: each value stands for itself.
+    /// and a store do. Relaxed, as all below: no other memory is read depending on these values.
     pub(super) fn note_turn(&self) {
         let turns = self.turns.load(Ordering::Relaxed);
         self.turns.store(turns.wrapping_add(1), Ordering::Relaxed);

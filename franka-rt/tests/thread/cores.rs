@@ -47,8 +47,9 @@ impl Core for Probe {
         self.turnarounds
     }
 
-    fn note_cycle(&mut self, cycle: &CycleTimes) {
+    fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
         self.cycles.push(*cycle);
+        None
     }
 
     fn take_event(&mut self) -> Option<u32> {

@@ -17,7 +17,7 @@ use franka_proto::{DecodeError, RobotCommand, RobotState, Version};
 use franka_rt::driver::{Driver, Event, LinkTimeout};
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, SchedError, Scheduling, kernel_is_realtime};
-use franka_rt::stats::{Arrival, CycleTimes};
+use franka_rt::stats::{Arrival, CycleTimes, MotionStatistics};
 use franka_rt::thread::{
     self, Capacity, Core, Handle, LinkFault, Lost, Notice, StartError, ThreadConfig,
 };

@@ -1,5 +1,9 @@
 //! What comes in: states, invalid datagrams, and silence.
 
+use std::os::unix::thread::JoinHandleExt;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::*;
 
 #[test]
@@ -198,4 +202,59 @@ fn a_link_within_the_shortest_timeout_is_not_lost() {
         losses == 0 || longest.max(worst) >= LinkTimeout::MIN,
         "{losses} losses with pauses of {longest:?} at most"
     );
+}
+
+/// A robot, and a state for it to send while the thread of the cycle is held up.
+static MEANWHILE: OnceLock<(UdpSocket, Vec<u8>)> = OnceLock::new();
+static HELD_UP: AtomicBool = AtomicBool::new(false);
+
+/// Stands for a host that does not run the interrupted thread for the link timeout.
+extern "C" fn hold_up(_: libc::c_int) {
+    std::thread::sleep(LinkTimeout::MAX);
+    let (robot, state) = MEANWHILE.get().expect("it is set before the signal");
+    robot.send(state).expect("loopback");
+    HELD_UP.store(true, Ordering::SeqCst);
+}
+
+/// The thread is that of a borrower, as the driver's own blocks signals.
+#[test]
+fn a_state_that_came_while_the_thread_was_held_up_counts_before_the_silence() {
+    const LATE: u64 = 1_000_000;
+    let (mut handle, robot) = start(config(), Driver::new(VERSION));
+    let other = robot.0.try_clone().expect("a descriptor");
+    MEANWHILE.set((other, state(LATE))).expect("set here only");
+    // SAFETY: the handler sleeps, reads a value that is there, sends and stores: system calls and
+    // atomics, which are async-signal-safe. Nothing else in this process uses the signal.
+    unsafe { libc::signal(libc::SIGUSR1, hold_up as *const () as libc::sighandler_t) };
+    let mut lease = handle.lender.borrow().expect("no other borrower has it");
+    let borrower = std::thread::spawn(move || {
+        for message_id in 1.. {
+            robot.send(message_id);
+            let taken = lease.turn().expect("the thread lives").expect("a state");
+            // The turn in which the signal comes, for nearly all of its time.
+            let next = lease.turn().expect("the thread lives");
+            if HELD_UP.load(Ordering::SeqCst) {
+                let late = [Some(taken), next, lease.turn().expect("the thread lives")];
+                let late = late
+                    .into_iter()
+                    .flatten()
+                    .any(|state| state.message_id == LATE);
+                return late;
+            }
+        }
+        unreachable!("the signal comes")
+    });
+    wait_for("loop of turns", || {
+        (handle.stats.states.get() > 2).then_some(())
+    });
+    // SAFETY: the thread has not been joined, so its identifier is valid.
+    let sent = unsafe { libc::pthread_kill(borrower.as_pthread_t(), libc::SIGUSR1) };
+    assert_eq!(sent, 0);
+    assert!(borrower.join().expect("no panic"), "the state is taken");
+    while let Some(notice) = handle.notices.pop() {
+        assert!(
+            !matches!(notice, Notice::Core(Event::LinkLost { .. })),
+            "{notice:?}"
+        );
+    }
 }

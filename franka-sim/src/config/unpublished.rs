@@ -59,8 +59,8 @@ pub struct Unpublished {
     pub instability: Instability,
     /// Range of the torque sensors over the nominal torque. Default 1.1.
     pub sensor_range: f64,
-    /// Stiffness between motor and link, which `theta` differs from `q` by, `[N·m/rad]`. Default
-    /// 10 000, about the magnitude that is published for this kind of joint.
+    /// Stiffness between motor and link that `theta` is computed with for an arm of rigid joints,
+    /// `[N·m/rad]`. Default 10 000, about the magnitude that is published for this kind of joint.
     pub joint_elasticity: f64,
 }
 

@@ -5,7 +5,7 @@ use franka_model::Twist;
 use franka_model::limits::MotionLimits;
 use franka_proto::{Errors, RobotError};
 
-use super::Arm;
+use super::ArmModel;
 use crate::signal::{CartesianSignal, ElbowSignal, JointSignal, halves};
 
 /// Which derivatives of a command are too large.
@@ -80,7 +80,7 @@ fn judge<S: Copy>(
 /// One cycle of a joint signal: where `step` leads, and what that breaks.
 pub(super) fn joints(
     from: &JointSignal,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
     step: impl Fn(JointSignal) -> (JointSignal, JointVector),
 ) -> (JointSignal, Broken) {
     judge(
@@ -100,7 +100,7 @@ pub(super) fn joint_bounds(
     from: &JointSignal,
     next: &JointSignal,
     jerk: &JointVector,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
 ) -> Broken {
     let limits = arm.model.joint_limits();
     let scale = arm.config.joint_discontinuity_scale;
@@ -117,7 +117,7 @@ pub(super) fn joint_bounds(
 /// One cycle of a Cartesian signal: where `step` leads, and what that breaks.
 pub(super) fn cartesian(
     from: &CartesianSignal,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
     step: impl Fn(CartesianSignal) -> (CartesianSignal, Twist),
 ) -> (CartesianSignal, Broken) {
     let limits = arm.model.cartesian_limits();
@@ -139,7 +139,7 @@ pub(super) fn cartesian(
 /// One cycle of the elbow: where `step` leads, and what that breaks.
 pub(super) fn elbow(
     from: &ElbowSignal,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
     step: impl Fn(ElbowSignal) -> (ElbowSignal, f64),
 ) -> (ElbowSignal, Broken) {
     let limits = &arm.model.cartesian_limits().elbow;
@@ -160,13 +160,17 @@ pub(super) fn elbow(
 }
 
 /// Whether the elbow angle is in the range of joint 3.
-pub(super) fn elbow_in_range(elbow: &ElbowSignal, arm: &Arm<'_>) -> bool {
+pub(super) fn elbow_in_range(elbow: &ElbowSignal, arm: &ArmModel<'_>) -> bool {
     let limits = arm.model.joint_limits();
     (limits.hard_lower[2]..=limits.hard_upper[2]).contains(&elbow.angle)
 }
 
 /// `error` if desired joint positions are outside their range.
-pub(super) fn range(joints: &JointSignal, arm: &Arm<'_>, error: RobotError) -> Option<RobotError> {
+pub(super) fn range(
+    joints: &JointSignal,
+    arm: &ArmModel<'_>,
+    error: RobotError,
+) -> Option<RobotError> {
     let limits = arm.model.joint_limits();
     let outside =
         (0..7).any(|i| joints.q[i] < limits.hard_lower[i] || joints.q[i] > limits.hard_upper[i]);

@@ -4,7 +4,7 @@ use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::{Frame, JointVector, Twist};
 use nalgebra::{Isometry3, Matrix3, Matrix4, Vector3};
 
-use super::Arm;
+use super::ArmModel;
 use crate::signal::stack;
 
 /// Joints near `from` that bring the end effector to `target`, with joint 3 at `elbow` if given.
@@ -14,7 +14,7 @@ use crate::signal::stack;
 /// stays where it is as far as the pose allows. Near a singularity, and for a target out of reach,
 /// the result stays short of the target; the caller judges what the joints then do.
 pub(super) fn solve(
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
     target: &Isometry3<f64>,
     elbow: Option<f64>,
     from: &JointVector,
@@ -92,8 +92,8 @@ mod tests {
     use crate::kind::Description;
     use franka_model::{EndEffector, Model, READY, RobotKind, transform};
 
-    fn arm<'a>(frames: &'a EndEffector, config: &'a Config) -> Arm<'a> {
-        Arm::new(
+    fn arm<'a>(frames: &'a EndEffector, config: &'a Config) -> ArmModel<'a> {
+        ArmModel::new(
             Description::of(RobotKind::Fr3),
             Model::fr3(),
             frames,

@@ -35,7 +35,7 @@ pub(crate) struct Desired {
 
 impl Desired {
     /// At rest at `q`.
-    pub(crate) fn resting(arm: &Arm<'_>, q: JointVector) -> Self {
+    pub(crate) fn resting(arm: &ArmModel<'_>, q: JointVector) -> Self {
         let mut desired = Self {
             joints: JointSignal::resting(q),
             cartesian: CartesianSignal::resting(nalgebra::Isometry3::identity()),
@@ -62,7 +62,7 @@ impl Desired {
     }
 
     /// Takes pose and elbow from the joints, without motion of their own.
-    pub(crate) fn follow_joints(&mut self, arm: &Arm<'_>) {
+    pub(crate) fn follow_joints(&mut self, arm: &ArmModel<'_>) {
         self.cartesian = CartesianSignal::resting(arm.pose(&self.joints.q));
         self.elbow = ElbowSignal::resting(self.joints.q[2]);
     }
@@ -70,14 +70,14 @@ impl Desired {
 
 /// Kinematics and limits of the arm with the frames that the client has set.
 #[derive(Clone, Copy)]
-pub(crate) struct Arm<'a> {
+pub(crate) struct ArmModel<'a> {
     pub(crate) kind: &'static Description,
     pub(crate) model: &'static Model,
     pub(crate) frames: &'a EndEffector,
     pub(crate) config: &'a Config,
 }
 
-impl<'a> Arm<'a> {
+impl<'a> ArmModel<'a> {
     pub(crate) fn new(
         kind: &'static Description,
         model: &'static Model,
@@ -137,7 +137,7 @@ pub(crate) fn advance(
     generator: MoveGeneratorMode,
     input: Input<'_>,
     before: &Desired,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
 ) -> Result<(Desired, Errors), InvalidInput> {
     match generator {
         MoveGeneratorMode::JointPosition => joint_position(input, before, arm),
@@ -151,7 +151,7 @@ pub(crate) fn advance(
 fn joint_position(
     input: Input<'_>,
     before: &Desired,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
 ) -> Result<(Desired, Errors), InvalidInput> {
     use RobotError as E;
     let target = input.command().map(|c| finite(&c.q_c)).transpose()?;
@@ -180,7 +180,7 @@ fn joint_position(
 fn joint_velocity(
     input: Input<'_>,
     before: &Desired,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
 ) -> Result<(Desired, Errors), InvalidInput> {
     use RobotError as E;
     let target = input.command().map(|c| finite(&c.dq_c)).transpose()?;
@@ -201,7 +201,7 @@ fn joint_velocity(
 fn cartesian_position(
     input: Input<'_>,
     before: &Desired,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
 ) -> Result<(Desired, Errors), InvalidInput> {
     use RobotError as E;
     let target = match input.command() {
@@ -250,7 +250,7 @@ fn cartesian_position(
 fn cartesian_velocity(
     input: Input<'_>,
     before: &Desired,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
 ) -> Result<(Desired, Errors), InvalidInput> {
     use RobotError as E;
     let target = input.command().map(|c| finite(&c.O_dP_EE_c)).transpose()?;
@@ -283,7 +283,7 @@ fn complete(
     cartesian: CartesianSignal,
     mut errors: Errors,
     joint_acceleration: RobotError,
-    arm: &Arm<'_>,
+    arm: &ArmModel<'_>,
 ) -> Result<(Desired, Errors), InvalidInput> {
     use RobotError as E;
     let commanded = match input.command().and_then(|c| c.elbow_c) {
@@ -344,7 +344,7 @@ fn complete(
 }
 
 /// Desired values of a motion that is commanded in joints.
-fn following(joints: JointSignal, arm: &Arm<'_>) -> Desired {
+fn following(joints: JointSignal, arm: &ArmModel<'_>) -> Desired {
     let mut desired = Desired {
         joints,
         cartesian: CartesianSignal::resting(nalgebra::Isometry3::identity()),

@@ -5,11 +5,11 @@
 //! five percent for which velocity, acceleration and jerk keep their bounds everywhere. From some
 //! states of motion (fast, away from the target) there is none; then the joints brake first.
 
-use franka_model::JointVector;
 use franka_model::limits::JointLimits;
+use franka_model::{CYCLE, JointVector};
 
 use crate::brake::Brake;
-use crate::signal::{CYCLE, JointSignal};
+use crate::signal::JointSignal;
 
 /// The generator of one asynchronous motion.
 #[derive(Debug, Clone)]

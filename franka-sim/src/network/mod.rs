@@ -66,9 +66,14 @@ impl Network {
     /// An FER on a cable of its own: what it sends waits out the stalls of its network interface
     /// ([`Stalls::FER`]); what it is sent does not.
     pub fn fer(seed: u64) -> Self {
+        Self::stalling(seed, Stalls::FER)
+    }
+
+    /// [`fer`](Self::fer) with other stalls.
+    pub fn stalling(seed: u64, stalls: Stalls) -> Self {
         let cable = Conditions::cable();
         let stalling = Conditions {
-            stalls: Some(Stalls::FER),
+            stalls: Some(stalls),
             ..cable
         };
         Self::new(seed, stalling, cable)

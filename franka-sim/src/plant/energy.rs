@@ -2,24 +2,24 @@
 
 use franka_model::{GRAVITY_EARTH, JointVector, Load, Model, READY, RobotKind};
 
-use super::{ArmParameters, EndStops, Friction, Plant, RigidArm};
+use super::{DriveTrain, Plant, RigidArm};
 use crate::Tool;
+use crate::arm::{Arm, EndStops, Friction};
 
 /// The step that robots take, `[s]`.
 const STEP: f64 = 0.000_25;
 
 /// Nothing in the surroundings, and what hangs on it does.
-fn plants(kind: RobotKind, parameters: &ArmParameters, load: Load) -> Vec<Box<dyn Plant>> {
-    let model = Model::physically_consistent(kind);
+fn plants(kind: RobotKind, arm: &Arm, load: Load) -> Vec<Box<dyn Plant>> {
     vec![
-        Box::new(RigidArm::new(model, parameters.clone(), READY, load)),
+        Box::new(RigidArm::new(kind, arm, READY, load)),
         #[cfg(feature = "mujoco")]
         Box::new({
             let scene = super::Scene::empty();
-            let arm = super::MujocoArm::with_parameters(kind, parameters.clone(), scene);
-            let mut arm = arm.expect("an empty scene");
-            arm.attach(load);
-            arm
+            let mut plant = super::MujocoArm::new(kind, scene).expect("an empty scene");
+            plant.fit(kind, arm);
+            plant.attach(load);
+            plant
         }),
     ]
 }
@@ -27,20 +27,19 @@ fn plants(kind: RobotKind, parameters: &ArmParameters, load: Load) -> Vec<Box<dy
 /// Every kind of arm on every plant, bare and with a Hand, and what it is.
 fn for_each(friction: Option<Friction>, test: impl Fn(&str, &mut Book)) {
     for kind in RobotKind::ALL {
-        let arm = ArmParameters::of(kind);
-        let parameters = ArmParameters {
-            friction: friction.unwrap_or(arm.friction),
-            stops: EndStops::NONE,
-            ..arm
-        };
+        let mut arm = Arm::ideal(kind);
+        arm.friction = friction.unwrap_or(arm.friction);
+        arm.body.stops = EndStops::NONE;
         for (load, with) in [(Load::NONE, "bare"), (Tool::hand().load, "Hand")] {
-            for (plant, on) in plants(kind, &parameters, load)
+            for (mut plant, on) in plants(kind, &arm, load)
                 .into_iter()
                 .zip(["rigid", "MuJoCo"])
             {
+                let holding = plant.place(&READY);
                 let mut book = Book {
                     model: Model::physically_consistent(kind),
                     load,
+                    train: DriveTrain::new(&arm, &READY, &holding),
                     plant,
                     potential: 0.0,
                     work: 0.0,
@@ -56,6 +55,7 @@ fn for_each(friction: Option<Friction>, test: impl Fn(&str, &mut Book)) {
 struct Book {
     model: &'static Model,
     load: Load,
+    train: DriveTrain,
     plant: Box<dyn Plant>,
     /// Since the beginning, which is at rest.
     potential: f64,
@@ -68,7 +68,8 @@ struct Book {
 impl Book {
     fn step(&mut self, motor: &JointVector, dt: f64) {
         let before = *self.plant.q();
-        self.plant.step(motor, &JointVector::zeros(), dt);
+        let none = JointVector::zeros();
+        self.train.step(self.plant.as_mut(), motor, &none, dt);
         let way = self.plant.q() - before;
         let middle = before + way / 2.0;
         let gravity = self.model.gravity(&middle, &self.load, &GRAVITY_EARTH);
@@ -81,7 +82,7 @@ impl Book {
     fn kinetic(&self) -> f64 {
         let (q, dq) = (self.plant.q(), self.plant.dq());
         let links = dq.dot(&(self.model.mass(q, &self.load) * dq));
-        let rotors = dq.component_mul(dq).dot(self.plant.armature());
+        let rotors = dq.component_mul(dq).dot(self.train.felt_inertia());
         0.5 * (links + rotors)
     }
 
@@ -140,7 +141,8 @@ fn a_fall_turns_potential_into_kinetic_energy_and_loses_none() {
 fn what_is_missing_or_left_over_is_the_steps_and_goes_with_them() {
     for_each(Some(Friction::NONE), |name, book| {
         let errors = [STEP, STEP / 2.0].map(|dt| {
-            book.plant.place(&READY);
+            let holding = book.plant.place(&READY);
+            book.train.rest(&READY, &holding);
             (book.potential, book.work) = (0.0, 0.0);
             let mut worst = 0.0_f64;
             for step in 0..(5.0 / dt).round() as u32 {

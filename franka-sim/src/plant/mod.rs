@@ -1,39 +1,41 @@
 //! The physics under the robot's controllers.
 //!
-//! A [`Plant`] turns joint torques into motion. Nothing in it knows of the protocol, of desired
-//! values or of the model that the controllers believe in: it may carry a load that is not
-//! declared.
+//! A [`DriveTrain`] turns commanded torques into torques on the links, a [`Plant`] those into
+//! motion. Nothing in it knows of the protocol, of desired values or of the model that the
+//! controllers believe in: it may carry a load that is not declared.
 //!
 //! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature
 //! `mujoco`) has surroundings that it touches, and fingers. Away from contact they move alike.
 
+mod drive;
 #[cfg(test)]
 mod energy;
 mod fingers;
-mod friction;
 #[cfg(feature = "mujoco")]
 mod mujoco;
-mod parameters;
 mod rigid;
-mod stops;
 
+pub use drive::{DriveTrain, LinkTorque};
 pub use fingers::FingerDrive;
-pub use friction::Friction;
 #[cfg(feature = "mujoco")]
 pub use mujoco::{MujocoArm, Scene, SceneError};
-pub use parameters::ArmParameters;
 pub use rigid::RigidArm;
-pub use stops::EndStops;
 
 use std::any::Any;
 use std::fmt::Debug;
 
-use franka_model::{JointVector, Load};
+use franka_model::{JointVector, Load, RobotKind};
 
-/// An arm of seven joints that torques move.
+use crate::arm::Arm;
+
+/// Steps of the plant, and of the innermost control loops, per millisecond.
+pub(crate) const STEPS: u32 = 4;
+
+/// The links of an arm of seven joints, and what is around them.
 ///
-/// The robot calls [`step`](Self::step) several times per millisecond, each time with the torques
-/// that its controllers compute from the newest positions and velocities.
+/// The robot calls [`step`](Self::step) several times per millisecond, through a [`DriveTrain`],
+/// each time with the torques that its controllers compute from the newest positions and
+/// velocities.
 ///
 /// The plant of a robot can be downcast through [`Any`]: see
 /// [`Robot::plant`](crate::Robot::plant).
@@ -44,21 +46,17 @@ pub trait Plant: Any + Debug + Send {
     /// Joint velocities, `[rad/s]`.
     fn dq(&self) -> &JointVector;
 
-    /// Torques between motors and links over the last step, as the joint sensors read them,
-    /// gravity included, `[N·m]`.
-    fn sensed_torque(&self) -> &JointVector;
+    /// Takes links, axes, gravity and end stops from `arm`.
+    fn fit(&mut self, kind: RobotKind, arm: &Arm);
 
-    /// Rotor inertia felt at the joints, `[kg·m²]`: what controllers have to accelerate on top of
-    /// the links.
-    fn armature(&self) -> &JointVector;
+    /// Advances by `dt` seconds under the torques of the drives and under torques from outside
+    /// (positive: they push the joint towards positive angles), `[N·m]`. What touches the arm in
+    /// the plant itself comes on top.
+    fn step(&mut self, drive: &LinkTorque, external: &JointVector, dt: f64);
 
-    /// Advances by `dt` seconds under the motors' torques and under torques from outside (positive:
-    /// they push the joint towards positive angles), `[N·m]`. What touches the arm in the plant
-    /// itself comes on top.
-    fn step(&mut self, motor: &JointVector, external: &JointVector, dt: f64);
-
-    /// Puts the arm at rest at `q`, `[rad]`.
-    fn place(&mut self, q: &JointVector);
+    /// Puts the arm at rest at `q`, `[rad]`, and returns the torques that hold it there against
+    /// gravity, `[N·m]`.
+    fn place(&mut self, q: &JointVector) -> JointVector;
 
     /// Replaces what the flange really carries.
     fn attach(&mut self, load: Load);

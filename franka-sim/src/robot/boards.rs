@@ -1,9 +1,9 @@
 //! The acceleration sensors on the boards of the joints.
 
-use franka_model::{EndEffector, Frame, JointVector, Model};
+use franka_model::{CYCLE, EndEffector, Frame, JointVector, Model};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::signal::{CYCLE, halves};
+use crate::signal::halves;
 
 /// What the boards of links 0 to 5 do. Each is taken to sit at the origin of its link's frame.
 #[derive(Debug, Clone, Copy)]

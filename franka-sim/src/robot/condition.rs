@@ -19,7 +19,7 @@ use super::watch::Sight;
 use super::{Activity, Robot};
 use crate::brake::Brake;
 use crate::config::ErrorBits;
-use crate::generator::Arm;
+use crate::generator::ArmModel;
 use crate::signal::halves;
 
 impl Robot {
@@ -176,7 +176,7 @@ impl Robot {
         let start = self.brake_start(!external);
         let brake = Brake::from(&start, &limits.acceleration, &limits.jerk);
         self.desired.joints = start;
-        self.desired.follow_joints(&Arm::new(
+        self.desired.follow_joints(&ArmModel::new(
             self.kind,
             self.model,
             &self.settings.frames,
@@ -193,14 +193,14 @@ impl Robot {
         let Activity::Moving(motion) = &mut self.activity else {
             return;
         };
-        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
         let rules = Rules {
             limits: self.config.enforce_limits,
             communication: self.config.enforce_communication,
             filters: self.settings.filters,
             finish_velocity: self.config.unpublished.finish_velocity,
         };
-        let dq = self.plant.dq();
+        let dq = &self.measurement.dq;
         match motion.cycle(command.as_ref(), &mut self.desired, dq, &arm, rules) {
             Verdict::Continues => {}
             Verdict::Finished if self.misses_goal() => {
@@ -228,8 +228,8 @@ impl Robot {
             .compare(thresholds, axes, accelerating, moving);
         if moving && self.config.enforce_limits {
             let sight = Sight {
-                q: self.plant.q(),
-                dq: self.plant.dq(),
+                q: &self.measurement.q,
+                dq: &self.measurement.dq,
                 torque: &self.measurement.torque,
                 pose: &self.dynamics.pose,
             };
@@ -246,7 +246,7 @@ impl Robot {
 
     fn violations(&self) -> Errors {
         let limits = self.model.joint_limits();
-        let (q, dq) = (self.plant.q(), self.plant.dq());
+        let (q, dq) = (&self.measurement.q, &self.measurement.dq);
         let (lower, upper) = limits.velocity_envelope(q, -VELOCITY_MARGIN);
         let (linear, _) = halves(&(self.dynamics.jacobian * dq));
         let torque = &self.measurement.torque;
@@ -296,11 +296,11 @@ impl Robot {
 
     fn deviates(&self, bound: &franka_proto::Deviation) -> bool {
         let arm = self.arm();
-        let actual = arm.pose(self.plant.q());
+        let actual = arm.pose(&self.measurement.q);
         let desired = arm.pose(&self.desired.joints.q);
         let shift = (actual.translation.vector - desired.translation.vector).norm();
         let turn = franka_model::rotation::error(&actual.rotation, &desired.rotation).norm();
-        let elbow = (self.plant.q()[2] - self.desired.joints.q[2]).abs();
+        let elbow = (self.measurement.q[2] - self.desired.joints.q[2]).abs();
         shift > bound.translation || turn > bound.rotation || elbow > bound.elbow
     }
 

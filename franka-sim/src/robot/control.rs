@@ -1,20 +1,20 @@
 //! One millisecond of control and physics.
 
-use franka_model::{EndEffector, GRAVITY_EARTH, JointVector, MassMatrix, Twist, joint_vector};
+use franka_model::{
+    CYCLE, EndEffector, GRAVITY_EARTH, JointVector, MassMatrix, Twist, joint_vector,
+};
 use franka_proto::{MoveControllerMode, MoveStatus, RobotError};
 use nalgebra::Matrix4;
 
 use super::operation::Guidance;
 use super::recovery::Recovery;
 use super::{Activity, Robot};
-use crate::generator::Arm;
+use crate::arm::Sensors;
+use crate::generator::ArmModel;
 use crate::law::{Firmness, Law, POSTURE_STIFFNESS, cartesian_impedance, joint_impedance};
 use crate::observer::Instant;
-use crate::plant::Plant;
-use crate::signal::{CYCLE, JointSignal};
-
-/// Steps of the plant, and of the innermost control loops, per millisecond.
-const STEPS: u32 = 4;
+use crate::plant::STEPS;
+use crate::signal::JointSignal;
 
 /// What the sensors read over the last millisecond.
 #[derive(Debug, Clone, Copy)]
@@ -29,17 +29,23 @@ pub(super) struct Measurement {
     pub(super) torque_rate: JointVector,
     /// Mean joint acceleration, `[rad/s²]`.
     pub(super) ddq: JointVector,
+    /// What `q` is off the arm's, `[rad]`.
+    q_error: JointVector,
+    /// What `dq` is off the arm's, `[rad/s]`.
+    dq_error: JointVector,
 }
 
 impl Measurement {
     /// An arm that has always been still.
-    pub(super) fn resting(plant: &dyn Plant) -> Self {
+    pub(super) fn resting(q: &JointVector, holding: &JointVector, sensors: &Sensors) -> Self {
         Self {
-            q: *plant.q(),
-            dq: *plant.dq(),
-            torque: *plant.sensed_torque(),
+            q: *q,
+            dq: JointVector::zeros(),
+            torque: holding + sensors.torque_offset,
             torque_rate: JointVector::zeros(),
             ddq: JointVector::zeros(),
+            q_error: JointVector::zeros(),
+            dq_error: JointVector::zeros(),
         }
     }
 }
@@ -85,18 +91,40 @@ impl Robot {
             true => JointVector::repeat(f64::INFINITY),
             false => self.model.joint_limits().torque,
         };
+        let is_external = match &self.activity {
+            Activity::Moving(motion) => motion.is_external(),
+            _ => false,
+        };
+        if !is_external {
+            self.interface.clear();
+        }
+        let command = match is_external {
+            true => self.interface.delayed(law.feedforward),
+            false => law.feedforward,
+        };
+        // The robot's own controllers are closed around the motors. Brakes measure nothing.
+        let deflection = self.train.deflection(&self.dynamics.gravity);
+        let (q_error, dq_error) = match self.are_brakes_holding() {
+            true => (JointVector::zeros(), JointVector::zeros()),
+            false => (self.measurement.q_error, self.measurement.dq_error),
+        };
         let dq = *self.plant.dq();
+        let dt = CYCLE / f64::from(STEPS);
         let mut torque = JointVector::zeros();
         let mut sensed = JointVector::zeros();
         for step in 0..STEPS {
-            let into = CYCLE * f64::from(step) / f64::from(STEPS);
-            let (q_now, dq_now) = (self.plant.q(), self.plant.dq());
-            torque = law.torque(q_now, dq_now);
+            let into = dt * f64::from(step);
+            torque = if is_external {
+                self.interface.lagged(&command, dt)
+            } else {
+                let q = self.train.theta() - deflection + q_error;
+                law.torque(&q, &(self.train.dtheta() + dq_error))
+            };
             let motor = (torque + self.dynamics.gravity).zip_map(&limit, |t, l| t.clamp(-l, l));
-            let frames = &self.settings.frames;
-            let external = self.touches.torque(self.model, frames, q_now, dq_now, into);
-            self.plant.step(&motor, &external, CYCLE / f64::from(STEPS));
-            sensed += self.plant.sensed_torque();
+            let (frames, (q, dq)) = (&self.settings.frames, (self.plant.q(), self.plant.dq()));
+            let external = self.touches.torque(&self.as_built, frames, q, dq, into);
+            self.train.step(self.plant.as_mut(), &motor, &external, dt);
+            sensed += self.train.torque();
         }
         self.measure(&(sensed / f64::from(STEPS)), &dq);
         let is_led = match &self.activity {
@@ -107,7 +135,7 @@ impl Robot {
         if is_led {
             // Nothing generates a motion: what is desired is what happens.
             self.desired.joints = self.measured_signal();
-            let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+            let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
         }
         torque
@@ -128,7 +156,7 @@ impl Robot {
             },
             Activity::Moving(_) | Activity::Guided(_) => return,
         }
-        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
         self.desired.follow_joints(&arm);
     }
 
@@ -140,8 +168,8 @@ impl Robot {
     /// Recomputes what depends on frames and load.
     pub(super) fn refresh_dynamics(&mut self) {
         self.dynamics = self.model.dynamics(
-            self.plant.q(),
-            self.plant.dq(),
+            &self.measurement.q,
+            &self.measurement.dq,
             &self.settings.frames,
             &self.settings.declared_load(),
             &GRAVITY_EARTH,
@@ -149,7 +177,7 @@ impl Robot {
     }
 
     fn law(&self) -> Law {
-        let armature = self.plant.armature();
+        let armature = self.train.felt_inertia();
         let desired = self.attainable();
         let joint = |stiffness: &JointVector| {
             joint_impedance(stiffness, &desired, &self.dynamics, armature)
@@ -171,7 +199,7 @@ impl Robot {
                 },
                 &self.arm().pose(&desired.q),
                 &desired,
-                self.plant.q(),
+                &self.measurement.q,
                 self.model,
                 &self.settings.frames,
                 &self.dynamics,
@@ -196,11 +224,11 @@ impl Robot {
             &firmness,
             &self.arm().pose(&guidance.start),
             &JointSignal::resting(guidance.start),
-            self.plant.q(),
+            &self.measurement.q,
             self.model,
             &frames,
             &self.dynamics,
-            self.plant.armature(),
+            self.train.felt_inertia(),
         );
         if let Some(spring) = &mut law.spring {
             spring.damping += MassMatrix::from_diagonal(&GUIDING_DAMPING);
@@ -229,11 +257,17 @@ impl Robot {
 
     /// Takes in the mean sensor torque of the millisecond that began with joint velocities `dq`.
     fn measure(&mut self, sensed: &JointVector, dq: &JointVector) {
-        let noise = self.config.noise;
-        let torque = sensed + self.random.joints(noise.torque);
+        let sensors = &self.arm.sensors;
+        let noise = self.random.joints(&sensors.torque_noise);
+        let torque = sensors.quantised(&(sensed + sensors.torque_offset + noise));
+        let q_error = self.random.joints(&sensors.position_noise);
+        let deviation = sensors.velocity_noise(self.plant.dq());
+        let dq_error = self.random.joints(&deviation);
         let measured = Measurement {
-            q: self.plant.q() + self.random.joints(noise.position),
-            dq: self.plant.dq() + self.random.joints(noise.velocity),
+            q: self.plant.q() + q_error,
+            dq: self.plant.dq() + dq_error,
+            q_error,
+            dq_error,
             ddq: (self.plant.dq() - dq) / CYCLE,
             torque_rate: (torque - self.measurement.torque) / CYCLE,
             torque,
@@ -244,9 +278,9 @@ impl Robot {
         let after = Instant::new(&self.measurement.dq, &self.dynamics);
         let gain = self.config.unpublished.observer_gain;
         self.observer.update(&before, &after, &torque, gain);
-        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
         let external = self.observer.external_torque();
-        self.estimate.update(external, self.plant.q(), &arm);
+        self.estimate.update(external, &self.measurement.q, &arm);
         if self.kind.version.has_accelerometers() {
             self.boards
                 .advance(self.model, self.plant.q(), self.plant.dq());

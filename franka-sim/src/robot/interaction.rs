@@ -1,15 +1,16 @@
 //! What a person beside the robot can do to the arm: push it, hold it, hang a load on it. The stop,
 //! brakes and buttons are in [`operation`](super::operation).
 
-use franka_model::{JointVector, Load, Wrench};
+use franka_model::{Frame, JointVector, Load, Wrench, transform};
 use franka_proto::MoveStatus;
+use nalgebra::Isometry3;
 
 use super::boards::Boards;
 use super::touch::{Touch, TouchId};
 use super::{Activity, Measurement, Robot};
 use crate::end_effector::Hand;
 use crate::estimate::Estimate;
-use crate::generator::{Arm, Desired};
+use crate::generator::{ArmModel, Desired};
 use crate::observer::MomentumObserver;
 
 impl Robot {
@@ -49,23 +50,26 @@ impl Robot {
     /// ends as by a stop.
     pub fn place(&mut self, q: &JointVector) {
         self.forget_motion(MoveStatus::Preempted);
-        self.plant.place(q);
+        let holding = self.plant.place(q);
+        self.train.rest(q, &holding);
+        self.interface.clear();
+        self.measurement = Measurement::resting(q, &holding, &self.arm.sensors);
         self.desired = Desired::resting(&self.arm(), *q);
         self.activity = Activity::Holding;
         self.refresh_dynamics();
         self.observer = MomentumObserver::new();
         self.estimate = Estimate::new();
-        let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
         self.estimate
             .update(&JointVector::zeros(), self.plant.q(), &arm);
-        self.measurement = Measurement::resting(self.plant.as_ref());
         self.boards = Boards::resting(self.model, q);
     }
 
     /// Hangs a load on the flange, beside the tool and in place of any before, without telling the
     /// robot. [`Load::NONE`] takes it off.
     pub fn attach(&mut self, load: Load) {
-        self.plant.attach(self.config.tool.load.combine(&load));
+        self.plant
+            .attach(self.arm.body.load(&self.config.tool.load, &load));
     }
 
     /// Lets the fingers of the plant, if it has some, do what `hand` wants, and lets `hand` feel
@@ -76,6 +80,17 @@ impl Robot {
         if let Some(width) = self.plant.drive_fingers(&fingers.drive()) {
             fingers.feel(width);
         }
+    }
+
+    /// True pose of the end effector in the base frame: of the arm as it was built, which
+    /// `O_T_EE` does not know.
+    pub fn true_pose(&self) -> Isometry3<f64> {
+        let frames = &self.settings.frames;
+        let pose = self
+            .as_built
+            .pose(Frame::EndEffector, self.plant.q(), frames);
+        // Frames are rigid transforms: setters refuse anything else.
+        transform::isometry(&pose).unwrap_or_else(Isometry3::identity)
     }
 
     /// True joint positions, `[rad]`.

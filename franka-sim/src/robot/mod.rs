@@ -17,6 +17,7 @@ mod boards;
 mod condition;
 mod control;
 mod interaction;
+mod interface;
 mod motion;
 mod operation;
 mod publish;
@@ -34,22 +35,24 @@ pub use touch::{Touch, TouchId};
 use std::collections::VecDeque;
 
 use bytes::Bytes;
-use franka_model::{Dynamics, JointVector, Load, Model};
+use franka_model::{AsBuilt, Dynamics, JointVector, Load, Model};
 use franka_proto::{CommandId, Errors, MoveRequest, RobotCommand, RobotState, Version};
 
+use crate::arm::Arm;
 use crate::brake::Brake;
 use crate::config::Config;
 use crate::connection::Connection;
 use crate::estimate::Estimate;
-use crate::generator::{Arm, Desired};
+use crate::generator::{ArmModel, Desired};
 use crate::kind::Description;
 use crate::noise::Random;
 use crate::observer::MomentumObserver;
-use crate::plant::{ArmParameters, Plant, RigidArm};
+use crate::plant::{DriveTrain, Plant, RigidArm};
 use crate::settings::Settings;
 use crate::signal::JointSignal;
 use boards::Boards;
 use control::Measurement;
+use interface::TorqueInterface;
 pub(crate) use motion::Awaited;
 use motion::Motion;
 use operation::{Guidance, Lock};
@@ -61,8 +64,13 @@ use watch::Watch;
 pub struct Robot {
     config: Config,
     kind: &'static Description,
-    /// The arm as it is, which is also what the robot's controllers believe.
+    /// What the robot's controllers believe.
     model: &'static Model,
+    /// The arm as it is, and what that makes of its links and axes.
+    arm: Arm,
+    as_built: AsBuilt,
+    train: DriveTrain,
+    interface: TorqueInterface,
     plant: Box<dyn Plant>,
     /// URDF text.
     description: Option<Bytes>,
@@ -117,25 +125,24 @@ enum Activity {
 impl Robot {
     /// A robot at rest, with the rigid-body plant.
     pub fn new(config: Config) -> Self {
-        let plant = RigidArm::new(
-            Model::physically_consistent(config.kind),
-            ArmParameters::of(config.kind),
-            config.q,
-            Load::NONE,
-        );
+        let plant = RigidArm::new(config.kind, &config.chosen_arm(), config.q, Load::NONE);
         Self::with_plant(config, Box::new(plant))
     }
 
-    /// A robot whose controllers believe in the arm of `config.kind`, and move `plant`: it is
-    /// placed at rest in the configured position, with the configured tool and payload.
+    /// A robot whose controllers believe in the model of `config.kind`, and move `plant`: it is
+    /// fitted with the configured arm and placed at rest in the configured position, with the
+    /// configured tool and payload.
     pub fn with_plant(config: Config, mut plant: Box<dyn Plant>) -> Self {
-        plant.attach(config.tool.load.combine(&config.payload));
-        plant.place(&config.q);
+        let arm = config.chosen_arm();
+        plant.fit(config.kind, &arm);
+        plant.attach(arm.body.load(&config.tool.load, &config.payload));
+        let holding = plant.place(&config.q);
+        let train = DriveTrain::new(&arm, &config.q, &holding);
         let kind = Description::of(config.kind);
         let model = Model::physically_consistent(config.kind);
         let settings = Settings::new(config.tool, &config.unpublished);
         let q = *plant.q();
-        let desired = Desired::resting(&Arm::new(kind, model, &settings.frames, &config), q);
+        let desired = Desired::resting(&ArmModel::new(kind, model, &settings.frames, &config), q);
         let dynamics = model.dynamics(
             &q,
             plant.dq(),
@@ -164,7 +171,11 @@ impl Robot {
             desired,
             estimate: Estimate::new(),
             observer: MomentumObserver::new(),
-            measurement: Measurement::resting(plant.as_ref()),
+            measurement: Measurement::resting(&q, &holding, &arm.sensors),
+            as_built: arm.body.as_built(config.kind),
+            interface: TorqueInterface::new(&arm.drive),
+            arm,
+            train,
             dynamics,
             boards: Boards::resting(model, &q),
             watch: Watch::new(&config),
@@ -272,8 +283,8 @@ impl Robot {
         std::str::from_utf8(self.description.as_ref()?).ok()
     }
 
-    fn arm(&self) -> Arm<'_> {
-        Arm::new(self.kind, self.model, &self.settings.frames, &self.config)
+    fn arm(&self) -> ArmModel<'_> {
+        ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config)
     }
 
     fn is_moving(&self) -> bool {
@@ -283,8 +294,8 @@ impl Robot {
     /// Where the desired joints would be if they were where the arm is.
     fn measured_signal(&self) -> JointSignal {
         JointSignal {
-            dq: *self.plant.dq(),
-            ..JointSignal::resting(*self.plant.q())
+            dq: self.measurement.dq,
+            ..JointSignal::resting(self.measurement.q)
         }
     }
 }

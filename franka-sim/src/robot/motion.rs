@@ -1,7 +1,7 @@
 //! A motion under way: which commands count, what they do, and how it ends.
 
-use franka_model::JointVector;
 use franka_model::limits::JointLimits;
+use franka_model::{CYCLE, JointVector};
 use franka_proto::{
     CommandId, ControllerMode, Errors, Filters, MotionGeneratorMode, MoveControllerMode,
     MoveGeneratorMode, MoveRequest, RobotCommand, RobotError,
@@ -9,8 +9,8 @@ use franka_proto::{
 
 use crate::config::FirstCycles;
 use crate::filter::filtered;
-use crate::generator::{Arm, Desired, Input, PointToPoint, advance};
-use crate::signal::{CYCLE, JointSignal};
+use crate::generator::{ArmModel, Desired, Input, PointToPoint, advance};
+use crate::signal::JointSignal;
 use crate::success_rate::{LOST_LIMIT, SuccessRate};
 
 /// Between `kMotionStarted` and the final reply to a `Move`.
@@ -158,7 +158,7 @@ impl Motion {
         command: Option<&RobotCommand>,
         desired: &mut Desired,
         dq: &JointVector,
-        arm: &Arm<'_>,
+        arm: &ArmModel<'_>,
         rules: Rules,
     ) -> Verdict {
         if self.asynchronous.is_some() {
@@ -229,7 +229,7 @@ impl Motion {
         &mut self,
         command: Option<&RobotCommand>,
         desired: &mut Desired,
-        arm: &Arm<'_>,
+        arm: &ArmModel<'_>,
         rules: Rules,
     ) -> Verdict {
         let Some(generator) = &mut self.asynchronous else {
@@ -268,7 +268,7 @@ impl Motion {
         &self,
         desired: &mut Desired,
         dq: &JointVector,
-        arm: &Arm<'_>,
+        arm: &ArmModel<'_>,
         rules: Rules,
     ) -> Verdict {
         match advance(self.request.generator, Input::Rest, desired, arm) {

@@ -83,7 +83,7 @@ impl Robot {
             }
             (Activity::Holding, true) if self.can_be_guided() => {
                 self.activity = Activity::Guided(Guidance {
-                    start: *self.plant.q(),
+                    start: self.measurement.q,
                     ends: [Ratchet::new(); 7],
                 });
             }
@@ -99,7 +99,7 @@ impl Robot {
     /// Whether a hand has guided a joint further out of its range than it was.
     pub(super) fn is_guided_out(&mut self) -> bool {
         let limits = self.model.joint_limits();
-        let q = self.plant.q();
+        let q = self.measurement.q;
         let Activity::Guided(guidance) = &mut self.activity else {
             return false;
         };

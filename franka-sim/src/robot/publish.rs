@@ -10,7 +10,8 @@ impl Robot {
     pub(super) fn publish(&mut self, torque: &JointVector) {
         let Measurement { q, dq, .. } = self.measurement;
         let rate = self.config.unpublished.first_cycles;
-        let elasticity = self.config.unpublished.joint_elasticity;
+        let rigid = JointVector::repeat(self.config.unpublished.joint_elasticity);
+        let elasticity = self.train.stiffness().unwrap_or(rigid);
         let (mode, (generator, controller)) = (self.robot_mode(), self.modes());
         let (desired_torque, success_rate) = match &self.activity {
             Activity::Moving(motion) if motion.is_external() => {
@@ -57,8 +58,8 @@ impl Robot {
         state.q_d = desired.joints.q.into();
         state.dq_d = desired.joints.dq.into();
         state.ddq_d = desired.joints.ddq.into();
-        state.theta = (q + measurement.torque / elasticity).into();
-        state.dtheta = (dq + measurement.torque_rate / elasticity).into();
+        state.theta = (q + measurement.torque.component_div(&elasticity)).into();
+        state.dtheta = (dq + measurement.torque_rate.component_div(&elasticity)).into();
 
         state.joint_contact = estimate.joint_contact.map(flag);
         state.cartesian_contact = estimate.cartesian_contact.map(flag);

@@ -53,7 +53,7 @@ impl Robot {
     /// Whether a joint is further out than the robot brings it back by itself.
     pub(super) fn is_outside(&self) -> bool {
         let limits = self.model.joint_limits();
-        let q = self.plant.q();
+        let q = self.measurement.q;
         (0..7).any(|i| {
             q[i] < limits.hard_lower[i] - POSITION_MARGIN
                 || q[i] > limits.hard_upper[i] + POSITION_MARGIN
@@ -70,7 +70,7 @@ impl Robot {
             return;
         }
         let limits = self.model.joint_limits();
-        let q = self.plant.q();
+        let q = self.measurement.q;
         let mut inside = self.desired.joints.q;
         for i in 0..7 {
             if q[i] < limits.hard_lower[i] {
@@ -94,7 +94,7 @@ impl Robot {
             return;
         };
         let elapsed = self.clock - recovery.since;
-        let still = self.plant.dq().amax() < STILL || elapsed >= RECOVERY_MAX;
+        let still = self.measurement.dq.amax() < STILL || elapsed >= RECOVERY_MAX;
         let back = recovery.way.as_ref().is_none_or(PointToPoint::is_over);
         if elapsed < RECOVERY_MIN || !still || !back {
             return;

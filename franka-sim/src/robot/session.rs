@@ -1,4 +1,5 @@
-//! The client's connection: stream bytes to requests, and replies back.
+//! What the robot does with its client: takes one, answers each of its requests, lets it go. The
+//! handshake: `connection`. A second client on sockets: `serve::sessions`.
 
 use bytes::Bytes;
 use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_within};
@@ -6,7 +7,7 @@ use franka_proto::{
     CommandId, LibraryStatus, MoveStatus, Reply, Request, RobotMode, SetterStatus, VirtualWall,
 };
 
-use super::{Activity, Arm, Robot};
+use super::{Activity, ArmModel, Robot};
 use crate::connection::{Connection, SessionError};
 
 /// Cuts the first message off a client's stream.
@@ -110,7 +111,7 @@ impl Robot {
     fn refresh_frames(&mut self) {
         self.refresh_dynamics();
         if !self.is_moving() {
-            let arm = Arm::new(self.kind, self.model, &self.settings.frames, &self.config);
+            let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
         }
     }

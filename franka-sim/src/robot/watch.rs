@@ -181,7 +181,9 @@ mod tests {
         let mut random = Random::new(5);
         let (mut q, mut clear, mut close) = (READY, 0, 0);
         for _ in 0..60 {
-            let part = random.joints(2.0).map(|x| 0.5 + 0.5 * x.sin());
+            let part = random
+                .joints(&JointVector::repeat(2.0))
+                .map(|x| 0.5 + 0.5 * x.sin());
             let target = limits.lower + part.component_mul(&(limits.upper - limits.lower));
             let step = (target - q) / 200.0;
             for _ in 0..200 {

@@ -1,14 +1,15 @@
-//! The thread that keeps the millisecond.
+//! The simulator's thread: one state per millisecond or, in virtual time, one per answer.
 
 use std::time::{Duration, Instant};
 
+use super::EveryMillisecond;
 use super::clock::{Clock, PERIOD, Pace};
 use super::device_server::DeviceServer;
 use crate::end_effector::{Hand, VacuumGripper};
 use crate::robot::{Awaited, Robot};
 
-/// Time on the wall between two states that take no answer, in virtual time: a client has to be
-/// able to read them.
+/// Real time between two states that need no answer, in virtual time: enough for a client to read
+/// them.
 const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 
 /// The devices, which share one clock.
@@ -16,6 +17,7 @@ pub(super) struct Cycle {
     pub(super) robot: DeviceServer<Robot>,
     pub(super) hand: Option<DeviceServer<Hand>>,
     pub(super) vacuum: Option<DeviceServer<VacuumGripper>>,
+    pub(super) every_millisecond: Option<EveryMillisecond>,
 }
 
 impl Cycle {
@@ -40,8 +42,8 @@ impl Cycle {
         }
     }
 
-    /// Runs on the client's time instead, until the same end: see
-    /// [`Sim::virtual_time`](super::Sim::virtual_time).
+    /// Runs in virtual time, in which each state waits for the client's answer, until the same end:
+    /// see [`Sim::virtual_time`](super::Sim::virtual_time).
     pub(super) fn run_on_answers(mut self, patience: Duration) {
         // Nothing is late here, so nothing slips.
         let mut clock = Clock::new(Instant::now(), true);
@@ -61,8 +63,8 @@ impl Cycle {
                     self.sleep_until(Instant::now() + period, &mut clock);
                     continue;
                 }
-                // A client may look at several states before its first command: the wait for it is
-                // short at first, and longer each time, for a client that is slow.
+                // A client may look at several states before its first command: the wait for it
+                // starts short and doubles with each attempt, up to `patience`.
                 Awaited::First => {
                     attempts += 1;
                     patience.min(PERIOD * 2_u32.saturating_pow(attempts))
@@ -95,8 +97,11 @@ impl Cycle {
         }
     }
 
-    /// One millisecond of every device. False at the end.
+    /// Advances every device by one millisecond. Returns false when the robot's service has ended.
     fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
+        if let Some(EveryMillisecond(job)) = &mut self.every_millisecond {
+            job(self.robot.device_mut());
+        }
         // The end of the robot's service ends the thread, and with it the other devices.
         let goes_on = self.robot.cycle(now, pace);
         if let Some(hand) = &mut self.hand {

@@ -1,4 +1,5 @@
-//! A device on its sockets, one client at a time.
+//! A device on its sockets: carries out what its client asks, once per cycle. Which client that is:
+//! `sessions`.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};

@@ -36,14 +36,16 @@ mod stream;
 pub use clock::Pace;
 pub use service::{Service, Stopped};
 
+use std::fmt;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use franka_model::{JointVector, RobotKind};
+use franka_model::RobotKind;
 use franka_proto::RobotState;
 use tokio::sync::watch;
 
+use crate::arm::Arm;
 use crate::config::{Config, Tool};
 use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
 use crate::network::Network;
@@ -74,8 +76,18 @@ pub struct Sim {
     strict_clock: bool,
     /// How long to wait for an answer, if the client's answers are the clock.
     patience: Option<Duration>,
-    /// The host's alone if there is none.
+    /// That of the arm's interface, or the host's alone, if there is none.
     network: Option<Network>,
+    every_millisecond: Option<EveryMillisecond>,
+}
+
+/// What [`Sim::every_millisecond`] runs.
+struct EveryMillisecond(Box<dyn FnMut(&mut Robot) + Send>);
+
+impl fmt::Debug for EveryMillisecond {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("EveryMillisecond")
+    }
 }
 
 impl Sim {
@@ -105,15 +117,16 @@ impl Sim {
             strict_clock: false,
             patience: None,
             network: None,
+            every_millisecond: None,
         }
     }
 
     /// Changes the configuration: any field of [`Config`].
     ///
     /// ```
-    /// # use franka_sim::{Noise, Sim};
+    /// # use franka_sim::Sim;
     /// let sim = Sim::fer().configure(|config| {
-    ///     config.noise = Noise::MODERATE;
+    ///     config.seed = 7;
     ///     config.unpublished.power = 300.0;
     /// });
     /// ```
@@ -134,9 +147,16 @@ impl Sim {
         self
     }
 
-    /// Starts with the joints at `q`, `[rad]`.
-    pub fn q(mut self, q: JointVector) -> Self {
-        self.config.q = q;
+    /// Simulates this arm instead of the ideal one: see [`Config::arm`].
+    ///
+    /// ```
+    /// # use franka_model::RobotKind;
+    /// # use franka_sim::arm::{Arm, Family};
+    /// # use franka_sim::Sim;
+    /// let sim = Sim::fr3().arm(Arm::sample(RobotKind::Fr3, 7, &Family::realistic()));
+    /// ```
+    pub fn arm(mut self, arm: Arm) -> Self {
+        self.config.arm = Some(arm);
         self
     }
 
@@ -158,18 +178,6 @@ impl Sim {
     /// grippers listen on 1339.
     pub fn vacuum_gripper(mut self, suction: Suction, port: u16) -> Self {
         self.vacuum_gripper = Some((suction, port));
-        self
-    }
-
-    /// See [`Config::enforce_limits`].
-    pub fn enforce_limits(mut self, enforce: bool) -> Self {
-        self.config.enforce_limits = enforce;
-        self
-    }
-
-    /// See [`Config::enforce_communication`].
-    pub fn enforce_communication(mut self, enforce: bool) -> Self {
-        self.config.enforce_communication = enforce;
         self
     }
 
@@ -217,9 +225,11 @@ impl Sim {
         self
     }
 
-    /// See [`Config::urdf`].
-    pub fn urdf(mut self, text: impl Into<String>) -> Self {
-        self.config.urdf = Some(text.into());
+    /// Runs `job` on the robot before each of its milliseconds, the first included: to observe and
+    /// disturb it in its own time, whatever the clock. The thread that keeps the millisecond runs
+    /// it, so it should not take long.
+    pub fn every_millisecond(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
+        self.every_millisecond = Some(EveryMillisecond(Box::new(job)));
         self
     }
 
@@ -232,6 +242,9 @@ impl Sim {
     /// # Cancel safety
     /// Dropping the future before it completes leaves nothing behind.
     pub async fn start(self) -> io::Result<Running> {
+        let stalls = self.config.arm.as_ref().and_then(|arm| arm.stalls);
+        let stalling = stalls.map(|stalls| Network::stalling(self.config.seed, stalls));
+        let network = self.network.or(stalling);
         let robot = match self.plant {
             Some(plant) => Robot::with_plant(self.config, plant),
             None => Robot::new(self.config),
@@ -258,9 +271,10 @@ impl Sim {
             None => (None, None),
         };
         let cycle = Cycle {
-            robot: robot_server.behind(self.network),
+            robot: robot_server.behind(network),
             hand: hand_server,
             vacuum: vacuum_server,
+            every_millisecond: self.every_millisecond,
         };
         let (realtime, strict, patience) = (self.realtime, self.strict_clock, self.patience);
         let (done, finished) = watch::channel(());

@@ -1,4 +1,4 @@
-//! Connections that have not sent their handshake yet.
+//! Connections that have not sent their handshake yet; `crate::connection` answers it.
 
 use std::collections::VecDeque;
 use std::net::SocketAddr;

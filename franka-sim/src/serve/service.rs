@@ -1,4 +1,5 @@
-//! The handle on one device of a simulation, for other tasks.
+//! Opens the sockets of one device, and is the handle on it for other tasks. Its clients:
+//! `sessions`.
 
 use std::fmt;
 use std::io;

@@ -5,7 +5,7 @@ use franka_proto::{
 use franka_sim::{Config, Touch};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::pair::{Pair, positions, ramp, torques};
+use crate::pair::{Pair, noisy, positions, ramp, torques};
 
 const HIGH: f64 = 1e4;
 
@@ -171,7 +171,7 @@ fn the_wrench_is_told_at_the_stiffness_frame() {
 #[test]
 fn noise_of_the_sensors_reaches_the_estimate() {
     let mut pair = Pair::new(Config {
-        noise: franka_sim::Noise::MODERATE,
+        arm: Some(noisy()),
         ..Config::default()
     });
     let mut most = 0.0_f64;

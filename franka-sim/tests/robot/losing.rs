@@ -1,8 +1,8 @@
 //! Commands that do not come: what the robot makes up for them, and what comes of it.
 
-use crate::pair::*;
+use franka_model::CYCLE;
 
-const CYCLE: f64 = 1e-3;
+use crate::pair::*;
 
 /// The values that a kind of motion commands, as the state tells them, with their differences.
 struct Channel {

@@ -6,6 +6,7 @@
 //! | `session` | stream, handshake, requests, stop, recovery, one client at a time |
 //! | `wire` | versions, their negotiation, second clients, the size of replies, late and missing commands |
 //! | `motions`, `torques` | every generator and controller: followed, echoed, ended |
+//! | `arm` | arms that stick, flex, lag and drift: what a client sees of them |
 //! | `checks`, `commands` | strictness: limits, start, continuity, several errors at once, finishing, deviations, asynchronous motions |
 //! | `losing` | lost commands: extrapolated, and bridged or refused |
 //! | `contact`, `pushes`, `falling` | the estimate of what touches the arm, thresholds, reflexes, loads |
@@ -18,6 +19,7 @@
 //! | `open` | what is not known of a robot: each an option, with the default that is documented |
 //! | `pair`, `plants` | a client and a robot in one thread; on every plant |
 
+mod arm;
 mod checks;
 mod commands;
 mod contact;

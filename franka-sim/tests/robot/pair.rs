@@ -11,9 +11,18 @@ pub(crate) use franka_sim::{Config, Robot};
 use franka_model::{Frame, Model, Twist, transform};
 use franka_proto::framing::next_message;
 use franka_proto::{Reply, VirtualWall};
+use franka_sim::arm::{Arm, Sensors};
 use nalgebra::{Isometry3, Vector3};
 
 pub(crate) const PORT: u16 = 5000;
+
+/// An ideal arm with noisy sensors.
+pub(crate) fn noisy() -> Arm {
+    Arm {
+        sensors: Sensors::NOISY,
+        ..Arm::ideal(RobotKind::Fr3)
+    }
+}
 
 /// Both ends of a session, and what the client has got so far.
 pub(crate) struct Pair {

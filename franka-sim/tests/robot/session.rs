@@ -291,7 +291,7 @@ fn impossible_moves_are_refused() {
 fn the_same_seed_and_input_give_the_same_states() {
     let run = |seed| {
         let mut pair = Pair::new(Config {
-            noise: franka_sim::config::Noise::MODERATE,
+            arm: Some(noisy()),
             seed,
             ..Config::default()
         });

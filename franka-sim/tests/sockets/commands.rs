@@ -11,33 +11,33 @@ use crate::good::{assert_moves, assert_served};
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 /// A motion, and its commands with a bad number, one for each place.
-struct Trial {
+struct BadCommands {
     controller: MoveControllerMode,
     generator: MoveGeneratorMode,
     places: usize,
     spoil: fn(&mut RobotCommand, usize, f64),
 }
 
-const TRIALS: [Trial; 6] = [
-    Trial {
+const BAD_COMMANDS: [BadCommands; 6] = [
+    BadCommands {
         controller: MoveControllerMode::JointImpedance,
         generator: MoveGeneratorMode::JointPosition,
         places: 7,
         spoil: |command, place, bad| command.q_c[place] = bad,
     },
-    Trial {
+    BadCommands {
         controller: MoveControllerMode::JointImpedance,
         generator: MoveGeneratorMode::JointVelocity,
         places: 7,
         spoil: |command, place, bad| command.dq_c[place] = bad,
     },
-    Trial {
+    BadCommands {
         controller: MoveControllerMode::CartesianImpedance,
         generator: MoveGeneratorMode::CartesianPosition,
         places: 16,
         spoil: |command, place, bad| command.O_T_EE_c[place] = bad,
     },
-    Trial {
+    BadCommands {
         controller: MoveControllerMode::JointImpedance,
         generator: MoveGeneratorMode::CartesianPosition,
         places: 2,
@@ -47,13 +47,13 @@ const TRIALS: [Trial; 6] = [
             command.elbow_c = Some(elbow);
         },
     },
-    Trial {
+    BadCommands {
         controller: MoveControllerMode::JointImpedance,
         generator: MoveGeneratorMode::CartesianVelocity,
         places: 6,
         spoil: |command, place, bad| command.O_dP_EE_c[place] = bad,
     },
-    Trial {
+    BadCommands {
         controller: MoveControllerMode::ExternalController,
         generator: MoveGeneratorMode::JointVelocity,
         places: 7,
@@ -64,7 +64,7 @@ const TRIALS: [Trial; 6] = [
 #[test]
 fn non_finite_numbers_end_the_motion_and_disturb_no_other_client() {
     each_robot(|binary| {
-        for trial in &TRIALS {
+        for trial in &BAD_COMMANDS {
             for place in 0..trial.places {
                 let bad = BAD[place % BAD.len()];
                 // Torques alone: what then runs beside them differs between the versions.

@@ -1,11 +1,11 @@
 //! Connections that never become a session.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::binary::Binary;
 use crate::each_robot;
 use crate::good::assert_served;
-use crate::port::{Connection, Port};
+use crate::port::{Connection, Port, SOON};
 
 /// What each port of a binary goes through, with a good client after it.
 fn each_port(binary: &Binary, abuse: impl Fn(&Port)) {
@@ -36,7 +36,7 @@ fn a_first_message_that_is_none_closes_the_connection() {
             ] {
                 let mut connection = port.dial();
                 connection.send(&first);
-                assert_eq!(connection.read_to_end(), [], "{first:?}");
+                assert_eq!(connection.read_to_end(), b"", "{first:?}");
                 binary.assert_alive();
             }
         });
@@ -70,9 +70,9 @@ fn silent_connections_keep_no_client_out_and_are_closed() {
             assert_served(binary);
             let begun = Instant::now();
             for connection in &mut silent {
-                assert_eq!(connection.read_to_end(), []);
+                assert_eq!(connection.read_to_end(), b"");
             }
-            assert!(begun.elapsed() < Duration::from_secs(3));
+            assert!(begun.elapsed() < SOON, "it stays open");
         }
         binary.assert_logged("connections to the robot say nothing");
         binary.assert_logged("connection to the vacuum gripper closed: no message came");
@@ -94,7 +94,7 @@ fn a_handshake_that_breaks_off_keeps_no_client_out() {
             let mut silent = lengths.map(begin);
             assert_served(binary);
             for broken in &mut silent {
-                assert_eq!(broken.read_to_end(), []);
+                assert_eq!(broken.read_to_end(), b"");
             }
             // An end, in order and out of order.
             for end in [drop, Connection::reset] {
@@ -117,14 +117,14 @@ fn a_handshake_may_come_byte_by_byte_and_name_any_port() {
             // No states can go to port 0, nor to one that is closed.
             for udp_port in [0, 1, 9] {
                 let begun = Instant::now();
-                while begun.elapsed() < Duration::from_secs(1) {
+                loop {
                     let mut connection = port.dial();
                     connection.send(&port.connect(port.version, udp_port));
                     if connection.read(port.header() + 1).is_some() {
                         break;
                     }
+                    assert!(begun.elapsed() < SOON, "{} accepts no client", port.name);
                 }
-                assert!(begun.elapsed() < Duration::from_secs(1));
             }
         });
     });

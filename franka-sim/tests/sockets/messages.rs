@@ -1,7 +1,5 @@
 //! Sessions whose client leaves the protocol.
 
-use std::time::Instant;
-
 use crate::each_robot;
 use crate::good::assert_served;
 use crate::port::Connection;
@@ -32,7 +30,7 @@ fn a_message_that_is_none_ends_the_session() {
             ] {
                 let (mut connection, _udp) = port.shake_hands();
                 connection.send(&bytes);
-                assert_eq!(connection.read_to_end(), [], "{}: {what}", port.name);
+                assert_eq!(connection.read_to_end(), b"", "{}: {what}", port.name);
                 assert_served(binary);
             }
             binary.assert_logged(&format!("client of the {} disconnected", port.name));
@@ -51,7 +49,7 @@ fn a_message_that_breaks_off_ends_the_session() {
                 connection.send(&setter[..length]);
                 udp.recv(&mut []).expect("a state");
                 assert_served(binary);
-                assert_eq!(connection.read_to_end(), [], "{length} bytes");
+                assert_eq!(connection.read_to_end(), b"", "{length} bytes");
                 for end in [drop, Connection::reset] {
                     let (mut connection, _udp) = port.shake_hands();
                     connection.send(&setter[..length]);
@@ -112,7 +110,6 @@ fn a_flood_of_requests_holds_up_no_state() {
             .flat_map(|id| port.message(port.stop, id, &[]))
             .collect();
         let mut writer = connection.another();
-        let begun = Instant::now();
         let mut states = 0;
         let answers = count as usize * (port.header() + 1);
         std::thread::scope(|scope| {
@@ -125,8 +122,8 @@ fn a_flood_of_requests_holds_up_no_state() {
             let answered = reading.join().expect("no panic");
             assert!(answered.is_some(), "every request is answered");
         });
-        // On a busy machine not every millisecond is kept; in a thread that is held up, hardly any.
-        let due = begun.elapsed().as_millis() / 4;
+        // The thread takes 32 requests between two states. A slow reader may miss some of these.
+        let due = count / 64;
         assert!(states > due, "{states} states, at least {due} expected");
         drop((connection, writer));
         assert_served(binary);

@@ -37,7 +37,7 @@ fn a_second_client_is_refused_and_the_first_not_disturbed() {
             let silent: Vec<_> = (0..20).map(|_| port.dial()).collect();
             port.dial().reset();
             assert_undisturbed(port, &mut first, &udp, 100);
-            assert_eq!(garbage.read_to_end(), []);
+            assert_eq!(garbage.read_to_end(), b"");
             drop(silent);
             assert_undisturbed(port, &mut first, &udp, 101);
             binary.assert_logged(&format!("refused: the {} has a client", port.name));

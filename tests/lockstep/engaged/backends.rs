@@ -8,7 +8,7 @@ use super::{turned, up};
 use franka_model::{READY, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::driver::Observer;
-use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
+use franka_rt::lifecycle::{Engagement, MotionError, NewMotion, Tuning};
 use franka_rt::session::{
     Backend, ForceCap, Free, Goal, GoalError, Guard, Lead, OnArrival, Setpoints, Target,
 };
@@ -136,10 +136,10 @@ fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
                 backend,
                 ..Engagement::default()
             };
-            let client = &mut lockstep.client;
-            let begun = client
-                .lifecycle
-                .engage(capped, engagement, &client.state, client.now);
+            let begun = lockstep.client.begin(NewMotion::Session {
+                goal: Box::new(capped),
+                engagement,
+            });
             assert_eq!(begun, Err(refused.clone()));
 
             let engaged = lockstep.engage_with(Engagement {
@@ -224,10 +224,10 @@ fn poses_are_refused_to_a_stretched_arm() {
             backend: Backend::RobotController(Setpoints::Poses),
             ..Engagement::default()
         };
-        let client = &mut lockstep.client;
-        let begun = client
-            .lifecycle
-            .engage(goal, engagement, &client.state, client.now);
+        let begun = lockstep.client.begin(NewMotion::Session {
+            goal: Box::new(goal),
+            engagement,
+        });
         let refused = MotionError::Goal(GoalError::Backend {
             why: "takes no stretched arm",
         });

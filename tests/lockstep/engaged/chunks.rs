@@ -152,7 +152,7 @@ fn lost_commands_do_not_lead_past_the_points_of_a_chunk() {
 #[test]
 fn points_too_large_to_plan_are_refused() {
     let lockstep = Lockstep::ready();
-    let start = lockstep.true_pose();
+    let start = lockstep.arm_pose();
     let apart = Duration::from_millis(50);
     for far in [1e12, 1e200, -1e300] {
         let wild = Translation3::new(far, 0.0, 0.0) * start;

@@ -174,11 +174,11 @@ fn tuning_does_not_resume_an_aborted_goal() {
 
 /// Asserts that the arm resists a push of 8 N, which the light damping of a guided arm does not.
 fn assert_firm(lockstep: &mut Lockstep) {
-    let before = lockstep.true_pose();
+    let before = lockstep.arm_pose();
     let push = Wrench::new(0.0, 8.0, 0.0, 0.0, 0.0, 0.0);
     lockstep.robot.push_end_effector(push, 1500);
     lockstep.run(1500);
-    let moved = lockstep.true_pose().translation.y - before.translation.y;
+    let moved = lockstep.arm_pose().translation.y - before.translation.y;
     assert!(moved < 0.012, "{moved} m");
 }
 

@@ -26,7 +26,7 @@ use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3};
 
 fn up(lockstep: &Lockstep, metres: f64) -> Isometry3<f64> {
-    Translation3::new(0.0, 0.0, metres) * lockstep.true_pose()
+    Translation3::new(0.0, 0.0, metres) * lockstep.arm_pose()
 }
 
 fn turned(by: f64) -> Target {
@@ -77,9 +77,9 @@ fn guarded(ready: &dyn Fn() -> Lockstep, milliseconds: u64) -> (Lockstep, GoalId
 }
 
 fn assert_stays(lockstep: &mut Lockstep, engaged: GoalId) {
-    let before = lockstep.true_pose();
+    let before = lockstep.arm_pose();
     lockstep.run(500);
-    let moved = PoseError::between(&lockstep.true_pose(), &before);
+    let moved = PoseError::between(&lockstep.arm_pose(), &before);
     assert!(moved.translation < 1e-3, "{moved:?}");
     assert_eq!(lockstep.client.outcome(engaged), None, "it goes on");
 }
@@ -232,14 +232,14 @@ fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
             .within(engaged, Target::Guide(free), OnArrival::Hold)
             .unwrap();
         lockstep.run(400);
-        let start = lockstep.true_pose();
+        let start = lockstep.arm_pose();
         let push = Wrench::new(4.0, 4.0, 4.0, 0.0, 0.0, 0.0);
         lockstep.robot.push_end_effector(push, 1500);
         lockstep.run(1500);
-        let moved = lockstep.true_pose().translation.vector - start.translation.vector;
+        let moved = lockstep.arm_pose().translation.vector - start.translation.vector;
         assert!(moved.y > 0.05, "{moved}");
         assert!(moved.x.abs() < 0.01 && moved.z.abs() < 0.01, "{moved}");
-        let turned = PoseError::between(&lockstep.true_pose(), &start).rotation;
+        let turned = PoseError::between(&lockstep.arm_pose(), &start).rotation;
         assert!(turned < 0.05, "{turned} rad");
         // Superseded while the hand still moves the arm.
         let hold = lockstep

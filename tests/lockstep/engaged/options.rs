@@ -16,7 +16,7 @@ fn tuning_gains_does_not_step_the_torque_and_keeps_their_bounds() {
         let push = Wrench::new(0.0, 0.0, -6.0, 0.0, 0.0, 0.0);
         lockstep.robot.push_end_effector(push, 100_000);
         lockstep.run(1500);
-        let before = lockstep.true_pose();
+        let before = lockstep.arm_pose();
         let soft =
             Gains::cartesian().with_cartesian_stiffness([300.0, 300.0, 300.0, 15.0, 15.0, 15.0]);
         let gains = Some(soft);
@@ -40,7 +40,7 @@ fn tuning_gains_does_not_step_the_torque_and_keeps_their_bounds() {
             last = tau;
         }
         assert!(step < 0.1, "a step of {step} N m");
-        let sunk = before.translation.z - lockstep.true_pose().translation.z;
+        let sunk = before.translation.z - lockstep.arm_pose().translation.z;
         assert!(sunk > 0.004, "{sunk} m");
         let mut hard = soft;
         hard.cartesian_stiffness[0] = 1e5;
@@ -125,7 +125,7 @@ fn a_force_cap_is_tuned_within_its_bounds() {
 fn a_session_keeps_out_of_its_regions_and_refuses_invalid_ones() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        let floor = Obstacle::floor(lockstep.true_pose().translation.z - 0.1);
+        let floor = Obstacle::floor(lockstep.arm_pose().translation.z - 0.1);
         let engaged = lockstep.engage_with(Engagement {
             keep_out: Some(vec![floor]),
             ..Engagement::default()

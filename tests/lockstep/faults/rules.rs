@@ -6,8 +6,8 @@
 //! row end the motion. Derivatives are backward differences, which include the extrapolated
 //! commands. Lost torques are replaced by the last ones.
 
-use franka_model::Model;
 use franka_model::limits::MotionLimits;
+use franka_model::{CYCLE, Model};
 use franka_proto::{Errors, MoveGeneratorMode, RobotError as E};
 
 use crate::faults::course;
@@ -15,9 +15,6 @@ use crate::faults::variant::Channel;
 
 /// Commands lost in a row that end a motion.
 pub(crate) const LOST_LIMIT: u64 = 20;
-
-/// Length of a cycle, `[s]`.
-const CYCLE: f64 = 1e-3;
 
 /// The distance that each quantity has to keep from its limit, on either side, for a clear verdict:
 /// a robot judges by what it publishes, in single precision, and the joints of a Cartesian motion

@@ -126,7 +126,7 @@ impl Trial {
                 )
             }
             Way::Target(gesture) => {
-                let start = lockstep.true_pose();
+                let start = lockstep.arm_pose();
                 let mut q: [f64; 7] = READY.into();
                 q[course::JOINT] += 0.02;
                 let (target, on_arrival, external) = match gesture {

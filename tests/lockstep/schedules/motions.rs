@@ -44,7 +44,7 @@ impl Motions {
             lockstep.run(5);
         }
         Self {
-            home: lockstep.true_pose(),
+            home: lockstep.arm_pose(),
             lockstep,
             random,
             calm,

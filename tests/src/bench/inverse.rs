@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use franka_model::analytic_ik::{self, Redundancy};
 use franka_model::differential_ik::{DifferentialIk, JointBox, Side, Solution};
-use franka_model::{EndEffector, Frame, Jacobian, JointVector, Model, Twist, elbow, transform};
+use franka_model::{
+    CYCLE, EndEffector, Frame, Jacobian, JointVector, Model, Twist, elbow, transform,
+};
 use nalgebra::Isometry3;
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 
@@ -134,8 +136,6 @@ fn posture(random: &mut SmallRng) -> JointVector {
 
 /// No bound known to be active.
 const COLD: [Side; 7] = [Side::Free; 7];
-/// `[s]`.
-const CYCLE: f64 = 1e-3;
 const SEED: u64 = 4;
 const POSTURES: usize = 256;
 const STATES: usize = 1000;

@@ -1,18 +1,16 @@
 //! A new target for moving axes, and the first step towards it: the most expensive cycle of the
-//! generator.
-//!
-//! States are taken from random motions. Each sweep of a round measures every state once, so that
-//! the branch predictor cannot learn a state. A state counts with its shortest time over the
-//! sweeps, since longer ones include interruptions. The time of reading the clock is subtracted;
-//! for one axis it would be a third of the figure.
+//! generator. The states are those of the generator's own benchmark.
 
-use std::hint::black_box;
-use std::time::Instant;
+// By path: a benchmark is no part of the library.
+#[path = "../../../franka-otg/benches/replan/cases.rs"]
+mod cases;
 
 use franka_model::Model;
-use franka_otg::{AxisLimits, Generator, Limits, State, Synchronisation};
+use franka_otg::AxisLimits;
 use franka_rt::session::Budget;
-use rand::{Rng, SeedableRng, rngs::SmallRng};
+use rand::{Rng, rngs::SmallRng};
+
+use cases::{Case, Cases, clock, shortest};
 
 use super::{Benchmark, Statistic};
 
@@ -57,21 +55,11 @@ fn replan<const N: usize>(
     key: &'static str,
     limits: impl Fn(usize, &mut SmallRng) -> AxisLimits + 'static,
 ) -> Benchmark {
-    let mut cases: Cases<N, _> = Cases::new(limits);
-    let cases: Vec<_> = (0..STATES).map(|_| cases.next()).collect();
+    let cases: Vec<Case<N>> = Cases::new(limits).take(STATES).collect();
     Benchmark {
         key,
         statistics: &[Statistic::P50, Statistic::P99],
-        round: Box::new(move || {
-            let clock = clock();
-            let mut shortest = vec![u64::MAX; cases.len()];
-            for _ in 0..SWEEPS {
-                for (case, shortest) in cases.iter().zip(&mut shortest) {
-                    *shortest = (*shortest).min(case.measure(clock));
-                }
-            }
-            shortest
-        }),
+        round: Box::new(move || shortest(&cases, SWEEPS)),
     }
 }
 
@@ -89,10 +77,8 @@ fn worst(
             let clock = clock();
             while suspects.is_empty() {
                 for _ in 0..MANY_STATES / CHUNK {
-                    suspects.extend((0..CHUNK).map(|_| {
-                        let case = cases.next();
-                        (case.measure(clock), case)
-                    }));
+                    let chunk = cases.by_ref().take(CHUNK);
+                    suspects.extend(chunk.map(|case| (case.measure(clock), case)));
                     suspects.sort_by_key(|(took, _)| std::cmp::Reverse(*took));
                     suspects.truncate(SUSPECTS);
                 }
@@ -106,96 +92,8 @@ fn worst(
     }
 }
 
-/// A generator in motion, and its next target.
-#[derive(Clone)]
-struct Case<const N: usize> {
-    generator: Generator<N>,
-    target: [f64; N],
-}
-
-impl<const N: usize> Case<N> {
-    /// The nanoseconds of planning, less those of reading the `clock`.
-    fn measure(&self, clock: u64) -> u64 {
-        let mut generator = self.generator.clone();
-        let start = Instant::now();
-        let planned = generator.set_target(black_box(&self.target));
-        black_box(generator.step());
-        let nanoseconds = start.elapsed().as_nanos();
-        planned.expect("the target is finite and in reach");
-        u64::try_from(nanoseconds)
-            .unwrap_or(u64::MAX)
-            .saturating_sub(clock)
-            .max(1)
-    }
-}
-
-/// The median nanoseconds between two consecutive readings of the clock.
-fn clock() -> u64 {
-    let mut readings = [0; 1001].map(|_: u64| {
-        let start = Instant::now();
-        u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX)
-    });
-    readings.sort_unstable();
-    readings[500]
-}
-
-/// States of motions to one target after the other, some way into each motion: before, in and after
-/// its phase of constant velocity. After a while the next arm takes over.
-struct Cases<const N: usize, L> {
-    random: SmallRng,
-    limits: L,
-    generator: Option<Generator<N>>,
-    left: usize,
-}
-
-impl<const N: usize, L: Fn(usize, &mut SmallRng) -> AxisLimits> Cases<N, L> {
-    fn new(limits: L) -> Self {
-        Self {
-            random: SmallRng::seed_from_u64(SEED),
-            limits,
-            generator: None,
-            left: 0,
-        }
-    }
-
-    fn next(&mut self) -> Case<N> {
-        let random = &mut self.random;
-        let mut generator = match self.generator.take() {
-            Some(generator) if self.left > 0 => generator,
-            _ => {
-                self.left = TARGETS;
-                let limits = std::array::from_fn(|axis| (self.limits)(axis, random));
-                let limits = Limits::per_axis(limits).expect("the limits are positive and finite");
-                Generator::new(State::at_rest([0.0; N]), limits)
-                    .expect("a start at rest is valid")
-                    .with_synchronisation(Synchronisation::Time)
-            }
-        };
-        self.left -= 1;
-        let target = std::array::from_fn(|_| random.random_range(-2.0..2.0));
-        let case = Case {
-            generator: generator.clone(),
-            target,
-        };
-        generator
-            .set_target(&target)
-            .expect("the target is finite and in reach");
-        let into = random.random_range(0.0..1.0) * generator.remaining().min(MOTION_MAX);
-        let state = generator.sample(into);
-        generator
-            .set_state(state)
-            .expect("a state of the generator's own is valid");
-        self.generator = Some(generator);
-        case
-    }
-}
-
-const SEED: u64 = 3;
 const STATES: usize = 2000;
 const SWEEPS: usize = 5;
-const TARGETS: usize = 100;
-/// The latest time of a new target in a motion, `[s]`.
-const MOTION_MAX: f64 = 2.0;
 /// Tests run a short round of each benchmark and ignore its figures.
 const MANY_STATES: usize = if cfg!(debug_assertions) {
     10_000

@@ -34,6 +34,7 @@
 mod analytic_ik;
 mod control_loop;
 mod link_surfaces;
+mod loads;
 mod model;
 mod otg;
 mod report;

@@ -3,9 +3,10 @@
 use anyhow::{Context as _, ensure};
 use franka_model::limits::CLIENT_MARGIN;
 use franka_model::{EndEffector, Frame, JointVector, Load, Model, RobotKind, joint_vector};
-use nalgebra::{Matrix3, Matrix4, Vector3};
+use nalgebra::Matrix4;
 use serde::Deserialize;
 
+use super::loads::{Parts, Total};
 use super::{Case, Report};
 
 // What the numbers of the files may differ by: they went through other orders of summation. The
@@ -19,8 +20,6 @@ const TORQUE: f64 = 1e-12;
 const FIT_MASS: f64 = 0.02;
 const FIT_GRAVITY: f64 = 0.02;
 const FIT_CORIOLIS: f64 = 0.09;
-/// Totals of the loads, made of the same few operations.
-const TOTALS: f64 = 1e-15;
 
 #[derive(Deserialize)]
 struct File {
@@ -44,20 +43,8 @@ struct Tool {
     /// The file of the FER gives totals only.
     #[serde(flatten)]
     parts: Option<Parts>,
-    m_total: f64,
-    F_x_Ctotal: [f64; 3],
-    I_total: [f64; 9],
-}
-
-#[derive(Deserialize)]
-#[allow(non_snake_case)]
-struct Parts {
-    m_ee: f64,
-    F_x_Cee: [f64; 3],
-    I_ee: [f64; 9],
-    m_load: f64,
-    F_x_Cload: [f64; 3],
-    I_load: [f64; 9],
+    #[serde(flatten)]
+    total: Total,
 }
 
 #[derive(Deserialize)]
@@ -138,7 +125,7 @@ fn rigid_body(text: &[u8], model: &Model) -> anyhow::Result<Report> {
     let mut report = Report::default();
     let file: File = serde_json::from_slice(text)?;
     report.each("load_configs", &file.load_configs, |case, tool| {
-        tool.check(case)
+        tool.total.check(case, &tool.load());
     });
     let (common, per_load) = Frame::ALL.split_at(8);
     for (index, sample) in file.samples.iter().enumerate() {
@@ -180,34 +167,10 @@ impl Tool {
         }
     }
 
-    fn total(&self) -> Load {
-        load(self.m_total, &self.F_x_Ctotal, &self.I_total)
-    }
-
     /// The load of both parts, combined by the model.
     fn load(&self) -> Load {
-        self.parts.as_ref().map_or_else(
-            || self.total(),
-            |parts| {
-                let ee = load(parts.m_ee, &parts.F_x_Cee, &parts.I_ee);
-                ee.combine(&load(parts.m_load, &parts.F_x_Cload, &parts.I_load))
-            },
-        )
-    }
-
-    fn check(&self, case: &mut Case<'_>) {
-        let got = self.load();
-        case.near("m_total", &[got.mass], &[self.m_total], TOTALS);
-        case.near("F_x_Ctotal", got.com.as_slice(), &self.F_x_Ctotal, TOTALS);
-        case.near("I_total", got.inertia.as_slice(), &self.I_total, TOTALS);
-    }
-}
-
-fn load(mass: f64, centre: &[f64; 3], inertia: &[f64; 9]) -> Load {
-    Load {
-        mass,
-        com: Vector3::from(*centre),
-        inertia: Matrix3::from_column_slice(inertia),
+        let total = || self.total.load();
+        self.parts.as_ref().map_or_else(total, Parts::combined)
     }
 }
 

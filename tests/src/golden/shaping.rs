@@ -7,21 +7,19 @@ use std::collections::BTreeMap;
 
 use anyhow::bail;
 use franka_model::limits::{BrakingEnvelope, CLIENT_MARGIN, JointLimits};
-use franka_model::{JointVector, Load, RobotKind};
+use franka_model::{JointVector, RobotKind};
 use franka_proto::{RobotState, Version};
 use franka_rt::shaping::limiter::{self, AxisBounds, JointBounds, POSE_ROTATION_SHARE};
 use franka_rt::shaping::{Bounds, CYCLE, VelocityBounds, check};
-use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 
+use super::loads::{Parts, Total};
 use super::shaping_errors::{self, Refused};
 use super::{Report, Versions};
 
 /// Of Cartesian values, `[m]`, `[m/s]`, `[rad/s]` and elements of rotations: some steps of a double
 /// at 1.
 const CARTESIAN: f64 = 2e-14;
-/// Of the model's totals of loads, whose sums are in another order, `[kg m^2]`.
-const TOTALS: f64 = 1e-15;
 
 #[derive(Deserialize)]
 struct Section {
@@ -106,17 +104,11 @@ struct Transformation {
 }
 
 #[derive(Deserialize)]
-#[allow(non_snake_case)]
 struct LoadTotals {
-    m_ee: f64,
-    F_x_Cee: [f64; 3],
-    I_ee: [f64; 9],
-    m_load: f64,
-    F_x_Cload: [f64; 3],
-    I_load: [f64; 9],
-    m_total: f64,
-    F_x_Ctotal: [f64; 3],
-    I_total: [f64; 9],
+    #[serde(flatten)]
+    parts: Parts,
+    #[serde(flatten)]
+    total: Total,
 }
 
 /// Bounds on velocities at positions, from parameters as a robot's description names them.
@@ -276,34 +268,26 @@ impl Section {
 
     /// Both as the model combines loads and as a state tells their total.
     fn totals(&self, report: &mut Report, part: &str) {
-        let body = |mass, centre: [f64; 3], inertia: [f64; 9]| Load {
-            mass,
-            com: Vector3::from(centre),
-            inertia: Matrix3::from_column_slice(&inertia),
-        };
         report.each(
             format!("{part}.load_totals"),
             &self.load_totals,
-            |case, v| {
-                let combined =
-                    body(v.m_ee, v.F_x_Cee, v.I_ee).combine(&body(v.m_load, v.F_x_Cload, v.I_load));
-                case.near("mass", &[combined.mass], &[v.m_total], TOTALS);
-                case.near("centre", combined.com.as_slice(), &v.F_x_Ctotal, TOTALS);
-                case.near("inertia", combined.inertia.as_slice(), &v.I_total, TOTALS);
+            |case, LoadTotals { parts, total }| {
+                total.check(case, &parts.combined());
                 let state = RobotState {
-                    m_ee: v.m_ee,
-                    F_x_Cee: v.F_x_Cee,
-                    I_ee: v.I_ee,
-                    m_load: v.m_load,
-                    F_x_Cload: v.F_x_Cload,
-                    I_load: v.I_load,
+                    m_ee: parts.m_ee,
+                    F_x_Cee: parts.F_x_Cee,
+                    I_ee: parts.I_ee,
+                    m_load: parts.m_load,
+                    F_x_Cload: parts.F_x_Cload,
+                    I_load: parts.I_load,
                     ..RobotState::default()
                 };
                 // The functions behind the file take `f64`, whatever the version.
-                let total = state.total_load(Version::V5);
-                case.near("mass of a state", &[total.m_total], &[v.m_total], 0.0);
-                case.near("centre of a state", &total.F_x_Ctotal, &v.F_x_Ctotal, 0.0);
-                case.near("inertia of a state", &total.I_total, &v.I_total, 0.0);
+                let got = state.total_load(Version::V5);
+                case.near("mass of a state", &[got.m_total], &[total.m_total], 0.0);
+                let (centre, inertia) = (&total.F_x_Ctotal, &total.I_total);
+                case.near("centre of a state", &got.F_x_Ctotal, centre, 0.0);
+                case.near("inertia of a state", &got.I_total, inertia, 0.0);
             },
         );
     }

@@ -9,11 +9,9 @@ use franka_proto::client::{Event, Session};
 use franka_proto::framing::next_message;
 use franka_proto::{CommandId, MoveRequest, Reply, Request, RobotState, Version, Violation};
 use franka_rt::driver::{Driver, MotionId, Program, Record};
-use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, Output};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, NewMotion, Outcome, Output};
 use franka_rt::session::GoalId;
 use franka_rt::stats::{Arrival, CycleTimes};
-
-use super::Outcome;
 
 /// The driver without its sockets and its clock: bytes and time go in, bytes come out.
 pub struct Client {
@@ -218,7 +216,21 @@ impl Client {
         request: MoveRequest,
     ) -> Result<GoalId, MotionError> {
         let id = self.next_goal();
-        let begun = self.lifecycle.control(id, program, request, self.now);
+        self.begin(NewMotion::Program {
+            id,
+            program,
+            request: Box::new(request),
+            ticket: None,
+        })
+    }
+
+    /// Begins a motion and returns its name.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn begin(&mut self, motion: NewMotion) -> Result<GoalId, MotionError> {
+        let id = motion.id();
+        let begun = self.lifecycle.begin(motion, &self.state, self.now);
         self.carry_out();
         begun.map(|()| id)
     }

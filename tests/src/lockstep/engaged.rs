@@ -1,6 +1,6 @@
 //! Sessions that go from goal to goal.
 
-use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
+use franka_rt::lifecycle::{Engagement, MotionError, NewMotion, Tuning};
 use franka_rt::session::{Backend, Chunk, Goal, GoalId, OnArrival, Target};
 
 use super::Lockstep;
@@ -47,8 +47,9 @@ impl Lockstep {
     /// As the lifecycle.
     pub fn try_engage(&mut self, engagement: Engagement) -> Result<GoalId, MotionError> {
         let goal = self.goal(Target::Rest, OnArrival::Hold);
-        self.submit_by(goal, |lifecycle, goal, state, now| {
-            lifecycle.engage(goal, engagement, state, now)
+        self.client.begin(NewMotion::Session {
+            goal: Box::new(goal),
+            engagement,
         })
     }
 
@@ -72,8 +73,10 @@ impl Lockstep {
     /// # Errors
     /// As the lifecycle.
     pub fn submit_within(&mut self, engaged: GoalId, goal: Goal) -> Result<GoalId, MotionError> {
-        self.submit_by(goal, |lifecycle, goal, state, now| {
-            lifecycle.submit_within(engaged, goal, state, now)
+        self.client.begin(NewMotion::Goal {
+            goal: Box::new(goal),
+            ticket: None,
+            session: Some(engaged),
         })
     }
 
@@ -97,9 +100,10 @@ impl Lockstep {
         goal: Goal,
         chunk: Chunk,
     ) -> Result<GoalId, MotionError> {
-        self.submit_by(goal, |lifecycle, goal, state, now| {
-            lifecycle.chunk(engaged, goal, chunk, state, now)
-        })
+        let client = &mut self.client;
+        let sent = client.lifecycle.chunk(engaged, goal, chunk, &client.state);
+        client.carry_out();
+        sent.map(|()| goal.id)
     }
 
     /// Changes gains, budget or force cap of the session.
@@ -114,7 +118,7 @@ impl Lockstep {
     /// Ends the session.
     pub fn disengage(&mut self, engaged: GoalId) {
         let client = &mut self.client;
-        client.lifecycle.disengage(engaged, client.now);
+        client.lifecycle.disengage(engaged);
         self.client.carry_out();
     }
 }

@@ -1,12 +1,10 @@
 //! Checks every command against the limits of the robot, independently of the code under test.
 
+use franka_model::CYCLE;
 use franka_model::limits::JointLimits;
 use franka_proto::{RobotCommand, RobotState};
 use franka_rt::driver::Record;
 use franka_rt::session::Guard;
-
-/// Length of a cycle, `[s]`.
-const CYCLE: f64 = 1e-3;
 
 /// Keeps the previous command, for rates.
 #[derive(Clone, Copy, Debug)]

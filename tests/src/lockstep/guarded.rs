@@ -104,7 +104,7 @@ impl Guarded {
         lockstep.run(5);
 
         let version = lockstep.client.version();
-        let home = lockstep.true_pose();
+        let home = lockstep.arm_pose();
         let (mut goals, reader) = slot();
         let (chunks, taken) = chunk_ring();
         let (deadman, monitor) = Deadman::new(SILENCE);

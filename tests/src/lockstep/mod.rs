@@ -27,10 +27,11 @@ use std::time::Duration;
 
 use franka_model::collision::Shape;
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
-use franka_proto::{MoveRequest, Request, RobotCommand, RobotState};
+use franka_proto::{MoveRequest, Request, RobotCommand};
 use franka_rt::control::{Callback, Command, WriteError};
 use franka_rt::driver::Program;
-use franka_rt::lifecycle::{Lifecycle, MotionError, MotionReport};
+pub use franka_rt::lifecycle::Outcome;
+use franka_rt::lifecycle::{MotionError, NewMotion};
 use franka_rt::session::{Goal, GoalError, GoalId, Guard, OnArrival, Target};
 use franka_rt::together::StartTicket;
 use franka_sim::{Config, Robot};
@@ -42,9 +43,6 @@ pub use link::Link;
 pub use wander::Wander;
 
 use guard::CommandGuard;
-
-/// The outcome of a goal.
-pub type Outcome = Result<MotionReport, MotionError>;
 
 /// A part of the control cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -303,7 +301,7 @@ impl Lockstep {
     /// # Errors
     /// As the lifecycle.
     pub fn submit(&mut self, goal: Goal) -> Result<GoalId, MotionError> {
-        self.submit_by(goal, Lifecycle::submit)
+        self.client.begin(NewMotion::to(goal))
     }
 
     /// Submits a goal that begins together with those of other robots.
@@ -315,20 +313,11 @@ impl Lockstep {
         goal: Goal,
         ticket: StartTicket,
     ) -> Result<GoalId, MotionError> {
-        self.submit_by(goal, |lifecycle, goal, state, now| {
-            lifecycle.submit_together(goal, ticket, state, now)
+        self.client.begin(NewMotion::Goal {
+            goal: Box::new(goal),
+            ticket: Some(ticket),
+            session: None,
         })
-    }
-
-    pub(super) fn submit_by(
-        &mut self,
-        goal: Goal,
-        submit: impl FnOnce(&mut Lifecycle, Goal, &RobotState, Duration) -> Result<(), MotionError>,
-    ) -> Result<GoalId, MotionError> {
-        let client = &mut self.client;
-        let submitted = submit(&mut client.lifecycle, goal, &client.state, client.now);
-        self.client.carry_out();
-        submitted.map(|()| goal.id)
     }
 
     /// Starts a control function that begins together with the motions of other robots; see
@@ -344,10 +333,12 @@ impl Lockstep {
     ) -> Result<GoalId, MotionError> {
         self.guard = None;
         let id = self.client.next_goal();
-        let Client { lifecycle, now, .. } = &mut self.client;
-        let begun = lifecycle.control_together(id, Box::new(callback), request, ticket, *now);
-        self.client.carry_out();
-        begun.map(|()| id)
+        self.client.begin(NewMotion::Program {
+            id,
+            program: Program::Callback(Box::new(callback)),
+            request: Box::new(request),
+            ticket: Some(ticket),
+        })
     }
 
     /// Submits a motion that ends at `target`.
@@ -433,8 +424,9 @@ impl Lockstep {
         self.client.request(request);
     }
 
-    /// The true pose of the end effector, not rounded by the wire.
-    pub fn true_pose(&self) -> Isometry3<f64> {
+    /// The pose of the end effector that the robot's model has at the true joint positions: not
+    /// rounded by the wire, without noise.
+    pub fn arm_pose(&self) -> Isometry3<f64> {
         self.pose_at(self.robot.q())
     }
 

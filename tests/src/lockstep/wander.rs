@@ -29,7 +29,7 @@ impl Wander {
 
     /// Returns the arm of this system with its first goal, from its present position.
     pub fn of(mut lockstep: Lockstep, seed: u64) -> Self {
-        let home = lockstep.true_pose();
+        let home = lockstep.arm_pose();
         let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
         let id = lockstep.submit(goal).expect("the arm is there already");
         let mut this = Self {

@@ -49,7 +49,7 @@ const AMPLE: f64 = 0.15;
 pub struct Spacing {
     /// The capsules of the pairs.
     arm: LinkCapsules,
-    pairs: [Pair; PAIRS_MAX],
+    pairs: [CapsulePair; PAIRS_MAX],
     pair_count: usize,
     /// The minimum distance of the pairs, `[m]`.
     apart: f64,
@@ -77,7 +77,7 @@ enum Kind {
 
 /// Two capsules with a minimum distance.
 #[derive(Debug, Clone, Copy)]
-struct Pair {
+struct CapsulePair {
     inner: usize,
     outer: usize,
     /// Sum of the radii of the balls around both capsules, `[m]`.
@@ -135,7 +135,7 @@ impl Spacing {
     pub fn within(arm: &Shape<'_>, distance: f64, links: u8) -> Self {
         let mut this = Self {
             arm: LinkCapsules::of(arm),
-            pairs: [Pair {
+            pairs: [CapsulePair {
                 inner: 0,
                 outer: 0,
                 reach: 0.0,
@@ -152,7 +152,7 @@ impl Spacing {
         for (inner, outer) in arm.indices() {
             let (a, b) = (&this.arm.all[inner], &this.arm.all[outer]);
             if b.number - a.number >= links {
-                this.pairs[this.pair_count] = Pair {
+                this.pairs[this.pair_count] = CapsulePair {
                     inner,
                     outer,
                     reach: a.reach + a.radius + b.reach + b.radius,
@@ -256,7 +256,7 @@ impl Arrangement<'_> {
             .unwrap_or(f64::INFINITY)
     }
 
-    fn margin_of(&self, pair: &Pair) -> f64 {
+    fn margin_of(&self, pair: &CapsulePair) -> f64 {
         let axis = |i: usize| self.arm[i].axis(&self.spacing.arm.all[i]);
         axis(pair.inner).nearest(&axis(pair.outer)).distance - self.spacing.apart
     }

@@ -1,4 +1,5 @@
-//! What a control loop does with a returned command.
+//! Filter, limiter and check of what a control function returns; of torques, their rate. The
+//! limiter is on by default for an FER and off for an FR3, as in libfranka.
 
 #[cfg(test)]
 mod tests;
@@ -32,13 +33,13 @@ pub struct Shaper {
     bounds: Bounds,
     limit_rate: bool,
     cutoff_frequency: f64,
-    start: Start,
+    start: FirstReference,
     echo: Echo,
 }
 
 /// What the first position or pose of a motion is filtered and limited against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Start {
+enum FirstReference {
     /// Itself: it passes as it is if the state is at rest (libfranka 0.21).
     Itself,
     /// The state, as all that follow (libfranka 0.9).
@@ -58,7 +59,7 @@ enum Echo {
 struct Conventions {
     bounds: Bounds,
     limit_rate: bool,
-    start: Start,
+    start: FirstReference,
     echo: Echo,
 }
 
@@ -68,13 +69,13 @@ impl Conventions {
             Version::V5 => Self {
                 bounds: Bounds::fer(),
                 limit_rate: true,
-                start: Start::State,
+                start: FirstReference::State,
                 echo: Echo::Exact,
             },
             Version::V10 => Self {
                 bounds: Bounds::fr3(),
                 limit_rate: false,
-                start: Start::Itself,
+                start: FirstReference::Itself,
                 echo: Echo::Rounded,
             },
         }
@@ -134,8 +135,8 @@ impl Shaper {
         self
     }
 
-    /// Limits torque rates without room for the rounding of their echo, as libfranka does: see
-    /// [`limiter::within_echo`]. Only protocol 10 rounds.
+    /// Limits torque rates without the margin for the rounding of their echo, as libfranka does:
+    /// see [`limiter::within_echo`]. Only protocol 10 rounds.
     #[must_use]
     pub fn trusting_the_echo(mut self) -> Self {
         self.echo = Echo::Exact;
@@ -315,7 +316,7 @@ impl Shaper {
     }
 
     fn starts_itself(&self, first: bool) -> bool {
-        first && self.start == Start::Itself
+        first && self.start == FirstReference::Itself
     }
 
     fn filters(&self) -> bool {

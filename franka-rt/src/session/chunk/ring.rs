@@ -1,5 +1,5 @@
-//! How chunks cross into the thread and back: by one ring each way, because the heap memory of
-//! their points may be neither made nor freed there.
+//! The two rings by which chunks cross into the thread and back: the heap memory of their points
+//! may be neither allocated nor freed there.
 //!
 //! ```text
 //! ChunkWriter -> ring of chunks  -> ChunkReader: drained in each cycle, the newest counts
@@ -177,8 +177,8 @@ impl ChunkReader {
     pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
         let returned = Returned { goal, fate, chunk };
         if let Err(queue::Full(returned)) = self.returns.push(returned) {
-            // The writer lets out as many as fit. Were it not so, memory would rather be lost than
-            // freed on this thread.
+            // The writer lets out as many as fit. If not, memory is leaked rather than freed on
+            // this thread.
             core::mem::forget(returned);
         }
     }

@@ -144,7 +144,7 @@ fn coasting<const D: usize>(state: &PointState<D>, jerk: f64) -> SVector<f64, D>
 
 /// Whole cycles that it takes to take the acceleration back.
 fn cycles<const D: usize>(state: &PointState<D>, jerk: f64) -> f64 {
-    // What rounding leaves behind the last cycle is none of its own.
+    // A remainder of rounding is not another cycle.
     (state.a.norm() / (jerk * CYCLE) - 1e-9).ceil().max(0.0)
 }
 

@@ -150,9 +150,11 @@ impl Wild {
 
     fn poses(&self, from: &Isometry3<f64>) -> Chunk {
         let pose = |x: &[f64; 7]| {
+            // At most 80 degrees from the start, so that no two poses are half a turn apart.
+            let turn = Vector3::new(x[3], x[4], x[5]) * 0.8;
             Isometry3::from_parts(
                 Translation3::from(from.translation.vector + Vector3::new(x[0], x[1], x[2]) * 0.3),
-                rotation::exp(&Vector3::new(x[3], x[4], x[5])) * from.rotation,
+                rotation::exp(&turn) * from.rotation,
             )
         };
         Chunk::poses(self.timed(pose)).unwrap()

@@ -17,8 +17,8 @@ use crate::session::{GoalError, Target, check};
 /// The least time between two points, `[s]`: one cycle, less the rounding of a conversion.
 const SPACING_MIN: f64 = 1e-3 - 1e-9;
 
-/// The largest number of a point, in its unit. None of an arm comes near it, and what becomes of it
-/// on the way still is a number.
+/// The largest number of a point, in its unit. Far above any number of an arm, and small enough for
+/// all computations to stay finite.
 const NUMBER_MAX: f64 = 1e6;
 
 /// The largest angle between two points, `[rad]`.
@@ -81,8 +81,8 @@ impl Chunk {
     /// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.
     pub const POINTS_MAX: usize = 1024;
 
-    /// The latest that a point may lie after its chunk's origin. What is later is no prediction but
-    /// a mistake of units.
+    /// The latest that a point may lie after its chunk's origin. A later time is a mistake of
+    /// units.
     pub const OFFSET_MAX: Duration = Duration::from_secs(60);
 
     /// How long a chunk is blended with what the arm does unless said otherwise: as long as one

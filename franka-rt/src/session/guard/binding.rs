@@ -1,4 +1,4 @@
-//! Which guards bound a command: never hidden, a field of every record.
+//! Which guards bound a command: a field of every record.
 
 /// A guard that can hold a command back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,7 +19,7 @@ pub enum Guard {
     VelocityBarrier,
     /// The torque changed faster than the robot accepts and was slowed.
     TorqueRate,
-    /// The targets stopped coming; the arm goes to rest, or rests, for that.
+    /// The targets stopped coming; the arm comes to rest, or rests, for that reason.
     Watchdog,
     /// The deadman is silent; as above.
     Deadman,
@@ -37,7 +37,7 @@ pub enum Guard {
     Deviation,
     /// The target was further ahead of the arm than it may be, and was drawn nearer.
     Lead,
-    /// No plan could be made to the target, which takes a defect; the course before it goes on.
+    /// No plan could be made to the target (only by a defect); the previous course goes on.
     PlanFailure,
 }
 

@@ -51,12 +51,12 @@ pub(crate) struct Clearance {
     known: Option<Known>,
 }
 
-/// What is known from a posture that the arm was about to pass.
+/// What the last full check found, at a posture on the way of the arm.
 #[derive(Debug)]
 struct Known {
     /// A bound on how far the joints may turn from there before a distance is small.
     bound: MotionBound,
-    /// The distances that could be small on the way to rest when it was passed.
+    /// The distances that could be small on the way to rest from there.
     candidates: CandidateMask,
 }
 
@@ -87,8 +87,7 @@ impl Clearance {
         }
     }
 
-    /// What lies ahead of `next`, if the reference is at `now` and came to rest at `end` from
-    /// `next`.
+    /// Checks the way from `next` to rest at `end`, for a reference that is at `now`.
     pub(crate) fn ahead(
         &mut self,
         now: &JointVector,
@@ -98,8 +97,8 @@ impl Clearance {
         let half = (next + end) * 0.5;
         let way = (end - half).abs();
         let still = JointVector::zeros();
-        // Nearly always the arm has not come far enough since it was looked at last for anything
-        // else to be near.
+        // Nearly always the arm has moved too little since the last full check for anything else to
+        // be near.
         if let Some(known) = &self.known {
             let candidates = known.bound.candidates(&self.spacing, &half, &way);
             if candidates.is_empty() {
@@ -135,8 +134,8 @@ impl Clearance {
         })
     }
 
-    /// What it means to go from `now` to `half` and to `end`, if only distances of the candidates
-    /// may be small there.
+    /// Checks the way from `now` to `half` and to `end`, where only distances of the candidates may
+    /// be small.
     ///
     /// Only what is near there is compared with where it is now. Once something is known to be
     /// near, what could still make a difference is what would be too near.
@@ -168,7 +167,7 @@ impl Clearance {
     }
 }
 
-/// What it means that a margin changes from `now` to `then`, both in metres.
+/// Classifies a margin that changes from `now` to `then`, both in metres.
 fn judge(now: f64, then: f64) -> Ahead {
     if then >= SLOW_ZONE || then >= now - NEARER {
         Ahead::Clear

@@ -4,7 +4,7 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
 use std::sync::Arc;
 
-/// Stands in the counter once the token is gone.
+/// The value of the counter once the token is dropped.
 const GONE: u64 = u64::MAX;
 
 /// The token of a session. [`Self::keep_alive`] has to be called more often than every `silence`;
@@ -29,8 +29,8 @@ pub struct DeadmanMonitor {
 }
 
 impl Deadman {
-    /// A token that may be silent for so long, in whole milliseconds, and what a session is bound
-    /// to it by.
+    /// Returns a token that may be silent for `silence`, in whole milliseconds, and the end of it
+    /// for a session.
     pub fn new(silence: Duration) -> (Self, DeadmanMonitor) {
         let beats = Arc::new(AtomicU64::new(0));
         let token = Self {

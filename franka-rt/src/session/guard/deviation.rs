@@ -31,7 +31,7 @@ impl Deviation {
         Self { anchor }
     }
 
-    /// The reference is not held by its leash.
+    /// Notes a reference that its leash does not hold.
     pub(crate) fn set_free(&mut self, reference: &JointVector) {
         self.anchor = *reference;
     }

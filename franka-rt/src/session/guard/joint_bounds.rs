@@ -50,7 +50,7 @@ impl BoundsReached {
 ///
 /// It keeps below its cap and able to stop before the end of its range, and it comes there with an
 /// acceleration that can be taken back in time. Where the bounds contradict each other jerk wins
-/// over acceleration, and both over velocity and position: they are what the robot feels at once.
+/// over acceleration, and both over velocity and position: those two act on the robot at once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenVelocities {
     pub(crate) lower: Bound,

@@ -1,5 +1,5 @@
-//! Lead: a streamed target that is far ahead of the arm is drawn nearer, so that one wild target
-//! cannot send the arm far once the stream stops.
+//! Lead: a streamed target that is far ahead of the arm is drawn nearer, so that one wrong target
+//! cannot take the arm far once the stream stops.
 
 use franka_model::JointVector;
 use nalgebra::Isometry3;

@@ -25,7 +25,8 @@ const TRANSLATION_TETHER: f64 = 1e-3;
 /// Largest angle between the two, `[rad]`.
 const ROTATION_TETHER: f64 = 5e-3;
 
-/// Holds course and reference within the leash of the measured arm; tells whether that moved them.
+/// Holds course and reference within the leash of the measured arm. Returns whether that moved
+/// them.
 ///
 /// The course keeps its velocity and plans on from where it is held, so the arm follows smoothly
 /// once it is free.
@@ -70,7 +71,7 @@ pub(crate) fn hold(
 }
 
 /// Holds a pose that runs ahead of the joints that are to follow it, where their bounds keep them
-/// from `reached`, the pose of the joint reference; tells whether that moved it.
+/// from `reached`, the pose of the joint reference; returns whether that moved it.
 ///
 /// Without it the pose would go on to its target, and the joints would chase it off the line, all
 /// of them at their bounds.
@@ -107,7 +108,7 @@ pub(crate) fn within(
     if distance <= translation && turn <= angle {
         return None;
     }
-    // A leash may be endless.
+    // The length of a leash may be infinite.
     let share = |length: f64, most: f64| if length > most { most / length } else { 1.0 };
     let ahead = ahead * share(distance, translation);
     let turned = turned * share(turn, angle);

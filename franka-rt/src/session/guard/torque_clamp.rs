@@ -6,7 +6,7 @@ use franka_model::JointVector;
 /// the joints can give.
 pub const TORQUE_CLAMP: [f64; 7] = [86.0, 86.0, 86.0, 86.0, 11.5, 11.5, 11.5];
 
-/// Bounds each torque by `most`, `[N m]`, and tells whether that changed any.
+/// Bounds each torque by `most`, `[N m]`, and returns whether that changed any.
 pub(crate) fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool) {
     let clamped = tau.zip_map(most, |tau, most| tau.clamp(-most, most));
     (clamped, clamped != *tau)

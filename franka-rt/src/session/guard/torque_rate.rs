@@ -1,12 +1,13 @@
 //! The torque-rate limit of target control: the commanded torque changes no faster than the robot
-//! accepts. Control functions have theirs in `control::shaper`.
+//! accepts. Control functions have theirs, which can be off, in `control::shaper`; the arithmetic
+//! is in `shaping::limiter`.
 
 use franka_model::JointVector;
 use franka_model::limits::CLIENT_MARGIN;
 
 use crate::shaping::limiter;
 
-/// Keeps the change from the torques that the robot last took inside its rate limit, and tells
+/// Keeps the change from the torques that the robot last took inside its rate limit, and returns
 /// whether that bound.
 ///
 /// The usual margin is kept from `rate`, the robot's limit `[N m/s]`, and what an echo rounded to

@@ -3,8 +3,8 @@
 //!
 //! The generators keep the reference inside the limits; the arm itself may be faster, thrown by a
 //! hand or by a spring that was stretched. The robot stops with a reflex then. From [`ONSET`] of
-//! the limit on, the torque of a joint goes over from what the law wants to full braking, which it
-//! reaches at the limit:
+//! the limit on, the torque of a joint is blended from that of the law to full braking, reached at
+//! the limit:
 //!
 //! ```text
 //! tau' = (1 - s) tau - s sign(dq) clamp        s = smoothstep((|dq| / limit - 0.85) / 0.15)
@@ -24,8 +24,8 @@ use franka_model::JointVector;
 /// Share of the velocity limit from which on a joint is braked.
 pub const ONSET: f64 = 0.85;
 
-/// Brakes the joints that are too fast; tells whether there were any. `dq` is measured and `limit`
-/// the robot's, `[rad/s]`; `most` is the torque of full braking, `[N m]`.
+/// Brakes the joints that are too fast, and returns whether there were any. `dq` is measured and
+/// `limit` the robot's, `[rad/s]`; `most` is the torque of full braking, `[N m]`.
 pub(crate) fn brake(
     tau: &JointVector,
     dq: &JointVector,
@@ -52,7 +52,7 @@ mod tests {
     use crate::session::effort::low_pass;
     use crate::session::guard::torque_clamp::TORQUE_CLAMP;
     use crate::session::guard::torque_rate::limit_rate;
-    use franka_model::Model;
+    use franka_model::{CYCLE, Model};
     use proptest::prelude::*;
 
     fn of(tau: f64, dq: f64) -> (f64, bool) {
@@ -103,7 +103,6 @@ mod tests {
     /// rate that the robot accepts, through the filter and the rate limit of the cycle.
     #[test]
     fn a_joint_that_is_driven_on_and_on_stays_under_the_limit() {
-        const STEP: f64 = 1e-3;
         let limits = Model::fr3().joint_limits();
         let most = JointVector::from(TORQUE_CLAMP);
         let inertia = [1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.1];
@@ -116,7 +115,7 @@ mod tests {
                 let filtered = low_pass(&tau, &last);
                 let (tau, _) = limit_rate(&filtered, &last, &limits.torque_rate);
                 for i in 0..7 {
-                    dq[i] += last[i] / inertia[i] * STEP;
+                    dq[i] += last[i] / inertia[i] * CYCLE;
                     fastest[i] = fastest[i].max(dq[i].abs());
                 }
                 last = tau;

@@ -1,4 +1,5 @@
-//! The watchdog: a goal whose targets stop coming is held at the last one, or braked.
+//! The watchdog: a goal whose targets stop coming is held at the last one, or braked. (States that
+//! come late: `stats::arrivals`. A silent robot: `driver::link_timeout`.)
 
 use core::time::Duration;
 

@@ -51,7 +51,7 @@ impl RunningSession {
         }
     }
 
-    /// Where the reference is to come to rest.
+    /// The target at which the reference is to come to rest.
     pub(super) fn heading(&self) -> Target {
         match &self.route.course {
             Course::Chunk(chunk) => chunk.target(),

@@ -26,7 +26,7 @@ use super::setpoint_stream::SetpointStream;
 use super::{Lapse, SessionCommand, SessionStep, Trace, end_effector_of, load_of, rigid};
 use stages::GoalStage;
 
-/// What exists once the first state has been seen.
+/// The part of a session that exists from its first state on.
 #[derive(Debug)]
 pub(super) struct RunningSession {
     ee: EndEffector,
@@ -35,8 +35,8 @@ pub(super) struct RunningSession {
     pub(super) goal: Goal,
     /// Whether a course has been planned since the last answer, as before the first one.
     planned: bool,
-    /// Whether the reference stayed for a plan in the last cycle. Plans that come in each cycle are
-    /// not to keep it for ever.
+    /// Whether the last cycle was used for planning, and the reference stayed. Two cycles in a row
+    /// are never used in this way, even if a goal comes in each.
     stayed: bool,
     /// When the goal was first seen, `message_id` of the state.
     since: u64,
@@ -52,7 +52,7 @@ pub(super) struct RunningSession {
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
     standing: Standing,
-    /// Cycles in which the course was held back, less those since in which it was not.
+    /// Grows by 1 in a cycle in which the course is held back, and falls by 1 in any other.
     held_back: u64,
 }
 
@@ -114,7 +114,7 @@ impl RunningSession {
         let mut this = Self {
             drive,
             aim: goal.target,
-            // Nothing tells which tool is mounted, but that one is: the Hand stands for it.
+            // The state shows that a tool is mounted, but not which one: the Hand is assumed.
             route: Route::new(
                 Clearance::new(model.kind(), state.m_ee > 0.0, keep_out),
                 goal.budget,
@@ -138,12 +138,15 @@ impl RunningSession {
         Some(this)
     }
 
+    /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
+    /// anew.
     pub(super) fn take_up(&mut self, model: &Model, goal: Goal, now: u64) {
         if matches!(self.stage, GoalStage::Finished) {
             return;
         }
         let named = goal.id == self.goal.id;
         let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
+        // Tuning leaves the revision as it is.
         let tuned = goal.revision == self.goal.revision;
         // The caller has not yet seen the abort: ignore where the update leads.
         let aborted = !taken_back && self.is_given_up_for_good();
@@ -171,8 +174,8 @@ impl RunningSession {
         self.set_out(model);
     }
 
-    /// Goes on as before, but as fast, as stiff, and as it lands, as `goal` says. The gains of a
-    /// guiding hand would let go of an arm that is held since.
+    /// Keeps the target, and takes budget, gains, tolerance and guards from `goal`. Gains for
+    /// guiding would release an arm that is held by now.
     fn tune(&mut self, model: &Model, goal: Goal) {
         let Goal {
             target, on_arrival, ..
@@ -200,13 +203,14 @@ impl RunningSession {
         }
     }
 
-    /// Has gains and force cap fade to those of the goal.
+    /// Starts the fade of gains and force cap to those of the goal.
     fn fade_gains(&mut self) {
         if let Drive::Torques(effort) = &mut self.drive {
             effort.take_up(&self.goal);
         }
     }
 
+    /// Sets out for the target of the goal.
     fn set_out(&mut self, model: &Model) {
         self.stage = GoalStage::UnderWay;
         self.held_back = 0;
@@ -214,6 +218,7 @@ impl RunningSession {
         self.turn_to(model, self.goal.target);
     }
 
+    /// Plans the course to `target`, in place of the one before.
     fn turn_to(&mut self, model: &Model, target: Target) {
         self.route.retire_chunk();
         self.aim = target;
@@ -267,8 +272,8 @@ impl RunningSession {
             target: self.aim,
             ..self.goal
         };
-        // A plan takes as long as a step: a reference that rests, and has not been moved meanwhile,
-        // makes its first one in the cycle after. So the first answer begins with no torque.
+        // A plan takes as long to compute as a step. A reference at rest stays for one cycle after
+        // a new plan and steps in the next, so that the first answer starts with zero torque.
         let at_rest = self.reference == Reference::at_rest(self.reference.q);
         self.stayed = core::mem::take(&mut self.planned) && at_rest && !self.stayed;
         let course::CourseStep {
@@ -334,8 +339,7 @@ impl RunningSession {
         }
     }
 
-    /// Puts the reference where the robot's controller takes its setpoint to be, and goes on from
-    /// there.
+    /// Puts the reference at the setpoint that the robot's controller has, and goes on from there.
     fn reanchor(&mut self, model: &Model, state: &RobotState) {
         let Drive::Setpoints(stream) = &self.drive else {
             return;

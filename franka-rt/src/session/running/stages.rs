@@ -22,7 +22,7 @@ pub(super) enum GoalStage {
     Landing(Landing),
     /// The goal has come to its end, and is held.
     Staying,
-    /// The spring is being let go, so that the torques end at zero.
+    /// The spring is being released, so that the torques end at zero.
     Releasing(Release),
     /// The last command is out.
     Finished,
@@ -49,7 +49,7 @@ impl RunningSession {
                         self.turn_to(model, Target::Rest);
                     }
                     let target = match heading {
-                        // Wherever it stands, it counts as held.
+                        // It counts as held at any place.
                         _ if self.is_given_up() => None,
                         Target::Rest | Target::Guide(_) => None,
                         Target::Pose(pose) => Some(pose),

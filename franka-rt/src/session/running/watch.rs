@@ -1,5 +1,5 @@
-//! What draws the target of a goal nearer, or gives the goal up: the lead of its target, the
-//! deviation of the arm, its watchdog and the deadman.
+//! The guards that draw a goal's target nearer or give the goal up: lead, deviation, watchdog and
+//! deadman.
 
 use core::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::session::guard::lead::Lead;
 use crate::session::{Lapse, OnArrival, OnTimeout, Target};
 
 impl RunningSession {
-    /// Draws a target nearer that is too far ahead of the arm; tells whether it is.
+    /// Draws a target nearer that is too far ahead of the arm. Returns whether it is.
     pub(super) fn draw_nearer(&mut self, model: &Model, arm: &Measured, now: u64) -> bool {
         let Some(lead) = self.goal.lead else {
             return false;
@@ -53,7 +53,7 @@ impl RunningSession {
         matches!(self.standing, Standing::GivenUp { .. })
     }
 
-    /// Has the goal come to its end where the arm comes to rest.
+    /// Lets the goal end where the arm comes to rest.
     fn lapse(&mut self, action: OnTimeout, cause: Lapse) {
         if self.goal.on_arrival == OnArrival::Hold {
             self.goal.on_arrival = self.afterwards;
@@ -61,7 +61,7 @@ impl RunningSession {
         self.standing = Standing::GivenUp { action, cause };
     }
 
-    /// Gives up a goal whose arm is being carried off; tells whether it is.
+    /// Gives up a goal whose arm is being carried off. Returns whether it is.
     pub(super) fn watch_deviation(&mut self, model: &Model, arm: &Measured, leashed: bool) -> bool {
         if !leashed {
             self.deviation.set_free(&self.reference.q);
@@ -89,7 +89,7 @@ impl RunningSession {
         exceeded
     }
 
-    /// Gives the goal up: its updates stay away, or its deadman is silent.
+    /// Gives the goal up if its updates stay away or its deadman is silent.
     pub(super) fn watch(&mut self, model: &Model, alive: bool, now: u64) {
         let braked = matches!(
             self.standing,

@@ -4,21 +4,22 @@ use std::collections::BTreeSet;
 use std::fmt::{Display, Write as _};
 
 use franka_model::collision::{Body, Capsule, Shape};
-use franka_model::geometry::{FLANGE, JOINT_ORIGINS};
+use franka_model::geometry::FLANGE;
 use franka_model::{EndEffector, Frame, JointVector, Load, Model, RobotKind};
 use nalgebra::{Isometry3, Matrix3, UnitQuaternion, Vector3};
 
 use super::{fingers, joint_name};
-use crate::plant::ArmParameters;
+use crate::arm;
 
 /// The MJCF text of an arm that stands in the world's origin and carries `load`.
 pub(super) fn arm(
     kind: RobotKind,
-    parameters: &ArmParameters,
+    body: &arm::Body,
+    armature: &JointVector,
     load: &Load,
     has_hand: bool,
 ) -> String {
-    let model = Model::physically_consistent(kind);
+    let built = body.as_built(kind);
     let shapes = Shapes::of(kind, has_hand);
     let mut text = String::new();
     // A load may have any moments of inertia; MuJoCo takes the nearest that a body can have.
@@ -27,16 +28,16 @@ pub(super) fn arm(
          <geom contype='2' conaffinity='1' mass='0'/></default><worldbody><body name='link0'>",
     );
     shapes.write(&mut text, Body::Link(0));
-    for (i, (origin, link)) in JOINT_ORIGINS.iter().zip(model.links()).enumerate() {
-        let roll = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), origin.roll);
-        let (position, turn) = (numbers(&origin.translation), quaternion(&roll));
+    for (i, (origin, link)) in built.joint_origins().iter().zip(built.links()).enumerate() {
+        let position = numbers(&origin.translation.vector);
+        let turn = quaternion(&origin.rotation);
         let number = i + 1;
         add(
             &mut text,
             format_args!("<body name='link{number}' pos='{position}' quat='{turn}'>"),
         );
         inertial(&mut text, link.mass, &link.com, &link.inertia.matrix());
-        let (name, armature) = (joint_name(i), parameters.armature[i]);
+        let (name, armature) = (joint_name(i), armature[i]);
         add(
             &mut text,
             format_args!("<joint name='{name}' axis='0 0 1' armature='{armature}'/>"),

@@ -8,21 +8,23 @@ mod tests;
 
 pub use scene::{Scene, SceneError};
 
-use franka_model::{JointVector, Load, RobotKind};
+use franka_model::{CYCLE, JointVector, Load, RobotKind};
 use mujoco_rs::prelude::{MjData, MjModel, MjtState};
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 
-use super::{ArmParameters, FingerDrive, Plant};
+use super::{FingerDrive, LinkTorque, Plant};
+use crate::arm::Arm;
+use crate::plant::STEPS;
 use fingers::FingerJoints;
 use scene::{JOINT, Places};
 
 /// The links of [`Model::physically_consistent`](franka_model::Model::physically_consistent) in
-/// MuJoCo, with the rotors, friction and end stops of a [`RigidArm`](super::RigidArm) and the
-/// surroundings of a [`Scene`].
+/// MuJoCo, with the end stops of a [`RigidArm`](super::RigidArm) and the surroundings of a
+/// [`Scene`].
 ///
 /// Away from contact it is the same arm: each step solves the same equation in the same way, with
-/// inertia and bias forces that are MuJoCo's own. Friction and end stops of the joints enter as
-/// forces, and their slopes as dampers that the integrator takes implicitly.
+/// inertia and bias forces that are MuJoCo's own. Drives and end stops enter as forces, and their
+/// slopes as dampers that the integrator takes implicitly.
 ///
 /// The links touch what is around them, and the outer ones the inner ones, with the capsules of
 /// [`Shape::covering`](franka_model::collision::Shape::covering), which are up to 3.5 cm thicker
@@ -30,7 +32,8 @@ use scene::{JOINT, Places};
 #[derive(Debug)]
 pub struct MujocoArm {
     kind: RobotKind,
-    parameters: ArmParameters,
+    arm: Arm,
+    armature: JointVector,
     scene: Scene,
     load: Load,
     data: MjData<Box<MjModel>>,
@@ -38,33 +41,23 @@ pub struct MujocoArm {
     fingers: Option<FingerJoints>,
     q: JointVector,
     dq: JointVector,
-    sensed: JointVector,
 }
 
 impl MujocoArm {
-    /// An arm of this kind at rest in the ready pose, with a bare flange.
+    /// An ideal arm of this kind at rest in the ready pose, with a bare flange. The robot that it
+    /// is given to [fits](Plant::fit) it with its own.
     ///
     /// # Errors
     /// [`SceneError`] if MuJoCo cannot make the scene.
     pub fn new(kind: RobotKind, scene: Scene) -> Result<Self, SceneError> {
-        Self::with_parameters(kind, ArmParameters::of(kind), scene)
-    }
-
-    /// [`new`](Self::new) with other rotors, friction, end stops or gravity.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn with_parameters(
-        kind: RobotKind,
-        parameters: ArmParameters,
-        scene: Scene,
-    ) -> Result<Self, SceneError> {
-        let load = Load::NONE;
-        let (model, places) = scene.compile(kind, &parameters, &load)?;
+        let (arm, load) = (Arm::ideal(kind), Load::NONE);
+        let armature = link_inertia(&arm);
+        let (model, places) = scene.compile(kind, &arm.body, &armature, &load)?;
         let fingers = scene.fingers(&model)?;
-        let mut arm = Self {
+        let mut plant = Self {
             kind,
-            parameters,
+            arm,
+            armature,
             scene,
             load,
             data: MjData::new(Box::new(model)),
@@ -72,13 +65,12 @@ impl MujocoArm {
             fingers,
             q: franka_model::READY,
             dq: JointVector::zeros(),
-            sensed: JointVector::zeros(),
         };
-        if let Some(fingers) = &arm.fingers {
-            fingers.open(&mut arm.data);
+        if let Some(fingers) = &plant.fingers {
+            fingers.open(&mut plant.data);
         }
-        arm.place(&franka_model::READY);
-        Ok(arm)
+        plant.place(&franka_model::READY);
+        Ok(plant)
     }
 
     /// Pose of a body of the scene, in the base frame, as it was when the last step began; `None`
@@ -124,6 +116,22 @@ impl MujocoArm {
         self.places.dof.map(|dof| force[dof]).into()
     }
 
+    /// Compiles the scene again and goes on in the same state.
+    fn remake(&mut self) {
+        let load = &self.load;
+        let (model, _) = self
+            .scene
+            .compile(self.kind, &self.arm.body, &self.armature, load)
+            .unwrap_or_else(|error| panic!("the scene with the load {load:?}: {error}"));
+        let everything = MjtState::mjSTATE_INTEGRATION as u32;
+        let state = self.data.state(everything);
+        self.data = MjData::new(Box::new(model));
+        self.data
+            .set_state(&state, everything)
+            .unwrap_or_else(|error| panic!("the file of the scene has changed: {error}"));
+        self.data.forward();
+    }
+
     /// Reads positions and velocities of the joints from MuJoCo.
     fn read(&mut self) {
         let (q, dq) = (self.data.qpos(), self.data.qvel());
@@ -141,20 +149,25 @@ impl Plant for MujocoArm {
         &self.dq
     }
 
-    fn sensed_torque(&self) -> &JointVector {
-        &self.sensed
+    /// Makes the scene anew if the arm is another, which takes milliseconds.
+    ///
+    /// # Panics
+    /// As [`attach`](Self::attach).
+    fn fit(&mut self, kind: RobotKind, arm: &Arm) {
+        if (self.kind, &self.arm) != (kind, arm) {
+            (self.kind, self.arm) = (kind, arm.clone());
+            self.armature = link_inertia(arm);
+            self.remake();
+        }
     }
 
-    fn armature(&self) -> &JointVector {
-        &self.parameters.armature
-    }
-
-    fn step(&mut self, motor: &JointVector, external: &JointVector, dt: f64) {
-        let resistance = self.parameters.resistance(&self.q, &self.dq, dt);
+    fn step(&mut self, drive: &LinkTorque, external: &JointVector, dt: f64) {
+        let (stop, stop_slope) = self.arm.body.stops.resistance(&self.q, &self.dq, dt);
+        // The model has the drives' least inertia. The rest is that of a damper over one step.
+        let rest = (drive.inertia - self.armature).map(|inertia| inertia.max(0.0) / dt);
         // The dampers subtract slope · dq at the start of the step: what is beyond that is a force.
-        let slope = resistance.friction_slope + resistance.stop_slope;
-        let force = motor + external - resistance.friction - resistance.stop
-            + slope.component_mul(&self.dq);
+        let slope = drive.damping + rest + stop_slope;
+        let force = drive.torque + external - stop + slope.component_mul(&self.dq);
         for i in 0..7 {
             self.data.ctrl_mut()[self.places.damper[i]] = slope[i];
             self.data.qfrc_applied_mut()[self.places.dof[i]] = force[i];
@@ -164,13 +177,10 @@ impl Plant for MujocoArm {
         }
         self.data.model_opt_mut().timestep = dt;
         self.data.step();
-        let before = self.dq;
         self.read();
-        let ddq = (self.dq - before) / dt;
-        self.sensed = resistance.sensed(motor, &self.parameters.armature, &ddq, dt);
     }
 
-    fn place(&mut self, q: &JointVector) {
+    fn place(&mut self, q: &JointVector) -> JointVector {
         for i in 0..7 {
             self.data.qpos_mut()[self.places.qpos[i]] = q[i];
             self.data.qvel_mut()[self.places.dof[i]] = 0.0;
@@ -178,7 +188,7 @@ impl Plant for MujocoArm {
         self.data.forward();
         self.read();
         let bias = self.data.qfrc_bias();
-        self.sensed = self.places.dof.map(|dof| bias[dof]).into();
+        self.places.dof.map(|dof| bias[dof]).into()
     }
 
     /// Makes the scene anew, which takes milliseconds.
@@ -187,21 +197,10 @@ impl Plant for MujocoArm {
     /// If no body has this load (a number that is not finite, a negative mass), or if the file of
     /// the scene is no longer what it was.
     fn attach(&mut self, load: Load) {
-        if load == self.load {
-            return;
+        if load != self.load {
+            self.load = load;
+            self.remake();
         }
-        let (model, _) = self
-            .scene
-            .compile(self.kind, &self.parameters, &load)
-            .unwrap_or_else(|error| panic!("the scene with the load {load:?}: {error}"));
-        let everything = MjtState::mjSTATE_INTEGRATION as u32;
-        let state = self.data.state(everything);
-        self.data = MjData::new(Box::new(model));
-        self.data
-            .set_state(&state, everything)
-            .unwrap_or_else(|error| panic!("the file of the scene has changed: {error}"));
-        self.data.forward();
-        self.load = load;
     }
 
     fn drive_fingers(&mut self, drive: &FingerDrive) -> Option<f64> {
@@ -209,6 +208,11 @@ impl Plant for MujocoArm {
         fingers.set(*drive);
         Some(fingers.width(&self.data))
     }
+}
+
+/// The least inertia that the drives add to the links, `[kg·m²]`.
+fn link_inertia(arm: &Arm) -> JointVector {
+    arm.drive.link_inertia(CYCLE / f64::from(STEPS))
 }
 
 /// The name of joint `i`, 0 to 6.

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use franka_model::{Load, RobotKind};
+use franka_model::{JointVector, Load, RobotKind};
 use mujoco_rs::mujoco_c::{mjtCone, mjtDisableBit, mjtIntegrator};
 use mujoco_rs::prelude::{Attach as _, MjModel, MjSpec, MjtJoint, MjtObjBase};
 
 use super::fingers::FingerJoints;
 use super::{joint_name, mjcf};
-use crate::plant::ArmParameters;
+use crate::arm;
 
 /// What stands around the arm, and whether a Franka Hand is on its flange.
 ///
@@ -104,7 +104,8 @@ impl Scene {
     pub(super) fn compile(
         &self,
         kind: RobotKind,
-        parameters: &ArmParameters,
+        body: &arm::Body,
+        armature: &JointVector,
         load: &Load,
     ) -> Result<(MjModel, Places), SceneError> {
         let mut spec = match &self.surroundings {
@@ -113,7 +114,7 @@ impl Scene {
             Surroundings::File(path) => MjSpec::from_xml(path),
         }
         .map_err(|error| SceneError::Unreadable(error.to_string()))?;
-        let text = mjcf::arm(kind, parameters, load, self.has_hand);
+        let text = mjcf::arm(kind, body, armature, load, self.has_hand);
         let conflict =
             |error: mujoco_rs::error::MjEditError| SceneError::Conflict(error.to_string());
         let mut arm = MjSpec::from_xml_string(&text).map_err(conflict)?;
@@ -124,7 +125,7 @@ impl Scene {
             .compile()
             .map_err(|error| SceneError::Impossible(error.to_string()))?;
         let options = model.opt_mut();
-        options.gravity = parameters.gravity_earth.into();
+        options.gravity = body.gravity_earth.into();
         // Takes the dampers of the joints implicitly.
         options.integrator = mjtIntegrator::mjINT_IMPLICITFAST as i32;
         // Without these two a grasp creeps: friction is as soft as contact, and weaker along

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use super::*;
 use crate::Tool;
 use crate::noise::Random;
-use crate::plant::RigidArm;
+use crate::plant::{DriveTrain, RigidArm};
 
 const STEP: f64 = 0.000_25;
 
@@ -68,7 +68,11 @@ fn dynamics(arm: &MujocoArm) -> (SMatrix<f64, 7, 7>, JointVector) {
 /// Within the limits, at up to full speed.
 fn random_motion(random: &mut Random, model: &Model) -> (JointVector, JointVector) {
     let limits = model.joint_limits();
-    let part = |random: &mut Random| random.joints(1.0).map(|x| 0.5 + 0.5 * x.sin());
+    let part = |random: &mut Random| {
+        random
+            .joints(&JointVector::repeat(1.0))
+            .map(|x| 0.5 + 0.5 * x.sin())
+    };
     let range = limits.hard_upper - limits.hard_lower;
     let q = limits.hard_lower + part(random).component_mul(&range);
     let dq = (part(random).map(|x| 2.0 * x - 1.0)).component_mul(&limits.velocity);
@@ -80,7 +84,7 @@ fn inertia_and_bias_are_those_of_the_rigid_arm() {
     let mut random = Random::new(7);
     for (name, kind, load, mut arm) in arms() {
         let model = Model::physically_consistent(kind);
-        let parameters = ArmParameters::of(kind);
+        let ideal = Arm::ideal(kind);
         let (mut worst_mass, mut worst_bias) = (0.0_f64, 0.0_f64);
         for _ in 0..100 {
             let (q, dq) = random_motion(&mut random, model);
@@ -90,10 +94,10 @@ fn inertia_and_bias_are_those_of_the_rigid_arm() {
             }
             arm.data.forward();
             let (mass, bias) = dynamics(&arm);
-            let rotors = SMatrix::from_diagonal(&parameters.armature);
+            let rotors = SMatrix::from_diagonal(&ideal.drive.rotor_inertia);
             let expected = model.mass(&q, &load) + rotors;
             let rest = JointVector::zeros();
-            let gravity = &parameters.gravity_earth;
+            let gravity = &ideal.body.gravity_earth;
             let torque = model.inverse_dynamics(&q, &dq, &rest, &load, gravity);
             worst_mass = worst_mass.max((mass - expected).amax());
             worst_bias = worst_bias.max((bias - torque).amax());
@@ -109,7 +113,10 @@ fn inertia_and_bias_are_those_of_the_rigid_arm() {
 fn five_seconds_of_torques_move_both_arms_alike() {
     for (name, kind, load, mut mujoco) in arms() {
         let model = Model::physically_consistent(kind);
-        let mut rigid = RigidArm::new(model, ArmParameters::of(kind), READY, load);
+        let ideal = Arm::ideal(kind);
+        let mut rigid = RigidArm::new(kind, &ideal, READY, load);
+        let holding = rigid.place(&READY);
+        let mut trains = [(); 2].map(|()| DriveTrain::new(&ideal, &READY, &holding));
         let (mut apart, mut travel) = (0.0_f64, 0.0_f64);
         let none = JointVector::zeros();
         for step in 0..20_000 {
@@ -119,15 +126,15 @@ fn five_seconds_of_torques_move_both_arms_alike() {
             let strength = JointVector::from([3.0, 3.0, 3.0, 3.0, 0.8, 0.8, 0.4]);
             let hold = model.gravity(&READY, &load, &franka_model::GRAVITY_EARTH);
             let motor = hold + strength.component_mul(&swing);
-            mujoco.step(&motor, &none, STEP);
-            rigid.step(&motor, &none, STEP);
+            trains[0].step(&mut mujoco, &motor, &none, STEP);
+            trains[1].step(&mut rigid, &motor, &none, STEP);
             apart = apart.max((mujoco.q() - rigid.q()).amax());
             travel = travel.max((rigid.q() - READY).amax());
         }
         println!("{name}: {apart:e} rad apart, {travel} rad from the start");
         assert!(travel > 0.1, "{name}: hardly a motion, {travel} rad");
         assert!(apart < 1e-4, "{name}: {apart} rad apart");
-        assert!((mujoco.sensed_torque() - rigid.sensed_torque()).amax() < 1e-2);
+        assert!((trains[0].torque() - trains[1].torque()).amax() < 1e-2);
     }
 }
 
@@ -170,16 +177,20 @@ fn the_arm_touches_itself_where_the_model_says_so() {
 #[test]
 fn a_load_can_change_while_the_arm_moves() {
     let mut arm = arm(RobotKind::Fr3, Load::NONE);
-    arm.step(&JointVector::repeat(1.0), &JointVector::zeros(), 0.01);
+    let push = LinkTorque {
+        torque: JointVector::repeat(1.0),
+        ..LinkTorque::ZERO
+    };
+    arm.step(&push, &JointVector::zeros(), 0.01);
     let (q, dq) = (*arm.q(), *arm.dq());
     arm.attach(Tool::hand().load);
     assert_eq!((*arm.q(), *arm.dq()), (q, dq));
     let gravity = franka_model::GRAVITY_EARTH;
     let model = Model::physically_consistent(RobotKind::Fr3);
     let load = Tool::hand().load;
-    arm.place(&q);
+    let holding = arm.place(&q);
     let expected = model.gravity(&q, &load, &gravity);
-    assert!((arm.sensed_torque() - expected).amax() < 1e-9);
+    assert!((holding - expected).amax() < 1e-9);
 }
 
 #[test]
@@ -202,15 +213,17 @@ fn a_scene_that_is_none_says_why() {
 #[test]
 fn a_fall_is_the_rigid_arms_until_it_ends_on_the_table() {
     for kind in RobotKind::ALL {
-        let model = Model::physically_consistent(kind);
+        let ideal = Arm::ideal(kind);
         let mut arm = MujocoArm::new(kind, Scene::table()).expect("a scene");
-        let mut free = RigidArm::new(model, ArmParameters::of(kind), READY, Load::NONE);
+        let mut free = RigidArm::new(kind, &ideal, READY, Load::NONE);
+        let holding = free.place(&READY);
+        let mut trains = [(); 2].map(|()| DriveTrain::new(&ideal, &READY, &holding));
         let none = JointVector::zeros();
         let mut fall = 0;
         while arm.contact_torque() == none {
             assert!((arm.q() - free.q()).amax() < 1e-9, "{kind:?}");
-            arm.step(&none, &none, STEP);
-            free.step(&none, &none, STEP);
+            trains[0].step(&mut arm, &none, &none, STEP);
+            trains[1].step(&mut free, &none, &none, STEP);
             fall += 1;
             assert!(fall < 8000, "{kind:?}: nothing holds the arm up");
         }
@@ -218,9 +231,9 @@ fn a_fall_is_the_rigid_arms_until_it_ends_on_the_table() {
         let (mut contact, mut sensed) = (0.0_f64, 0.0_f64);
         for _ in 0..12_000 {
             contact = contact.max(arm.contact_torque().amax());
-            sensed = sensed.max((arm.sensed_torque() - free.sensed_torque()).amax());
-            arm.step(&none, &none, STEP);
-            free.step(&none, &none, STEP);
+            sensed = sensed.max((trains[0].torque() - trains[1].torque()).amax());
+            trains[0].step(&mut arm, &none, &none, STEP);
+            trains[1].step(&mut free, &none, &none, STEP);
             for link in 1..=7 {
                 let name = format!("franka_link{link}");
                 let height = arm.body_pose(&name).expect("a link").translation.z;

@@ -1,10 +1,10 @@
 //! The touches that act now, and the torques of each on the arm.
 
-use franka_model::{EndEffector, JointVector, Model, Twist, Wrench, rotation, transform};
+use franka_model::{AsBuilt, CYCLE, EndEffector, JointVector, Twist, Wrench, rotation, transform};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Effort, FIRM_JOINT, JOINT_INERTIA, Spring, Touch, TouchId};
-use crate::signal::{CYCLE, halves, stack};
+use crate::signal::{halves, stack};
 
 /// Everything that touches the arm now.
 #[derive(Debug, Default)]
@@ -90,7 +90,7 @@ impl Touches {
     /// millisecond.
     pub(in crate::robot) fn torque(
         &mut self,
-        model: &Model,
+        model: &AsBuilt,
         frames: &EndEffector,
         q: &JointVector,
         dq: &JointVector,
@@ -107,7 +107,7 @@ impl Touches {
 impl Present {
     fn torque(
         &mut self,
-        model: &Model,
+        model: &AsBuilt,
         frames: &EndEffector,
         q: &JointVector,
         dq: &JointVector,
@@ -126,11 +126,10 @@ impl Present {
             }
             _ => {}
         }
-        let pose = model.pose(frame, q, frames);
+        let (pose, jacobian) = model.pose_and_jacobian(frame, q, frames);
         let turn: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
         let arm = turn * self.touch.offset;
         let position = Vector3::new(pose.m14, pose.m24, pose.m34) + arm;
-        let jacobian = model.zero_jacobian(frame, q, frames);
         let (linear, angular) = halves(&Twist::from(jacobian * dq));
         let velocity = linear + angular.cross(&arm);
         let (force, torque) = match &mut self.touch.effort {

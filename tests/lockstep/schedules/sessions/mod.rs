@@ -89,7 +89,7 @@ impl<'a> Sessions<'a> {
             lockstep.link = Link::lossy(seed, states, commands);
         }
         let mut this = Self {
-            home: lockstep.true_pose(),
+            home: lockstep.arm_pose(),
             lockstep,
             random,
             counts,

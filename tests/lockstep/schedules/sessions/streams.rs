@@ -13,7 +13,7 @@ impl Sessions<'_> {
     /// Moves the target of a held goal at a random rate, and then may stop doing so.
     pub(super) fn stream(&mut self) {
         if self.held().is_none() {
-            let target = draw::pose(&mut self.random, &self.lockstep.true_pose(), 0.02, 0.05);
+            let target = draw::pose(&mut self.random, &self.lockstep.arm_pose(), 0.02, 0.05);
             self.submit(target, OnArrival::Hold);
         }
         let Some(id) = self.held() else {

@@ -1,4 +1,5 @@
-//! Measures over real sockets: clients against the simulator, or the simulator itself.
+//! Measures over real sockets: clients against the simulator, the simulator itself, or the control
+//! thread beside a busy program.
 //!
 //! `live clients OUTPUT.json [--seconds N] [--python INTERPRETER SCRIPT]`:
 //!
@@ -14,6 +15,8 @@
 //!  (a process of its own: time to start, processor time, memory)
 //! ```
 //!
+//! `live starvation [--seconds N]`: see [`starvation`].
+//!
 //! | module | what it is |
 //! |---|---|
 //! | [`relay`] | between client and robot, records what passes and when |
@@ -24,6 +27,7 @@
 //! | [`case`] | the measurement of one client |
 //! | [`simulator_case`] | the measurement of one simulator |
 //! | [`report`] | the tables, and the JSON |
+//! | [`starvation`] | what blocked runtime workers cost |
 
 mod case;
 mod listener;
@@ -32,6 +36,7 @@ mod relay;
 mod report;
 mod simulator_case;
 mod stamp;
+mod starvation;
 mod trace;
 
 use std::fs;
@@ -40,7 +45,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::Context as _;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, value_parser};
 use serde_json::Value;
 
 use case::{Case, ClientKind, Scheduler};
@@ -70,6 +75,12 @@ enum What {
         /// Measure the MuJoCo plant too; the simulator has to be built with it.
         #[arg(long)]
         mujoco: bool,
+    },
+    /// What blocked runtime workers cost the control thread, and a task in the thread's place.
+    Starvation {
+        /// How long to measure each case.
+        #[arg(long, default_value_t = 10, value_parser = value_parser!(u32).range(1..))]
+        seconds: u32,
     },
 }
 
@@ -112,6 +123,10 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     match arguments.what {
         What::Clients { common, python } => measure_clients(programs, &common, python.as_deref()),
         What::Simulator { common, mujoco } => measure_simulator(programs, &common, mujoco),
+        What::Starvation { seconds } => {
+            starvation::print(seconds);
+            Ok(())
+        }
     }
 }
 

@@ -23,7 +23,7 @@ use franka_rt::sched::{Realtime, Scheduling};
 use zerocopy::FromBytes as _;
 
 use crate::stamp::{self, Stamped};
-use crate::trace::{Answer, Departure, Trace};
+use crate::trace::{CommandArrival, Departure, Trace};
 
 /// A relay for one connection of one client. Dropping it waits until the client has disconnected.
 #[derive(Debug)]
@@ -207,7 +207,7 @@ fn pass_commands(
     to_robot: &UdpSocket,
     robot_address: &OnceLock<SocketAddr>,
     shared: &Shared,
-) -> io::Result<Vec<Answer>> {
+) -> io::Result<Vec<CommandArrival>> {
     let mut answers = Vec::with_capacity(RESERVED);
     let mut buffer = [0; RobotCommand::MAX_SIZE];
     while !shared.stopped() {
@@ -219,7 +219,7 @@ fn pass_commands(
             let _ = to_robot.send_to(&buffer[..length], address);
         }
         if let Ok(command) = RobotCommand::decode(version, &buffer[..length]) {
-            answers.push(Answer {
+            answers.push(CommandArrival {
                 id: command.message_id,
                 arrived,
             });

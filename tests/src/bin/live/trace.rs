@@ -20,7 +20,7 @@ pub(crate) struct Departure {
 
 /// A command that arrived from the client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Answer {
+pub(crate) struct CommandArrival {
     /// `message_id` of the state that it answers.
     pub(crate) id: u64,
     /// When it arrived, since the epoch.
@@ -33,7 +33,7 @@ pub(crate) struct Trace {
     /// States.
     pub(crate) departures: Vec<Departure>,
     /// Commands.
-    pub(crate) answers: Vec<Answer>,
+    pub(crate) answers: Vec<CommandArrival>,
 }
 
 /// Statistics of a client over a time window.
@@ -153,7 +153,7 @@ mod tests {
                 })
                 .collect(),
             answers: numbers
-                .map(|n| Answer {
+                .map(|n| CommandArrival {
                     id: n,
                     arrived: micros(1000 * n + n),
                 })
@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn a_turnaround_runs_from_a_state_to_the_first_command_that_names_it() {
         let mut trace = hundred();
-        trace.answers.push(Answer {
+        trace.answers.push(CommandArrival {
             id: 7,
             arrived: micros(200_000),
         });

@@ -7,23 +7,23 @@ use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
 use crate::problem::{self, Kind};
-use crate::tally::Tally;
+use crate::report::SoakReport;
 use crate::watch::Watch;
 
 /// Makes a plan to targets in motion, with limits of all kinds, from a random state.
 ///
 /// Single plans meet more kinds of starts than a closed loop leads to.
-pub(crate) fn plan(seed: u64, tally: &mut Tally) {
+pub(crate) fn plan(seed: u64, report: &mut SoakReport) {
     let mut random = SmallRng::seed_from_u64(seed);
     match random.random_range(0..4) {
-        0 => single::<1>(seed, &mut random, tally),
-        1 => single::<2>(seed, &mut random, tally),
-        2 => single::<3>(seed, &mut random, tally),
-        _ => single::<7>(seed, &mut random, tally),
+        0 => single::<1>(seed, &mut random, report),
+        1 => single::<2>(seed, &mut random, report),
+        2 => single::<3>(seed, &mut random, report),
+        _ => single::<7>(seed, &mut random, report),
     }
 }
 
-fn single<const N: usize>(seed: u64, random: &mut SmallRng, tally: &mut Tally) {
+fn single<const N: usize>(seed: u64, random: &mut SmallRng, report: &mut SoakReport) {
     let limits = Kind::Mixed.limits::<N>(random);
     let state = problem::departure(random, &limits);
     let target = if random.random_bool(0.5) {
@@ -31,18 +31,18 @@ fn single<const N: usize>(seed: u64, random: &mut SmallRng, tally: &mut Tally) {
     } else {
         problem::arrival(random, &state, &limits)
     };
-    let failures = tally.failures.len();
+    let failures = report.failures.len();
     let check_optimum = random.random_bool(0.01);
-    if let Some(least) = follow(seed, limits, state, &target, check_optimum, tally) {
+    if let Some(least) = follow(seed, limits, state, &target, check_optimum, report) {
         blocked(
             seed,
             random,
             (limits.axis(0), state.axis(0), target.axis(0)),
             least,
-            tally,
+            report,
         );
     }
-    tally.failures.truncate(failures + 1);
+    report.failures.truncate(failures + 1);
 }
 
 /// Checks one plan from its start to rest; returns when it is at the target.
@@ -52,7 +52,7 @@ fn follow<const N: usize>(
     state: State<N>,
     target: &State<N>,
     check_optimum: bool,
-    tally: &mut Tally,
+    report: &mut SoakReport,
 ) -> Option<f64> {
     let mut watch = Watch::new(seed, Synchronisation::Time);
     let planned = Generator::new(state, limits).and_then(|generator| {
@@ -61,14 +61,14 @@ fn follow<const N: usize>(
         Ok(generator)
     });
     let generator = planned
-        .inspect_err(|error| watch.fail(tally, error.to_string()))
+        .inspect_err(|error| watch.fail(report, error.to_string()))
         .ok()?;
-    watch.planned(&generator, Some(target), check_optimum, tally);
+    watch.planned(&generator, Some(target), check_optimum, report);
     let dt = generator.remaining() / SAMPLES;
     let mut before = state;
     for k in 1..=SAMPLES as u32 {
         let after = generator.sample(dt * f64::from(k));
-        watch.step(&limits, &before, &after, dt, tally);
+        watch.step(&limits, &before, &after, dt, report);
         before = after;
     }
     Some(generator.time_to_target())
@@ -81,11 +81,12 @@ fn blocked(
     random: &mut SmallRng,
     axis: (AxisLimits, AxisState, AxisState),
     least: f64,
-    tally: &mut Tally,
+    report: &mut SoakReport,
 ) {
+    let (limits, from, to) = axis;
     let mut plan = |duration: f64| {
-        let (limits, state, target) = problem::beside_one_that_takes(duration, axis);
-        follow(seed, limits, state, &target, false, tally)
+        let (limits, state, target) = problem::beside_one_that_takes(duration, limits, from, to);
+        follow(seed, limits, state, &target, false, report)
     };
     let mut delayed =
         |duration: f64| plan(duration).is_some_and(|arrival| arrival > duration * (1.0 + EDGE));
@@ -110,17 +111,17 @@ fn blocked(
 }
 
 /// Runs the episode of a seed.
-pub(crate) fn run(seed: u64, tally: &mut Tally) {
+pub(crate) fn run(seed: u64, report: &mut SoakReport) {
     let mut random = SmallRng::seed_from_u64(seed);
     match random.random_range(0..4) {
-        0 => episode::<1>(seed, &mut random, tally),
-        1 => episode::<3>(seed, &mut random, tally),
-        2 => episode::<6>(seed, &mut random, tally),
-        _ => episode::<7>(seed, &mut random, tally),
+        0 => episode::<1>(seed, &mut random, report),
+        1 => episode::<3>(seed, &mut random, report),
+        2 => episode::<6>(seed, &mut random, report),
+        _ => episode::<7>(seed, &mut random, report),
     }
 }
 
-fn episode<const N: usize>(seed: u64, random: &mut SmallRng, tally: &mut Tally) {
+fn episode<const N: usize>(seed: u64, random: &mut SmallRng, report: &mut SoakReport) {
     let kind = Kind::random(random);
     let limits = kind.limits::<N>(random);
     let synchronisation = if random.random_bool(0.6) {
@@ -130,18 +131,18 @@ fn episode<const N: usize>(seed: u64, random: &mut SmallRng, tally: &mut Tally) 
     };
     let state = problem::state(random, &limits);
     let watch = Watch::new(seed, synchronisation);
-    let failures = tally.failures.len();
+    let failures = report.failures.len();
     let result = if random.random_bool(0.9) {
-        Loop::new(state, limits, watch, tally).and_then(|mut run| run.kept_plans(random, kind))
+        Loop::new(state, limits, watch, report).and_then(|mut run| run.kept_plans(random, kind))
     } else {
-        Loop::new(state, limits, watch, tally).and_then(|mut run| run.plans_anew(random))
+        Loop::new(state, limits, watch, report).and_then(|mut run| run.plans_anew(random))
     };
     if let Err(error) = result {
         let failure = format!("seed {seed}, {N} axes, {synchronisation:?}: {error}");
-        tally.failures.push(failure);
+        report.failures.push(failure);
     }
     // One defect shows in many cycles.
-    tally.failures.truncate(failures + 1);
+    report.failures.truncate(failures + 1);
 }
 
 struct Loop<'a, const N: usize> {
@@ -150,7 +151,7 @@ struct Loop<'a, const N: usize> {
     /// The target in force; without one it comes to rest.
     target: Option<State<N>>,
     watch: Watch<N>,
-    tally: &'a mut Tally,
+    report: &'a mut SoakReport,
 }
 
 impl<'a, const N: usize> Loop<'a, N> {
@@ -158,7 +159,7 @@ impl<'a, const N: usize> Loop<'a, N> {
         state: State<N>,
         limits: Limits<N>,
         watch: Watch<N>,
-        tally: &'a mut Tally,
+        report: &'a mut SoakReport,
     ) -> Result<Self, PlanError> {
         let synchronisation = watch.synchronisation();
         let generator = Generator::new(state, limits)?.with_synchronisation(synchronisation);
@@ -167,7 +168,7 @@ impl<'a, const N: usize> Loop<'a, N> {
             synchronisation,
             target: None,
             watch,
-            tally,
+            report,
         };
         new.planned(false);
         Ok(new)
@@ -217,14 +218,14 @@ impl<'a, const N: usize> Loop<'a, N> {
                     .with_synchronisation(self.synchronisation);
                 self.generator.set_moving_target(&target)?;
                 self.planned(false);
-                self.tally.anew += 1;
+                self.report.anew += 1;
                 // On a line that rounding does not see any more the axes go on by themselves, and
                 // earlier.
                 let late = (self.generator.time_to_target() - duration) / CYCLE + k as f64;
-                self.tally.late.see(late, self.watch.seed());
+                self.report.late.see(late, self.watch.seed());
                 if late > 1.0 {
                     let what = format!("{late} cycles late after {k} of {cycles}");
-                    self.watch.fail(self.tally, what);
+                    self.watch.fail(self.report, what);
                     return Ok(());
                 }
             }
@@ -270,7 +271,7 @@ impl<'a, const N: usize> Loop<'a, N> {
             &self.generator,
             self.target.as_ref(),
             check_optimum,
-            self.tally,
+            self.report,
         );
     }
 
@@ -278,7 +279,7 @@ impl<'a, const N: usize> Loop<'a, N> {
         let before = *self.generator.state();
         let after = *self.generator.step();
         self.watch
-            .step(self.generator.limits(), &before, &after, CYCLE, self.tally);
+            .step(self.generator.limits(), &before, &after, CYCLE, self.report);
     }
 
     /// Steps until rest, which is when the generator says.
@@ -292,10 +293,10 @@ impl<'a, const N: usize> Loop<'a, N> {
             self.step();
             taken += 1.0;
         }
-        self.tally.arrivals += 1;
+        self.report.arrivals += 1;
         if taken > (cycles + 1.0).floor() || !self.generator.is_done() {
             let what = format!("still moves after {taken} cycles of {cycles}");
-            self.watch.fail(self.tally, what);
+            self.watch.fail(self.report, what);
         }
     }
 }

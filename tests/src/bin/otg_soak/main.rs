@@ -3,7 +3,7 @@
 //! targets in motion with limits of all kinds, each from a random state.
 //!
 //! ```text
-//! seed -> Problem: axes, limits, start -> Episode: targets, gaps, new limits, cycles -> Watch: checks -> Tally
+//! seed -> Problem: axes, limits, start -> Episode: targets, gaps, new limits, cycles -> Watch: checks -> SoakReport
 //! ```
 //!
 //! Each episode and each single plan has a seed of its own. A failure names it, and
@@ -12,14 +12,14 @@
 mod episode;
 mod oracle;
 mod problem;
-mod tally;
+mod report;
 mod watch;
 
 use std::env;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use tally::Tally;
+use report::SoakReport;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -44,22 +44,22 @@ fn main() -> ExitCode {
     }
 }
 
-type Run = fn(u64, &mut Tally);
+type Run = fn(u64, &mut SoakReport);
 
 /// Runs one seed after the other until there are so many plans.
 fn soak(run: Run, plans: u64, seed: u64) -> ExitCode {
-    let (mut tally, start) = (Tally::default(), Instant::now());
+    let (mut report, start) = (SoakReport::default(), Instant::now());
     let mut next = seed;
     let mut shown = 0;
-    while tally.replans < plans && tally.failures.len() < FAILURES_MAX {
-        run(next, &mut tally);
+    while report.replans < plans && report.failures.len() < FAILURES_MAX {
+        run(next, &mut report);
         next += 1;
-        if tally.replans / SHOW_EVERY > shown {
-            shown = tally.replans / SHOW_EVERY;
+        if report.replans / SHOW_EVERY > shown {
+            shown = report.replans / SHOW_EVERY;
             println!(
                 "{} plans, {} failures, {:.0} s",
-                tally.replans,
-                tally.failures.len(),
+                report.replans,
+                report.failures.len(),
                 start.elapsed().as_secs_f64()
             );
         }
@@ -69,8 +69,8 @@ fn soak(run: Run, plans: u64, seed: u64) -> ExitCode {
         next - 1,
         start.elapsed().as_secs_f64()
     );
-    println!("{tally}");
-    tally.outcome()
+    println!("{report}");
+    report.outcome()
 }
 
 fn usage() -> ExitCode {

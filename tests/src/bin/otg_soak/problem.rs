@@ -1,8 +1,15 @@
 //! Random limits, states and targets.
 
+// By path: the generator's tests are no part of its library.
+#[path = "../../../../franka-otg/src/tests/allowed.rs"]
+mod allowed;
+
 use franka_otg::{AxisLimits, AxisState, Limits, State};
 use rand::Rng;
 use rand::rngs::SmallRng;
+
+pub(crate) use allowed::beside_one_that_takes;
+use allowed::{inside, target_motion, way_to_speed};
 
 use crate::oracle::stop_point;
 
@@ -61,19 +68,10 @@ pub(crate) fn state<const N: usize>(random: &mut SmallRng, limits: &Limits<N>) -
 pub(crate) fn departure<const N: usize>(random: &mut SmallRng, limits: &Limits<N>) -> State<N> {
     let mut state = State::at_rest(std::array::from_fn(|_| random.random_range(-1.0..1.0)));
     for i in 0..N {
-        let AxisLimits {
-            velocity,
-            acceleration,
-            jerk,
-        } = limits.axis(i);
-        let bend = part(random);
-        // The velocity that is left when the acceleration is ramped to zero.
-        let coasting = velocity * part(random);
-        let room = (2.0 * jerk * (velocity + coasting * 1_f64.copysign(bend))).sqrt();
-        let a = bend * acceleration.min(room);
-        let v = coasting - 0.5 * a * a.abs() / jerk;
-        state.velocity[i] = v.clamp(-velocity, velocity);
-        state.acceleration[i] = a;
+        let (bend, coasting) = (part(random), part(random));
+        let axis = inside(limits.axis(i), state.position[i], coasting, bend);
+        state.velocity[i] = axis.velocity;
+        state.acceleration[i] = axis.acceleration;
     }
     state
 }
@@ -89,13 +87,12 @@ fn part(random: &mut SmallRng) -> f64 {
 
 /// Velocity and acceleration that can be met inside the limits, and left.
 fn motion(random: &mut SmallRng, limits: AxisLimits) -> (f64, f64) {
-    let velocity = limits.velocity * random.random_range(-1.0..=1.0);
-    if random.random_bool(0.5) {
-        return (velocity, 0.0);
-    }
-    let room = (2.0 * limits.jerk * (limits.velocity - velocity.abs())).sqrt();
-    let acceleration = limits.acceleration.min(room) * random.random_range(-1.0..=1.0);
-    (velocity, acceleration)
+    let speed = random.random_range(-1.0..=1.0);
+    let bend = match random.random_bool(0.5) {
+        true => 0.0,
+        false => random.random_range(-1.0..=1.0),
+    };
+    target_motion(limits, speed, bend)
 }
 
 /// A new target, as far away as the axes get in some tenths of a second to some seconds, or very
@@ -147,18 +144,12 @@ pub(crate) fn arrival<const N: usize>(
     let mut target = *now;
     for i in 0..N {
         let axis = limits.axis(i);
-        let AxisLimits {
-            velocity,
-            acceleration,
-            jerk,
-        } = axis;
-        let scale = velocity
-            * (velocity / acceleration + acceleration.min((velocity * jerk).sqrt()) / jerk);
         let exponent = match random.random_range(0..5) {
             0..3 => random.random_range(-1.0..1.5),
             _ => random.random_range(-6.0..-1.0),
         };
-        let way = scale * 10_f64.powf(exponent) * [-1.0, 1.0][random.random_range(0..2)];
+        let side = [-1.0, 1.0][random.random_range(0..2)];
+        let way = side * way_to_speed(axis) * 10_f64.powf(exponent);
         let stop = stop_point([0.0, now.velocity[i], now.acceleration[i]], axis);
         let speed = match random.random_range(0..9) {
             0 => 0.0,
@@ -170,35 +161,8 @@ pub(crate) fn arrival<const N: usize>(
             0 => random.random_range(-1.0..1.0_f64),
             _ => 0.0,
         };
-        let room = (2.0 * jerk * velocity * (1.0 - f64::abs(speed))).sqrt();
         target.position[i] += stop + way;
-        target.velocity[i] = velocity * speed;
-        target.acceleration[i] = bend * acceleration.min(room);
+        (target.velocity[i], target.acceleration[i]) = target_motion(axis, speed, bend);
     }
     target
-}
-
-/// One axis on its way from a state to a target, beside one that takes `duration` from rest to
-/// rest.
-pub(crate) fn beside_one_that_takes(
-    duration: f64,
-    (limits, state, target): (AxisLimits, AxisState, AxisState),
-) -> (Limits<2>, State<2>, State<2>) {
-    // Four ramps of the jerk that neither velocity nor acceleration limit: distance 2 ramp^3.
-    let ramp = 0.25 * duration;
-    let beside = AxisLimits {
-        velocity: 2.0 * ramp * ramp,
-        acceleration: 2.0 * ramp,
-        jerk: 1.0,
-    };
-    let both = |one: AxisState, position| State {
-        position: [one.position, position],
-        velocity: [one.velocity, 0.0],
-        acceleration: [one.acceleration, 0.0],
-    };
-    (
-        Limits::per_axis([limits, beside]).expect("the limits are positive and finite"),
-        both(state, 0.0),
-        both(target, 2.0 * ramp.powi(3)),
-    )
 }

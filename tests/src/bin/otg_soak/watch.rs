@@ -3,7 +3,7 @@
 use franka_otg::{AxisLimits, AxisState, CYCLE, Generator, Limits, State, Synchronisation};
 
 use crate::oracle::{least_duration, stop_point};
-use crate::tally::Tally;
+use crate::report::SoakReport;
 
 /// What holds from one plan to the next.
 pub(crate) struct Watch<const N: usize> {
@@ -59,9 +59,9 @@ impl<const N: usize> Watch<N> {
         generator: &Generator<N>,
         target: Option<&State<N>>,
         check_optimum: bool,
-        tally: &mut Tally,
+        report: &mut SoakReport,
     ) {
-        tally.replans += 1;
+        report.replans += 1;
         let (state, limits) = (generator.state(), generator.limits());
         self.inside |= can_stay(state, limits);
         let duration = generator.time_to_target();
@@ -101,25 +101,25 @@ impl<const N: usize> Watch<N> {
         }
         let rests = target.is_some_and(State::is_at_rest);
         if check_optimum && rests && self.inside && on_their_own && optimum > 0.0 {
-            tally.optima += 1;
+            report.optima += 1;
             let slower = duration / optimum - 1.0;
-            tally.slower.see(slower, self.seed);
+            report.slower.see(slower, self.seed);
             // A cycle is what an arrival is rounded to anyway.
             if slower > OPTIMUM && duration - optimum > 1e-3 * CYCLE {
-                self.fail(tally, format!("{duration} s instead of {optimum} s"));
+                self.fail(report, format!("{duration} s instead of {optimum} s"));
             }
         }
         if let Some(target) = target {
-            self.landing(generator, target, tally);
-            self.together(generator, target, tally);
+            self.landing(generator, target, report);
+            self.together(generator, target, report);
         }
     }
 
     /// The motion leads to the target.
-    fn landing(&self, generator: &Generator<N>, target: &State<N>, tally: &mut Tally) {
+    fn landing(&self, generator: &Generator<N>, target: &State<N>, report: &mut SoakReport) {
         let duration = generator.time_to_target();
         if target.is_at_rest() && generator.sample(duration) != *target {
-            self.fail(tally, "does not end at its target".to_owned());
+            self.fail(report, "does not end at its target".to_owned());
         }
         let met = generator.sample(duration * (1.0 + f64::EPSILON));
         let left = 1e-6 * duration;
@@ -130,15 +130,15 @@ impl<const N: usize> Watch<N> {
             let error = (before.position[i] - expected).abs() - jerk * left.powi(3);
             let error = error.max((met.position[i] - to.position).abs());
             let error = (error / self.axes[i].size).max(0.0);
-            tally.landing.see(error, self.seed);
+            report.landing.see(error, self.seed);
             if error > PLACE {
-                self.fail(tally, format!("axis {i} lands {error:e} off, size {:e}, {:?} to {to:?}, {duration} s, {:?} {before:?}", self.axes[i].size, generator.state().axis(i), generator.limits().axis(i)));
+                self.fail(report, format!("axis {i} lands {error:e} off, size {:e}, {:?} to {to:?}, {duration} s, {:?} {before:?}", self.axes[i].size, generator.state().axis(i), generator.limits().axis(i)));
             }
         }
     }
 
     /// All axes that have a way to go arrive at the same time.
-    fn together(&self, generator: &Generator<N>, target: &State<N>, tally: &mut Tally) {
+    fn together(&self, generator: &Generator<N>, target: &State<N>, report: &mut SoakReport) {
         if !target.is_at_rest() {
             return; // behind a moving target each axis comes to rest in its own time
         }
@@ -153,7 +153,7 @@ impl<const N: usize> Watch<N> {
             let waits = (to.position - now.position - stop).abs() <= PLACE * self.axes[i].size;
             if last > CYCLE && !waits && earlier.axis(i) == to {
                 self.fail(
-                    tally,
+                    report,
                     format!(
                         "axis {i} arrives more than a cycle before the last, {now:?} to {to:?}, stop {stop}, {:?}",
                         generator.limits().axis(i)
@@ -170,26 +170,26 @@ impl<const N: usize> Watch<N> {
         before: &State<N>,
         after: &State<N>,
         dt: f64,
-        tally: &mut Tally,
+        report: &mut SoakReport,
     ) {
-        tally.cycles += 1;
+        report.cycles += 1;
         for i in 0..N {
             let (l, p, q) = (limits.axis(i), before.axis(i), after.axis(i));
             let Axis { still, ahead, size } = self.axes[i];
             let rounding = 4.0 * f64::EPSILON * l.acceleration.max(p.acceleration.abs()) / dt;
             let jerk = ((q.acceleration - p.acceleration).abs() / dt - rounding) / l.jerk - 1.0;
-            tally.jerk.see(jerk, self.seed);
+            report.jerk.see(jerk, self.seed);
             let mut excess = jerk;
             if self.inside {
                 let velocity = q.velocity.abs() / l.velocity - 1.0;
                 let acceleration = q.acceleration.abs() / l.acceleration - 1.0;
-                tally.velocity.see(velocity, self.seed);
-                tally.acceleration.see(acceleration, self.seed);
+                report.velocity.see(velocity, self.seed);
+                report.acceleration.see(acceleration, self.seed);
                 excess = excess.max(velocity).max(acceleration);
             }
             if excess > EXACT || excess.is_nan() {
                 self.fail(
-                    tally,
+                    report,
                     format!("axis {i} exceeds a limit by {excess:e}: {p:?} {q:?}"),
                 );
             }
@@ -201,7 +201,7 @@ impl<const N: usize> Watch<N> {
                 (q.velocity - p.velocity - 0.5 * dt * (p.acceleration + q.acceleration)).abs();
             if gap > bend + 10.0 * PLACE * fastest {
                 self.fail(
-                    tally,
+                    report,
                     format!("axis {i} jumps by {gap:e} in velocity: {p:?} {q:?}"),
                 );
             }
@@ -212,26 +212,26 @@ impl<const N: usize> Watch<N> {
             let bend = 0.25 * highest * dt * dt * (1.0 + EXACT);
             let gap = (q.position - p.position - 0.5 * dt * (p.velocity + q.velocity)).abs();
             if gap > bend + PLACE * size {
-                self.fail(tally, format!("axis {i} jumps by {gap:e}: {p:?} {q:?}"));
+                self.fail(report, format!("axis {i} jumps by {gap:e}: {p:?} {q:?}"));
             }
             if let Some(position) = still
                 && q != AxisState::at_rest(position)
             {
-                self.fail(tally, format!("axis {i} does not stay where it is: {q:?}"));
+                self.fail(report, format!("axis {i} does not stay where it is: {q:?}"));
             }
             if let Some((target, side)) = ahead {
                 let beyond = side * (q.position - target) / size;
-                tally.overshoot.see(beyond, self.seed);
+                report.overshoot.see(beyond, self.seed);
                 if beyond > PLACE {
-                    self.fail(tally, format!("axis {i} overshoots by {beyond:e}: {p:?} {q:?} target {target} side {side} {l:?}"));
+                    self.fail(report, format!("axis {i} overshoots by {beyond:e}: {p:?} {q:?} target {target} side {side} {l:?}"));
                 }
             }
         }
         self.inside |= can_stay(after, limits);
     }
 
-    pub(crate) fn fail(&self, tally: &mut Tally, what: String) {
-        tally.failures.push(format!(
+    pub(crate) fn fail(&self, report: &mut SoakReport, what: String) {
+        report.failures.push(format!(
             "seed {}, {N} axes, {:?}: {what}",
             self.seed, self.synchronisation
         ));

@@ -6,49 +6,21 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 
-use super::engagement::Engagement;
-use super::outcome::Counted;
+use super::goal_progress::Goals;
+use super::outcome::{Counted, Outcome};
+use super::programs::UserProgram;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
 use crate::control::Failure;
-use crate::driver::{Ended, Ending, MotionId, Order, Program};
+use crate::driver::{Ended, Ending, MotionId, Order};
 use crate::panic;
-use crate::session::{
-    Backend, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Settlement, Target,
-};
-use crate::slot::SlotWriter;
 use crate::stats::MotionTimes;
-
-/// A goal, and whether its owner has taken it back.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Waiting {
-    pub(super) goal: Goal,
-    pub(super) cancelled: bool,
-}
-
-/// What waits for the motion under way to end.
-#[derive(Debug)]
-pub(super) struct Next {
-    pub(super) waiting: Waiting,
-    /// What else there is to the session that it begins, if that goes on from goal to goal.
-    pub(super) engagement: Option<Engagement>,
-}
-
-impl Waiting {
-    /// A goal that its owner wants.
-    pub(super) fn new(goal: Goal) -> Self {
-        Self {
-            goal,
-            cancelled: false,
-        }
-    }
-}
 
 /// What a robot does that starts a motion and shows no state of it.
 pub(super) const NEVER_SHOWN: &str = "the robot never showed the modes of the motion";
 
 /// One motion: what the two sides have said so far.
 #[derive(Debug)]
-pub(super) struct Active {
+pub(super) struct CurrentMotion {
     pub(super) motion: MotionId,
     pub(super) work: Work,
     pub(super) command: CommandSide,
@@ -77,55 +49,7 @@ pub(super) enum Work {
     /// Goals, one superseding the other.
     Goals(Goals),
     /// A program of the user's.
-    Program(Programmed),
-}
-
-/// The goals of a motion under target control.
-#[derive(Debug)]
-pub(super) struct Goals {
-    pub(super) slot: SlotWriter<Goal>,
-    pub(super) current: Waiting,
-    pub(super) settled: Option<Settled>,
-    pub(super) bad_tool: bool,
-    /// The session that the goals belong to, if it goes on from goal to goal.
-    pub(super) engaged: Option<Engaged>,
-    /// What turns setpoints into torques.
-    pub(super) backend: Backend,
-    /// The way of chunks to that session.
-    pub(super) chunks: Option<ChunkWriter>,
-    /// The goal that its newest chunk belongs to.
-    pub(super) chunk_goal: GoalId,
-    /// Goals that came for that session after it had ended and before its outcome was known.
-    pub(super) late: Vec<GoalId>,
-}
-
-/// A session that goes on from goal to goal.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Engaged {
-    /// Names the caller that awaits its end. Between goals it is the name of the goal that the arm
-    /// holds, too.
-    pub(super) id: GoalId,
-    /// Whether its end is what was asked for.
-    pub(super) disengaged: bool,
-}
-
-/// A motion under a program of the user's.
-#[derive(Debug)]
-pub(super) struct Programmed {
-    /// Names the caller that awaits its end.
-    pub(super) id: GoalId,
-    /// Other callers that asked for the end and await it.
-    pub(super) stops: Vec<GoalId>,
-}
-
-/// What the session said of the goal it settled.
-#[derive(Clone, Debug)]
-pub(super) struct Settled {
-    pub(super) goal: GoalId,
-    pub(super) settlement: Settlement,
-    pub(super) duration_ms: u64,
-    /// What the motion had come to by then.
-    pub(super) counted: Counted,
+    Program(UserProgram),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,10 +75,10 @@ pub(super) enum ThreadSide {
     Ended(Ended),
 }
 
-impl Active {
+impl CurrentMotion {
     /// How the motion turned out with a robot of this model, once both sides have ended. The log
     /// moves into the error, if that holds one.
-    pub(super) fn verdict(&mut self, model: &Arc<Model>) -> Result<MotionReport, MotionError> {
+    pub(super) fn verdict(&mut self, model: &Arc<Model>) -> Outcome {
         let ThreadSide::Ended(ended) = &mut self.thread else {
             unreachable!("a motion concludes when its thread side has ended")
         };
@@ -218,7 +142,7 @@ impl Active {
             || self.stopped.is_some()
             || match &self.work {
                 Work::Goals(goals) if goals.engaged.is_some() => !goals.goes_on(),
-                Work::Goals(goals) => goals.current.cancelled,
+                Work::Goals(goals) => goals.cancelled,
                 Work::Program(_) => false,
             }
     }
@@ -230,29 +154,35 @@ impl Active {
         since.map(|since| since + END_TIMEOUT)
     }
 
-    /// Has the thread end the motion by what is in its hands, and returns the order that this
-    /// takes: no caller waits for it any more. Goals come to rest; a program is left alone, and the
-    /// robot stops for want of commands.
-    pub(super) fn abandon(&mut self) -> Option<Order> {
-        let motion = self.motion;
-        match (&mut self.work, &self.thread) {
-            (_, ThreadSide::Ended(_)) => None,
-            (Work::Program(_), ThreadSide::Armed | ThreadSide::Running) => {
-                Some(Order::Silence { motion })
-            }
-            (Work::Goals(goals), thread) => {
-                goals.brake();
-                matches!(thread, ThreadSide::Armed).then_some(Order::Disarm { motion })
-            }
+    /// Whether it takes goals from callers outside a session: it is no program, nor a session that
+    /// goes on.
+    pub(super) fn takes_goals(&self) -> bool {
+        match &self.work {
+            Work::Goals(goals) => goals.engaged.is_none() || !goals.goes_on(),
+            Work::Program(_) => false,
         }
+    }
+
+    /// Whether the robot has neither said that the motion is over nor been given up.
+    pub(super) fn is_open(&self) -> bool {
+        matches!(self.command, CommandSide::Requested | CommandSide::Started)
+    }
+
+    /// Has the thread end the motion, and returns the order that this takes, unless it has: no
+    /// caller waits for it any more. An arm on its way to a goal brakes; a program gets no more
+    /// states, and the robot stops for want of commands.
+    pub(super) fn abandon(&mut self) -> Option<Order> {
+        if let Work::Goals(goals) = &mut self.work {
+            goals.brake();
+        }
+        let motion = self.motion;
+        let has_ended = matches!(self.thread, ThreadSide::Ended(_));
+        (!has_ended).then_some(Order::Abandon { motion })
     }
 }
 
 /// How the motion of a program turned out that finished well or was stopped as asked.
-fn outcome_of_program(
-    ended: &Ended,
-    is_stopped: bool,
-) -> Option<Result<MotionReport, MotionError>> {
+fn outcome_of_program(ended: &Ended, is_stopped: bool) -> Option<Outcome> {
     match ended.ending {
         Ending::Finished => {
             if let Some(fault) = ended.start_fault() {
@@ -267,89 +197,6 @@ fn outcome_of_program(
         }
         _ if is_stopped => Some(Err(MotionError::Stopped)),
         _ => None,
-    }
-}
-
-impl Goals {
-    fn brake(&mut self) {
-        self.slot.write(&Goal {
-            revision: self.current.goal.revision + 1,
-            ..self.current.goal.at_rest(OnArrival::ReportAndFinish)
-        });
-    }
-
-    /// Whether goals are still taken.
-    pub(super) fn goes_on(&self) -> bool {
-        self.current.goal.on_arrival != OnArrival::ReportAndFinish
-    }
-
-    /// Takes note that a goal of the session `engaged` has come to its end, and is held from now
-    /// on. Returns how it turned out, unless a caller has been told of its end before.
-    pub(super) fn reach(
-        &mut self,
-        engaged: GoalId,
-        settled: &Settled,
-    ) -> Option<Result<MotionReport, MotionError>> {
-        let Waiting { goal, cancelled } = self.current;
-        if goal.id == engaged {
-            // Given up after it had arrived: it is not to be taken back there.
-            if !matches!(settled.settlement, Settlement::Arrived(_)) {
-                self.current.goal.target = Target::Rest;
-            }
-            return None;
-        }
-        if settled.goal != goal.id {
-            return None;
-        }
-        let held = match settled.settlement {
-            Settlement::Arrived(_) => Goal {
-                on_arrival: OnArrival::Hold,
-                ..goal
-            },
-            // One that did not arrive is not what the arm is held at.
-            _ => goal.at_rest(OnArrival::Hold),
-        };
-        self.current = Waiting::new(Goal {
-            id: engaged,
-            watchdog: None,
-            ..held
-        });
-        Some(settled.result(&settled.counted, cancelled))
-    }
-
-    /// How the session turned out whose last goal turned out like this.
-    pub(super) fn end_of_engagement(
-        &self,
-        result: &Result<MotionReport, MotionError>,
-    ) -> Option<(GoalId, Result<MotionReport, MotionError>)> {
-        let engaged = self.engaged?;
-        let result = match result {
-            Ok(_) if !engaged.disengaged => Err(MotionError::Stopped),
-            result => result.clone(),
-        };
-        Some((engaged.id, result))
-    }
-
-    /// Whether the motion ended well with an older goal than the current one.
-    pub(super) fn came_too_late(&self, command: CommandSide, ended: &Ended) -> bool {
-        let Program::Target(session) = &ended.program else {
-            return false;
-        };
-        ended.ending == Ending::Finished
-            && command == CommandSide::Ended(MoveStatus::Success)
-            && session
-                .last_goal()
-                .is_some_and(|last| last != self.current.goal.id)
-    }
-
-    /// How the current goal turned out in a motion that finished well, if the session said so.
-    fn outcome(&self, ended: &Ended) -> Option<Result<MotionReport, MotionError>> {
-        if self.bad_tool {
-            return Some(Err(GoalError::Tool.into()));
-        }
-        let settled = self.settled.as_ref()?;
-        (settled.goal == self.current.goal.id)
-            .then(|| settled.result(&Counted::of(ended), self.current.cancelled))
     }
 }
 
@@ -386,28 +233,6 @@ impl ControlError {
             statistics: ended.statistics,
             model: model.clone(),
         })
-    }
-}
-
-impl Settled {
-    /// How the goal turned out, in a motion whose cycles came to what was `counted`.
-    pub(super) fn result(
-        &self,
-        counted: &Counted,
-        cancelled: bool,
-    ) -> Result<MotionReport, MotionError> {
-        let final_error = match self.settlement {
-            Settlement::Arrived(error) => Some(error),
-            Settlement::AtRest if cancelled => return Err(MotionError::Stopped),
-            Settlement::AtRest => None,
-            Settlement::TargetNotReached(error) => {
-                return Err(MotionError::TargetNotReached(error));
-            }
-            Settlement::Held(lapse) => return Err(MotionError::Held(lapse)),
-            Settlement::Braked(lapse) => return Err(MotionError::Braked(lapse)),
-            Settlement::Unstarted(fault) => return Err(fault.into()),
-        };
-        Ok(MotionReport::new(counted, self.duration_ms, final_error))
     }
 }
 

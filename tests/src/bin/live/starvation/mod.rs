@@ -1,20 +1,17 @@
-//! What blocked runtime workers cost: `starvation [SECONDS]` exchanges states and commands at 1
-//! kHz, first on the control thread, then in a task of the program's async runtime. Each runs with
-//! the runtime idle, and with all its workers blocked for 20 of every 100 milliseconds. Prints a
-//! line for each case. The robot here sends a state per millisecond and expects a command for each.
-//! A command that has not arrived when the next state leaves is lost, as on a robot.
+//! What blocked runtime workers cost an exchange of states and commands at 1 kHz, first on the
+//! control thread, then in a task of the program's async runtime. Each runs with the runtime idle,
+//! and with all its workers blocked for 20 of every 100 milliseconds.
+//!
+//! The robot here sends a state per millisecond and expects a command for each. A command that has
+//! not arrived when the next state leaves is lost, as on a robot.
 
 mod responders;
 mod robot;
-// Shared with the other benchmark over sockets.
-#[path = "../live/stamp.rs"]
-mod stamp;
 
-use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Barrier};
+use std::thread;
 use std::time::Duration;
-use std::{env, thread};
 
 use franka_rt::sched::{Realtime, Scheduling};
 use tokio::runtime::{Builder, Runtime};
@@ -22,12 +19,8 @@ use tokio::runtime::{Builder, Runtime};
 use responders::Responder;
 use robot::Outcome;
 
-fn main() -> ExitCode {
-    let seconds = env::args().nth(1).map_or(Ok(SECONDS), |text| text.parse());
-    let Ok(seconds @ 1..) = seconds else {
-        eprintln!("usage: starvation [SECONDS]");
-        return ExitCode::from(2);
-    };
+/// Prints a line for each case, of `seconds` each.
+pub(crate) fn print(seconds: u32) {
     match preferred(None).probe() {
         Ok(granted) if granted.priority.is_some() => {
             println!("SCHED_FIFO is granted: to the control thread, and to the robot");
@@ -35,15 +28,14 @@ fn main() -> ExitCode {
         _ => println!("SCHED_FIFO is NOT GRANTED: the control thread competes with all others"),
     }
     println!("{seconds} s each; turnaround in microseconds, of the states that were answered");
-    println!("responder       workers    states   lost   p50     p90     p99     max");
+    println!("driver          workers    states   lost     p50     p99   p99.9     max");
     for responder in [Responder::Thread, Responder::Task] {
         for blocked in [false, true] {
-            let outcome = measure(responder, blocked, Duration::from_secs(seconds));
+            let outcome = measure(responder, blocked, Duration::from_secs(seconds.into()));
             let workers = if blocked { "blocked" } else { "idle" };
             println!("{:<15} {workers:<8} {outcome}", responder.name());
         }
     }
-    ExitCode::SUCCESS
 }
 
 /// Requests this priority, the highest if `None`; a refusal is no error.
@@ -97,5 +89,3 @@ const PERIOD: Duration = Duration::from_millis(100);
 
 /// As long as a database query, parsing JSON or decoding an image may take.
 const BLOCKED: Duration = Duration::from_millis(20);
-
-const SECONDS: u64 = 10;

@@ -8,8 +8,9 @@ use std::time::{Duration, Instant};
 
 use franka_proto::{RobotCommand, RobotState, Version};
 
-use crate::preferred;
+use super::preferred;
 use crate::stamp::{self, Stamped};
+use crate::trace::Quantiles;
 
 /// The protocol version of the FR3.
 pub(crate) const VERSION: Version = Version::V10;
@@ -22,8 +23,8 @@ pub(crate) struct Outcome {
     states: usize,
     /// States whose command had not arrived when the next one left.
     lost: usize,
-    /// From the departure of a state to the arrival of its command, ascending.
-    turnarounds: Vec<Duration>,
+    /// From the departure of a state to the arrival of its command.
+    turnaround: Quantiles,
 }
 
 /// Sends states to `port` of this machine for `time`.
@@ -96,34 +97,25 @@ impl Outcome {
             .filter(|(arrived, next)| arrived.is_some_and(|arrived| arrived < **next));
         let states = sent.len() - 1;
         let lost = states - in_time.count();
-        let mut turnarounds: Vec<Duration> = sent
-            .iter()
-            .zip(arrived)
-            .filter_map(|(sent, arrived)| Some((*arrived)?.saturating_sub(*sent)))
-            .collect();
-        turnarounds.sort_unstable();
+        let answered = sent.iter().zip(arrived);
+        let turnarounds =
+            answered.filter_map(|(sent, arrived)| Some((*arrived)?.saturating_sub(*sent)));
         Self {
             states,
             lost,
-            turnarounds,
+            turnaround: Quantiles::of(turnarounds),
         }
-    }
-
-    /// The turnaround that this share of all does not exceed, `[us]`.
-    fn quantile(&self, share: f64) -> u128 {
-        let last = self.turnarounds.len().saturating_sub(1);
-        let index = (last as f64 * share).round() as usize;
-        self.turnarounds.get(index).map_or(0, Duration::as_micros)
     }
 }
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [p50, p90, p99, max] = [0.5, 0.9, 0.99, 1.0].map(|share| self.quantile(share));
-        let Self { states, lost, .. } = self;
+        let (states, lost, nanos) = (self.states, self.lost, &self.turnaround);
+        let [p50, p99, p99_9, max] =
+            [nanos.p50, nanos.p99, nanos.p99_9, nanos.max].map(|nanos| nanos / 1000);
         write!(
             f,
-            "{states:>8} {lost:>6} {p50:>6} {p90:>7} {p99:>7} {max:>7}"
+            "{states:>8} {lost:>6} {p50:>7} {p99:>7} {p99_9:>7} {max:>7}"
         )
     }
 }
@@ -147,7 +139,7 @@ mod tests {
         let arrived = [Some(at(40)), Some(at(2500)), None, Some(at(3060))];
         let outcome = Outcome::of(&sent, &arrived);
         assert_eq!((outcome.states, outcome.lost), (3, 2));
-        assert_eq!(outcome.quantile(0.5), 60);
-        assert_eq!(outcome.quantile(1.0), 1500);
+        assert_eq!(outcome.turnaround.p50 / 1000, 60);
+        assert_eq!(outcome.turnaround.max / 1000, 1500);
     }
 }

@@ -10,8 +10,8 @@ use franka_rt::exchange;
 use franka_rt::thread::{self, Core, ThreadConfig};
 use tokio::runtime::Runtime;
 
-use crate::preferred;
-use crate::robot::{self, ADDRESS, Outcome, VERSION};
+use super::preferred;
+use super::robot::{self, ADDRESS, Outcome, VERSION};
 
 /// What answers the states.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 /// Counts, worst cases and failures.
 #[derive(Default)]
-pub(crate) struct Tally {
+pub(crate) struct SoakReport {
     pub(crate) replans: u64,
     /// Those by generators that knew nothing but the state.
     pub(crate) anew: u64,
@@ -51,7 +51,7 @@ impl Worst {
     }
 }
 
-impl Tally {
+impl SoakReport {
     pub(crate) fn outcome(&self) -> ExitCode {
         if self.failures.is_empty() {
             ExitCode::SUCCESS
@@ -61,7 +61,7 @@ impl Tally {
     }
 }
 
-impl fmt::Display for Tally {
+impl fmt::Display for SoakReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,

@@ -1,0 +1,62 @@
+//! States and targets that limits allow, for the tests of this crate and for `otg_soak`.
+
+use super::{AxisLimits, AxisState, Limits, State};
+
+/// A state inside `limits` that can stay there: `coasting` and `bend` are fractions of what it may
+/// have.
+pub(crate) fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64) -> AxisState {
+    let sign = 1_f64.copysign(bend);
+    let coasting = limits.velocity * coasting;
+    // The velocity on the way to zero acceleration must not start outside either.
+    let room = (2.0 * limits.jerk * (limits.velocity + sign * coasting)).sqrt();
+    let acceleration = bend * limits.acceleration.min(room);
+    let lost = 0.5 * acceleration * acceleration.abs() / limits.jerk;
+    AxisState {
+        position,
+        velocity: (coasting - lost).clamp(-limits.velocity, limits.velocity),
+        acceleration,
+    }
+}
+
+/// A motion that a target may have: it can be met inside `limits`, and left.
+pub(crate) fn target_motion(limits: AxisLimits, speed: f64, bend: f64) -> (f64, f64) {
+    let velocity = speed * limits.velocity;
+    let room = 2.0 * limits.jerk * (limits.velocity - velocity.abs());
+    (velocity, bend * limits.acceleration.min(room.sqrt()))
+}
+
+/// The distance in which an axis gets from rest to about its velocity limit and back.
+pub(crate) fn way_to_speed(limits: AxisLimits) -> f64 {
+    let AxisLimits {
+        velocity,
+        acceleration,
+        jerk,
+    } = limits;
+    velocity * (velocity / acceleration + acceleration.min((velocity * jerk).sqrt()) / jerk)
+}
+
+/// One axis on its way to a target, beside one that takes `duration` from rest to rest.
+pub(crate) fn beside_one_that_takes(
+    duration: f64,
+    limits: AxisLimits,
+    state: AxisState,
+    target: AxisState,
+) -> (Limits<2>, State<2>, State<2>) {
+    // Four ramps of the jerk that neither velocity nor acceleration limit: distance 2 ramp^3.
+    let ramp = 0.25 * duration;
+    let beside = AxisLimits {
+        velocity: 2.0 * ramp * ramp,
+        acceleration: 2.0 * ramp,
+        jerk: 1.0,
+    };
+    let both = |one: AxisState, position| State {
+        position: [one.position, position],
+        velocity: [one.velocity, 0.0],
+        acceleration: [one.acceleration, 0.0],
+    };
+    (
+        Limits::per_axis([limits, beside]).unwrap(),
+        both(state, 0.0),
+        both(target, 2.0 * ramp.powi(3)),
+    )
+}

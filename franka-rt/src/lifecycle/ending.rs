@@ -1,0 +1,224 @@
+//! The end of a motion: its goals resolve, and the motion that waits begins.
+
+use core::time::Duration;
+
+use franka_proto::Request;
+
+use super::current_motion::{CommandSide, ThreadSide, Work};
+use super::outcome::{Counted, Outcome};
+use super::{Lifecycle, LifecyclePhase, MotionError, MotionReport, NewMotion, Output};
+use crate::driver::{Ended, Ending};
+use crate::session::{GoalId, OnArrival, Target};
+
+/// Why no motion begins: the one before was given up, and does not end.
+pub(super) const STILL_SHOWN: MotionError = MotionError::Protocol {
+    what: "waited for the end of the motion before, which the robot was told to stop and goes on \
+           showing",
+};
+
+impl Lifecycle {
+    /// Takes note that a motion is over for the thread.
+    pub(super) fn on_ended(&mut self, ended: Ended, now: Duration) {
+        match &mut self.phase {
+            LifecyclePhase::UnderWay(current) if current.motion == ended.motion => {
+                current.thread = ThreadSide::Ended(ended);
+                current.deadline = Some(now + super::END_TIMEOUT);
+                self.conclude(now);
+            }
+            LifecyclePhase::Abandoned { motion, .. } if *motion == ended.motion => {
+                self.phase = LifecyclePhase::Idle;
+                let before = match ended.ending {
+                    Ending::LinkLost { silence } => Err(MotionError::LinkLost { silence }),
+                    _ => Ok(()),
+                };
+                self.follow(&before, &Counted::of(&ended), now);
+            }
+            LifecyclePhase::Stalled { abandoned: motion }
+            | LifecyclePhase::Closed {
+                braking: motion, ..
+            } => {
+                motion.take_if(|motion| *motion == ended.motion);
+            }
+            LifecyclePhase::Idle
+            | LifecyclePhase::UnderWay(_)
+            | LifecyclePhase::Abandoned { .. } => {}
+        }
+    }
+
+    /// Ends the motion when its thread side has ended and nothing more is expected from the command
+    /// side.
+    pub(super) fn conclude(&mut self, now: Duration) {
+        let LifecyclePhase::UnderWay(current) = &self.phase else {
+            return;
+        };
+        let ThreadSide::Ended(ended) = &current.thread else {
+            return;
+        };
+        let done = match ended.ending {
+            Ending::LinkLost { .. } | Ending::Refused => true,
+            Ending::Disarmed => !matches!(current.command, CommandSide::Requested),
+            Ending::Finished | Ending::Aborted => matches!(current.command, CommandSide::Ended(_)),
+        };
+        if done {
+            self.finish(now);
+        }
+    }
+
+    /// Ends the motion, both of whose sides have ended, by what they have said. A robot that has
+    /// not said that the motion is over is told to stop it.
+    fn finish(&mut self, now: Duration) {
+        let Some(mut current) = self.take_current() else {
+            return;
+        };
+        let ThreadSide::Ended(ended) = &current.thread else {
+            unreachable!("a motion concludes when its thread side has ended")
+        };
+        let counted = Counted::of(ended);
+        if let Work::Goals(goals) = &current.work
+            && goals.came_too_late(current.command, ended)
+        {
+            // The session had ended before it saw this goal: the goal gets a motion of its own.
+            let unseen = goals.current;
+            let end = goals.end_of_engagement(&Ok(MotionReport::new(&counted, 0, None)));
+            // If the unseen goal is the session's own, its end is resolved below.
+            let end = end.filter(|(engaged, _)| *engaged != unseen.id);
+            self.resolve_session(goals.after_end.clone(), end);
+            if goals.cancelled {
+                // A cancelled goal needs no motion.
+                self.resolve(unseen.id, Err(MotionError::Stopped));
+            } else {
+                self.take_up(NewMotion::to(unseen), &Ok(()), &counted, now);
+            }
+            return self.follow(&Ok(()), &counted, now);
+        }
+        let outcome = current.verdict(&self.model);
+        self.tell(current.work, outcome, &counted, now);
+    }
+
+    /// Gives up the motion under way, if any, and resolves it at once: with the failure of its
+    /// program if there was one, which came first, otherwise with `error`. Unless the robot has
+    /// reported the end, `StopMove` is sent. A thread that still runs the motion brakes (goals) or
+    /// sends no more commands (programs).
+    pub(super) fn give_up(&mut self, error: MotionError, now: Duration) {
+        let Some(mut current) = self.take_current() else {
+            return;
+        };
+        if let Some(order) = current.abandon() {
+            self.outputs.push_back(Output::Order(order));
+            self.phase = LifecyclePhase::abandoned(current.motion, now);
+        }
+        let error = current.failure.unwrap_or(error);
+        self.tell(current.work, Err(error), &Counted::default(), now);
+    }
+
+    /// Removes and returns the motion under way; sends `StopMove` unless the robot has reported its
+    /// end.
+    fn take_current(&mut self) -> Option<Box<super::current_motion::CurrentMotion>> {
+        self.phase = match core::mem::replace(&mut self.phase, LifecyclePhase::Idle) {
+            LifecyclePhase::UnderWay(current) => {
+                if current.is_open() {
+                    self.send(current.motion, Request::StopMove);
+                }
+                return Some(current);
+            }
+            phase => phase,
+        };
+        None
+    }
+
+    /// Resolves all that waits for the motion with `outcome`, then starts the next motion.
+    fn tell(&mut self, work: Work, outcome: Outcome, counted: &Counted, now: Duration) {
+        let rest = match &outcome {
+            Err(error) if !error.is_ready_for_more() => Err(error.clone()),
+            _ => Ok(MotionReport::new(counted, 0, None)),
+        };
+        self.resolve_work(work, &outcome, &rest);
+        self.follow(&outcome.map(drop), counted, now);
+    }
+
+    /// Starts the motion that waits, if any, once no motion is under way. `before` is how the
+    /// previous one ended.
+    fn follow(&mut self, before: &Result<(), MotionError>, counted: &Counted, now: Duration) {
+        if let LifecyclePhase::Idle = self.phase
+            && let Some(next) = self.next.take()
+        {
+            self.take_up(next, before, counted, now);
+        }
+    }
+
+    /// Begins `motion` after another one, which has ended with `before`. If it only asks the arm to
+    /// come to rest, it is resolved at once from that end, and no motion is started.
+    fn take_up(
+        &mut self,
+        motion: NewMotion,
+        before: &Result<(), MotionError>,
+        counted: &Counted,
+        now: Duration,
+    ) {
+        match &motion {
+            NewMotion::Goal { goal, .. }
+                if goal.target == Target::Rest && goal.on_arrival == OnArrival::ReportAndFinish => {
+            }
+            _ => return self.start(motion, now),
+        }
+        let outcome = match before {
+            // Whether the arm rests is unknown, or up to the robot.
+            Err(error)
+                if !error.is_ready_for_more() && !matches!(error, MotionError::Rejected(_)) =>
+            {
+                Err(error.clone())
+            }
+            _ => Ok(MotionReport::new(counted, 0, None)),
+        };
+        self.resolve(motion.id(), outcome);
+    }
+
+    /// Resolves what waits for the end of a motion: its goals or program with `outcome`, requests
+    /// for its stop with `rest`.
+    pub(super) fn resolve_work(&mut self, work: Work, outcome: &Outcome, rest: &Outcome) {
+        match work {
+            Work::Goals(goals) => {
+                let end = goals.end_of_engagement(outcome);
+                let current = goals.current.id;
+                if end.as_ref().is_none_or(|(engaged, _)| *engaged != current) {
+                    self.resolve(current, outcome.clone());
+                }
+                self.resolve_session(goals.after_end, end);
+            }
+            Work::Program(program) => {
+                self.resolve(program.id, outcome.clone());
+                for stop in program.stops {
+                    self.resolve(stop, rest.clone());
+                }
+            }
+        }
+    }
+
+    /// Resolves the session of a motion, and goals that came after its end.
+    fn resolve_session(&mut self, after_end: Vec<GoalId>, end: Option<(GoalId, Outcome)>) {
+        let reason = match &end {
+            Some((_, Err(error))) => error.clone(),
+            _ => MotionError::Disengaged,
+        };
+        for goal in after_end {
+            self.resolve(goal, Err(reason.clone()));
+        }
+        if let Some((engaged, outcome)) = end {
+            if let Err(error) = &outcome {
+                self.ended = Some((engaged, error.clone()));
+            }
+            self.resolve(engaged, outcome);
+        }
+    }
+
+    /// Resolves the motion that waits, if any, with `error`: it does not begin.
+    pub(super) fn resolve_next(&mut self, error: MotionError) {
+        if let Some(next) = self.next.take() {
+            self.resolve(next.id(), Err(error));
+        }
+    }
+
+    pub(super) fn resolve(&mut self, goal: GoalId, result: Outcome) {
+        self.outputs.push_back(Output::Resolve { goal, result });
+    }
+}

@@ -1,0 +1,187 @@
+//! The goals of one motion under target control, and how each turned out.
+
+use franka_proto::MoveStatus;
+
+use super::current_motion::CommandSide;
+use super::outcome::{Counted, Outcome};
+use super::{MotionError, MotionReport};
+use crate::driver::{Ended, Ending, Program};
+use crate::session::{
+    Backend, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Settlement, Target,
+};
+use crate::slot::SlotWriter;
+
+/// The goals of a motion under target control.
+#[derive(Debug)]
+pub(super) struct Goals {
+    pub(super) slot: SlotWriter<Goal>,
+    /// The newest goal.
+    pub(super) current: Goal,
+    /// Whether its owner has taken it back.
+    pub(super) cancelled: bool,
+    pub(super) settled: Option<Settled>,
+    pub(super) bad_tool: bool,
+    /// The session that the goals belong to, if it goes on from goal to goal.
+    pub(super) engaged: Option<Engaged>,
+    /// What turns setpoints into torques.
+    pub(super) backend: Backend,
+    /// The way of chunks to that session.
+    pub(super) chunks: Option<ChunkWriter>,
+    /// The goal that its newest chunk belongs to.
+    pub(super) chunk_goal: GoalId,
+    /// Goals that came for that session after it had ended and before its outcome was known.
+    pub(super) after_end: Vec<GoalId>,
+}
+
+/// A session that goes on from goal to goal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Engaged {
+    /// Names the caller that awaits its end. Between goals it is the name of the goal that the arm
+    /// holds, too.
+    pub(super) id: GoalId,
+    /// Whether its end is what was asked for.
+    pub(super) disengaged: bool,
+}
+
+/// What the session said of the goal it settled.
+#[derive(Clone, Debug)]
+pub(super) struct Settled {
+    pub(super) goal: GoalId,
+    pub(super) settlement: Settlement,
+    pub(super) duration_ms: u64,
+    /// What the motion had come to by then.
+    pub(super) counted: Counted,
+}
+
+impl Goals {
+    /// A motion of its own to `goal`, which `slot` holds already.
+    pub(super) fn new(goal: Goal, slot: SlotWriter<Goal>) -> Self {
+        Self {
+            slot,
+            current: goal,
+            cancelled: false,
+            settled: None,
+            bad_tool: false,
+            engaged: None,
+            backend: Backend::default(),
+            chunks: None,
+            chunk_goal: GoalId::default(),
+            after_end: Vec::new(),
+        }
+    }
+
+    /// Brakes, and ends the motion at rest.
+    pub(super) fn brake(&mut self) {
+        self.slot.write(&Goal {
+            revision: self.current.revision + 1,
+            ..self.current.at_rest(OnArrival::ReportAndFinish)
+        });
+    }
+
+    /// Goes on with `goal`. Returns how the one before it turned out, for `reason` if it was not
+    /// reached, unless it was the session that holds the arm.
+    pub(super) fn supersede(
+        &mut self,
+        goal: Goal,
+        reason: MotionError,
+    ) -> Option<(GoalId, Outcome)> {
+        self.slot.write(&goal);
+        let previous = core::mem::replace(&mut self.current, goal).id;
+        let cancelled = core::mem::take(&mut self.cancelled);
+        let result = match self.settled.take() {
+            // A goal that has settled was reached, whatever comes after it.
+            Some(settled) if settled.goal == previous => {
+                settled.result(&settled.counted, cancelled)
+            }
+            _ => Err(reason),
+        };
+        let is_session = self.engaged.is_some_and(|engaged| engaged.id == previous);
+        (!is_session).then_some((previous, result))
+    }
+
+    /// Whether goals are still taken.
+    pub(super) fn goes_on(&self) -> bool {
+        self.current.on_arrival != OnArrival::ReportAndFinish
+    }
+
+    /// Takes note that a goal of the session `engaged` has come to its end, and is held from now
+    /// on. Returns how it turned out, unless a caller has been told of its end before.
+    pub(super) fn reach(&mut self, engaged: GoalId, settled: &Settled) -> Option<Outcome> {
+        let goal = self.current;
+        if goal.id == engaged {
+            // Given up after it had arrived: it is not to be taken back there.
+            if !matches!(settled.settlement, Settlement::Arrived(_)) {
+                self.current.target = Target::Rest;
+            }
+            return None;
+        }
+        if settled.goal != goal.id {
+            return None;
+        }
+        let held = match settled.settlement {
+            Settlement::Arrived(_) => Goal {
+                on_arrival: OnArrival::Hold,
+                ..goal
+            },
+            // One that did not arrive is not what the arm is held at.
+            _ => goal.at_rest(OnArrival::Hold),
+        };
+        self.current = Goal {
+            id: engaged,
+            watchdog: None,
+            ..held
+        };
+        let cancelled = core::mem::take(&mut self.cancelled);
+        Some(settled.result(&settled.counted, cancelled))
+    }
+
+    /// How the session turned out whose last goal turned out like this.
+    pub(super) fn end_of_engagement(&self, result: &Outcome) -> Option<(GoalId, Outcome)> {
+        let engaged = self.engaged?;
+        let result = match result {
+            Ok(_) if !engaged.disengaged => Err(MotionError::Stopped),
+            result => result.clone(),
+        };
+        Some((engaged.id, result))
+    }
+
+    /// Whether the motion ended well with an older goal than the current one.
+    pub(super) fn came_too_late(&self, command: CommandSide, ended: &Ended) -> bool {
+        let Program::Target(session) = &ended.program else {
+            return false;
+        };
+        ended.ending == Ending::Finished
+            && command == CommandSide::Ended(MoveStatus::Success)
+            && session
+                .last_goal()
+                .is_some_and(|last| last != self.current.id)
+    }
+
+    /// How the current goal turned out in a motion that finished well, if the session said so.
+    pub(super) fn outcome(&self, ended: &Ended) -> Option<Outcome> {
+        if self.bad_tool {
+            return Some(Err(GoalError::Tool.into()));
+        }
+        let settled = self.settled.as_ref()?;
+        (settled.goal == self.current.id)
+            .then(|| settled.result(&Counted::of(ended), self.cancelled))
+    }
+}
+
+impl Settled {
+    /// How the goal turned out, in a motion whose cycles came to what was `counted`.
+    pub(super) fn result(&self, counted: &Counted, cancelled: bool) -> Outcome {
+        let final_error = match self.settlement {
+            Settlement::Arrived(error) => Some(error),
+            Settlement::AtRest if cancelled => return Err(MotionError::Stopped),
+            Settlement::AtRest => None,
+            Settlement::TargetNotReached(error) => {
+                return Err(MotionError::TargetNotReached(error));
+            }
+            Settlement::Held(lapse) => return Err(MotionError::Held(lapse)),
+            Settlement::Braked(lapse) => return Err(MotionError::Braked(lapse)),
+            Settlement::Unstarted(fault) => return Err(fault.into()),
+        };
+        Ok(MotionReport::new(counted, self.duration_ms, final_error))
+    }
+}

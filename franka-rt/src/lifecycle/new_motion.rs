@@ -1,0 +1,288 @@
+//! Motions that callers ask for: accepted or refused, kept waiting, started.
+
+use core::time::Duration;
+use std::sync::Arc;
+
+use franka_proto::{MoveRequest, Request, RobotState};
+
+use super::current_motion::{CommandSide, CurrentMotion, ThreadSide, Work};
+use super::goal_progress::{Engaged, Goals};
+use super::programs::UserProgram;
+use super::{Engagement, Lifecycle, LifecyclePhase, MotionError, Output, START_TIMEOUT};
+use crate::control::Modes;
+use crate::driver::{ControlLog, MotionId, Observer, Order, Program};
+use crate::session::check::check_keep_out;
+use crate::session::{self, Goal, GoalId, OnArrival, Target, TargetSession};
+use crate::slot;
+use crate::stats::MotionTimes;
+use crate::together::StartTicket;
+
+/// A motion to begin. Its name, a goal's or its own, has to be one that was never used before.
+#[derive(Debug)]
+pub enum NewMotion {
+    /// A motion to a goal. It supersedes every goal before it.
+    Goal {
+        /// The goal, whose `id` names the motion.
+        goal: Box<Goal>,
+        /// The ticket of a common start with other robots, if any: the arm is held until all are
+        /// ready. Such a goal supersedes nothing. A later goal supersedes it as usual, and takes it
+        /// out of the common start.
+        ticket: Option<StartTicket>,
+        /// The session that the goal is for; `None` begins a motion of its own.
+        session: Option<GoalId>,
+    },
+    /// A session that holds the arm where it is and then goes from goal to goal. It resolves when
+    /// the session has ended.
+    Session {
+        /// Gains and budget to hold with; its `id` names the session.
+        goal: Box<Goal>,
+        /// What it has beside its goals.
+        engagement: Engagement,
+    },
+    /// A motion under a program of the user's. It supersedes nothing and is not superseded.
+    Program {
+        /// Names the motion.
+        id: GoalId,
+        /// What answers the states.
+        program: Program,
+        /// The motion to ask the robot for.
+        request: Box<MoveRequest>,
+        /// The ticket of a common start with other robots, for a control function: until all are
+        /// ready it is not called, and the driver holds the arm. Other programs do not wait.
+        ticket: Option<StartTicket>,
+    },
+}
+
+impl NewMotion {
+    /// A motion of its own to `goal`.
+    pub fn to(goal: Goal) -> Self {
+        Self::Goal {
+            goal: Box::new(goal),
+            ticket: None,
+            session: None,
+        }
+    }
+
+    /// Returns the name under which the motion is cancelled and resolved.
+    pub fn id(&self) -> GoalId {
+        match self {
+            Self::Goal { goal, .. } | Self::Session { goal, .. } => goal.id,
+            Self::Program { id, .. } => *id,
+        }
+    }
+
+    /// Whether it gives way to a newer goal.
+    fn is_superseded_by_goals(&self) -> bool {
+        matches!(self, Self::Goal { .. })
+    }
+
+    /// Whether it supersedes older goals.
+    fn supersedes_goals(&self) -> bool {
+        matches!(self, Self::Goal { ticket: None, .. })
+    }
+}
+
+impl Lifecycle {
+    /// Begins a motion of a robot in `state`, or hands its goal to the motion under way. If the
+    /// motion under way is ending, or was stopped or cancelled, the new one waits for its end.
+    ///
+    /// # Errors
+    /// Nothing is resolved then, everything stays as it was, and a ticket is dropped.
+    /// - [`MotionError::Goal`] for goals, regions or a posture that are not accepted.
+    /// - [`MotionError::Busy`] while another motion runs or waits and does not give way. One that
+    ///   runs gives way when it is ending, stopped or cancelled. Goals outside a session also give
+    ///   way to a new goal without a ticket.
+    /// - [`MotionError::Start`] if the others that it is to begin with are not to come.
+    /// - For a goal of a session that has ended: [`MotionError::Disengaged`] if that was asked for,
+    ///   otherwise the error that ended it.
+    /// - [`MotionError::Protocol`] if the robot goes on with the motion before, which was given up.
+    /// - [`MotionError::ConnectionClosed`] after the connection was lost.
+    pub fn begin(
+        &mut self,
+        mut motion: NewMotion,
+        state: &RobotState,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        match &mut motion {
+            NewMotion::Goal {
+                goal,
+                ticket: None,
+                session: Some(session),
+            } => return self.submit_within(*session, **goal, state),
+            NewMotion::Session { goal, .. } => {
+                **goal = Goal {
+                    target: Target::Rest,
+                    on_arrival: OnArrival::Hold,
+                    watchdog: None,
+                    ..**goal
+                }
+            }
+            NewMotion::Goal { .. } | NewMotion::Program { .. } => {}
+        }
+        self.check_open()?;
+        self.check_turn(&motion)?;
+        self.check_options(&motion, state)?;
+        match (&self.phase, motion) {
+            (LifecyclePhase::Idle, motion) => self.start(motion, now),
+            // A session that has the arm is about to let it go.
+            (
+                LifecyclePhase::UnderWay(_),
+                NewMotion::Goal {
+                    goal, ticket: None, ..
+                },
+            ) if !self.is_engaged() => self.replace(*goal, MotionError::Superseded),
+            (_, motion) => self.wait(motion, MotionError::Superseded),
+        }
+        Ok(())
+    }
+
+    /// Checks that what moves, or waits to, gives way to `motion`.
+    fn check_turn(&self, motion: &NewMotion) -> Result<(), MotionError> {
+        let current_gives_way = match &self.phase {
+            LifecyclePhase::UnderWay(current) => {
+                current.is_letting_go() || motion.supersedes_goals() && current.takes_goals()
+            }
+            _ => true,
+        };
+        let next_gives_way = self
+            .next
+            .as_ref()
+            .is_none_or(|next| motion.supersedes_goals() && next.is_superseded_by_goals());
+        if current_gives_way && next_gives_way {
+            Ok(())
+        } else {
+            Err(MotionError::Busy)
+        }
+    }
+
+    fn check_options(&self, motion: &NewMotion, state: &RobotState) -> Result<(), MotionError> {
+        match motion {
+            NewMotion::Goal { goal, ticket, .. } => {
+                check_ticket(ticket.as_ref())?;
+                goal.check(&self.model, state)?;
+            }
+            NewMotion::Session { goal, engagement } => {
+                goal.check(&self.model, state)?;
+                engagement.check(goal, state)?;
+            }
+            NewMotion::Program { ticket, .. } => check_ticket(ticket.as_ref())?,
+        }
+        Ok(())
+    }
+
+    /// Has a motion wait until the one before it has ended. One that waited before resolves with
+    /// `reason`.
+    pub(super) fn wait(&mut self, motion: NewMotion, reason: MotionError) {
+        if let Some(before) = self.next.replace(motion) {
+            self.resolve(before.id(), Err(reason));
+        }
+    }
+
+    /// Sends [`Order::Arm`] to the thread and `Move` to the robot.
+    pub(super) fn start(&mut self, motion: NewMotion, now: Duration) {
+        match motion {
+            NewMotion::Goal { goal, ticket, .. } => self.start_goal(*goal, ticket, None, now),
+            NewMotion::Session { goal, engagement } => {
+                self.start_goal(*goal, None, Some(engagement), now);
+            }
+            NewMotion::Program {
+                id,
+                program,
+                request,
+                ticket,
+            } => {
+                let stops = Vec::new();
+                let work = Work::Program(UserProgram { id, stops });
+                self.arm(work, program, *request, (ticket, None), now);
+            }
+        }
+    }
+
+    /// Starts a motion towards a goal; of a session that goes on from goal to goal if `engagement`
+    /// tells of one.
+    fn start_goal(
+        &mut self,
+        goal: Goal,
+        ticket: Option<StartTicket>,
+        engagement: Option<Engagement>,
+        now: Duration,
+    ) {
+        let (mut slot, reader) = slot::slot();
+        slot.write(&goal);
+        let mut session =
+            TargetSession::new(self.model.clone(), self.version, reader).out_of(self.keep_out);
+        let mut goals = Goals::new(goal, slot);
+        let mut observer = None;
+        if let Some(engagement) = engagement {
+            let (writer, reader) = session::chunk_ring();
+            goals.engaged = Some(Engaged {
+                id: goal.id,
+                disengaged: false,
+            });
+            (goals.backend, goals.chunks) = (engagement.backend, Some(writer));
+            observer = engagement.observer;
+            session = session
+                .with_backend(goals.backend)
+                .with_chunks(reader)
+                .going_on();
+            if let Some(regions) = engagement.keep_out {
+                // Checked where the session was asked for.
+                session = session.out_of(check_keep_out(&regions).unwrap_or(self.keep_out));
+            }
+            if let Some(deadman) = engagement.deadman {
+                session = session.bound_to(deadman);
+            }
+        }
+        let program = Program::Target(Box::new(session));
+        let request = goals.backend.request(self.version);
+        self.arm(
+            Work::Goals(goals),
+            program,
+            request,
+            (ticket, observer),
+            now,
+        );
+    }
+
+    fn arm(
+        &mut self,
+        work: Work,
+        program: Program,
+        request: MoveRequest,
+        (ticket, observer): (Option<StartTicket>, Option<Observer>),
+        now: Duration,
+    ) {
+        self.motions += 1;
+        let motion = MotionId(self.motions);
+        let times = Arc::new(MotionTimes::default());
+        self.outputs.push_back(Output::Order(Order::Arm {
+            motion,
+            modes: Modes::of(&request),
+            program,
+            log: ControlLog::with_capacity(self.log_size),
+            ticket,
+            times: times.clone(),
+            observer,
+        }));
+        self.send(motion, Request::Move(request));
+        self.phase = LifecyclePhase::UnderWay(Box::new(CurrentMotion {
+            motion,
+            work,
+            command: CommandSide::Requested,
+            thread: ThreadSide::Armed,
+            deadline: Some(now + START_TIMEOUT),
+            given_up: None,
+            finishing: None,
+            failure: None,
+            stopped: None,
+            times,
+        }));
+    }
+}
+
+fn check_ticket(ticket: Option<&StartTicket>) -> Result<(), MotionError> {
+    match ticket.and_then(StartTicket::fault) {
+        Some(fault) => Err(fault.into()),
+        None => Ok(()),
+    }
+}

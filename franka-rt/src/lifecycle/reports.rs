@@ -1,0 +1,260 @@
+//! What the command connection, the thread and the clock report.
+
+use core::time::Duration;
+
+use franka_proto::{MoveStatus, Request, Violation};
+
+use super::current_motion::{CommandSide, NEVER_SHOWN, ThreadSide, Work};
+use super::ending::STILL_SHOWN;
+use super::goal_progress::Settled;
+use super::outcome::Counted;
+use super::{
+    CloseReason, END_TIMEOUT, Lifecycle, LifecyclePhase, MotionError, Output, START_TIMEOUT,
+};
+use crate::driver::{Event, MotionId, Order};
+use crate::session::SessionEvent;
+use crate::stats::MotionStatistics;
+
+impl Lifecycle {
+    /// Takes a reply to the `Move` of `motion`. Replies to motions that are over are ignored.
+    pub fn on_move_reply(&mut self, motion: MotionId, status: MoveStatus, now: Duration) {
+        let Some(current) = self.current(motion) else {
+            return;
+        };
+        match (status, current.command) {
+            (MoveStatus::MotionStarted, CommandSide::Requested) => {
+                current.command = CommandSide::Started;
+                current.deadline = match current.thread {
+                    ThreadSide::Armed => Some(now + START_TIMEOUT),
+                    ThreadSide::Running => current.running_deadline(),
+                    ThreadSide::Ended(_) => Some(now + END_TIMEOUT),
+                };
+            }
+            (MoveStatus::MotionStarted, _) => {}
+            (status, _) => {
+                current.command = CommandSide::Ended(status);
+                current.deadline = Some(now + END_TIMEOUT);
+                if matches!(current.thread, ThreadSide::Armed) {
+                    let order = Order::Disarm { motion };
+                    self.outputs.push_back(Output::Order(order));
+                }
+            }
+        }
+        self.conclude(now);
+    }
+
+    /// Takes note that a reply to the `Move` of `motion` could not be read: it is unknown what the
+    /// robot is doing, so the arm is braked, the robot told to stop, and the goal resolves. New
+    /// motions wait until states show that this one has ended.
+    pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
+        if self.current(motion).is_some() {
+            self.give_up(MotionError::Violation(violation), now);
+        }
+    }
+
+    /// Takes an event of the thread.
+    pub fn on_event(&mut self, event: Event, now: Duration) {
+        match event {
+            Event::Started { motion, .. } => {
+                let Some(current) = self.current(motion) else {
+                    return;
+                };
+                current.thread = ThreadSide::Running;
+                if current.command == CommandSide::Started {
+                    current.deadline = current.running_deadline();
+                }
+                let begun = match &current.work {
+                    Work::Program(program) => Some(program.id),
+                    Work::Goals(goals) => goals.engaged.map(|engaged| engaged.id),
+                };
+                self.outputs.extend(begun.map(|id| Output::Began { id }));
+            }
+            Event::Program {
+                motion,
+                event,
+                statistics,
+            } => self.on_session_event(motion, event, statistics),
+            Event::Failed { motion, failure } => {
+                if let Some(current) = self.current(motion) {
+                    current.failure = Some(failure.into());
+                    self.send_stop(now);
+                }
+            }
+            Event::Finishing { motion } => {
+                if let Some(current) = self.current(motion) {
+                    current.finishing = Some(now);
+                    if current.command == CommandSide::Started {
+                        current.deadline = current.running_deadline();
+                    }
+                }
+            }
+            Event::Ended(ended) => self.on_ended(ended, now),
+            // A motion that the silence ended has an event of its own; one without an observer goes
+            // on.
+            Event::LinkLost { .. } | Event::Unobserved { .. } => {}
+        }
+    }
+
+    fn on_session_event(
+        &mut self,
+        motion: MotionId,
+        event: SessionEvent,
+        statistics: MotionStatistics,
+    ) {
+        let Some(current) = self.current(motion) else {
+            return;
+        };
+        let Work::Goals(goals) = &mut current.work else {
+            return;
+        };
+        match event {
+            SessionEvent::Settled {
+                goal,
+                settlement,
+                duration_ms,
+            } => {
+                let settled = Settled {
+                    goal,
+                    settlement,
+                    duration_ms,
+                    counted: Counted {
+                        statistics,
+                        times: current.times.clone(),
+                    },
+                };
+                match goals.engaged {
+                    Some(engaged) if goals.goes_on() => {
+                        let settled = goals.reach(engaged.id, &settled);
+                        if let Some(result) = settled {
+                            self.resolve(goal, result);
+                        }
+                    }
+                    _ => goals.settled = Some(settled),
+                }
+            }
+            SessionEvent::BadTool => goals.bad_tool = true,
+        }
+    }
+
+    /// Closes the lifecycle, since the command connection is gone: every goal resolves with an
+    /// error, and no motion starts any more.
+    ///
+    /// An arm on its way to a goal is braked, for as long as the thread goes on: see
+    /// [`Self::is_braking`]. If a program of the user's moves the arm, no more commands are
+    /// sent, and the robot stops it.
+    pub fn on_connection_closed(&mut self, reason: CloseReason) {
+        let closed = LifecyclePhase::Closed {
+            reason: reason.clone(),
+            braking: None,
+        };
+        let error = MotionError::ConnectionClosed { reason };
+        let unfinished = match core::mem::replace(&mut self.phase, closed) {
+            LifecyclePhase::UnderWay(mut current) => {
+                let runs_goals = matches!(
+                    (&current.work, &current.thread),
+                    (Work::Goals(_), ThreadSide::Running)
+                );
+                let order = current.abandon();
+                self.outputs.extend(order.map(Output::Order));
+                self.resolve_work(current.work, &Err(error.clone()), &Err(error.clone()));
+                runs_goals.then_some(current.motion)
+            }
+            LifecyclePhase::Abandoned { motion, .. } => Some(motion),
+            LifecyclePhase::Closed { braking, .. } => braking,
+            LifecyclePhase::Idle | LifecyclePhase::Stalled { .. } => None,
+        };
+        if let LifecyclePhase::Closed { braking, .. } = &mut self.phase {
+            *braking = unfinished;
+        }
+        self.resolve_next(error);
+    }
+
+    /// Takes note that a thread that has borrowed the cycle has not run it for `silence`, or that
+    /// it does again (`None`). Meanwhile no state arrives and no motion can run: the one under way
+    /// is given up and resolves as [`MotionError::Stalled`], and so does one that waits for it.
+    pub fn on_stall(&mut self, silence: Option<Duration>, now: Duration) {
+        match (&self.phase, silence) {
+            (
+                LifecyclePhase::Idle
+                | LifecyclePhase::UnderWay(_)
+                | LifecyclePhase::Abandoned { .. },
+                Some(silence),
+            ) => {
+                let error = MotionError::Stalled { silence };
+                self.resolve_next(error.clone());
+                self.give_up(error, now);
+                let abandoned = match self.phase {
+                    LifecyclePhase::Abandoned { motion, .. } => Some(motion),
+                    _ => None,
+                };
+                self.phase = LifecyclePhase::Stalled { abandoned };
+            }
+            (&LifecyclePhase::Stalled { abandoned }, None) => {
+                self.phase = match abandoned {
+                    Some(motion) => LifecyclePhase::abandoned(motion, now),
+                    None => LifecyclePhase::Idle,
+                };
+            }
+            _ => {}
+        }
+    }
+
+    /// When [`Self::on_time`] has to be called, if nothing else happens before.
+    pub fn deadline(&self) -> Option<Duration> {
+        match &self.phase {
+            LifecyclePhase::UnderWay(current) => current.deadline,
+            LifecyclePhase::Abandoned { deadline, .. } => *deadline,
+            LifecyclePhase::Idle
+            | LifecyclePhase::Stalled { .. }
+            | LifecyclePhase::Closed { .. } => None,
+        }
+    }
+
+    /// Checks the deadline at `now`. If neither side of the motion has ended by then, the robot is
+    /// told to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up.
+    pub fn on_time(&mut self, now: Duration) {
+        if self.deadline().is_none_or(|deadline| now < deadline) {
+            return;
+        }
+        let current = match &mut self.phase {
+            LifecyclePhase::UnderWay(current) => current,
+            LifecyclePhase::Abandoned { deadline, .. } => {
+                *deadline = None;
+                return self.resolve_next(STILL_SHOWN);
+            }
+            LifecyclePhase::Idle
+            | LifecyclePhase::Stalled { .. }
+            | LifecyclePhase::Closed { .. } => return,
+        };
+        let motion = current.motion;
+        match (current.command, &current.thread) {
+            (
+                CommandSide::Requested | CommandSide::Started,
+                ThreadSide::Armed | ThreadSide::Running,
+            ) => {
+                current.given_up = Some(match (current.command, &current.thread) {
+                    (_, ThreadSide::Armed) => NEVER_SHOWN,
+                    (CommandSide::Requested, _) => "the robot never answered the Move command",
+                    _ => "the robot did not end a motion that was finished",
+                });
+                current.command = CommandSide::Cancelled;
+                current.deadline = Some(now + END_TIMEOUT);
+                let order = current.abandon();
+                self.outputs.extend(order.map(Output::Order));
+                self.send(motion, Request::StopMove);
+            }
+            (command, _) => {
+                let what = match command {
+                    CommandSide::Cancelled => "the robot neither ran the motion nor stopped it",
+                    CommandSide::Ended(_) => {
+                        "the robot has ended the motion but goes on showing it"
+                    }
+                    CommandSide::Requested | CommandSide::Started => {
+                        "the robot never said how the motion ended"
+                    }
+                };
+                self.give_up(MotionError::Protocol { what }, now);
+            }
+        }
+    }
+}

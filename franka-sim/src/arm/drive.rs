@@ -1,0 +1,97 @@
+//! The drives: rotors, gears and torque loops.
+
+use franka_model::{JointVector, RobotKind, joint_vector};
+
+/// What is between a commanded torque and the link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// Rotor inertia felt at each joint while nothing controls its torque, `[kg·m²]`. Source: the
+    /// README of Drake's FR3 model, "given by Franka".
+    pub rotor_inertia: JointVector,
+    /// Gain of the inner loop that makes the torque between gear and link follow the command. The
+    /// rotor inertia that is felt is `rotor_inertia / (1 + gain)`. Source: 2 makes of the wrist's
+    /// 0.2055 the 0.074 that franka-rs and `mujoco_menagerie` have.
+    pub torque_loop_gain: f64,
+    /// Time constant with which the torque follows a command of the torque interface, a
+    /// first-order lag, `[s]`. No source; a force bandwidth of 10 Hz and the gains that run on
+    /// real arms bound it.
+    pub torque_lag: f64,
+    /// Cycles from a state to the cycle in which its answer acts, at least 1. Source: the
+    /// protocol for 1.
+    pub command_delay: u32,
+    /// Elasticity between gear and link; `None` for rigid joints.
+    pub elasticity: Option<Elasticity>,
+    /// Torque ripple of the gears.
+    pub ripple: Ripple,
+}
+
+/// Springs and dampers between rotors and links.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elasticity {
+    /// `[N·m/rad]`. Source: `theta − q = tau_J / K` in published states: 14250 (joints 1 to 4) and
+    /// 9000 (5 to 7) on two FERs, 7000 in the oldest sample of the documentation.
+    pub stiffness: JointVector,
+    /// `[N·m·s/rad]`. A two-mass check: 30 and 5 keep libfranka's example gains about stable and
+    /// let a wrist damping of 30 to 40 ring, as reported.
+    pub damping: JointVector,
+}
+
+/// A torque that depends on the motor's angle: `amplitude · sin(order · angle)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ripple {
+    /// `[N·m]`. Source: the log of Gaz et al., 0.1 to 0.25 (joints 1 to 4), 0.02 (5 and 6).
+    pub amplitude: JointVector,
+    /// Periods per turn of the joint. Source: as there, 241 to 243 and 160.
+    pub order: JointVector,
+}
+
+/// Rotor inertia of a Franka Research 3 under its torque loop, `[kg·m²]`.
+///
+/// Source: `mujoco_menagerie`, `franka_fr3`. Joint 7 needs it: its link alone has 1.2e-4 kg·m²,
+/// with which a torque client's damping above 0.24 N·m·s/rad is unstable at 1 kHz.
+const IDEAL_FR3: JointVector = joint_vector([0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074]);
+
+/// That of a Franka Emika Robot. Source: `mujoco_menagerie`, `franka_emika_panda`.
+const IDEAL_FER: JointVector = joint_vector([0.1; 7]);
+
+impl Drive {
+    /// Rigid joints with a perfect torque loop.
+    pub fn ideal(kind: RobotKind) -> Self {
+        Self {
+            rotor_inertia: if kind == RobotKind::Fer {
+                IDEAL_FER
+            } else {
+                IDEAL_FR3
+            },
+            torque_loop_gain: 0.0,
+            torque_lag: 0.0,
+            command_delay: 1,
+            elasticity: None,
+            ripple: Ripple::NONE,
+        }
+    }
+
+    /// Rotor inertia that is felt at the joints, `[kg·m²]`.
+    pub fn felt_inertia(&self) -> JointVector {
+        self.rotor_inertia / (1.0 + self.torque_loop_gain)
+    }
+
+    /// Inertia that frictionless drives add to the links over a step of `dt` seconds, `[kg·m²]`.
+    #[cfg(feature = "mujoco")]
+    pub(crate) fn link_inertia(&self, dt: f64) -> JointVector {
+        let felt = self.felt_inertia();
+        let Some(elasticity) = &self.elasticity else {
+            return felt;
+        };
+        let spring = (elasticity.damping + elasticity.stiffness * dt) * dt;
+        felt.zip_map(&spring, |felt, spring| spring * felt / (felt + spring))
+    }
+}
+
+impl Ripple {
+    /// None.
+    pub const NONE: Self = Self {
+        amplitude: joint_vector([0.0; 7]),
+        order: joint_vector([0.0; 7]),
+    };
+}

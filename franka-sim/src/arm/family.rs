@@ -1,0 +1,355 @@
+//! Families of arms: a distribution of every parameter.
+
+use franka_model::{JointVector, RobotKind};
+use nalgebra::{Isometry3, Vector3};
+use serde::{Deserialize, Serialize};
+
+mod distribution;
+
+pub use distribution::{Distribution, Values};
+
+use super::{Arm, Body, Bristle, Drive, Elasticity, Friction, Ripple, Sensors};
+use crate::network::Stalls;
+use crate::noise::Random;
+
+/// The distributions that the parameters of an arm are drawn from.
+///
+/// Units are SI. Where nothing else is said, a parameter is drawn for each joint (or link), and
+/// the numbers of its distribution are one for all or seven. A JSON file has every field:
+///
+/// ```
+/// use franka_model::RobotKind;
+/// use franka_sim::arm::{Arm, Distribution, Family, Values};
+///
+/// let mut family = Family::realistic();
+/// family.torque_lag = Distribution::Uniform {
+///     low: Values::One(0.001),
+///     high: Values::One(0.003),
+/// };
+/// let again = Family::from_json(&family.to_json()).expect("what was written");
+/// assert_eq!(again, family);
+/// let arm = Arm::sample(RobotKind::Fr3, 7, &family);
+/// assert!((0.001..0.003).contains(&arm.drive.torque_lag));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Family {
+    /// Breakaway torque before its scale, `[N·m]`.
+    pub static_friction: Distribution,
+    /// Factor on the breakaway torques of all joints, drawn once.
+    pub static_friction_scale: Distribution,
+    /// Kinetic over static friction, 0 to 1.
+    pub kinetic_ratio: Distribution,
+    /// `[rad/s]`
+    pub stribeck_speed: Distribution,
+    /// `[N·m/rad]`
+    pub bristle_stiffness: Distribution,
+    /// `[N·m·s/rad]`
+    pub bristle_damping: Distribution,
+    /// `[N·m·s/rad]`
+    pub viscous_friction: Distribution,
+    /// Share of friction beyond the torque sensor, 0 to 1.
+    pub link_share: Distribution,
+    /// Rotor inertia without torque control, `[kg·m²]`.
+    pub rotor_inertia: Distribution,
+    /// Drawn once.
+    pub torque_loop_gain: Distribution,
+    /// `[s]`, drawn once.
+    pub torque_lag: Distribution,
+    /// Whole cycles, at least 1, drawn once.
+    pub command_delay: Distribution,
+    /// Of the joints; `null` for rigid ones.
+    #[serde(deserialize_with = "Option::deserialize")] // which has no default
+    pub elasticity: Option<Elastic>,
+    /// `[N·m]`
+    pub ripple_amplitude: Distribution,
+    /// Periods per turn.
+    pub ripple_order: Distribution,
+    /// Zero error of the torque sensors, `[N·m]`.
+    pub torque_offset: Distribution,
+    /// `[N·m]`
+    pub torque_quantum: Distribution,
+    /// Standard deviation, `[N·m]`.
+    pub torque_noise: Distribution,
+    /// Standard deviation, `[rad/s]`.
+    pub velocity_noise_at_rest: Distribution,
+    /// Standard deviation at 1 rad/s and above, `[rad/s]`.
+    pub velocity_noise_in_motion: Distribution,
+    /// Standard deviation, `[rad]`.
+    pub position_noise: Distribution,
+    /// As a part of the link's mass.
+    pub mass_error: Distribution,
+    /// Of each coordinate of a link's centre of mass, `[m]`.
+    pub com_error: Distribution,
+    /// Of each coordinate of the rotation vector of a joint's frame, `[rad]`.
+    pub axis_error: Distribution,
+    /// Of each coordinate of the position of a joint's frame, `[m]`.
+    pub length_error: Distribution,
+    /// `[kg]`, drawn once.
+    pub undeclared_mass: Distribution,
+    /// Of each coordinate of the tool's centre of mass, `[m]`.
+    pub load_com_error: Distribution,
+    /// About each horizontal axis, `[rad]`.
+    pub base_tilt: Distribution,
+    /// Stalls of the network interface per second, of a Franka Emika Robot, drawn once: a
+    /// Franka Research 3 has none. Their length is that of [`Stalls::FER`].
+    pub stalls_per_second: Distribution,
+}
+
+/// Distributions of the joints' elasticity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Elastic {
+    /// `[N·m/rad]`
+    pub stiffness: Distribution,
+    /// `[N·m·s/rad]`
+    pub damping: Distribution,
+}
+
+/// Why a text describes no family of arms.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FamilyError {
+    /// It is not JSON, or has other fields or types.
+    #[error("{0}")]
+    Unreadable(String),
+    /// A value that no arm has.
+    #[error("{field}: {got}, expected {expected}")]
+    Invalid {
+        /// The field's name.
+        field: &'static str,
+        /// What it says.
+        got: String,
+        /// What it may say.
+        expected: String,
+    },
+}
+
+impl Family {
+    /// Good arms, better than those that were measured: little friction, rigid joints.
+    pub fn nominal() -> Self {
+        Self::embedded(include_str!("../../families/nominal.json"))
+    }
+
+    /// Arms like those that were measured.
+    pub fn realistic() -> Self {
+        Self::embedded(include_str!("../../families/realistic.json"))
+    }
+
+    /// Worn and badly calibrated arms, with an undeclared load.
+    pub fn bad() -> Self {
+        Self::embedded(include_str!("../../families/bad.json"))
+    }
+
+    fn embedded(text: &str) -> Self {
+        Self::from_json(text).expect("a test reads each of the three")
+    }
+
+    /// Reads a family.
+    ///
+    /// # Errors
+    /// [`FamilyError`] if the text is not JSON, lacks a field or has one that is unknown, or if a
+    /// distribution has values that no arm has.
+    pub fn from_json(text: &str) -> Result<Self, FamilyError> {
+        let mut reader = serde_json::Deserializer::from_str(text);
+        let family: Self = serde_path_to_error::deserialize(&mut reader)
+            .map_err(|error| FamilyError::Unreadable(error.to_string()))?;
+        reader
+            .end()
+            .map_err(|error| FamilyError::Unreadable(error.to_string()))?;
+        family.check()?;
+        Ok(family)
+    }
+
+    /// The family as JSON.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).expect("plain data")
+    }
+
+    /// Checks what every arm of the family would have.
+    ///
+    /// # Errors
+    /// [`FamilyError::Invalid`] for the first field that is wrong.
+    pub fn check(&self) -> Result<(), FamilyError> {
+        use distribution::Bounds::{Any, Between, NotNegative, Positive, Whole};
+        let once = [
+            (
+                "static_friction_scale",
+                &self.static_friction_scale,
+                Positive,
+            ),
+            ("torque_loop_gain", &self.torque_loop_gain, NotNegative),
+            ("torque_lag", &self.torque_lag, Between(0.0, 0.1)),
+            ("command_delay", &self.command_delay, Whole(1, 20)),
+            ("undeclared_mass", &self.undeclared_mass, NotNegative),
+            ("load_com_error", &self.load_com_error, Any),
+            ("base_tilt", &self.base_tilt, Any),
+            (
+                "stalls_per_second",
+                &self.stalls_per_second,
+                Between(0.0, 100.0),
+            ),
+        ];
+        let each = [
+            ("static_friction", &self.static_friction, NotNegative),
+            ("kinetic_ratio", &self.kinetic_ratio, Between(0.0, 1.0)),
+            ("stribeck_speed", &self.stribeck_speed, Positive),
+            ("bristle_stiffness", &self.bristle_stiffness, Positive),
+            ("bristle_damping", &self.bristle_damping, NotNegative),
+            ("viscous_friction", &self.viscous_friction, NotNegative),
+            ("link_share", &self.link_share, Between(0.0, 1.0)),
+            ("rotor_inertia", &self.rotor_inertia, Positive),
+            ("ripple_amplitude", &self.ripple_amplitude, NotNegative),
+            ("ripple_order", &self.ripple_order, NotNegative),
+            ("torque_offset", &self.torque_offset, Any),
+            ("torque_quantum", &self.torque_quantum, NotNegative),
+            ("torque_noise", &self.torque_noise, NotNegative),
+            (
+                "velocity_noise_at_rest",
+                &self.velocity_noise_at_rest,
+                NotNegative,
+            ),
+            (
+                "velocity_noise_in_motion",
+                &self.velocity_noise_in_motion,
+                NotNegative,
+            ),
+            ("position_noise", &self.position_noise, NotNegative),
+            ("mass_error", &self.mass_error, Between(-0.9, 10.0)),
+            ("com_error", &self.com_error, Any),
+            ("axis_error", &self.axis_error, Any),
+            ("length_error", &self.length_error, Any),
+        ];
+        for (field, distribution, bounds) in once {
+            distribution.check_single(field)?;
+            distribution.check(field, bounds)?;
+        }
+        for (field, distribution, bounds) in each {
+            distribution.check(field, bounds)?;
+        }
+        if let Some(Elastic { stiffness, damping }) = &self.elasticity {
+            stiffness.check("elasticity.stiffness", Positive)?;
+            damping.check("elasticity.damping", NotNegative)?;
+        }
+        Ok(())
+    }
+
+    /// The arm of this seed, or the central one.
+    pub(super) fn arm(&self, kind: RobotKind, seed: Option<u64>) -> Arm {
+        let mut draw = Draw {
+            random: seed.map(Random::new),
+        };
+        // The order of the draws is part of what a seed means.
+        let scale = draw.once(&self.static_friction_scale);
+        let static_torque = draw.joints(&self.static_friction) * scale;
+        let friction = Friction {
+            static_torque,
+            kinetic_torque: draw
+                .joints(&self.kinetic_ratio)
+                .component_mul(&static_torque),
+            stribeck_speed: draw.joints(&self.stribeck_speed),
+            viscous: draw.joints(&self.viscous_friction),
+            bristle: Some(Bristle {
+                stiffness: draw.joints(&self.bristle_stiffness),
+                damping: draw.joints(&self.bristle_damping),
+            }),
+            link_share: draw.joints(&self.link_share),
+        };
+        let drive = Drive {
+            rotor_inertia: draw.joints(&self.rotor_inertia),
+            torque_loop_gain: draw.once(&self.torque_loop_gain),
+            torque_lag: draw.once(&self.torque_lag),
+            command_delay: draw.whole(&self.command_delay),
+            elasticity: self.elasticity.as_ref().map(|elastic| Elasticity {
+                stiffness: draw.joints(&elastic.stiffness),
+                damping: draw.joints(&elastic.damping),
+            }),
+            ripple: Ripple {
+                amplitude: draw.joints(&self.ripple_amplitude),
+                order: draw.joints(&self.ripple_order),
+            },
+        };
+        let sensors = Sensors {
+            torque_offset: draw.joints(&self.torque_offset),
+            torque_quantum: draw.joints(&self.torque_quantum),
+            torque_noise: draw.joints(&self.torque_noise),
+            velocity_noise_at_rest: draw.joints(&self.velocity_noise_at_rest),
+            velocity_noise_in_motion: draw.joints(&self.velocity_noise_in_motion),
+            position_noise: draw.joints(&self.position_noise),
+        };
+        let tilt = Vector3::new(draw.once(&self.base_tilt), draw.once(&self.base_tilt), 0.0);
+        let exact = Body::exact(kind).tilted(tilt);
+        let body = Body {
+            mass_error: draw.joints(&self.mass_error).into(),
+            com_error: std::array::from_fn(|i| draw.vector(&self.com_error, i)),
+            kinematic_error: std::array::from_fn(|i| {
+                let shift = draw.vector(&self.length_error, i);
+                Isometry3::new(shift, draw.vector(&self.axis_error, i))
+            }),
+            undeclared_mass: draw.once(&self.undeclared_mass),
+            load_com_error: draw.vector(&self.load_com_error, 0),
+            ..exact
+        };
+        let per_second = draw.once(&self.stalls_per_second);
+        let stalls = (kind == RobotKind::Fer && per_second > 0.0).then_some(Stalls {
+            per_second,
+            ..Stalls::FER
+        });
+        Arm {
+            friction,
+            drive,
+            sensors,
+            body,
+            stalls,
+        }
+    }
+}
+
+/// Draws values, or takes the middle of each distribution.
+struct Draw {
+    random: Option<Random>,
+}
+
+impl Draw {
+    fn number(&mut self, distribution: &Distribution, joint: usize) -> f64 {
+        match (*distribution, &mut self.random) {
+            (Distribution::Constant(value), _) => value.of(joint),
+            (Distribution::Uniform { low, high }, None) => 0.5 * (low.of(joint) + high.of(joint)),
+            (Distribution::Uniform { low, high }, Some(random)) => {
+                let (low, high) = (low.of(joint), high.of(joint));
+                low + (high - low) * random.uniform()
+            }
+            (Distribution::Normal { mean, .. }, None) => mean.of(joint),
+            (Distribution::Normal { mean, rms }, Some(random)) => {
+                mean.of(joint) + rms.of(joint) * random.normal()
+            }
+        }
+    }
+
+    fn once(&mut self, distribution: &Distribution) -> f64 {
+        self.number(distribution, 0)
+    }
+
+    /// A whole number, each between the ends equally likely.
+    fn whole(&mut self, distribution: &Distribution) -> u32 {
+        let wide = match *distribution {
+            Distribution::Uniform { low, high } if self.random.is_some() => Distribution::Uniform {
+                low,
+                high: Values::One(high.of(0) + 1.0),
+            },
+            other => other,
+        };
+        self.once(&wide) as u32
+    }
+
+    fn joints(&mut self, distribution: &Distribution) -> JointVector {
+        JointVector::from_fn(|i, _| self.number(distribution, i))
+    }
+
+    fn vector(&mut self, distribution: &Distribution, link: usize) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| self.number(distribution, link))
+    }
+}
+
+#[cfg(test)]
+mod tests;

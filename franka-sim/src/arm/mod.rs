@@ -1,0 +1,88 @@
+//! One simulated arm: how it differs from its model and from an ideal drive.
+//!
+//! ```text
+//! Family (distributions, JSON) ── sample, central ──> Arm ──> drive train, plant, sensors
+//! ```
+//!
+//! | module | content |
+//! |---|---|
+//! | `friction` | [`Friction`] of the joints |
+//! | `drive` | [`Drive`]: rotors, torque loop, elasticity, ripple |
+//! | `sensors` | [`Sensors`]: offset, noise and quanta |
+//! | `body` | [`Body`]: errors of links, axes and load, base tilt, end stops |
+//! | `family` | [`Family`]: distributions of all of these, read from JSON |
+//!
+//! The sources of the figures are named with the fields and in the book (`docs/src/real-arm.md`).
+
+mod body;
+mod drive;
+mod family;
+mod friction;
+mod sensors;
+
+pub use body::{Body, EndStops};
+pub use drive::{Drive, Elasticity, Ripple};
+pub use family::{Distribution, Elastic, Family, FamilyError, Values};
+pub use friction::{Bristle, Friction};
+pub use sensors::Sensors;
+
+use franka_model::RobotKind;
+
+use crate::network::Stalls;
+
+/// The parameters of one arm. Units are SI, vectors go from joint 1 to joint 7.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arm {
+    /// Joint friction.
+    pub friction: Friction,
+    /// Rotors, gears and torque loops.
+    pub drive: Drive,
+    /// What the sensors read.
+    pub sensors: Sensors,
+    /// Links, axes, load and mounting as they are.
+    pub body: Body,
+    /// Stalls of the network interface that sends the states; `None` for an interface without.
+    /// [`Sim`](crate::Sim) has them between its sockets unless it is given a network.
+    pub stalls: Option<Stalls>,
+}
+
+impl Arm {
+    /// An arm that is as its model says: rigid joints, a perfect torque loop, perfect sensors, and
+    /// a smooth friction of a twentieth of the published one, which lets it creep to its target.
+    ///
+    /// For tests that need exactness. No real arm is like this.
+    pub fn ideal(kind: RobotKind) -> Self {
+        Self {
+            friction: Friction::smooth(kind),
+            drive: Drive::ideal(kind),
+            sensors: Sensors::PERFECT,
+            body: Body::exact(kind),
+            stalls: None,
+        }
+    }
+
+    /// The central arm of [`Family::nominal`]: a good arm, better than those measured.
+    pub fn nominal(kind: RobotKind) -> Self {
+        Self::central(kind, &Family::nominal())
+    }
+
+    /// The central arm of [`Family::realistic`].
+    pub fn realistic(kind: RobotKind) -> Self {
+        Self::central(kind, &Family::realistic())
+    }
+
+    /// The central arm of [`Family::bad`]: worn, badly calibrated, with an undeclared load.
+    pub fn bad(kind: RobotKind) -> Self {
+        Self::central(kind, &Family::bad())
+    }
+
+    /// The arm with every parameter in the middle of its distribution.
+    pub fn central(kind: RobotKind, family: &Family) -> Self {
+        family.arm(kind, None)
+    }
+
+    /// One arm of the family: the same seed gives the same arm.
+    pub fn sample(kind: RobotKind, seed: u64, family: &Family) -> Self {
+        family.arm(kind, Some(seed))
+    }
+}

@@ -1,0 +1,60 @@
+//! What the sensors read.
+
+use franka_model::{JointVector, joint_vector};
+
+/// Errors of the sensors. Noise is white from one millisecond to the next; standard deviations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensors {
+    /// Zero error of the torque sensors, `[N·m]`: `tau_J` is higher by this, and the torque that
+    /// the torque loop gives is lower by as much. Sources: `tau_J` at rest less the model's
+    /// gravity in published states of two FERs and one FR3; MTI TU Berlin, five Pandas.
+    pub torque_offset: JointVector,
+    /// Steps of `tau_J`, `[N·m]`; 0 for none. Source: states in documentation and issues, 0.025
+    /// (joints 1 to 4) and 0.006 (5 to 7).
+    pub torque_quantum: JointVector,
+    /// Noise of `tau_J`, `[N·m]`. Source: the log of Gaz et al., 0.03 to 0.08.
+    pub torque_noise: JointVector,
+    /// Noise of `dq` at rest, `[rad/s]`. Source: published states, 5e-4.
+    pub velocity_noise_at_rest: JointVector,
+    /// Noise of `dq` at 1 rad/s and above, `[rad/s]`; between, it grows with the speed. Source: the
+    /// log of Gaz et al., 0.002 to 0.01.
+    pub velocity_noise_in_motion: JointVector,
+    /// Noise of `q`, `[rad]`. Source: published states repeat to 1e-6 to 5e-6.
+    pub position_noise: JointVector,
+}
+
+impl Sensors {
+    /// Perfect sensors.
+    pub const PERFECT: Self = Self {
+        torque_offset: joint_vector([0.0; 7]),
+        torque_quantum: joint_vector([0.0; 7]),
+        torque_noise: joint_vector([0.0; 7]),
+        velocity_noise_at_rest: joint_vector([0.0; 7]),
+        velocity_noise_in_motion: joint_vector([0.0; 7]),
+        position_noise: joint_vector([0.0; 7]),
+    };
+
+    /// Sensors with a noise that a controller has to cope with. The magnitudes are choices of this
+    /// simulator, not measurements.
+    pub const NOISY: Self = Self {
+        torque_noise: joint_vector([0.05; 7]),
+        velocity_noise_at_rest: joint_vector([2e-3; 7]),
+        velocity_noise_in_motion: joint_vector([2e-3; 7]),
+        position_noise: joint_vector([5e-6; 7]),
+        ..Self::PERFECT
+    };
+
+    /// Noise of `dq` at these velocities, `[rad/s]`.
+    pub(crate) fn velocity_noise(&self, dq: &JointVector) -> JointVector {
+        let [rest, motion] = [self.velocity_noise_at_rest, self.velocity_noise_in_motion];
+        JointVector::from_fn(|i, _| rest[i] + (motion[i] - rest[i]) * dq[i].abs().min(1.0))
+    }
+
+    /// A torque in the sensors' steps, `[N·m]`.
+    pub(crate) fn quantised(&self, torque: &JointVector) -> JointVector {
+        torque.zip_map(&self.torque_quantum, |torque, quantum| match quantum {
+            0.0 => torque,
+            _ => (torque / quantum).round() * quantum,
+        })
+    }
+}
