@@ -50,7 +50,7 @@ const ANSWERS: usize = 2 + <server::Session>::PENDING_LIMIT;
 /// room or for a reply without blocking a worker, and the thread only tries. A queue between
 /// threads (crossbeam) has no end that a task can await.
 pub(super) struct DeviceServer<D> {
-    device: D,
+    device: Box<D>,
     socket: UdpSocket,
     orders: mpsc::Receiver<Order>,
     jobs: mpsc::Receiver<Job<D>>,
@@ -60,7 +60,7 @@ pub(super) struct DeviceServer<D> {
 
 impl<D: Device> DeviceServer<D> {
     pub(super) fn new(
-        device: D,
+        device: Box<D>,
         socket: UdpSocket,
         orders: mpsc::Receiver<Order>,
         jobs: mpsc::Receiver<Job<D>>,

@@ -66,7 +66,9 @@ use cycle::Cycle;
 /// ```
 #[derive(Debug)]
 pub struct Sim {
-    config: Config,
+    /// On the heap, as all that is large: builds without optimisation copy what they pass on, and
+    /// stacks of threads are small.
+    config: Box<Config>,
     /// The rigid-body plant if there is none.
     plant: Option<Box<dyn Plant>>,
     bind: SocketAddr,
@@ -108,7 +110,7 @@ impl Sim {
     /// A robot of this configuration, on a free port of 127.0.0.1.
     pub fn new(config: Config) -> Self {
         Self {
-            config,
+            config: Box::new(config),
             plant: None,
             bind: SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0),
             hand: None,
@@ -245,10 +247,7 @@ impl Sim {
         let stalls = self.config.arm.as_ref().and_then(|arm| arm.stalls);
         let stalling = stalls.map(|stalls| Network::stalling(self.config.seed, stalls));
         let network = self.network.or(stalling);
-        let robot = match self.plant {
-            Some(plant) => Robot::with_plant(self.config, plant),
-            None => Robot::new(self.config),
-        };
+        let robot = robot(self.config, self.plant);
         let (robot, robot_server) = service::open(self.bind, robot).await?;
         let beside = |port| {
             let mut address = self.bind;
@@ -257,14 +256,15 @@ impl Sim {
         };
         let (hand, hand_server) = match self.hand {
             Some((fingers, port)) => {
-                let (hand, server) = service::open(beside(port), Hand::new(fingers)).await?;
+                let hand = Box::new(Hand::new(fingers));
+                let (hand, server) = service::open(beside(port), hand).await?;
                 (Some(hand), Some(server))
             }
             None => (None, None),
         };
         let (vacuum_gripper, vacuum_server) = match self.vacuum_gripper {
             Some((suction, port)) => {
-                let gripper = VacuumGripper::new(suction);
+                let gripper = Box::new(VacuumGripper::new(suction));
                 let (gripper, server) = service::open(beside(port), gripper).await?;
                 (Some(gripper), Some(server))
             }
@@ -297,6 +297,15 @@ impl Sim {
             finished,
         })
     }
+}
+
+/// The robot of this configuration; the rigid-body plant if there is no other. No async function,
+/// whose future would hold it.
+fn robot(config: Box<Config>, plant: Option<Box<dyn Plant>>) -> Box<Robot> {
+    Box::new(match plant {
+        Some(plant) => Robot::with_plant(*config, plant),
+        None => Robot::new(*config),
+    })
 }
 
 /// A robot that is being simulated. Dropping it stops the simulation within a cycle or two and

@@ -30,7 +30,7 @@ pub struct Stopped;
 /// the address, since there are several.
 pub(super) async fn open<D: Device>(
     bind: SocketAddr,
-    device: D,
+    device: Box<D>,
 ) -> io::Result<(Service<D>, DeviceServer<D>)> {
     let listener = TcpListener::bind(bind)
         .await
