@@ -39,6 +39,10 @@ const ORDERS: usize = 32;
 /// How long orders and jobs wait for a command that is waited for, at most.
 const JOB_POLL: Duration = Duration::from_millis(1);
 
+/// The longest that one wait for a datagram counts. The kernel rounds such waits up to a few
+/// milliseconds; whatever took longer, the host held this process up, and maybe the client.
+const WAIT_MAX: Duration = Duration::from_millis(10);
+
 /// Replies that may wait for a client. Without room for the answers to all open requests and to one
 /// more, which may take two replies, no request is read.
 pub(super) const REPLIES: usize = 2 * ANSWERS;
@@ -119,13 +123,13 @@ impl<D: Device> DeviceServer<D> {
     }
 
     /// Waits for the command that the newest state asks for, if it does, and no longer than
-    /// `patience`. Orders and jobs are taken meanwhile as they are between two milliseconds. False
-    /// at the end.
+    /// `patience`, of which time in which the host held this thread up takes little. Orders and
+    /// jobs are taken meanwhile as they are between two milliseconds. False at the end.
     pub(super) fn await_command(&mut self, patience: Duration, pace: Pace) -> bool {
-        let begun = Instant::now();
+        let mut waited = Duration::ZERO;
         loop {
             self.relay(Instant::now());
-            if self.awaits() == Awaited::Nothing || begun.elapsed() >= patience {
+            if self.awaits() == Awaited::Nothing || waited >= patience {
                 return true;
             }
             self.take_orders();
@@ -133,8 +137,10 @@ impl<D: Device> DeviceServer<D> {
                 return false;
             }
             self.send_replies();
-            let pause = self.pause(Instant::now());
+            let begun = Instant::now();
+            let pause = self.pause(begun);
             self.wait_for_datagram(pause.unwrap_or(JOB_POLL));
+            waited += begun.elapsed().min(WAIT_MAX);
         }
     }
 

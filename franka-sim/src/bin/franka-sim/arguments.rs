@@ -2,11 +2,12 @@
 
 use std::net::IpAddr;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{ArgAction, Parser, ValueEnum};
 use franka_model::RobotKind;
 
-use crate::values::{factor, mass, numbers, object_width};
+use crate::values::{factor, mass, numbers, object_width, patience};
 
 /// Simulates a Franka Research 3 (protocol 10) or a Franka Emika Robot (protocol 5) until it is
 /// interrupted.
@@ -137,10 +138,12 @@ pub(crate) struct Arguments {
     pub(crate) strict_clock: bool,
 
     /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a
-    /// motion the next millisecond begins when the answer to the last state is there, within a
-    /// second. For tests, and for clients slower than a robot allows.
-    #[arg(long, conflicts_with_all = ["realtime", "strict_clock"])]
-    pub(crate) virtual_time: bool,
+    /// motion the next millisecond begins when the answer to the last state is there, or counts as
+    /// missing after so many seconds. For tests, and for clients slower than a robot allows.
+    #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
+          require_equals = true, default_missing_value = "1",
+          conflicts_with_all = ["realtime", "strict_clock"])]
+    pub(crate) virtual_time: Option<Duration>,
 }
 
 /// The kinds of robot by their short names.
@@ -212,10 +215,16 @@ mod tests {
 
     #[test]
     fn what_makes_no_robot_is_refused() {
-        assert!(parse(&["--virtual-time"]).is_ok());
+        let patience = |arguments| parse(arguments).ok().and_then(|parsed| parsed.virtual_time);
+        assert_eq!(patience(&["--virtual-time"]), Some(Duration::from_secs(1)));
+        let short = patience(&["--virtual-time=0.1"]);
+        assert_eq!(short, Some(Duration::from_millis(100)));
         for wrong in [
             ["--virtual-time", "--realtime"],
             ["--virtual-time", "--strict-clock"],
+            ["--virtual-time=0", "--hand"],
+            ["--virtual-time=nan", "--hand"],
+            ["--virtual-time=1e30", "--hand"],
             ["--q", "1,2"],
             ["--q", "nan,0,0,0,0,0,0"],
             ["--payload", "-1"],

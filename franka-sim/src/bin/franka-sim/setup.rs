@@ -3,7 +3,6 @@
 use std::fmt::Display;
 use std::fs;
 use std::net::SocketAddr;
-use std::time::Duration;
 
 use bytes::Bytes;
 use franka_model::{JointVector, Load, RobotKind};
@@ -87,8 +86,8 @@ impl Arguments {
             .realtime(self.realtime)
             .strict_clock(self.strict_clock);
         let sim = match self.virtual_time {
-            true => sim.virtual_time(PATIENCE),
-            false => sim,
+            Some(patience) => sim.virtual_time(patience),
+            None => sim,
         };
         let sim = match self.network.network(self.seed) {
             Some(network) => sim.network(network),
@@ -181,14 +180,13 @@ impl NetworkKind {
     }
 }
 
-/// How long an answer may take in virtual time.
-const PATIENCE: Duration = Duration::from_secs(1);
-
 /// The longest model library: what a message carries.
 const LIBRARY_MAX: usize = franka_proto::framing::MAX_MESSAGE_SIZE - 64;
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use clap::Parser as _;
 
     use super::*;

@@ -1,5 +1,7 @@
 //! Checked values of arguments.
 
+use std::time::Duration;
+
 use franka_sim::Fingers;
 
 /// `N` finite numbers, separated by commas.
@@ -43,4 +45,13 @@ pub(crate) fn mass(text: &str) -> Result<f64, String> {
         return Err("a mass is not negative".into());
     }
     Ok(mass)
+}
+
+/// Seconds for which a robot may wait.
+pub(crate) fn patience(text: &str) -> Result<Duration, String> {
+    let [seconds] = numbers::<1>(text)?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(patience) if patience >= Duration::from_millis(1) => Ok(patience),
+        _ => Err("at least 0.001 s expected".into()),
+    }
 }
