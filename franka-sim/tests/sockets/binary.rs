@@ -9,7 +9,11 @@ use std::time::{Duration, Instant};
 
 use franka_proto::Version;
 
-use crate::port::Port;
+use crate::port::{Port, SOON};
+
+/// In virtual time, so that a good client is late on no machine. The silence of 20 cycles that ends
+/// a motion takes some seconds.
+const PATIENCE: &str = "--virtual-time=0.1";
 
 /// A running simulator on free ports of 127.0.0.1. It ends with this value.
 pub(crate) struct Binary {
@@ -20,10 +24,16 @@ pub(crate) struct Binary {
 }
 
 impl Binary {
-    /// Starts `franka-sim --robot kind` and waits until it listens.
+    /// Starts a robot of this kind, which waits for answers, and waits until it listens.
     pub(crate) fn start(kind: &str) -> Self {
+        Self::start_with(&["--robot", kind, PATIENCE])
+    }
+
+    /// Starts a robot with these arguments, the kind first, and waits until it listens.
+    pub(crate) fn start_with(arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_franka-sim"))
-            .args(["--robot", kind, "--port", "0"])
+            .args(arguments)
+            .args(["--port", "0"])
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
@@ -35,7 +45,7 @@ impl Binary {
             address.parse::<SocketAddr>().expect("an address")
         });
         let mut address = || addresses.next().expect("three lines");
-        let version = match kind {
+        let version = match arguments[1] {
             "fer" => Version::V5,
             _ => Version::V10,
         };
@@ -82,7 +92,7 @@ impl Binary {
 
     /// Waits until the simulator has logged a line that contains `text`.
     pub(crate) fn assert_logged(&self, text: &str) {
-        let deadline = Instant::now() + Duration::from_secs(2);
+        let deadline = Instant::now() + SOON;
         while !self.log().contains(text) {
             assert!(Instant::now() < deadline, "no {text:?} in\n{}", self.log());
             std::thread::sleep(Duration::from_millis(5));

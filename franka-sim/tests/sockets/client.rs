@@ -11,7 +11,7 @@ use franka_proto::{
 };
 
 use crate::binary::Binary;
-use crate::port::{Connection, SOON};
+use crate::port::{Connection, SOON, receive};
 
 /// A client that answers every state until it is told otherwise.
 pub(crate) struct Client {
@@ -35,7 +35,7 @@ impl Client {
         let greeting = port.message(0, 0, &[&[0], &port.version.to_le_bytes()[..]].concat());
         let message = next_message(&greeting).expect("whole").expect("complete");
         session.on_message(message).expect("a greeting");
-        let robot = udp.peek_from(&mut []).expect("a state").1;
+        let robot = receive(&udp, &mut []).1;
         let state = RobotState::default();
         let mut client = Self {
             connection,
@@ -57,7 +57,7 @@ impl Client {
     /// Waits for a state; of several, takes the newest.
     pub(crate) fn next_state(&mut self) -> &RobotState {
         let mut bytes = [0; RobotState::MAX_SIZE];
-        let mut length = self.udp.recv(&mut bytes).expect("a state");
+        let mut length = receive(&self.udp, &mut bytes).0;
         self.udp.set_nonblocking(true).expect("an option");
         while let Ok(newer) = self.udp.recv(&mut bytes) {
             length = newer;

@@ -1,6 +1,8 @@
 //! The good client.
 
 use std::fmt::Display;
+use std::sync::mpsc;
+use std::thread;
 use std::time::Duration;
 
 use franka_async::{Gripper, Pose, Realtime, Robot, VacuumGripper};
@@ -79,19 +81,36 @@ pub(crate) fn recover(binary: &Binary) {
     });
 }
 
-/// Moves a good client for a second or so and does `mischief` meanwhile. The motion arrives.
-pub(crate) fn assert_moves_during(binary: &Binary, mischief: impl FnOnce()) {
-    runtime().block_on(async {
-        let robot = connect(binary).await;
-        robot.recover().await.expect("a recovery");
-        let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
-        let moving = tokio::spawn(robot.move_to(up).into_future());
-        while !robot.state().motion_running() {
-            tokio::time::sleep(Duration::from_millis(2)).await;
-        }
-        mischief();
-        assert!(robot.state().motion_running(), "it is over too early");
-        moving.await.expect("no panic").expect("a motion up");
-        robot.shutdown().await;
+/// Moves a good client up and down while `mischief` is done, which begins in the middle of a
+/// motion. Every motion arrives.
+pub(crate) fn assert_moves_during(binary: &Binary, mischief: impl FnOnce() + Send) {
+    let (begin, begun) = mpsc::channel();
+    thread::scope(|scope| {
+        let mischief = scope.spawn(move || {
+            begun.recv().expect("the arm moves");
+            mischief();
+        });
+        runtime().block_on(async {
+            let robot = connect(binary).await;
+            robot.recover().await.expect("a recovery");
+            let start = robot.pose();
+            let up = Pose::translation(0.0, 0.0, 0.05) * start;
+            let moving = async {
+                for target in [up, start].into_iter().cycle() {
+                    robot.move_to(target).await.expect("a motion");
+                    if mischief.is_finished() {
+                        return;
+                    }
+                }
+            };
+            let under_way = async {
+                while !robot.state().motion_running() {
+                    tokio::time::sleep(Duration::from_millis(1)).await;
+                }
+                begin.send(()).expect("it is waited for");
+            };
+            tokio::join!(moving, under_way);
+            robot.shutdown().await;
+        });
     });
 }

@@ -9,7 +9,7 @@ use crate::binary::Binary;
 use crate::client::Client;
 use crate::each_robot;
 use crate::good::assert_served;
-use crate::port::Connection;
+use crate::port::{Connection, SOON};
 
 /// One abuse of each kind that is over at once, on every port.
 fn round(binary: &Binary) {
@@ -50,7 +50,7 @@ fn round(binary: &Binary) {
 
 /// Waits until the connections of the last round have been taken down.
 fn settled(binary: &Binary, descriptors: usize) {
-    let deadline = Instant::now() + Duration::from_secs(5);
+    let deadline = Instant::now() + SOON;
     while binary.descriptors() > descriptors {
         let open = binary.descriptors();
         assert!(Instant::now() < deadline, "{open} descriptors are open");

@@ -1,8 +1,8 @@
 //! The simulator over sockets: its binary against clients that leave the protocol, and stopped in
 //! the middle of a motion; robot time that the client's answers make.
 //!
-//! After each abuse a good client is served within a second, by the same process, which has not
-//! grown.
+//! After each abuse a good client is served, by the same process, which has not grown. The robots
+//! wait for answers, so that a machine that holds up a client makes it slow and no more.
 //!
 //! | module | content |
 //! |---|---|

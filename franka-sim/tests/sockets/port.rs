@@ -177,7 +177,8 @@ impl Connection {
     /// Waits for the reset, which some clients understand where they wait for ever beyond an
     /// orderly end.
     pub(crate) fn expect_reset(&mut self) {
-        let end = self.stream.read(&mut [0; 1]).map_err(|error| error.kind());
+        let end = self.stream.read_exact(&mut [0; 1]);
+        let end = end.map_err(|error| error.kind());
         assert_eq!(end, Err(ErrorKind::ConnectionReset));
     }
 
@@ -186,6 +187,16 @@ impl Connection {
         let socket = SockRef::from(&self.stream);
         let now = Some(Duration::ZERO);
         socket.set_linger(now).expect("an option");
+    }
+}
+
+/// Waits for a state, also while the process is stopped; returns its length and where it came from.
+pub(crate) fn receive(udp: &UdpSocket, bytes: &mut [u8]) -> (usize, SocketAddr) {
+    loop {
+        match udp.recv_from(bytes) {
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            received => return received.expect("a state"),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::net::{SocketAddr, UdpSocket};
 
 use crate::each_robot;
 use crate::good::{assert_moves_during, assert_served};
-use crate::port::{Connection, Port};
+use crate::port::{Connection, Port, receive};
 
 /// A request of the client that has the seat is answered, and states come.
 fn assert_undisturbed(port: &Port, connection: &mut Connection, udp: &UdpSocket, id: u32) {
@@ -15,7 +15,7 @@ fn assert_undisturbed(port: &Port, connection: &mut Connection, udp: &UdpSocket,
         // The second byte of a status.
         connection.read(1).expect("the rest of the answer");
     }
-    udp.recv(&mut []).expect("a state");
+    receive(udp, &mut []);
 }
 
 #[test]

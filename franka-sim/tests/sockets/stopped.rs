@@ -91,7 +91,7 @@ fn a_stopped_simulator_disturbs_no_motion() {
     let _alone = alone();
     for kind in ["fr3", "fer"] {
         for stop in [Duration::from_millis(4), Duration::from_millis(50)] {
-            let binary = Binary::start(kind);
+            let binary = Binary::start_with(&["--robot", kind]);
             stopping(&binary, stop, || {
                 connected(&binary, async |robot| {
                     let case = format!("{kind}, stopped for {stop:?}");
