@@ -15,6 +15,8 @@ const ALLOWED: &[i64] = &[
     libc::SYS_poll,
     // Absent where the kernel serves the clock without a system call (vDSO).
     libc::SYS_clock_gettime,
+    // The kernel's own: it goes on with a wait that a stop of the process has interrupted.
+    libc::SYS_restart_syscall,
 ];
 
 /// The target of an eventfd's descriptor in `/proc`.
@@ -85,5 +87,6 @@ const NAMES: &[(i64, &str)] = &[
     (libc::SYS_brk, "brk"),
     (libc::SYS_getppid, "getppid"),
     (libc::SYS_sched_yield, "sched_yield"),
+    (libc::SYS_restart_syscall, "restart_syscall"),
     (libc::SYS_exit, "exit"),
 ];

@@ -31,19 +31,17 @@ use tokio::time::sleep;
 /// Name of the thread that runs active control.
 pub(crate) const ACTIVE: &str = "active-control";
 
-/// A simulated FR3 and a handle on it. Tracing makes commands late, which this robot tolerates.
+/// A simulated FR3, which waits for each command, as tracing makes them late, and a handle on it.
 async fn simulated() -> (Robot, Running) {
-    let sim = Sim::fr3().tool(Tool::hand());
-    let sim = sim.configure(|config| {
-        config.enforce_limits = false;
-        config.enforce_communication = false;
-    });
+    let sim = Sim::fr3().tool(Tool::hand()).virtual_time(PATIENCE);
     let sim = sim.start().await.expect("a simulator starts");
     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
-    let builder = builder.link_timeout(Duration::from_millis(500));
     let robot = builder.connect().await.expect("it takes a client");
     (robot, sim)
 }
+
+/// How long the robot waits for a command. Twenty that are missing in a row end a motion.
+const PATIENCE: Duration = Duration::from_millis(100);
 
 /// A motion that takes the robot some twenty seconds.
 fn long_way(robot: &Robot) -> <Motion as IntoFuture>::IntoFuture {
