@@ -312,6 +312,14 @@ fn what_the_network_cuts_reaches_no_client() {
     assert_eq!(heard, Err(ErrorKind::WouldBlock));
 }
 
+/// A program keeps it on a stack that may be a thread's of 2 MiB, and builds without optimisation
+/// copy it from frame to frame.
+#[test]
+fn the_future_of_a_start_is_small() {
+    let size = size_of_val(&Sim::fr3().start());
+    assert!(size < 10_000, "{size} bytes");
+}
+
 #[test]
 fn robots_share_a_process() {
     let runtime = runtime();
