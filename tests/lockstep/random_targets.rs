@@ -13,16 +13,16 @@ use rand::{Rng, SeedableRng};
 const MARGIN: f64 = 0.3;
 
 #[test]
-fn two_hundred_random_targets_are_reached_within_a_millimetre() {
-    two_hundred_random_targets(RobotKind::Fr3);
+fn random_targets_are_reached_within_a_millimetre() {
+    random_targets(RobotKind::Fr3);
 }
 
 #[test]
 fn a_panda_reaches_them_as_well() {
-    two_hundred_random_targets(RobotKind::Fer);
+    random_targets(RobotKind::Fer);
 }
 
-fn two_hundred_random_targets(kind: RobotKind) {
+fn random_targets(kind: RobotKind) {
     let seed = 20;
     let mut random = SmallRng::seed_from_u64(seed);
     let limits = JointLimits::of(kind);
@@ -33,7 +33,8 @@ fn two_hundred_random_targets(kind: RobotKind) {
     };
     let mut worst = PoseError::default();
     let mut blocked = 0;
-    for case in 0..200 {
+    let cases = if franka_tests::thorough() { 200 } else { 60 };
+    for case in 0..cases {
         // Joint targets lie anywhere in the ranges. A pose lies near the previous posture, on a
         // straight path.
         let anywhere = case % 2 == 0;
@@ -79,7 +80,7 @@ fn two_hundred_random_targets(kind: RobotKind) {
         worst.translation = worst.translation.max(error.translation);
         worst.rotation = worst.rotation.max(error.rotation);
     }
-    assert!(blocked < 20, "{blocked} ways blocked");
+    assert!(blocked < cases / 10, "{blocked} ways blocked");
     println!(
         "{kind:?}, seed {seed}: {blocked} ways blocked, worst {:.3} mm, {:.3} mrad",
         worst.translation * 1e3,

@@ -19,6 +19,12 @@ pub mod lockstep;
 pub mod mishaps;
 pub mod push;
 
+/// Whether suites that draw or enumerate many cases run all of them: the variable
+/// `FRANKA_THOROUGH`, as the nightly run sets it. Otherwise they run a sample with all boundaries.
+pub fn thorough() -> bool {
+    std::env::var("FRANKA_THOROUGH").is_ok_and(|value| value == "1")
+}
+
 /// Compiles the programs of the README and the book.
 #[cfg(doctest)]
 mod programs {

@@ -29,6 +29,12 @@ impl Lost {
     }
 }
 
+/// How many are lost in a row: around the limit each number.
+fn counts() -> impl Iterator<Item = u64> {
+    const SAMPLE: [u64; 10] = [1, 2, 7, 13, 18, 19, 20, 21, 22, 30];
+    (1..=30).filter(|count| franka_tests::thorough() || SAMPLE.contains(count))
+}
+
 fn expected(errors: franka_proto::Errors) -> Expect {
     if errors.is_empty() {
         Expect::Done
@@ -57,7 +63,7 @@ fn losses_in_mid_motion_are_bridged_or_named() {
     for (variant, channel) in Variant::cyclic() {
         let model = Model::of(variant.kind);
         let joints = joints_per_way(variant, channel);
-        for count in 1..=30 {
+        for count in counts() {
             for first in [cruise, ramp] {
                 for lost in Lost::ALL {
                     let name = format!("{variant}/{count}-{lost:?}-from-{first}");
@@ -91,7 +97,7 @@ fn the_robot_counts_no_losses_before_the_first_command() {
             Some(channel) => joints_per_way(variant, channel),
             None => [0.0; 7],
         };
-        for count in 1..=30 {
+        for count in counts() {
             for lost in Lost::ALL {
                 matrix.case(format_args!("{variant}/{count}-{lost:?}"), || {
                     let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
@@ -119,7 +125,7 @@ fn the_robot_counts_no_losses_before_the_first_command() {
 fn a_lost_finish_is_repeated_until_the_robot_stops_by_itself() {
     let mut matrix = Matrix::new("lost-last");
     for variant in Variant::all() {
-        for count in 1..=30 {
+        for count in counts() {
             for lost in Lost::ALL {
                 matrix.case(format_args!("{variant}/{count}-{lost:?}"), || {
                     let mut trial = Trial::begin(variant, Misbehaviour::Faultless);
@@ -155,7 +161,7 @@ fn a_lost_finish_is_repeated_until_the_robot_stops_by_itself() {
 fn target_control_goes_on_after_all_losses_that_the_robot_bridges() {
     let mut matrix = Matrix::new("lost-target");
     for variant in Variant::all().filter(|variant| variant.is_target()) {
-        for count in 1..=30 {
+        for count in counts() {
             for first in [1, 40, course::END + 100] {
                 for lost in Lost::ALL {
                     let name = format!("{variant}/{count}-{lost:?}-from-{first}");
