@@ -48,36 +48,58 @@ impl Cycle {
         // Nothing is late here, so nothing slips.
         let mut clock = Clock::new(Instant::now(), true);
         let mut attempts = 0;
+        // The robot's time, and that of a network.
+        let mut now = Instant::now();
         loop {
-            if !self.cycle(Instant::now(), clock.pace()) {
+            if !self.cycle(now, clock.pace()) {
                 return;
             }
             clock.published(Instant::now());
-            let patience = match self.robot.awaits() {
-                Awaited::Nothing => {
-                    attempts = 0;
-                    let period = match self.robot.has_client() {
-                        true => VIRTUAL_IDLE_PERIOD,
-                        false => PERIOD,
-                    };
-                    self.sleep_until(Instant::now() + period, &mut clock);
-                    continue;
+            let asks = self.robot.awaits() != Awaited::Nothing;
+            let next = now + PERIOD;
+            loop {
+                if !self.await_answer(now, patience, &mut attempts, clock.pace()) {
+                    return;
                 }
-                // A client may look at several states before its first command: the wait for it
-                // starts short and doubles with each attempt, up to `patience`.
-                Awaited::First => {
-                    attempts += 1;
-                    patience.min(PERIOD * 2_u32.saturating_pow(attempts))
-                }
-                Awaited::Next => {
-                    attempts = 0;
-                    patience
-                }
-            };
-            if !self.robot.await_command(patience, clock.pace()) {
-                return;
+                let arrival = self.robot.next_arrival();
+                let Some(arrival) = arrival.filter(|arrival| *arrival < next) else {
+                    break;
+                };
+                now = arrival;
+                self.robot.relay(now);
+            }
+            now = next;
+            if !asks {
+                std::thread::sleep(match self.robot.has_client() {
+                    true => VIRTUAL_IDLE_PERIOD,
+                    false => PERIOD,
+                });
             }
         }
+    }
+
+    /// Waits for the client's answer, if the newest state asks for one. A client may look at
+    /// several states before its first command: the wait for it starts short and doubles with each
+    /// of the `attempts`, up to `patience`. False at the end.
+    fn await_answer(
+        &mut self,
+        now: Instant,
+        patience: Duration,
+        attempts: &mut u32,
+        pace: Pace,
+    ) -> bool {
+        let patience = match self.robot.awaits_answer() {
+            Awaited::Nothing => return true,
+            Awaited::First => {
+                *attempts += 1;
+                patience.min(PERIOD * 2_u32.saturating_pow(*attempts))
+            }
+            Awaited::Next => {
+                *attempts = 0;
+                patience
+            }
+        };
+        self.robot.await_command(now, patience, pace)
     }
 
     /// Sleeps until `end` by the clock, and relays what passes a network meanwhile.

@@ -122,14 +122,28 @@ impl<D: Device> DeviceServer<D> {
         self.device.awaits()
     }
 
-    /// Waits for the command that the newest state asks for, if it does, and no longer than
-    /// `patience`, of which time in which the host held this thread up takes little. Orders and
-    /// jobs are taken meanwhile as they are between two milliseconds. False at the end.
-    pub(super) fn await_command(&mut self, patience: Duration, pace: Pace) -> bool {
+    /// The same, as long as the client has not answered what has reached it.
+    pub(super) fn awaits_answer(&self) -> Awaited {
+        match &self.relay {
+            Some(relay) if !relay.is_unanswered() => Awaited::Nothing,
+            _ => self.awaits(),
+        }
+    }
+
+    /// When a network hands the next state to the client.
+    pub(super) fn next_arrival(&self) -> Option<Instant> {
+        self.relay.as_ref().and_then(Relay::next_arrival)
+    }
+
+    /// Waits, at the device's time `now`, for the [answer that is awaited](Self::awaits_answer),
+    /// and no longer than `patience`; time in which the host held this thread up takes little of
+    /// that. Orders and jobs are taken meanwhile as they are between two milliseconds. False at the
+    /// end.
+    pub(super) fn await_command(&mut self, now: Instant, patience: Duration, pace: Pace) -> bool {
         let mut waited = Duration::ZERO;
         loop {
-            self.relay(Instant::now());
-            if self.awaits() == Awaited::Nothing || waited >= patience {
+            self.relay(now);
+            if self.awaits_answer() == Awaited::Nothing || waited >= patience {
                 return true;
             }
             self.take_orders();
@@ -138,8 +152,7 @@ impl<D: Device> DeviceServer<D> {
             }
             self.send_replies();
             let begun = Instant::now();
-            let pause = self.pause(begun);
-            self.wait_for_datagram(pause.unwrap_or(JOB_POLL));
+            self.wait_for_datagram(JOB_POLL);
             waited += begun.elapsed().min(WAIT_MAX);
         }
     }

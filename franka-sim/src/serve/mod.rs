@@ -76,8 +76,10 @@ pub struct Sim {
     vacuum_gripper: Option<(Suction, u16)>,
     realtime: bool,
     strict_clock: bool,
-    /// How long to wait for an answer, if the client's answers are the clock.
-    patience: Option<Duration>,
+    /// Whether the client's answers are the clock.
+    virtual_time: bool,
+    /// How long to wait for an answer then.
+    patience: Duration,
     /// That of the arm's interface, or the host's alone, if there is none.
     network: Option<Network>,
     every_millisecond: Option<EveryMillisecond>,
@@ -117,7 +119,8 @@ impl Sim {
             vacuum_gripper: None,
             realtime: false,
             strict_clock: false,
-            patience: None,
+            virtual_time: false,
+            patience: Duration::ZERO,
             network: None,
             every_millisecond: None,
         }
@@ -209,10 +212,12 @@ impl Sim {
     ///   motion, there are up to ten states per millisecond on the wall. A client that does not
     ///   keep up misses some of them.
     ///
-    /// The times of a [`network`](Self::network) remain those of the wall. Seconds that a client
-    /// counts by a clock of its own, and not by the states, are no seconds of the robot.
+    /// The times of a [`network`](Self::network) are the robot's, in which the client takes no time
+    /// to answer. Seconds that a client counts by a clock of its own, and not by the states, are no
+    /// seconds of the robot.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
-        self.patience = Some(patience);
+        self.virtual_time = true;
+        self.patience = patience;
         self
     }
 
@@ -220,8 +225,8 @@ impl Sim {
     /// begins with the robot's start.
     ///
     /// Datagrams are up to 0.2 ms later than the network has it, by what sleeping on the host is
-    /// worth; the thread then looks after them ten times a millisecond. The command connection is
-    /// not affected, nor is that of a hand.
+    /// worth, but not in [virtual time](Self::virtual_time); the thread then looks after them ten
+    /// times a millisecond. The command connection is not affected, nor is that of a hand.
     pub fn network(mut self, network: Network) -> Self {
         self.network = Some(network);
         self
@@ -276,7 +281,8 @@ impl Sim {
             vacuum: vacuum_server,
             every_millisecond: self.every_millisecond,
         };
-        let (realtime, strict, patience) = (self.realtime, self.strict_clock, self.patience);
+        let (virtual_time, patience) = (self.virtual_time, self.patience);
+        let (realtime, strict) = (self.realtime, self.strict_clock);
         let (done, finished) = watch::channel(());
         std::thread::Builder::new()
             .name("franka-sim".into())
@@ -284,9 +290,9 @@ impl Sim {
                 if realtime && let Err(error) = priority::raise() {
                     tracing::warn!(%error, "no real-time priority");
                 }
-                match patience {
-                    Some(patience) => cycle.run_on_answers(patience),
-                    None => cycle.run(strict),
+                match virtual_time {
+                    true => cycle.run_on_answers(patience),
+                    false => cycle.run(strict),
                 }
                 drop(done);
             })?;

@@ -15,6 +15,10 @@ pub(super) struct Relay {
     latest: Duration,
     /// Where the client listens, once a state has been sent there.
     listener: Option<SocketAddr>,
+    /// `message_id` of the newest state that has reached the client.
+    newest: Option<u64>,
+    /// Whether a command that answers that state has been read from the socket.
+    answered: bool,
 }
 
 impl Relay {
@@ -24,6 +28,8 @@ impl Relay {
             origin: Instant::now(),
             latest: Duration::ZERO,
             listener: None,
+            newest: None,
+            answered: false,
         }
     }
 
@@ -43,12 +49,17 @@ impl Relay {
     pub(super) fn take_state(&mut self, now: Instant) -> Option<(Vec<u8>, SocketAddr)> {
         let time = self.time(now);
         let delivery = self.network.to_client.take(time)?;
+        let id = message_id(&delivery.datagram);
+        if id > self.newest {
+            (self.newest, self.answered) = (id, false);
+        }
         Some((delivery.datagram, self.listener?))
     }
 
     /// A command, just read from the socket.
     pub(super) fn send_command(&mut self, now: Instant, datagram: &[u8]) {
         let time = self.time(now);
+        self.answered |= message_id(datagram) == self.newest;
         self.network.to_robot.send(time, datagram);
     }
 
@@ -62,16 +73,32 @@ impl Relay {
     /// Forgets what is under way: it was of a client that has gone.
     pub(super) fn clear(&mut self) {
         self.network.clear();
-        self.listener = None;
+        (self.listener, self.newest, self.answered) = (None, None, false);
+    }
+
+    /// Whether the client has a state that it has not answered.
+    pub(super) fn is_unanswered(&self) -> bool {
+        self.newest.is_some() && !self.answered
+    }
+
+    /// When the next state arrives.
+    pub(super) fn next_arrival(&self) -> Option<Instant> {
+        let next = self.network.to_client.next_arrival();
+        next.map(|at| self.origin + at)
     }
 
     /// How long nothing has to be done: until the next state arrives, and not long, since a command
     /// may come, whose time of arrival is when it is read.
     pub(super) fn pause(&self, now: Instant) -> Duration {
-        let next = self.network.to_client.next_arrival();
-        let left = next.map(|at| (self.origin + at).saturating_duration_since(now));
+        let next = self.next_arrival();
+        let left = next.map(|at| at.saturating_duration_since(now));
         left.unwrap_or(RELAY_POLL).min(RELAY_POLL)
     }
+}
+
+/// What states and commands of every version begin with.
+fn message_id(datagram: &[u8]) -> Option<u64> {
+    datagram.first_chunk().map(|id| u64::from_le_bytes(*id))
 }
 
 /// Time between two looks at the socket, and about what datagrams are later than the network has

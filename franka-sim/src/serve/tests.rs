@@ -299,6 +299,24 @@ fn what_clients_hear_passes_the_network() {
 }
 
 #[test]
+fn in_virtual_time_a_network_delays_by_the_time_of_the_robot() {
+    let runtime = runtime();
+    let late = Conditions {
+        delay: Duration::from_micros(29_500),
+        ..Conditions::default()
+    };
+    let sim = Sim::fr3().network(Network::new(1, late, Conditions::default()));
+    let sim = sim.virtual_time(SOON);
+    let sim = runtime.block_on(sim.start()).expect("a robot");
+    let client = Client::connect(sim.addr());
+    for _ in 0..20 {
+        let arrived = client.state().message_id;
+        let newest = runtime.block_on(sim.state()).expect("running").message_id;
+        assert!(newest >= arrived + 29, "{newest}, {arrived}");
+    }
+}
+
+#[test]
 fn what_the_network_cuts_reaches_no_client() {
     let runtime = runtime();
     let mut network = Network::perfect();
