@@ -98,9 +98,8 @@ impl Connection {
         // With a hand, and a block of 3 cm between its fingers.
         let block = Fingers::new().with_object(0.03);
         let sim = sim.tool(Tool::hand()).hand(block, 0);
-        // It shares the machine with this program: it waits for commands that come late.
-        let sim = sim.configure(|config| config.enforce_communication = false);
-        let sim = sim.start().await;
+        // It shares the machine with this program.
+        let sim = sim.wait_for_commands(Duration::from_secs(1)).start().await;
         let sim = sim.context("starting the simulator")?;
         let builder = Robot::builder(sim.addr()).realtime(self.scheduling().realtime);
         let robot = builder.connect().await?;

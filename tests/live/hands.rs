@@ -12,7 +12,7 @@ use franka_proto::{gripper, server, vacuum};
 use franka_sim::{Fingers, Running, Sim, Suction};
 use tokio::time::{sleep, timeout};
 
-use crate::{SOON, alone, connect};
+use crate::{PATIENCE, SOON, alone, connect};
 
 const ABORTED: &str = "libfranka gripper: Command aborted!";
 const FAILED: &str = "libfranka gripper: Command failed!";
@@ -20,10 +20,7 @@ const FAILED: &str = "libfranka gripper: Command failed!";
 /// A robot with a hand that has an object of 5 cm between its fingers and knows its width.
 async fn with_hand() -> (Gripper, Running) {
     let sim = Sim::fr3().hand(Fingers::new().with_object(0.05), 0);
-    let sim = sim
-        .configure(|config| config.enforce_communication = false)
-        .start()
-        .await;
+    let sim = sim.wait_for_commands(PATIENCE).start().await;
     let sim = sim.expect("a simulator starts");
     let gripper = hand_of(&sim).await.expect("a hand takes a client");
     assert_eq!(gripper.state().max_width, 0.0);

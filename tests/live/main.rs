@@ -2,9 +2,9 @@
 //! what is tested.
 //!
 //! One test at a time, as two cores carry only so many robots. Most robots run at the pace of the
-//! client's answers, [`simulated`]: a busy machine makes them slow, and loses nothing. Where the
-//! wall's millisecond is part of what is tested, they run [`by_the_clock`], and mind no command
-//! that comes late. What a test waits for is shown by states; how long it took decides nothing.
+//! client's answers, [`simulated`], or [`by_the_clock`] where readers have to keep up with them: a
+//! busy machine makes them slow, and loses nothing. What a test waits for is shown by states; how
+//! long it took decides nothing.
 
 mod active;
 mod addresses;
@@ -63,16 +63,21 @@ async fn at_the_clients_pace(sim: Sim) -> (Robot, Running) {
     (connect(&sim).await, sim)
 }
 
-/// This robot, at a thousand states per second, which minds no command that comes late or is
-/// missing. Its thread stands for another computer: it does not wait for this one's load where that
-/// is granted.
+/// This robot, at no more than a thousand states per second, which waits for each command too.
 async fn by_the_clock(sim: Sim) -> (Robot, Running) {
+    let sim = sim.wait_for_commands(PATIENCE).start().await;
+    let sim = sim.expect("a simulator starts");
+    (connect(&sim).await, sim)
+}
+
+/// This robot, at a thousand states per second, which minds no command that comes late or is
+/// missing.
+async fn ahead_of_the_client(sim: Sim) -> (Robot, Running) {
     let sim = sim.configure(|config| {
         config.enforce_limits = false;
         config.enforce_communication = false;
     });
-    let sim = sim.realtime(true).start().await;
-    let sim = sim.expect("a simulator starts");
+    let sim = sim.start().await.expect("a simulator starts");
     (connect(&sim).await, sim)
 }
 

@@ -14,7 +14,7 @@ use franka_async::control::{Finish as _, Torques};
 use franka_sim::{Network, Sim};
 use franka_tests::cycle_counts::CycleCounts;
 
-use crate::{alone, by_the_clock};
+use crate::{ahead_of_the_client, alone};
 
 /// A state that has waited out a stall is answered late, whatever the client: some 14 of 1000
 /// cycles.
@@ -23,7 +23,7 @@ async fn the_stalls_of_an_fer_are_bridged_and_make_commands_late() {
     let _alone = alone();
     let seconds = std::env::var("FRANKA_STALLS_SECONDS").ok();
     let seconds: u64 = seconds.map_or(SECONDS, |text| text.parse().expect("a number"));
-    let (robot, sim) = by_the_clock(Sim::fer().network(Network::fer(1))).await;
+    let (robot, sim) = ahead_of_the_client(Sim::fer().network(Network::fer(1))).await;
     let counts = Arc::new(Mutex::new(CycleCounts::default()));
     let noted = Arc::clone(&counts);
     let before = sim.pace().await.expect("it runs");

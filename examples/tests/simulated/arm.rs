@@ -95,12 +95,11 @@ impl Arm {
             "fer" => Sim::fer(),
             other => panic!("no robot is called {other}"),
         };
-        let sim = sim.tool(Tool::hand()).configure(|config| {
-            config.q = scene.q;
-            config.enforce_communication = !scene.on_the_wall;
-        });
+        let sim = sim
+            .tool(Tool::hand())
+            .configure(|config| config.q = scene.q);
         let sim = match scene.on_the_wall {
-            true => sim,
+            true => sim.wait_for_commands(PATIENCE),
             false => sim.virtual_time(PATIENCE),
         };
         let watch = Arc::new(Mutex::new(Watch {

@@ -118,6 +118,11 @@ impl Clock {
         self.due
     }
 
+    /// Takes note that a command was waited for until `wall`: no state is due before.
+    pub(super) fn waited(&mut self, wall: Instant) {
+        self.due = self.due.max(self.at(wall));
+    }
+
     /// Takes note that the thread woke at `wall`, and had meant to at `meant`: slips if it is late.
     pub(super) fn woke(&mut self, wall: Instant, meant: Instant) {
         let late = self.at(wall).saturating_duration_since(meant);

@@ -21,9 +21,11 @@ pub(super) struct Cycle {
 }
 
 impl Cycle {
-    /// Runs until nothing is left that could give orders to the robot.
-    pub(super) fn run(mut self, strict: bool) {
+    /// Runs until nothing is left that could give orders to the robot. Commands that come late are
+    /// waited for up to `patience`.
+    pub(super) fn run(mut self, strict: bool, patience: Duration) {
         let mut clock = Clock::new(Instant::now(), strict);
+        let mut attempts = 0;
         loop {
             let due = clock.due();
             self.sleep_until(due, &mut clock);
@@ -31,6 +33,13 @@ impl Cycle {
             if self.robot.awaits() == Awaited::Next {
                 let due = clock.wait_for_answer();
                 self.sleep_until(due, &mut clock);
+            }
+            if !patience.is_zero() {
+                let now = clock.at(Instant::now());
+                if !self.await_answer(now, patience, &mut attempts, clock.pace()) {
+                    return clock.pace().log();
+                }
+                clock.waited(Instant::now());
             }
             for _ in 0..clock.begin(Instant::now()) {
                 let now = clock.at(Instant::now());

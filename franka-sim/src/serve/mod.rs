@@ -78,7 +78,7 @@ pub struct Sim {
     strict_clock: bool,
     /// Whether the client's answers are the clock.
     virtual_time: bool,
-    /// How long to wait for an answer then.
+    /// How long to wait for a command that is late.
     patience: Duration,
     /// That of the arm's interface, or the host's alone, if there is none.
     network: Option<Network>,
@@ -221,6 +221,14 @@ impl Sim {
         self
     }
 
+    /// Waits for commands that come late, each up to `patience`, and lets the clock stand still
+    /// meanwhile: for clients on a machine that is busy, or on the simulator's own. What takes no
+    /// command goes on by the clock on the wall, and nothing is faster than it.
+    pub fn wait_for_commands(mut self, patience: Duration) -> Self {
+        self.patience = patience;
+        self
+    }
+
     /// Lets states and commands pass this network, besides that between the sockets. Its time
     /// begins with the robot's start.
     ///
@@ -292,7 +300,7 @@ impl Sim {
                 }
                 match virtual_time {
                     true => cycle.run_on_answers(patience),
-                    false => cycle.run(strict),
+                    false => cycle.run(strict, patience),
                 }
                 drop(done);
             })?;

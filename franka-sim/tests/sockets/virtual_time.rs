@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use franka_async::control::{Next, Torques};
+use franka_async::control::{Finish as _, Next, Torques};
 use franka_async::gripper::Grasp;
 use franka_async::{Gripper, Realtime, Robot};
 use franka_proto::RobotError;
@@ -81,6 +81,31 @@ async fn no_answer_is_too_late_for_a_patient_robot() {
     });
     let report = control.await.expect("a motion to its end");
     assert_eq!(report.success_rate_min, 1.0);
+    sim.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_robot_that_waits_for_commands_is_no_faster_than_the_wall() {
+    let _alone = alone();
+    let sim = Sim::fr3().wait_for_commands(PATIENCE).start().await;
+    let sim = sim.expect("a robot");
+    let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let robot = robot.connect().await.expect("a session");
+    let mut calls = 0;
+    let begun = Instant::now();
+    let control = robot.control_torques(move |_, _| {
+        calls += 1;
+        if calls % 100 == 0 {
+            // Twice as long as it takes a robot that does not wait to stop.
+            std::thread::sleep(Duration::from_millis(40));
+        }
+        let torques = Torques([0.0; 7]);
+        torques.finish_if(calls == 500)
+    });
+    let report = control.await.expect("a motion to its end");
+    assert_eq!(report.success_rate_min, 1.0);
+    let took = begun.elapsed();
+    assert!(took >= report.duration, "{took:?}, {:?}", report.duration);
     sim.stop().await;
 }
 
