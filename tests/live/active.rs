@@ -6,9 +6,10 @@ use franka_async::control::{Finish, JointVelocities, Torques};
 use franka_async::error::ActiveError;
 use franka_async::{Active, MotionError, Pose, Robot, RobotMode};
 use franka_proto::{MoveControllerMode, RobotError};
+use franka_rt::driver::LinkTimeout;
 
 use crate::control::each;
-use crate::{SOON, alone, under_way};
+use crate::{SOON, alone, simulated, under_way};
 
 /// Runs `work` on a thread of its own, as active control wants, and returns what it does.
 async fn on_a_thread<C: Send + 'static, T: Send + 'static>(
@@ -201,10 +202,7 @@ async fn a_panic_of_the_thread_has_the_robot_stop_and_the_connection_goes_on() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_thread_that_hangs_is_reported_and_gives_the_connection_back_when_it_goes_on() {
     let _alone = alone();
-    let sim = franka_sim::Sim::fr3().start().await.unwrap();
-    let builder = Robot::builder(sim.addr()).realtime(franka_async::Realtime::Ignore);
-    let builder = builder.link_timeout(Duration::from_millis(100));
-    let robot = builder.connect().await.unwrap();
+    let (robot, _sim) = simulated().await;
     let control = robot.active_torques().await.unwrap();
     let (go_on, hanging) = std::sync::mpsc::channel::<()>();
     let thread = tokio::task::spawn_blocking(move || {
@@ -214,13 +212,13 @@ async fn a_thread_that_hangs_is_reported_and_gives_the_connection_back_when_it_g
         control.read_once().unwrap_err()
     });
     let reading = robot.read(|_| std::ops::ControlFlow::<()>::Continue(()));
-    let reported = tokio::time::timeout(Duration::from_secs(5), reading).await;
+    let reported = tokio::time::timeout(SOON, reading).await;
     reported.expect("the hang is reported").unwrap_err();
     let busy = robot.move_to(robot.pose()).await;
     assert_eq!(busy.unwrap_err(), MotionError::Busy);
     go_on.send(()).unwrap();
     let error = thread.await.unwrap();
-    let silence = Duration::from_millis(100);
+    let silence = LinkTimeout::default().get();
     assert_eq!(error, MotionError::Stalled { silence }.into());
     let mut states = robot.states();
     let rests = states.wait_for(|state| state.robot_mode != RobotMode::Move);

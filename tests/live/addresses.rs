@@ -7,7 +7,7 @@ use franka_async::error::{ConnectError, Party};
 use franka_async::{Endpoint, Gripper, Pose, Realtime, Robot};
 use franka_sim::{Fingers, Sim, Tool};
 
-use crate::alone;
+use crate::{PATIENCE, alone};
 
 /// Connects to `endpoint`, moves the arm by a centimetre, and ends the connection.
 async fn moves(endpoint: impl Into<Endpoint>) -> SocketAddr {
@@ -29,6 +29,7 @@ async fn moves_on(bind: SocketAddr, texts: impl Fn(u16) -> Vec<String>) {
         .tool(Tool::hand())
         .hand(Fingers::new(), 0)
         .bind(bind)
+        .virtual_time(PATIENCE)
         .start()
         .await
         .expect("a simulator starts");
@@ -97,7 +98,8 @@ async fn an_arm_moves_by_its_host_name() {
 async fn a_simulator_for_both_families_serves_both() {
     let _alone = alone();
     let sim = Sim::fr3().bind((Ipv6Addr::UNSPECIFIED, 0).into());
-    let sim = sim.start().await.expect("a simulator starts");
+    let sim = sim.virtual_time(PATIENCE).start().await;
+    let sim = sim.expect("a simulator starts");
     let port = sim.addr().port();
     for text in ["127.0.0.1", "[::1]", "[::ffff:127.0.0.1]"] {
         let address = moves(format!("{text}:{port}")).await;

@@ -7,7 +7,7 @@ use franka_async::error::SchedError;
 use franka_async::{Pose, Realtime, Robot};
 use franka_sim::Sim;
 
-use crate::alone;
+use crate::{PATIENCE, alone};
 
 /// What the kernel says of one thread.
 #[derive(Debug)]
@@ -60,7 +60,8 @@ async fn nothing_but_the_control_threads_is_raised_or_pinned() {
     let usual = before.values().next().expect("this one").processors.clone();
     let (mut sims, mut robots) = (Vec::new(), Vec::new());
     for sim in [Sim::fr3(), Sim::fer()] {
-        let sim = sim.start().await.expect("a simulator starts");
+        let sim = sim.virtual_time(PATIENCE).start().await;
+        let sim = sim.expect("a simulator starts");
         let builder = Robot::builder(sim.addr())
             .realtime(Realtime::Ignore)
             .priority(42)
