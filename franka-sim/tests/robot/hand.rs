@@ -139,7 +139,6 @@ fn a_lost_object_is_reported() {
 fn a_robot_with_hand_and_vacuum_gripper_needs_nothing_but_this_process() {
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     runtime.block_on(async {
-        let start = std::time::Instant::now();
         let sim = Sim::fr3()
             .hand(Fingers::new(), 0)
             .vacuum_gripper(Suction::new(), 0)
@@ -155,8 +154,6 @@ fn a_robot_with_hand_and_vacuum_gripper_needs_nothing_but_this_process() {
                 .await
                 .expect("a listener");
         }
-        // Generous: a loaded machine is no reason to fail, a download would be.
-        assert!(start.elapsed().as_secs() < 5);
         sim.stop().await;
     });
 }
