@@ -37,7 +37,7 @@ def setpoint(state, finished=False):
 
 
 def finish(session, control):
-    """Ends a motion that stands still."""
+    """Ends a motion that stands still and whose last state has been answered."""
     state, _ = control.readOnce()
     control.writeOnce(setpoint(state, finished=True))
     return session.state_at_rest()
@@ -47,13 +47,13 @@ def every_read_brings_a_state_and_the_time_since_the_last(session):
     control = joint_motion(session)
     state, step = control.readOnce()
     equal("first step", step.to_sec(), 0.0)
-    before = state.time.to_sec()
+    control.writeOnce(setpoint(state))
     for _ in range(100):
-        control.writeOnce(setpoint(state))
+        before = state.time.to_sec()
         state, step = control.readOnce()
+        control.writeOnce(setpoint(state))
         near("step", [step.to_sec()], [state.time.to_sec() - before], 1e-9)
         check(step.to_sec() > 0.0, "time goes on")
-        before = state.time.to_sec()
     finish(session, control)
     return "0 first, then at least a millisecond"
 
@@ -183,15 +183,17 @@ def stop_ends_a_motion_of_another_thread(session):
 
     def move():
         control = joint_motion(session)
-        command = joint_positions(line(start, TURN, 2.0))
+        # Under way for seconds on the wall, so that a thread that is held up stops it nevertheless.
+        duration = 20.0
+        command = joint_positions(line(start, TURN, duration))
 
         def announced(t, state):
-            if t > 0.5:
+            if t > 1.0:
                 moving.set()
             return command(t, state)
 
         try:
-            follow(control, announced, 2.0)
+            follow(control, announced, duration)
         except Exception as error:
             outcome.append(error)
         finally:
