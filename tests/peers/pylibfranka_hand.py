@@ -23,13 +23,18 @@ class Hand:
 
     def __init__(self, address):
         self.address = address
-        self.gripper = Gripper(address)
+        self.connect()
+
+    def connect(self):
+        self.gripper = None  # A hand serves one client at a time.
+        self.gripper = Gripper(self.address)
 
     def clear(self):
-        """Stops the hand after a failed step."""
+        """Connects again after a failed step, as `Session.clear` does, and stops the hand."""
         try:
+            self.connect()
             self.gripper.stop()
-        except CommandException as error:
+        except Exception as error:
             print(f"      clearing failed too: {error}", flush=True)
 
     def width(self):
@@ -140,8 +145,7 @@ def serves_one_client_at_a_time(hand):
 
 def connects_again(hand):
     before = hand.width()
-    hand.gripper = None
-    hand.gripper = Gripper(hand.address)
+    hand.connect()
     state = hand.gripper.read_once()
     near("width", state.width, before, 1e-9)
     near("max_width, without homing again", state.max_width, 0.08, 1e-9)

@@ -35,7 +35,8 @@ def run(steps, session):
         try:
             summary = step(session)
         except Exception as error:  # Any exception of any step is a failure of that step.
-            print(f"FAIL  {name}: {type(error).__name__}: {error}", flush=True)
+            text = " ".join(str(error).split())  # In one line, which is repeated at the end of all scripts.
+            print(f"FAIL  {name} ({time.monotonic() - start:.1f} s): {type(error).__name__}: {text}", flush=True)
             traceback.print_exc()
         else:
             passed += 1
@@ -83,8 +84,13 @@ class Session:
         return state
 
     def clear(self):
-        """Recovers the robot after a failed step, so that the next one starts from an idle robot."""
+        """Connects again after a failed step and recovers the robot, so that the next step starts from an idle one.
+
+        The client shuts its connection for good when no state has come for a second, as on a machine that stood still.
+        Over the same connection every step after that would fail too.
+        """
         try:
+            self.connect()
             self.robot.automatic_error_recovery()
         except Exception as error:
             print(f"      clearing failed too: {error}", flush=True)

@@ -18,7 +18,6 @@ CONNECT_REQUEST, MOVE_REQUEST = struct.Struct("<HH"), struct.Struct("<II")
 # Offsets of the modes in a state of protocol 10.
 GENERATOR_MODE, CONTROLLER_MODE, ROBOT_MODE = 1288, 1289, 1372
 STATE_SIZE = 1377
-CLIENT_TIME_MAX = 30.0
 
 
 class Tap:
@@ -27,7 +26,7 @@ class Tap:
     def __init__(self, robot, here):
         self.notes, notes = multiprocessing.Pipe()
         listener = socket.create_server((here, PORT))
-        relay = multiprocessing.Process(target=serve, args=(listener, robot, here, notes), daemon=True)
+        relay = multiprocessing.Process(target=serve, args=(listener, robot, here, notes, self.notes), daemon=True)
         relay.start()
         listener.close()
 
@@ -40,13 +39,12 @@ class Tap:
         return self.notes.recv()
 
 
-def serve(listener, robot, here, notes):
-    """Serves one client until it disconnects."""
-    # Without a client by then, the process that made the relay has ended.
-    listener.settimeout(CLIENT_TIME_MAX)
-    client, _ = listener.accept()
-    client.settimeout(None)
-    Relay(client, robot, here, notes).run()
+def serve(listener, robot, here, notes, far_end):
+    """Serves one client after the other, until the process that made the relay has ended."""
+    far_end.close()  # With this copy open, its end would not show in `notes`.
+    while select.select([listener, notes], [], [])[0] == [listener]:
+        client, _ = listener.accept()
+        Relay(client, robot, here, notes).run()
 
 
 class Relay:
@@ -63,6 +61,7 @@ class Relay:
         self.modes, self.motions = [], []
 
     def run(self):
+        """Passes on what comes until one of the ends is closed."""
         actions = {
             self.states: self.pass_states,
             self.commands: self.pass_commands,
