@@ -123,7 +123,8 @@ impl Program {
     }
 }
 
-/// Prints what became of each program; fails if one did.
+/// Prints what became of each program, and then every failure in a line: the output of a program
+/// may be far above, or cut off. Fails if one did.
 fn summarise(summaries: &[Summary]) -> anyhow::Result<()> {
     let mut total = Steps::default();
     println!();
@@ -135,24 +136,35 @@ fn summarise(summaries: &[Summary]) -> anyhow::Result<()> {
             Err(error) => println!(", {error:#}"),
         }
         total.passed += steps.passed;
-        total.failed += steps.failed;
+        total.failures.extend(steps.failures.clone());
     }
     println!("{:32} {total}", "together");
-    match summaries
-        .iter()
-        .filter(|(.., result)| result.is_err())
-        .count()
-    {
+    println!();
+    let mut failed = 0;
+    for (name, steps, _, result) in summaries {
+        let Err(error) = result else { continue };
+        failed += 1;
+        for line in &steps.failures {
+            println!("{name}: {line}");
+        }
+        if steps.failures.is_empty() {
+            println!("{name}: {error:#}; its last line: {:?}", steps.last);
+        }
+    }
+    match failed {
         0 => Ok(()),
         failed => bail!("{failed} of {} programs failed", summaries.len()),
     }
 }
 
 /// The steps of a program that its output reports.
-#[derive(Debug, Default, PartialEq, Eq)]
+#[derive(Debug, Default)]
 struct Steps {
     passed: u32,
-    failed: u32,
+    /// The line of each step that failed.
+    failures: Vec<String>,
+    /// The last line that says anything.
+    last: String,
 }
 
 impl Steps {
@@ -161,14 +173,17 @@ impl Steps {
         if line.starts_with("ok    ") {
             self.passed += 1;
         } else if line.starts_with("FAIL  ") {
-            self.failed += 1;
+            self.failures.push(line.to_owned());
+        }
+        if !line.trim().is_empty() {
+            line.clone_into(&mut self.last);
         }
     }
 }
 
 impl fmt::Display for Steps {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { passed, failed } = self;
+        let (passed, failed) = (self.passed, self.failures.len());
         write!(f, "{passed:3} passed, {failed} failed")
     }
 }
@@ -367,16 +382,23 @@ mod tests {
             "ok    two (0.1 s): fine",
             "FAIL  three: wrong",
             "2 passed, 1 failed",
+            "",
         ]);
         let (steps, result) = count("printf", program, Duration::from_secs(20));
-        let expected = Steps {
-            passed: 2,
-            failed: 1,
-        };
-        assert_eq!(steps, expected);
+        assert_eq!(steps.to_string(), "  2 passed, 1 failed");
+        assert_eq!(steps.failures, ["FAIL  three: wrong"]);
         result.unwrap();
         let (_, result) = count("true", Command::new("true"), Duration::from_secs(20));
         assert_eq!(result.unwrap_err().to_string(), "no step passed");
+    }
+
+    #[test]
+    fn the_last_line_that_says_anything_is_kept() {
+        let mut program = Command::new("sh");
+        program.args(["-c", "echo ok; echo 'Error: no robot' >&2; echo; exit 1"]);
+        let (steps, result) = count("sh", program, Duration::from_secs(20));
+        assert_eq!((steps.failures.len(), &*steps.last), (0, "Error: no robot"));
+        result.unwrap_err();
     }
 
     #[test]
