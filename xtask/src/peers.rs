@@ -317,10 +317,13 @@ fn kill(child: &mut Child) {
 /// The binary of the tests package that runs our client beside franka-rs.
 const BESIDE: &str = "beside_franka_rs";
 
-/// The scripts, and the options of their simulators. Those that command in cycles have a robot in
-/// virtual time, to which no answer is late.
+/// The scripts, and the options of their simulators: in virtual time, to which no answer is late,
+/// wherever that is no part of what is shown.
 const SCRIPTS: [(&str, &[&str]); 12] = [
-    ("pylibfranka_hand.py", &["--gripper-object-width", "0.05"]),
+    (
+        "pylibfranka_hand.py",
+        &[VIRTUAL, "--gripper-object-width", "0.05"],
+    ),
     ("pylibfranka_async.py", &[]),
     ("pylibfranka_setup.py", &[VIRTUAL]),
     ("pylibfranka_model.py", &[VIRTUAL, "--hand"]),

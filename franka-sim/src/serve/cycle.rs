@@ -79,7 +79,7 @@ impl Cycle {
             }
             now = next;
             if !asks {
-                std::thread::sleep(match self.robot.has_client() {
+                std::thread::sleep(match self.has_client() {
                     true => VIRTUAL_IDLE_PERIOD,
                     false => PERIOD,
                 });
@@ -109,6 +109,13 @@ impl Cycle {
             }
         };
         self.robot.await_command(now, patience, pace)
+    }
+
+    /// Whether a client is connected to any device.
+    fn has_client(&self) -> bool {
+        let hand = self.hand.as_ref().is_some_and(DeviceServer::has_client);
+        let vacuum = self.vacuum.as_ref().is_some_and(DeviceServer::has_client);
+        self.robot.has_client() || hand || vacuum
     }
 
     /// Sleeps until `end` by the clock, and relays what passes a network meanwhile.
@@ -143,5 +150,47 @@ impl Cycle {
             vacuum.cycle(now, pace);
         }
         goes_on
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+    use std::net::{Ipv4Addr, SocketAddr, TcpStream};
+
+    use franka_proto::{client, gripper};
+
+    use super::*;
+    use crate::config::Config;
+    use crate::end_effector::Fingers;
+    use crate::serve::service;
+
+    /// What has not happened within this time never will, on a machine that is busy as well.
+    const SOON: Duration = Duration::from_secs(30);
+
+    #[test]
+    fn a_client_of_the_hand_is_a_client() {
+        let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        let robot = service::open(address, Box::new(Robot::new(Config::default())));
+        let (_robot, robot) = runtime.block_on(robot).expect("a robot");
+        let hand = service::open(address, Box::new(Hand::new(Fingers::new())));
+        let (hand, hand_server) = runtime.block_on(hand).expect("a hand");
+        let mut cycle = Cycle {
+            robot,
+            hand: Some(hand_server),
+            vacuum: None,
+            every_millisecond: None,
+        };
+        assert!(!cycle.has_client());
+        let mut stream = TcpStream::connect(hand.addr()).expect("a listener");
+        let hello = client::Session::new(gripper::Version::default()).connect(1);
+        stream.write_all(hello.as_bytes()).expect("an open stream");
+        let begun = Instant::now();
+        while !cycle.hand.as_ref().is_some_and(DeviceServer::has_client) {
+            assert!(begun.elapsed() < SOON, "no session");
+            assert!(cycle.cycle(Instant::now(), Pace::default()));
+        }
+        assert!(cycle.has_client());
     }
 }
