@@ -2,11 +2,12 @@
 //! to it, made worse. A robot's clock does not stand still, so no client's motion suffers.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, sleep};
 use std::time::Duration;
 
-use franka_async::control::{CartesianPose, Finish as _, JointPositions};
+use franka_async::control::{CartesianPose, Finish as _, JointPositions, Torques};
 use franka_async::{MotionError, Realtime, Robot};
 use tokio::runtime::Builder;
 
@@ -84,6 +85,28 @@ fn connected<R>(binary: &Binary, work: impl AsyncFnOnce(&Robot) -> R) -> R {
         robot.shutdown().await;
         result
     })
+}
+
+#[test]
+fn a_stop_takes_no_patience_from_a_client_in_virtual_time() {
+    let _alone = alone();
+    let options = ["--robot", "fr3", "--virtual-time=0.5"];
+    let binary = Arc::new(Binary::start_with(&options));
+    let stopped = binary.clone();
+    let mut calls = 0;
+    let report = connected(&binary, async |robot| {
+        let control = robot.control_torques(move |_, _| {
+            calls += 1;
+            if calls == 100 {
+                // Longer than the robot waits, and then a fifth of that without a stop.
+                stopped.stop_for(Duration::from_millis(800));
+                sleep(Duration::from_millis(100));
+            }
+            Torques([0.0; 7]).finish_if(calls == 200)
+        });
+        control.await.expect("a motion to its end")
+    });
+    assert_eq!(report.success_rate_min, 1.0);
 }
 
 #[test]
