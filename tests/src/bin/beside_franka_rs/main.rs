@@ -3,6 +3,7 @@
 //! of 5 cm, and a hand that pushes an arm that holds its pose. Prints the result of each in one
 //! line.
 
+mod hand;
 mod ours;
 mod theirs;
 
@@ -10,13 +11,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::ensure;
 use clap::Parser;
 use franka_rt::session::ForceCap;
-use franka_sim::{Running, Sim, Tool, Touch};
-use franka_tests::push::{PACE, PUSH, START, STIFFNESS, hand};
+use franka_sim::{Sim, Tool};
+use franka_tests::push::PACE;
 use nalgebra::Vector3;
 
+use hand::Hand;
 use ours::Ours;
 use theirs::Theirs;
 
@@ -47,10 +49,6 @@ const WATCHED: f64 = 2.5;
 
 /// The step, `[m]`, base frame.
 const STEP: [f64; 3] = [0.0, 0.0, 0.05];
-
-/// The time at constant velocity that is left out of the mean force, `[ms]`: contact and arm still
-/// oscillate then.
-const SWING: u64 = 100;
 
 /// The longest time that a client may take for any operation.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -101,19 +99,18 @@ fn told(name: &str, start: Instant, outcome: anyhow::Result<String>) -> bool {
 
 /// A robot in virtual time, which advances as its client answers: no command is late on a busy
 /// machine.
-async fn simulated(kind: Kind) -> anyhow::Result<Running> {
-    let sim = kind().tool(Tool::hand()).virtual_time(PATIENCE);
-    Ok(sim.start().await?)
+fn simulated(kind: Kind) -> Sim {
+    kind().tool(Tool::hand()).virtual_time(PATIENCE)
 }
 
 async fn step(kind: Kind, arguments: &Arguments) -> anyhow::Result<String> {
-    let sim = simulated(kind).await?;
+    let sim = simulated(kind).start().await?;
     let mut theirs = Theirs::hold(&arguments.program, sim.addr())?;
     let peer = theirs.step(STEP, WATCHED)?;
     theirs.end()?;
     sim.stop().await;
 
-    let sim = simulated(kind).await?;
+    let sim = simulated(kind).start().await?;
     let ours = Ours::hold(sim.addr()).await?;
     let own = ours.step(STEP, WATCHED).await?;
     ours.end().await?;
@@ -134,15 +131,17 @@ async fn step(kind: Kind, arguments: &Arguments) -> anyhow::Result<String> {
 }
 
 async fn push(kind: Kind, way: Vector3<f64>, arguments: &Arguments) -> anyhow::Result<String> {
-    let sim = simulated(kind).await?;
+    let (hand, sim) = Hand::beside(simulated(kind));
+    let sim = sim.start().await?;
     let theirs = Theirs::hold(&arguments.program, sim.addr())?;
-    let peer = felt(&sim, way).await?;
+    let peer = hand.push(way).await?;
     theirs.end()?;
     sim.stop().await;
 
-    let sim = simulated(kind).await?;
+    let (hand, sim) = Hand::beside(simulated(kind));
+    let sim = sim.start().await?;
     let ours = Ours::hold(sim.addr()).await?;
-    let own = felt(&sim, way).await?;
+    let own = hand.push(way).await?;
     ours.end().await?;
     sim.stop().await;
 
@@ -151,37 +150,4 @@ async fn push(kind: Kind, way: Vector3<f64>, arguments: &Arguments) -> anyhow::R
     let summary = format!("own {own:.1} N, franka-rs {peer:.1} N, cap {CAP} N, at {PACE} m/s");
     ensure!(own <= most && peer > most, "{summary}");
     Ok(summary)
-}
-
-/// The mean force on a hand that moves at constant velocity along `way`, `[N]`: no part of it
-/// accelerates the arm.
-async fn felt(sim: &Running, way: Vector3<f64>) -> anyhow::Result<f64> {
-    let begin = sim.state().await?;
-    let pose = begin.O_T_EE;
-    let from = Vector3::new(pose[12], pose[13], pose[14]);
-    let carry = Touch::carry(move |t| from + way * hand(t), STIFFNESS);
-    let push = sim.with(move |robot| robot.touch(carry)).await?;
-    let deadline = Instant::now() + PATIENCE;
-    let (mut sum, mut seen, mut last) = (0.0, 0.0, 0);
-    loop {
-        let (now, force) = sim
-            .with(move |robot| (robot.state().message_id, robot.felt(push)))
-            .await?;
-        let force = force.context("the push has ended")?;
-        let time = now - begin.message_id;
-        if time >= PUSH {
-            break;
-        }
-        if time > last && time as f64 >= START * 1e3 + SWING as f64 {
-            sum += force.fixed_rows::<3>(0).norm();
-            seen += 1.0;
-            last = time;
-        }
-        if Instant::now() > deadline {
-            bail!("after {time} ms of the robot's time nothing answers");
-        }
-    }
-    ensure!(seen > 10.0, "only {seen} looks at the contact");
-    sim.with(move |robot| robot.release(push)).await?;
-    Ok(sum / seen)
 }
