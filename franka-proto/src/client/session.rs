@@ -16,13 +16,13 @@ use crate::version::Version;
 #[derive(Clone, Debug)]
 pub struct Session<P: Protocol = Version> {
     version: P,
-    phase: Phase,
+    phase: ConnectionPhase,
     next_id: u32,
     pending: Pending<P::Command>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
+enum ConnectionPhase {
     Closed,
     Connecting,
     Open,
@@ -69,7 +69,7 @@ impl<P: Protocol> Session<P> {
     pub fn new(version: P) -> Self {
         Self {
             version,
-            phase: Phase::Closed,
+            phase: ConnectionPhase::Closed,
             next_id: 0,
             pending: Pending::new(),
         }
@@ -84,7 +84,7 @@ impl<P: Protocol> Session<P> {
     /// Whether the handshake is done.
     #[must_use]
     pub fn is_connected(&self) -> bool {
-        self.phase == Phase::Open
+        self.phase == ConnectionPhase::Open
     }
 
     /// How many requests wait for a reply; a motion counts until its last one.
@@ -99,7 +99,7 @@ impl<P: Protocol> Session<P> {
     /// The session starts over with it: ids begin at 0 and no request is pending.
     pub fn connect(&mut self, udp_port: u16) -> Outgoing {
         *self = Self::new(self.version);
-        self.phase = Phase::Connecting;
+        self.phase = ConnectionPhase::Connecting;
         let id = self.take_id();
         self.pending.insert(id, P::Command::CONNECT);
         let hello = self.version.connect(udp_port);
@@ -115,7 +115,7 @@ impl<P: Protocol> Session<P> {
         if P::handshake(request).is_some() {
             return Err(RequestError::Handshake);
         }
-        if self.phase != Phase::Open {
+        if self.phase != ConnectionPhase::Open {
             return Err(RequestError::NotConnected);
         }
         if self.pending.is_full() {
@@ -185,7 +185,7 @@ impl<P: Protocol> Session<P> {
         status: ConnectStatus,
         reported: u16,
     ) -> Result<Event<'a, P>, Violation<P::Command>> {
-        self.phase = Phase::Closed;
+        self.phase = ConnectionPhase::Closed;
         let announced = self.version.number();
         match status {
             ConnectStatus::IncompatibleLibraryVersion => {
@@ -200,7 +200,7 @@ impl<P: Protocol> Session<P> {
                 reported,
             }),
             ConnectStatus::Success => {
-                self.phase = Phase::Open;
+                self.phase = ConnectionPhase::Open;
                 Ok(Event::Connected {
                     version: self.version,
                 })

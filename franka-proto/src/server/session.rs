@@ -17,12 +17,12 @@ use crate::version::Version;
 #[derive(Clone, Debug)]
 pub struct Session<P: Protocol = Version> {
     version: P,
-    phase: Phase,
+    phase: ConnectionPhase,
     pending: Pending<P::Command>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
+enum ConnectionPhase {
     Listening,
     Open,
 }
@@ -78,7 +78,7 @@ impl<P: Protocol> Session<P> {
     pub fn new(version: P) -> Self {
         Self {
             version,
-            phase: Phase::Listening,
+            phase: ConnectionPhase::Listening,
             pending: Pending::new(),
         }
     }
@@ -92,7 +92,7 @@ impl<P: Protocol> Session<P> {
     /// Whether the handshake is done.
     #[must_use]
     pub fn is_connected(&self) -> bool {
-        self.phase == Phase::Open
+        self.phase == ConnectionPhase::Open
     }
 
     /// The event that a message of the client causes.
@@ -106,14 +106,14 @@ impl<P: Protocol> Session<P> {
             Err(error) => return self.on_unreadable(&message, error),
         };
         match (self.phase, P::handshake(&request)) {
-            (Phase::Listening, Some((version, udp_port))) => {
+            (ConnectionPhase::Listening, Some((version, udp_port))) => {
                 Ok(self.on_connect(id, version, udp_port))
             }
-            (Phase::Listening, None) => Err(Violation::NotConnect {
+            (ConnectionPhase::Listening, None) => Err(Violation::NotConnect {
                 got: P::command_of(&request),
             }),
-            (Phase::Open, Some(_)) => Err(Violation::SecondConnect),
-            (Phase::Open, None) => {
+            (ConnectionPhase::Open, Some(_)) => Err(Violation::SecondConnect),
+            (ConnectionPhase::Open, None) => {
                 self.remember(id, P::command_of(&request))?;
                 Ok(Event::Request { id, request })
             }
@@ -163,7 +163,7 @@ impl<P: Protocol> Session<P> {
                 .expect("every version has Connect and both its statuses")
         };
         if version == device.number() {
-            self.phase = Phase::Open;
+            self.phase = ConnectionPhase::Open;
             let reply = reply(ConnectStatus::Success);
             Event::Connect {
                 id,
@@ -185,7 +185,7 @@ impl<P: Protocol> Session<P> {
         let id = message.header.id();
         let unknown_value = matches!(error, DecodeError::UnknownValue { .. });
         let rejection = self.version.rejection(message);
-        match rejection.filter(|_| unknown_value && self.phase == Phase::Open) {
+        match rejection.filter(|_| unknown_value && self.phase == ConnectionPhase::Open) {
             Some((command, reply)) => {
                 self.remember(id, command)?;
                 // A version that has the command has this status, and the request is noted.

@@ -2,7 +2,7 @@
 
 use franka_proto::RobotState;
 
-use super::{Driver, Event, Phase};
+use super::{Driver, DriverPhase, Event};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 impl Driver {
@@ -15,8 +15,9 @@ impl Driver {
             self.record.turnaround = sent.turnaround;
             self.record.slack = Some(sent.slack);
         }
-        if let Phase::Running(motion) | Phase::Finishing(motion) | Phase::Silent(motion) =
-            &mut self.phase
+        if let DriverPhase::Running(motion)
+        | DriverPhase::Finishing(motion)
+        | DriverPhase::Silent(motion) = &mut self.phase
         {
             motion.log.note_state(state);
             motion.log.note_command(&motion.sent);
@@ -35,8 +36,9 @@ impl Driver {
     /// Notes the times of a cycle whose command has left, when all of them are known. Returns the
     /// counts of the motion that runs; `None` if none does.
     pub fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
-        let (Phase::Running(motion) | Phase::Finishing(motion) | Phase::Silent(motion)) =
-            &self.phase
+        let (DriverPhase::Running(motion)
+        | DriverPhase::Finishing(motion)
+        | DriverPhase::Silent(motion)) = &self.phase
         else {
             return None;
         };
@@ -49,7 +51,7 @@ impl Driver {
     pub fn statistics(&self) -> Option<&MotionStatistics> {
         matches!(
             self.phase,
-            Phase::Running(_) | Phase::Finishing(_) | Phase::Silent(_)
+            DriverPhase::Running(_) | DriverPhase::Finishing(_) | DriverPhase::Silent(_)
         )
         .then_some(&self.statistics)
     }

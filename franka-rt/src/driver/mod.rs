@@ -56,14 +56,14 @@ pub use program::Program;
 pub use record::{Activity, Record};
 
 use event::EventQueue;
-use motion::{Execution, Phase, UNWANTED_STATES};
-use program::Answer;
+use motion::{DriverPhase, Execution, UNWANTED_STATES};
+use program::CycleOutcome;
 
 /// The pure core of one robot's control thread.
 #[derive(Debug)]
 pub struct Driver {
     version: Version,
-    phase: Phase,
+    phase: DriverPhase,
     /// `message_id` of the newest state, once there was one.
     newest: Option<u64>,
     /// The silence at which the link was given up, until a state revives it.
@@ -82,7 +82,7 @@ impl Driver {
     pub fn new(version: Version) -> Self {
         Self {
             version,
-            phase: Phase::Watching,
+            phase: DriverPhase::Watching,
             newest: None,
             lost: None,
             link_timeout: LinkTimeout::default(),
@@ -107,7 +107,7 @@ impl Driver {
 
     /// Whether no motion is armed, running or finishing.
     pub fn is_watching(&self) -> bool {
-        matches!(self.phase, Phase::Watching)
+        matches!(self.phase, DriverPhase::Watching)
     }
 
     /// What the last cycle saw and did.
@@ -146,7 +146,7 @@ impl Driver {
                 match (self.lost, self.is_watching()) {
                     (None, true) => {
                         self.statistics = unseen;
-                        self.phase = Phase::Armed(armed);
+                        self.phase = DriverPhase::Armed(armed);
                     }
                     (None, false) => self.give_back(armed, Ending::Refused, unseen),
                     (Some(silence), _) => {
@@ -155,8 +155,8 @@ impl Driver {
                 }
             }
             Order::Disarm { motion } => {
-                match core::mem::replace(&mut self.phase, Phase::Watching) {
-                    Phase::Armed(armed) if armed.id == motion => {
+                match core::mem::replace(&mut self.phase, DriverPhase::Watching) {
+                    DriverPhase::Armed(armed) if armed.id == motion => {
                         self.end(armed, Ending::Disarmed);
                     }
                     // The motion has ended by itself, and has said so; or another one is under way.
@@ -164,16 +164,16 @@ impl Driver {
                 }
             }
             Order::Abandon { motion } => {
-                self.phase = match core::mem::replace(&mut self.phase, Phase::Watching) {
-                    Phase::Armed(mut abandoned) if abandoned.id == motion => {
+                self.phase = match core::mem::replace(&mut self.phase, DriverPhase::Watching) {
+                    DriverPhase::Armed(mut abandoned) if abandoned.id == motion => {
                         abandoned.leave();
-                        Phase::Unwanted(abandoned, 0)
+                        DriverPhase::Unwanted(abandoned, 0)
                     }
-                    Phase::Running(mut abandoned) | Phase::Finishing(mut abandoned)
+                    DriverPhase::Running(mut abandoned) | DriverPhase::Finishing(mut abandoned)
                         if abandoned.id == motion && !abandoned.program.brakes() =>
                     {
                         abandoned.leave();
-                        Phase::Silent(abandoned)
+                        DriverPhase::Silent(abandoned)
                     }
                     other => other,
                 };
@@ -206,9 +206,9 @@ impl Driver {
             self.statistics
                 .note_state(state, missing - skipped, skipped);
         }
-        match core::mem::replace(&mut self.phase, Phase::Watching) {
-            Phase::Watching => None,
-            Phase::Armed(motion)
+        match core::mem::replace(&mut self.phase, DriverPhase::Watching) {
+            DriverPhase::Watching => None,
+            DriverPhase::Armed(motion)
                 if motion.modes.shown_by(state) && motion.program.can_read(state) =>
             {
                 self.events.push(Event::Started {
@@ -219,12 +219,12 @@ impl Driver {
                 self.statistics.note_state(state, 0, 0);
                 self.run(motion, state)
             }
-            Phase::Armed(motion) => {
+            DriverPhase::Armed(motion) => {
                 self.record.activity = Activity::Armed;
-                self.phase = Phase::Armed(motion);
+                self.phase = DriverPhase::Armed(motion);
                 None
             }
-            Phase::Unwanted(motion, quiet) => {
+            DriverPhase::Unwanted(motion, quiet) => {
                 let quiet = if motion.is_left_by(state) {
                     quiet + 1
                 } else {
@@ -234,21 +234,21 @@ impl Driver {
                     return self.end_at(state, motion, Ending::Disarmed);
                 }
                 self.record.activity = Activity::Silent;
-                self.phase = Phase::Unwanted(motion, quiet);
+                self.phase = DriverPhase::Unwanted(motion, quiet);
                 None
             }
-            Phase::Running(motion) => {
+            DriverPhase::Running(motion) => {
                 if motion.is_left_by(state) {
                     self.end_at(state, motion, Ending::Aborted)
                 } else if motion.program.can_read(state) {
                     self.run(motion, state)
                 } else {
                     self.record.activity = Activity::Running;
-                    self.phase = Phase::Running(motion);
+                    self.phase = DriverPhase::Running(motion);
                     None
                 }
             }
-            Phase::Finishing(mut motion) => {
+            DriverPhase::Finishing(mut motion) => {
                 if motion.is_left_by(state) {
                     return self.end_at(state, motion, Ending::Finished);
                 }
@@ -256,15 +256,15 @@ impl Driver {
                 let command = motion.sent;
                 self.record.activity = Activity::Finishing;
                 self.record.tau_c = command.tau_J_d;
-                self.phase = Phase::Finishing(motion);
+                self.phase = DriverPhase::Finishing(motion);
                 Some(command)
             }
-            Phase::Silent(motion) => {
+            DriverPhase::Silent(motion) => {
                 if motion.is_left_by(state) {
                     return self.end_at(state, motion, Ending::Aborted);
                 }
                 self.record.activity = Activity::Silent;
-                self.phase = Phase::Silent(motion);
+                self.phase = DriverPhase::Silent(motion);
                 None
             }
         }
@@ -277,7 +277,7 @@ impl Driver {
     /// # Errors
     /// [`WriteError`]; nothing is to be sent then, and the motion goes on.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<RobotCommand, WriteError> {
-        let (Phase::Running(motion), Some(newest)) = (&mut self.phase, self.newest) else {
+        let (DriverPhase::Running(motion), Some(newest)) = (&mut self.phase, self.newest) else {
             return Err(WriteError::NotRunning);
         };
         let Program::Active(active) = &motion.program else {
@@ -290,9 +290,9 @@ impl Driver {
         self.record.tau_c = sent.tau_J_d;
         if finished {
             self.events.push(Event::Finishing { motion: motion.id });
-            let running = core::mem::replace(&mut self.phase, Phase::Watching);
-            if let Phase::Running(motion) = running {
-                self.phase = Phase::Finishing(motion);
+            let running = core::mem::replace(&mut self.phase, DriverPhase::Watching);
+            if let DriverPhase::Running(motion) = running {
+                self.phase = DriverPhase::Finishing(motion);
             }
         }
         Ok(sent)
@@ -305,13 +305,13 @@ impl Driver {
             return;
         }
         self.lost = Some(silence);
-        match core::mem::replace(&mut self.phase, Phase::Watching) {
-            Phase::Watching => {}
-            Phase::Armed(motion)
-            | Phase::Unwanted(motion, _)
-            | Phase::Running(motion)
-            | Phase::Finishing(motion)
-            | Phase::Silent(motion) => {
+        match core::mem::replace(&mut self.phase, DriverPhase::Watching) {
+            DriverPhase::Watching => {}
+            DriverPhase::Armed(motion)
+            | DriverPhase::Unwanted(motion, _)
+            | DriverPhase::Running(motion)
+            | DriverPhase::Finishing(motion)
+            | DriverPhase::Silent(motion) => {
                 self.end(motion, Ending::LinkLost { silence });
             }
         }
@@ -334,8 +334,8 @@ impl Driver {
                 statistics: self.statistics,
             });
         }
-        match step.answer {
-            Answer::Command { command, finished } => {
+        match step.outcome {
+            CycleOutcome::Command { command, finished } => {
                 let sent = match command.datagram(state.message_id, finished) {
                     Ok(sent) => sent,
                     Err(invalid) => return self.fail(motion, Failure::Invalid(invalid)),
@@ -345,19 +345,19 @@ impl Driver {
                 self.phase = if finished {
                     self.record.activity = Activity::Finishing;
                     self.events.push(Event::Finishing { motion: motion.id });
-                    Phase::Finishing(motion)
+                    DriverPhase::Finishing(motion)
                 } else {
                     self.record.activity = activity;
-                    Phase::Running(motion)
+                    DriverPhase::Running(motion)
                 };
                 Some(sent)
             }
-            Answer::Open => {
+            CycleOutcome::Open => {
                 self.record.activity = Activity::Running;
-                self.phase = Phase::Running(motion);
+                self.phase = DriverPhase::Running(motion);
                 None
             }
-            Answer::Failed(failure) => self.fail(motion, failure),
+            CycleOutcome::Failed(failure) => self.fail(motion, failure),
         }
     }
 
@@ -368,7 +368,7 @@ impl Driver {
             motion: motion.id,
             failure,
         });
-        self.phase = Phase::Silent(motion);
+        self.phase = DriverPhase::Silent(motion);
         None
     }
 
@@ -386,7 +386,7 @@ impl Driver {
     }
 
     fn end(&mut self, motion: Execution, ending: Ending) {
-        self.phase = Phase::Watching;
+        self.phase = DriverPhase::Watching;
         self.give_back(motion, ending, self.statistics);
     }
 

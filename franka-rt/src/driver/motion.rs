@@ -1,4 +1,4 @@
-//! A motion in the driver's hands, and how far it has come.
+//! The motion that the driver runs, and its phase.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::together::{Gate, StartTicket};
 
 /// What the driver is doing.
 #[derive(Debug)]
-pub(super) enum Phase {
+pub(super) enum DriverPhase {
     Watching,
     Armed(Execution),
     /// Abandoned while it was armed, and the number of states in a row since then that show no

@@ -20,17 +20,18 @@ pub enum Program {
     Asynchronous(AsynchronousPositions),
 }
 
-/// What a program answers a state with.
+/// The result of one step of a program.
 pub(super) struct ProgramStep {
-    pub(super) answer: Answer,
+    pub(super) outcome: CycleOutcome,
     pub(super) event: Option<SessionEvent>,
 }
 
+/// What is sent in answer to a state.
 #[expect(
     clippy::large_enum_variant,
     reason = "one per cycle, and a box would allocate on the thread"
 )]
-pub(super) enum Answer {
+pub(super) enum CycleOutcome {
     /// This command; the last one if it says so.
     Command { command: Command, finished: bool },
     /// Nothing now, but perhaps something is written before the next state.
@@ -75,7 +76,7 @@ impl Program {
         state: &RobotState,
         record: &mut Record,
     ) -> ProgramStep {
-        let answer = match self {
+        let outcome = match self {
             Self::Target(session) => {
                 let step = match gate {
                     Gate::Open => session.step(state),
@@ -100,31 +101,31 @@ impl Program {
                 };
                 let finished = step.finished;
                 return ProgramStep {
-                    answer: command.map_or_else(
-                        |invalid| Answer::Failed(Failure::Invalid(invalid)),
-                        |command| Answer::Command { command, finished },
+                    outcome: command.map_or_else(
+                        |invalid| CycleOutcome::Failed(Failure::Invalid(invalid)),
+                        |command| CycleOutcome::Command { command, finished },
                     ),
                     event: step.event,
                 };
             }
             Self::Callback(callback) => match gate {
                 Gate::Open => match callback.step(state) {
-                    Ok((command, finished)) => Answer::Command { command, finished },
-                    Err(failure) => Answer::Failed(failure),
+                    Ok((command, finished)) => CycleOutcome::Command { command, finished },
+                    Err(failure) => CycleOutcome::Failed(failure),
                 },
-                Gate::Closed | Gate::Broken(_) => Answer::Command {
+                Gate::Closed | Gate::Broken(_) => CycleOutcome::Command {
                     command: callback.hold(state),
                     finished: gate != Gate::Closed,
                 },
             },
-            Self::Active(_) => Answer::Open,
+            Self::Active(_) => CycleOutcome::Open,
             Self::Asynchronous(positions) => match positions.step() {
-                Some((command, finished)) => Answer::Command { command, finished },
-                None => Answer::Open,
+                Some((command, finished)) => CycleOutcome::Command { command, finished },
+                None => CycleOutcome::Open,
             },
         };
         ProgramStep {
-            answer,
+            outcome,
             event: None,
         }
     }
