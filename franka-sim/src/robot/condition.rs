@@ -14,7 +14,7 @@ use franka_proto::{
     MoveStatus, RecoveryStatus, Reply, RobotError, RobotMode, StopStatus,
 };
 
-use super::motion::{Motion, Rules, Verdict};
+use super::motion::{ActiveMotion, Rules, Verdict};
 use super::watch::Sight;
 use super::{Activity, Robot};
 use crate::brake::Brake;
@@ -117,7 +117,7 @@ impl Robot {
         self.command = None;
         self.desired = self.desired.as_published(self.kind.precision);
         let limits = self.model.joint_limits();
-        self.activity = Activity::Moving(Motion::new(id, request, first_state, limits));
+        self.activity = Activity::Moving(ActiveMotion::new(id, request, first_state, limits));
     }
 
     fn is_singular(&self) -> bool {

@@ -53,8 +53,8 @@ use crate::signal::JointSignal;
 use boards::Boards;
 use control::Measurement;
 use interface::TorqueInterface;
+use motion::ActiveMotion;
 pub(crate) use motion::Awaited;
-use motion::Motion;
 use operation::{Guidance, Lock};
 use recovery::Recovery;
 use touch::Touches;
@@ -117,7 +117,7 @@ enum Activity {
     /// Coming to rest by itself.
     Braking(Brake),
     /// Following a client.
-    Moving(Motion),
+    Moving(ActiveMotion),
     /// Going where a hand guides it.
     Guided(Guidance),
 }

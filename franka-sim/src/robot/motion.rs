@@ -15,7 +15,7 @@ use crate::success_rate::{LOST_LIMIT, SuccessRate};
 
 /// Between `kMotionStarted` and the final reply to a `Move`.
 #[derive(Debug, Clone)]
-pub(super) struct Motion {
+pub(super) struct ActiveMotion {
     id: CommandId,
     request: MoveRequest,
     /// `message_id` of the first state that shows the motion. Commands that answer earlier states
@@ -65,7 +65,7 @@ pub(super) enum Verdict {
     Invalid,
 }
 
-impl Motion {
+impl ActiveMotion {
     pub(super) fn new(
         id: CommandId,
         request: MoveRequest,

@@ -4,11 +4,11 @@
 use franka_otg::AxisLimits;
 
 /// Position, velocity and acceleration.
-pub(crate) type Motion = [f64; 3];
+pub(crate) type AxisMotion = [f64; 3];
 
 /// The least duration from a state that can stay inside the limits to rest `distance` away, and
 /// whether the way there leads past the target first.
-pub(crate) fn least_duration(start: Motion, distance: f64, limits: AxisLimits) -> f64 {
+pub(crate) fn least_duration(start: AxisMotion, distance: f64, limits: AxisLimits) -> f64 {
     let side = if distance >= stop_point(start, limits) {
         1.0
     } else {
@@ -33,12 +33,12 @@ pub(crate) fn least_duration(start: Motion, distance: f64, limits: AxisLimits) -
 }
 
 /// Where the least-time stop ends, relative to position zero.
-pub(crate) fn stop_point(start: Motion, limits: AxisLimits) -> f64 {
+pub(crate) fn stop_point(start: AxisMotion, limits: AxisLimits) -> f64 {
     end_of_push(start, 0.0, limits.velocity, limits).0
 }
 
 /// Where and when the axis rests if it pushes towards `velocity` for `theta` and then stops.
-fn end_of_push(start: Motion, theta: f64, velocity: f64, limits: AxisLimits) -> (f64, f64) {
+fn end_of_push(start: AxisMotion, theta: f64, velocity: f64, limits: AxisLimits) -> (f64, f64) {
     let (mut state, mut left, mut duration) = (start, theta, theta);
     if theta > 0.0 {
         for (jerk, t) in transfer(start, velocity, limits) {
@@ -59,7 +59,7 @@ fn end_of_push(start: Motion, theta: f64, velocity: f64, limits: AxisLimits) -> 
 }
 
 /// Least-time transfer to a velocity without acceleration.
-fn transfer([_, v, a]: Motion, to: f64, limits: AxisLimits) -> [(f64, f64); 3] {
+fn transfer([_, v, a]: AxisMotion, to: f64, limits: AxisLimits) -> [(f64, f64); 3] {
     let (jerk, most) = (limits.jerk, limits.acceleration);
     let sign = 1_f64.copysign(to - (v + 0.5 * a * a.abs() / jerk));
     let (b, d) = (sign * a, sign * (to - v));
@@ -73,7 +73,7 @@ fn transfer([_, v, a]: Motion, to: f64, limits: AxisLimits) -> [(f64, f64); 3] {
     ]
 }
 
-fn after([p, v, a]: Motion, jerk: f64, t: f64) -> Motion {
+fn after([p, v, a]: AxisMotion, jerk: f64, t: f64) -> AxisMotion {
     [
         p + t * (v + t * (0.5 * a + t * jerk / 6.0)),
         v + t * (a + 0.5 * t * jerk),
