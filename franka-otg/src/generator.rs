@@ -37,7 +37,7 @@ use crate::state::{State, check_finite};
 pub struct Generator<const N: usize> {
     limits: Limits<N>,
     synchronisation: Synchronisation,
-    goal: Goal<N>,
+    heading: Heading<N>,
     plan: Plan<N>,
     /// Cycles since the plan was made.
     cycle: u64,
@@ -45,9 +45,9 @@ pub struct Generator<const N: usize> {
     state: State<N>,
 }
 
-/// The goal of the plan.
+/// Where the plan leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Goal<const N: usize> {
+enum Heading<const N: usize> {
     /// The target state.
     Target(State<N>),
     /// Rest, in the least time.
@@ -78,7 +78,7 @@ impl<const N: usize> Generator<N> {
         let mut generator = Self {
             limits,
             synchronisation: Synchronisation::default(),
-            goal: Goal::Rest,
+            heading: Heading::Rest,
             plan: Plan::at_rest(state.position),
             cycle: 0,
             state,
@@ -98,21 +98,21 @@ impl<const N: usize> Generator<N> {
         limits: Limits<N>,
         target: Option<&[f64; N]>,
     ) -> Result<(), PlanError> {
-        let goal = match target {
-            None => Goal::Rest,
+        let heading = match target {
+            None => Heading::Rest,
             Some(target) => {
                 check_finite(target, Quantity::Target)?;
-                Goal::Target(State::at_rest(*target))
+                Heading::Target(State::at_rest(*target))
             }
         };
-        self.begin(state, limits, goal)
+        self.begin(state, limits, heading)
     }
 
     fn begin(
         &mut self,
         state: State<N>,
         limits: Limits<N>,
-        goal: Goal<N>,
+        heading: Heading<N>,
     ) -> Result<(), PlanError> {
         state.check()?;
         check_range(&state, &limits)?;
@@ -121,12 +121,12 @@ impl<const N: usize> Generator<N> {
             line: None,
             limits: &limits,
         };
-        match &goal {
-            Goal::Target(target) => self.plan.go_to(target, &start, self.synchronisation)?,
-            Goal::Rest => self.plan.stop(&start),
+        match &heading {
+            Heading::Target(target) => self.plan.go_to(target, &start, self.synchronisation)?,
+            Heading::Rest => self.plan.stop(&start),
         }
         self.limits = limits;
-        self.goal = goal;
+        self.heading = heading;
         self.cycle = 0;
         self.state = state;
         Ok(())
@@ -145,7 +145,7 @@ impl<const N: usize> Generator<N> {
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
     pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
-        if let Goal::Target(now) = &self.goal
+        if let Heading::Target(now) = &self.heading
             && now.position == *target
             && now.is_at_rest()
         {
@@ -176,7 +176,7 @@ impl<const N: usize> Generator<N> {
         if target.is_at_rest() {
             return self.set_target(&target.position);
         }
-        if self.goal == Goal::Target(*target) {
+        if self.heading == Heading::Target(*target) {
             return Ok(());
         }
         check_finite(&target.position, Quantity::Target)?;
@@ -199,11 +199,11 @@ impl<const N: usize> Generator<N> {
         }
         check_range(&self.state, &limits)?;
         let before = core::mem::replace(&mut self.limits, limits);
-        match self.goal {
-            Goal::Target(target) => self
+        match self.heading {
+            Heading::Target(target) => self
                 .plan_target(&target)
                 .inspect_err(|_| self.limits = before),
-            Goal::Rest => {
+            Heading::Rest => {
                 self.plan_stop();
                 Ok(())
             }
@@ -217,7 +217,7 @@ impl<const N: usize> Generator<N> {
     /// these ratios longer otherwise. Off a line each axis stops by itself. Braking cannot fail:
     /// state and limits were checked when they came in.
     pub fn brake(&mut self) {
-        if self.goal != Goal::Rest {
+        if self.heading != Heading::Rest {
             self.plan_stop();
         }
     }
@@ -230,7 +230,7 @@ impl<const N: usize> Generator<N> {
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
-        self.begin(state, self.limits, self.goal)
+        self.begin(state, self.limits, self.heading)
     }
 
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
@@ -263,9 +263,9 @@ impl<const N: usize> Generator<N> {
     /// Position of the target, or the position at which braking ends if there is none.
     #[must_use]
     pub const fn target(&self) -> &[f64; N] {
-        match &self.goal {
-            Goal::Target(target) => &target.position,
-            Goal::Rest => self.plan.end(),
+        match &self.heading {
+            Heading::Target(target) => &target.position,
+            Heading::Rest => self.plan.end(),
         }
     }
 
@@ -326,7 +326,7 @@ impl<const N: usize> Generator<N> {
             limits: &self.limits,
         };
         self.plan.go_to(target, &start, self.synchronisation)?;
-        self.goal = Goal::Target(*target);
+        self.heading = Heading::Target(*target);
         self.cycle = 0;
         Ok(())
     }
@@ -338,7 +338,7 @@ impl<const N: usize> Generator<N> {
             limits: &self.limits,
         };
         self.plan.stop(&start);
-        self.goal = Goal::Rest;
+        self.heading = Heading::Rest;
         self.cycle = 0;
     }
 }
