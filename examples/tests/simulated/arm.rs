@@ -63,7 +63,7 @@ pub(crate) struct Arm {
 
 /// The simulator's states, every few milliseconds.
 #[derive(Default)]
-pub(crate) struct Course(Vec<RobotState>);
+pub(crate) struct MeasuredPath(Vec<RobotState>);
 
 impl Arm {
     /// Starts the robot of this name.
@@ -105,7 +105,7 @@ impl Arm {
         let watch = Arc::new(Mutex::new(Watch {
             events: scene.events.into(),
             moving: None,
-            course: Course::default(),
+            path: MeasuredPath::default(),
         }));
         let seen = watch.clone();
         let sim = sim.every_millisecond(move |robot| {
@@ -125,7 +125,7 @@ impl Arm {
     }
 
     /// Ends the simulation and returns what the arm has done.
-    pub(crate) fn stop(self) -> Course {
+    pub(crate) fn stop(self) -> MeasuredPath {
         let last = self.runtime.block_on(self.sim.state());
         self.runtime.block_on(self.sim.stop());
         let mut watch = self.watch.lock().expect("no panic");
@@ -133,8 +133,8 @@ impl Arm {
             watch.events.is_empty(),
             "the motion ended before all events were due"
         );
-        watch.course.0.push(last.expect("the simulator runs"));
-        std::mem::take(&mut watch.course)
+        watch.path.0.push(last.expect("the simulator runs"));
+        std::mem::take(&mut watch.path)
     }
 }
 
@@ -144,7 +144,7 @@ struct Watch {
     events: VecDeque<(When, Event)>,
     /// The beginning of the present motion, in the robot's time.
     moving: Option<u64>,
-    course: Course,
+    path: MeasuredPath,
 }
 
 impl Watch {
@@ -153,7 +153,7 @@ impl Watch {
         let state = robot.state();
         let now = state.message_id;
         if now.is_multiple_of(SAMPLE) {
-            self.course.0.push(*state);
+            self.path.0.push(*state);
         }
         if state.robot_mode != RobotMode::Move {
             self.moving = None;
@@ -196,7 +196,7 @@ fn self_motion(q: &JointVector) -> JointVector {
     still.normalize()
 }
 
-impl Course {
+impl MeasuredPath {
     /// The state at the end.
     pub(crate) fn last(&self) -> &RobotState {
         self.0.last().expect("there is one at least")

@@ -4,15 +4,15 @@
 use franka_async::{RobotError, RobotMode};
 use franka_model::READY;
 
-use crate::arm::{Arm, Course, Event, SAMPLE, Scene};
+use crate::arm::{Arm, Event, MeasuredPath, SAMPLE, Scene};
 use crate::program::{Said, on_both, run};
 
 /// Asserts that a program has succeeded, and that the robot has not stopped itself meanwhile.
-fn succeeded(robot: &str, said: &Said, course: &Course) {
+fn succeeded(robot: &str, said: &Said, path: &MeasuredPath) {
     assert_eq!(said.code, Some(0), "{robot}: {said:?}");
-    let erred = course.first(|state| !state.errors.is_empty());
+    let erred = path.first(|state| !state.errors.is_empty());
     assert!(erred.is_none(), "{robot}: {said:?}");
-    assert_eq!(course.last().robot_mode, RobotMode::Idle, "{robot}");
+    assert_eq!(path.last().robot_mode, RobotMode::Idle, "{robot}");
 }
 
 /// Asserts that smallest, greatest and last value are as expected.
@@ -30,10 +30,10 @@ fn move_to_ready_arrives_from_elsewhere() {
     for (joint, q) in scene.q.iter_mut().enumerate() {
         *q += if joint % 2 == 0 { 0.25 } else { -0.15 };
     }
-    on_both("move_to_ready", &[], &scene, |robot, said, course| {
-        succeeded(robot, said, course);
+    on_both("move_to_ready", &[], &scene, |robot, said, path| {
+        succeeded(robot, said, path);
         for (joint, ready) in READY.iter().enumerate() {
-            let error = course.last().q[joint] - ready;
+            let error = path.last().q[joint] - ready;
             assert!(error.abs() < 2e-3, "{robot}: joint {joint} is {error} off");
         }
     });
@@ -43,12 +43,12 @@ fn move_to_ready_arrives_from_elsewhere() {
 fn joint_generators_swing_three_joints_and_bring_them_back() {
     for generator in ["joint-positions", "joint-velocities"] {
         let scene = Scene::default();
-        on_both("generators", &[generator], &scene, |robot, said, course| {
-            succeeded(robot, said, course);
+        on_both("generators", &[generator], &scene, |robot, said, path| {
+            succeeded(robot, said, path);
             for joint in 0..7 {
                 let far = if [3, 4, 6].contains(&joint) { 0.2 } else { 0.0 };
                 let what = format!("{robot}, {generator}: joint {joint}");
-                is_about(&what, course.joint(joint), (0.0, far, 0.0), 5e-3);
+                is_about(&what, path.joint(joint), (0.0, far, 0.0), 5e-3);
             }
         });
     }
@@ -61,14 +61,14 @@ fn cartesian_generators_move_the_hand_along_an_axis_and_back() {
         ("cartesian-velocities", 1, 0.06),
     ] {
         let scene = Scene::default();
-        on_both("generators", &[generator], &scene, |robot, said, course| {
-            succeeded(robot, said, course);
+        on_both("generators", &[generator], &scene, |robot, said, path| {
+            succeeded(robot, said, path);
             for other in 0..3 {
                 let way: f64 = if other == axis { way } else { 0.0 };
                 let what = format!("{robot}, {generator}: axis {other}");
                 is_about(
                     &what,
-                    course.hand(other),
+                    path.hand(other),
                     (way.min(0.0), way.max(0.0), 0.0),
                     2e-3,
                 );
@@ -83,12 +83,12 @@ fn joint_impedance_follows_the_circle() {
         "joint_impedance",
         &[],
         &Scene::default(),
-        |robot, said, course| {
-            succeeded(robot, said, course);
+        |robot, said, path| {
+            succeeded(robot, said, path);
             // The springs are soft: the remaining friction causes errors of some millimetres.
-            is_about(robot, course.hand(0), (0.0, 0.0, 0.0), 5e-3);
-            is_about(robot, course.hand(1), (-0.05, 0.05, 0.0), 5e-3);
-            is_about(robot, course.hand(2), (0.0, 0.1, 0.0), 5e-3);
+            is_about(robot, path.hand(0), (0.0, 0.0, 0.0), 5e-3);
+            is_about(robot, path.hand(1), (-0.05, 0.05, 0.0), 5e-3);
+            is_about(robot, path.hand(2), (0.0, 0.1, 0.0), 5e-3);
         },
     );
 }
@@ -105,12 +105,12 @@ fn cartesian_impedance_yields_by_its_stiffness_in_both_ways() {
             "cartesian_impedance",
             &arguments,
             &scene,
-            |robot, said, course| {
-                succeeded(robot, said, course);
+            |robot, said, path| {
+                succeeded(robot, said, path);
                 // 9 N against 300 N/m.
                 let what = format!("{robot}, {way}");
-                is_about(&what, course.hand(1), (0.0, 0.03, 0.0), 4e-3);
-                is_about(&what, course.hand(2), (0.0, 0.0, 0.0), 4e-3);
+                is_about(&what, path.hand(1), (0.0, 0.03, 0.0), 4e-3);
+                is_about(&what, path.hand(2), (0.0, 0.0, 0.0), 4e-3);
             },
         );
     }
@@ -123,11 +123,11 @@ fn figure_eight_has_its_stated_size_and_begins_and_ends_at_rest() {
         "figure_eight",
         &["--laps", "3"],
         &scene,
-        |robot, said, course| {
-            succeeded(robot, said, course);
-            is_about(robot, course.hand(0), (0.0, 0.0, 0.0), 2e-3);
-            is_about(robot, course.hand(1), (-0.08, 0.08, 0.0), 2e-3);
-            is_about(robot, course.hand(2), (-0.04, 0.04, 0.0), 2e-3);
+        |robot, said, path| {
+            succeeded(robot, said, path);
+            is_about(robot, path.hand(0), (0.0, 0.0, 0.0), 2e-3);
+            is_about(robot, path.hand(1), (-0.08, 0.08, 0.0), 2e-3);
+            is_about(robot, path.hand(2), (-0.04, 0.04, 0.0), 2e-3);
         },
     );
 }
@@ -149,28 +149,23 @@ fn virtual_floor_stops_the_hand_releases_it_and_keeps_the_elbow() {
         ..Scene::default()
     };
     let arguments = ["--below", "0.05", "--seconds", "8"];
-    on_both(
-        "virtual_floor",
-        &arguments,
-        &scene,
-        |robot, said, course| {
-            succeeded(robot, said, course);
-            let (lowest, highest, _) = course.hand(2);
-            // 10 N press the spring of 2000 N/m in by 5 mm, and at first the hand comes with some
-            // speed.
-            assert!((-0.07..-0.054).contains(&lowest), "{robot}: {lowest}");
-            assert!(
-                highest > 0.0,
-                "{robot}: the floor held the hand at {highest}"
-            );
-            let (_, swung, left) = course.elbow();
-            assert!(swung > 0.05, "{robot}: the elbow went {swung} rad");
-            assert!(
-                left.abs() < 0.02,
-                "{robot}: the elbow is {left} rad from its posture"
-            );
-        },
-    );
+    on_both("virtual_floor", &arguments, &scene, |robot, said, path| {
+        succeeded(robot, said, path);
+        let (lowest, highest, _) = path.hand(2);
+        // 10 N press the spring of 2000 N/m in by 5 mm, and at first the hand comes with some
+        // speed.
+        assert!((-0.07..-0.054).contains(&lowest), "{robot}: {lowest}");
+        assert!(
+            highest > 0.0,
+            "{robot}: the floor held the hand at {highest}"
+        );
+        let (_, swung, left) = path.elbow();
+        assert!(swung > 0.05, "{robot}: the elbow went {swung} rad");
+        assert!(
+            left.abs() < 0.02,
+            "{robot}: the elbow is {left} rad from its posture"
+        );
+    });
 }
 
 #[test]
@@ -182,14 +177,14 @@ fn communication_test_reports_by_its_exit_code() {
             "communication_test",
             &arguments,
             &scene,
-            |robot, said, course| {
+            |robot, said, path| {
                 assert_eq!(said.code, Some(code), "{robot}: {said:?}");
                 assert!(
                     said.stdout.contains("success rate: min "),
                     "{robot}: {said:?}"
                 );
                 for axis in 0..3 {
-                    is_about(robot, course.hand(axis), (0.0, 0.0, 0.0), 5e-3);
+                    is_about(robot, path.hand(axis), (0.0, 0.0, 0.0), 5e-3);
                 }
             },
         );
@@ -198,7 +193,7 @@ fn communication_test_reports_by_its_exit_code() {
 
 #[test]
 fn recovery_continues_after_a_reflex() {
-    on_both("recovery", &[], &Scene::default(), |robot, said, course| {
+    on_both("recovery", &[], &Scene::default(), |robot, said, path| {
         assert_eq!(said.code, Some(0), "{robot}: {said:?}");
         assert!(
             said.stdout.contains(
@@ -206,13 +201,13 @@ fn recovery_continues_after_a_reflex() {
             ),
             "{robot}: {said:?}"
         );
-        assert_eq!(course.last().robot_mode, RobotMode::Idle, "{robot}");
-        is_about(robot, course.joint(6), (0.0, 0.3, 0.3), 5e-3);
+        assert_eq!(path.last().robot_mode, RobotMode::Idle, "{robot}");
+        is_about(robot, path.joint(6), (0.0, 0.3, 0.3), 5e-3);
     });
 }
 
 /// Runs the example with a robot of each kind in these scenes.
-fn two_robots(scenes: [Scene; 2]) -> (Said, [Course; 2]) {
+fn two_robots(scenes: [Scene; 2]) -> (Said, [MeasuredPath; 2]) {
     let arms = Arm::in_step(scenes);
     let [one, other] = arms.each_ref().map(|arm| arm.address.as_str());
     let said = run(
@@ -277,10 +272,10 @@ fn with_an_address_nothing_moves_before_the_confirmation() {
         let arm = Arm::start("fr3", elsewhere());
         let arguments = [arm.address.as_str(), "--realtime", "ignore"];
         let said = run("move_to_ready", &arguments, input);
-        let course = arm.stop();
+        let path = arm.stop();
         assert_eq!(said.code, Some(code), "{said:?}");
         assert!(said.stdout.contains("user stop"), "{said:?}");
-        let moved = course.first(|state| state.robot_mode == RobotMode::Move);
+        let moved = path.first(|state| state.robot_mode == RobotMode::Move);
         assert_eq!(moved.is_some(), code == 0, "{said:?}");
     }
 }

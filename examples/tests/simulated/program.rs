@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use crate::arm::{Arm, Course, Scene};
+use crate::arm::{Arm, MeasuredPath, Scene};
 
 /// Both robots, by their names in the option of the examples.
 pub(crate) const ROBOTS: [&str; 2] = ["fr3", "fer"];
@@ -59,7 +59,7 @@ pub(crate) fn on_both(
     name: &str,
     arguments: &[&str],
     scene: &Scene,
-    check: impl Fn(&str, &Said, &Course) + Sync,
+    check: impl Fn(&str, &Said, &MeasuredPath) + Sync,
 ) {
     let judge = |robot| {
         let arm = Arm::start(robot, scene.clone());
