@@ -12,7 +12,7 @@ use franka_rt::driver::{ControlLog, Program};
 use franka_rt::exchange::{self, Exchange, Reception};
 use franka_rt::lifecycle::{ControlError, MotionError};
 use franka_rt::session::GoalId;
-use franka_tests::lockstep::{Client, Outcome};
+use franka_tests::lockstep::{DriverStack, Outcome};
 
 use crate::robot::ScriptedRobot;
 
@@ -21,7 +21,7 @@ use crate::robot::ScriptedRobot;
 /// A datagram sent over loopback is there when the call that sends it returns, so nothing here
 /// waits: time is what [`Pair::cycle`] and [`Pair::silence`] count.
 pub(crate) struct Pair {
-    pub(crate) client: Client,
+    pub(crate) client: DriverStack,
     pub(crate) robot: ScriptedRobot,
     exchange: Exchange,
 }
@@ -49,7 +49,7 @@ impl Pair {
         let socket = exchange::bind(robot).expect("a free port");
         let port = socket.local_addr().expect("bound").port();
         let mut pair = Self {
-            client: Client::new(model(version), version).with_log_size(cycles),
+            client: DriverStack::new(model(version), version).with_log_size(cycles),
             robot: ScriptedRobot::new(version),
             exchange: Exchange::new(socket, robot, version.state_size()).expect("options"),
         };

@@ -66,7 +66,7 @@ pub fn subjects() -> Vec<Subject> {
     };
     vec![Subject {
         key: "rt.cycle_guarded_ns",
-        within: Some("*lockstep*Client*answer*"),
+        within: Some("*lockstep*DriverStack*answer*"),
         call: Box::new(call),
     }]
 }

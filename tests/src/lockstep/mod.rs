@@ -6,17 +6,17 @@
 //!       ^  |                      |                      |
 //!       |  +--orders--> Driver <~~~~~~~datagrams~~~~~~~~~+
 //!       +------events------+ ~~~~~~~~~commands~~~~~~~~~~~^
-//!   '---------------- Client ----------------'
+//!   '-------------- DriverStack -------------'
 //! ```
 //!
 //! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`]:
 //! datagrams pass the simulator's network, whose delays and losses come from its seed. One call of
 //! [`Lockstep::tick`] is one millisecond, from one cycle of the robot to the next; within it,
 //! datagrams arrive when they arrive. In every test, each command of target control that leaves the
-//! driver is checked against the robot's limits. The [`Client`] half also runs beside scripted
+//! driver is checked against the robot's limits. The [`DriverStack`] half also runs beside scripted
 //! robots.
 
-mod client;
+mod driver_stack;
 mod engaged;
 mod guard;
 mod guarded;
@@ -37,7 +37,7 @@ use franka_rt::together::StartTicket;
 use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
 
-pub use client::Client;
+pub use driver_stack::DriverStack;
 pub use guarded::{Guarded, Workload};
 pub use link::Link;
 pub use wander::Wander;
@@ -60,7 +60,7 @@ pub struct Lockstep {
     /// The network between.
     pub link: Link,
     /// The driver, without its sockets.
-    pub client: Client,
+    pub client: DriverStack,
     model: &'static Model,
     /// Absent once a test's own program has run, which may command anything.
     guard: Option<CommandGuard>,
@@ -87,7 +87,7 @@ impl Lockstep {
         let mut this = Self {
             robot,
             link: Link::perfect(),
-            client: Client::new(model, version),
+            client: DriverStack::new(model, version),
             model,
             guard: Some(CommandGuard::new(model.joint_limits())),
             milliseconds: 0,
@@ -254,7 +254,7 @@ impl Lockstep {
         self.robot.disconnect();
         self.link = Link::perfect();
         self.heard = self.milliseconds;
-        self.client = Client::new(self.model, self.robot.version());
+        self.client = DriverStack::new(self.model, self.robot.version());
         self.connect();
     }
 
@@ -268,7 +268,7 @@ impl Lockstep {
 
     /// Checks a command against the limits, and sends it.
     fn pass_command(&mut self, command: &[u8]) {
-        let Client { state, record, .. } = &self.client;
+        let DriverStack { state, record, .. } = &self.client;
         let version = self.client.version();
         let decoded = RobotCommand::decode(version, command).expect("a command of this version");
         assert!(
@@ -379,7 +379,7 @@ impl Lockstep {
     /// # Errors
     /// As the lifecycle.
     pub fn update(&mut self, goal: GoalId, target: Target) -> Result<bool, GoalError> {
-        let Client {
+        let DriverStack {
             lifecycle, state, ..
         } = &mut self.client;
         lifecycle.update(goal, target, state)

@@ -14,7 +14,7 @@ use franka_rt::session::GoalId;
 use franka_rt::stats::{Arrival, CycleTimes};
 
 /// The driver without its sockets and its clock: bytes and time go in, bytes come out.
-pub struct Client {
+pub struct DriverStack {
     /// The pure core of the control thread.
     pub driver: Driver,
     /// The motion state machine.
@@ -43,7 +43,7 @@ pub struct Client {
     closed: bool,
 }
 
-impl Client {
+impl DriverStack {
     /// Returns an unconnected client, for a robot of this model that speaks `version`.
     pub fn new(model: &Model, version: Version) -> Self {
         Self {
