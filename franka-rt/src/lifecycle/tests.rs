@@ -12,7 +12,7 @@ use crate::shaping::InvalidCommand;
 const NOW: Duration = Duration::ZERO;
 
 /// A lifecycle with its driver, and what the lifecycle has asked of the robot or resolved.
-struct Pair {
+struct LifecycleAndDriver {
     lifecycle: Lifecycle,
     driver: Driver,
     sent: Vec<Request>,
@@ -20,7 +20,7 @@ struct Pair {
     state: RobotState,
 }
 
-impl Pair {
+impl LifecycleAndDriver {
     fn new() -> Self {
         let state = RobotState {
             q: READY.into(),
@@ -97,7 +97,7 @@ impl Pair {
 
 #[test]
 fn a_goal_whose_program_fails_has_the_robot_stop_and_says_why() {
-    let (mut pair, motion, goal) = Pair::moving();
+    let (mut pair, motion, goal) = LifecycleAndDriver::moving();
     let failure = Failure::Invalid(InvalidCommand::NotFinite);
     pair.lifecycle
         .on_event(Event::Failed { motion, failure }, NOW);
@@ -114,7 +114,7 @@ fn a_goal_whose_program_fails_has_the_robot_stop_and_says_why() {
 
 #[test]
 fn an_arm_on_its_way_is_braked_after_the_connection_is_gone() {
-    let (mut pair, _, goal) = Pair::moving();
+    let (mut pair, _, goal) = LifecycleAndDriver::moving();
     pair.lifecycle
         .on_connection_closed(CloseReason::ClosedByPeer);
     pair.lifecycle.on_connection_closed(CloseReason::ClosedByUs);
@@ -128,7 +128,7 @@ fn an_arm_on_its_way_is_braked_after_the_connection_is_gone() {
     pair.cycle(RobotMode::Idle);
     assert!(!pair.lifecycle.is_braking(), "the motion has ended");
 
-    let mut idle = Pair::new();
+    let mut idle = LifecycleAndDriver::new();
     idle.lifecycle
         .on_connection_closed(CloseReason::ClosedByPeer);
     assert!(!idle.lifecycle.is_braking(), "nothing moves");
@@ -136,7 +136,7 @@ fn an_arm_on_its_way_is_braked_after_the_connection_is_gone() {
 
 #[test]
 fn a_borrower_that_stalls_ends_the_motion_and_none_is_taken_until_it_goes_on() {
-    let (mut pair, _, goal) = Pair::moving();
+    let (mut pair, _, goal) = LifecycleAndDriver::moving();
     let silence = Duration::from_millis(100);
     pair.lifecycle.on_stall(Some(silence), NOW);
     pair.settle();
@@ -163,10 +163,10 @@ fn a_borrower_that_stalls_ends_the_motion_and_none_is_taken_until_it_goes_on() {
 /// The robot is told to stop the first motion, and goes on showing it.
 #[test]
 fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_not_come() {
-    let (mut pair, motion, first) = Pair::moving();
+    let (mut pair, motion, first) = LifecycleAndDriver::moving();
     let violation = Violation::SecondMotionStarted { id: CommandId(1) };
     pair.lifecycle.on_move_violation(motion, violation, NOW);
-    let begin = |pair: &mut Pair, id| {
+    let begin = |pair: &mut LifecycleAndDriver, id| {
         let limits = Model::fr3().joint_limits();
         let goal = Goal::new(GoalId(id), Target::Rest, OnArrival::Hold, limits);
         let begun = pair.lifecycle.begin(NewMotion::to(goal), &pair.state, NOW);
@@ -175,7 +175,7 @@ fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_
     };
     assert_eq!(begin(&mut pair, 2), Ok(()));
     assert_eq!(begin(&mut pair, 3), Ok(()));
-    let moves = |pair: &Pair| {
+    let moves = |pair: &LifecycleAndDriver| {
         let sent = pair.sent.iter();
         sent.filter(|sent| matches!(sent, Request::Move(_))).count()
     };
