@@ -113,7 +113,7 @@ fn side_by_side(workspace: &Workspace, programs: Vec<Program>) -> Vec<Summary> {
 }
 
 /// Name of a program, its steps, how long it took, and whether it succeeded.
-type Summary = (&'static str, Steps, Duration, anyhow::Result<()>);
+type Summary = (&'static str, ReportedSteps, Duration, anyhow::Result<()>);
 
 impl Program {
     fn run(self, workspace: &Workspace) -> Summary {
@@ -127,7 +127,7 @@ impl Program {
         };
         let (steps, result) = match simulator() {
             Ok(_simulator) => count(name, command, PROGRAM_TIME_MAX),
-            Err(error) => (Steps::default(), Err(error)),
+            Err(error) => (ReportedSteps::default(), Err(error)),
         };
         (name, steps, start.elapsed(), result)
     }
@@ -136,7 +136,7 @@ impl Program {
 /// Prints what became of each program, and then every failure in a line: the output of a program
 /// may be far above, or cut off. Fails if one did.
 fn summarise(summaries: &[Summary]) -> anyhow::Result<()> {
-    let mut total = Steps::default();
+    let mut total = ReportedSteps::default();
     println!();
     for (name, steps, time, result) in summaries {
         let seconds = time.as_secs_f64();
@@ -169,7 +169,7 @@ fn summarise(summaries: &[Summary]) -> anyhow::Result<()> {
 
 /// The steps of a program that its output reports.
 #[derive(Debug, Default)]
-struct Steps {
+struct ReportedSteps {
     passed: u32,
     /// The line of each step that failed.
     failures: Vec<String>,
@@ -177,7 +177,7 @@ struct Steps {
     last: String,
 }
 
-impl Steps {
+impl ReportedSteps {
     /// Takes in a line that a program printed.
     fn note(&mut self, line: &str) {
         if line.starts_with("ok    ") {
@@ -191,7 +191,7 @@ impl Steps {
     }
 }
 
-impl fmt::Display for Steps {
+impl fmt::Display for ReportedSteps {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (passed, failed) = (self.passed, self.failures.len());
         write!(f, "{passed:3} passed, {failed} failed")
@@ -200,8 +200,8 @@ impl fmt::Display for Steps {
 
 /// Runs a program to its end and counts the steps that it reports; its output is passed on, each
 /// line behind its name.
-fn count(name: &str, command: Command, time_max: Duration) -> (Steps, anyhow::Result<()>) {
-    let mut steps = Steps::default();
+fn count(name: &str, command: Command, time_max: Duration) -> (ReportedSteps, anyhow::Result<()>) {
+    let mut steps = ReportedSteps::default();
     let result = thread::scope(|scope| {
         let (child, output) = spawn(command)?;
         scope.spawn(|| {
