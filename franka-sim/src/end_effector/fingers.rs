@@ -4,7 +4,7 @@ use bytes::Bytes;
 use franka_proto::gripper::{Grasp, Move, Request, State, Status, Version};
 
 use super::Mechanism;
-use super::grip::{Grip, Progress};
+use super::finger_motion::{FingerMotion, Progress};
 use crate::plant::FingerDrive;
 
 /// Two fingers that move at the speed they are told and stop at what is between them: in kinematics
@@ -21,7 +21,7 @@ use crate::plant::FingerDrive;
 /// * An object that is lost lets the fingers close further.
 #[derive(Debug, Clone)]
 pub struct Fingers {
-    grip: Grip,
+    finger_motion: FingerMotion,
     max_width: f64,
     is_grasped: bool,
     temperature: u16,
@@ -64,7 +64,7 @@ impl Fingers {
     /// Open fingers with nothing between them, before their first homing.
     pub fn new() -> Self {
         Self {
-            grip: Grip::new(Self::STROKE),
+            finger_motion: FingerMotion::new(Self::STROKE),
             max_width: 0.0,
             is_grasped: false,
             temperature: 25,
@@ -96,8 +96,8 @@ impl Fingers {
     /// if its width `[m]` is not positive or wider than the fingers are open, or if the fingers are
     /// a plant's.
     pub fn place_object(&mut self, width: f64) -> bool {
-        let fits = width > 0.0 && width <= self.grip.width();
-        match self.grip.object() {
+        let fits = width > 0.0 && width <= self.finger_motion.width();
+        match self.finger_motion.object() {
             Some(object) if fits => {
                 *object = Some(width);
                 true
@@ -109,24 +109,24 @@ impl Fingers {
     /// Takes the object away: its width `[m]`, if there was one that is not a plant's. A grasp of
     /// it is lost.
     pub fn take_object(&mut self) -> Option<f64> {
-        self.grip.object()?.take()
+        self.finger_motion.object()?.take()
     }
 
     /// What the fingers of a plant are to do.
     pub(crate) fn drive(&self) -> FingerDrive {
-        self.grip.drive()
+        self.finger_motion.drive()
     }
 
     /// Takes in how far the fingers of a plant are apart, `[m]`. From then on these are the
     /// fingers.
     pub(crate) fn feel(&mut self, width: f64) {
-        self.grip.feel(width);
+        self.finger_motion.feel(width);
     }
 
     /// The force that the fingers exert on what is between them `[N]`.
     pub fn force(&self) -> f64 {
         match self.activity {
-            Activity::Squeezing { force, .. } if self.grip.is_held() => {
+            Activity::Squeezing { force, .. } if self.finger_motion.is_held() => {
                 force.clamp(Self::FORCE[0], Self::FORCE[1])
             }
             _ => 0.0,
@@ -140,14 +140,14 @@ impl Fingers {
 
     fn squeeze(&mut self, target: f64, speed: f64, force: f64) -> Progress {
         let force = force.clamp(Self::FORCE[0], Self::FORCE[1]);
-        self.grip
+        self.finger_motion
             .approach(target, speed.min(Self::MAX_SPEED), force)
     }
 
     /// At the end of a motion.
     fn rest(&mut self) {
         self.activity = Activity::Idle;
-        self.grip.rest();
+        self.finger_motion.rest();
     }
 
     fn accepts(&self, width: f64, speed: f64) -> bool {
@@ -157,7 +157,7 @@ impl Fingers {
     fn is_in_tolerance(&self, grasp: &Grasp) -> bool {
         let least = grasp.width - grasp.epsilon_inner;
         let largest = grasp.width + grasp.epsilon_outer;
-        let width = self.grip.width();
+        let width = self.finger_motion.width();
         least < width && width < largest
     }
 
@@ -259,7 +259,7 @@ impl Mechanism for Fingers {
                 let progress = self.squeeze(0.0, speed, force);
                 (progress != Progress::Moving).then(|| {
                     self.is_grasped = self.is_in_tolerance(&grasp);
-                    let held = self.grip.width();
+                    let held = self.finger_motion.width();
                     self.activity = Activity::Squeezing { speed, force, held };
                     match self.is_grasped {
                         true => Status::Success,
@@ -268,7 +268,7 @@ impl Mechanism for Fingers {
                 })
             }
             Activity::Squeezing { speed, force, held } => {
-                if self.grip.has_lost(held) {
+                if self.finger_motion.has_lost(held) {
                     self.is_grasped = false;
                 }
                 self.squeeze(0.0, speed, force);
@@ -280,7 +280,7 @@ impl Mechanism for Fingers {
     fn state(&self, message_id: u32) -> State {
         State {
             message_id,
-            width: self.grip.width(),
+            width: self.finger_motion.width(),
             max_width: self.max_width,
             is_grasped: self.is_grasped,
             temperature: self.temperature,

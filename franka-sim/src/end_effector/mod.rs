@@ -12,8 +12,8 @@
 //! One action runs at a time. A new one aborts it, and so does a stop; both answer it as aborted. A
 //! client that goes while its action runs stops it; what is held by then stays held.
 
+mod finger_motion;
 mod fingers;
-mod grip;
 mod suction;
 #[cfg(test)]
 mod tests;

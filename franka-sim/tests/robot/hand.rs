@@ -3,30 +3,30 @@ use franka_proto::{CommandId, client, gripper};
 use franka_sim::{Fingers, Hand, Sim, Suction};
 
 /// A hand and its client: time is a counter.
-struct Grip {
+struct GraspCase {
     hand: Hand,
     client: gripper::Client,
     answers: Vec<(CommandId, Status)>,
 }
 
-impl Grip {
+impl GraspCase {
     fn new(fingers: Fingers) -> Self {
-        let mut grip = Self {
+        let mut case = Self {
             hand: Hand::new(fingers),
             client: gripper::Client::new(gripper::Version::V3),
             answers: Vec::new(),
         };
-        assert!(grip.hand.connect());
-        let hello = grip.client.connect(4711);
-        grip.hand.receive(hello.as_bytes()).expect("a handshake");
-        grip.read();
-        grip
+        assert!(case.hand.connect());
+        let hello = case.client.connect(4711);
+        case.hand.receive(hello.as_bytes()).expect("a handshake");
+        case.read();
+        case
     }
 
     fn homed(fingers: Fingers) -> Self {
-        let mut grip = Self::new(fingers);
-        assert_eq!(grip.complete(&Request::Homing).0, Status::Success);
-        grip
+        let mut case = Self::new(fingers);
+        assert_eq!(case.complete(&Request::Homing).0, Status::Success);
+        case
     }
 
     fn ask(&mut self, request: &Request) -> CommandId {
@@ -78,20 +78,20 @@ impl Grip {
 
 #[test]
 fn stop_is_read_while_an_action_runs_and_aborts_it() {
-    let mut grip = Grip::homed(Fingers::new());
-    let action = grip.ask(&Request::Move(Move {
+    let mut case = GraspCase::homed(Fingers::new());
+    let action = case.ask(&Request::Move(Move {
         width: 0.01,
         speed: 0.02,
     }));
-    grip.run(500);
-    assert_eq!(grip.answer(action), None);
-    let width = grip.hand.state().width;
-    let stop = grip.ask(&Request::Stop);
-    grip.run(1);
-    assert_eq!(grip.answer(stop), Some(Status::Success));
-    assert_eq!(grip.answer(action), Some(Status::Aborted));
-    grip.run(500);
-    let stands = grip.hand.state().width;
+    case.run(500);
+    assert_eq!(case.answer(action), None);
+    let width = case.hand.state().width;
+    let stop = case.ask(&Request::Stop);
+    case.run(1);
+    assert_eq!(case.answer(stop), Some(Status::Success));
+    assert_eq!(case.answer(action), Some(Status::Aborted));
+    case.run(500);
+    let stands = case.hand.state().width;
     assert!(
         (stands - width).abs() < 1e-3,
         "it stays where it is, and does not open: {stands}"
@@ -101,38 +101,38 @@ fn stop_is_read_while_an_action_runs_and_aborts_it() {
 #[test]
 fn speed_and_force_count() {
     for (speed, milliseconds) in [(0.02, 2000), (0.1, 400)] {
-        let mut grip = Grip::homed(Fingers::new());
-        let (status, elapsed) = grip.complete(&Request::Move(Move { width: 0.04, speed }));
+        let mut case = GraspCase::homed(Fingers::new());
+        let (status, elapsed) = case.complete(&Request::Move(Move { width: 0.04, speed }));
         assert_eq!(status, Status::Success);
         assert!(elapsed.abs_diff(milliseconds) <= 2, "{speed}: {elapsed}");
     }
     for (asked, exerted) in [(60.0, 60.0), (10.0, 30.0), (500.0, 140.0)] {
-        let mut grip = Grip::homed(Fingers::new().with_object(0.04));
+        let mut case = GraspCase::homed(Fingers::new().with_object(0.04));
         let grasp = Request::Grasp(Grasp::new(0.04, 0.1, asked));
-        assert_eq!(grip.complete(&grasp).0, Status::Success);
-        assert_eq!(grip.hand.mechanism().force(), exerted);
+        assert_eq!(case.complete(&grasp).0, Status::Success);
+        assert_eq!(case.hand.mechanism().force(), exerted);
     }
 }
 
 #[test]
 fn homing_finds_the_largest_width_and_takes_its_time() {
-    let mut grip = Grip::new(Fingers::new());
-    assert_eq!(grip.hand.state().max_width, 0.0);
-    let (status, elapsed) = grip.complete(&Request::Homing);
+    let mut case = GraspCase::new(Fingers::new());
+    assert_eq!(case.hand.state().max_width, 0.0);
+    let (status, elapsed) = case.complete(&Request::Homing);
     assert_eq!(status, Status::Success);
     assert!(elapsed > 1000, "{elapsed}");
-    assert_eq!(grip.hand.state().max_width, Fingers::STROKE);
+    assert_eq!(case.hand.state().max_width, Fingers::STROKE);
 }
 
 #[test]
 fn a_lost_object_is_reported() {
-    let mut grip = Grip::homed(Fingers::new().with_object(0.04));
+    let mut case = GraspCase::homed(Fingers::new().with_object(0.04));
     let grasp = Request::Grasp(Grasp::new(0.04, 0.1, 60.0));
-    assert_eq!(grip.complete(&grasp).0, Status::Success);
-    assert!(grip.hand.state().is_grasped);
-    grip.hand.mechanism_mut().take_object();
-    grip.run(1000);
-    assert!(!grip.hand.state().is_grasped);
+    assert_eq!(case.complete(&grasp).0, Status::Success);
+    assert!(case.hand.state().is_grasped);
+    case.hand.mechanism_mut().take_object();
+    case.run(1000);
+    assert!(!case.hand.state().is_grasped);
 }
 
 #[test]

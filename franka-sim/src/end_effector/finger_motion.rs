@@ -5,7 +5,7 @@ use crate::plant::FingerDrive;
 
 /// How far the fingers are apart, and what becomes of it.
 #[derive(Debug, Clone)]
-pub(super) struct Grip {
+pub(super) struct FingerMotion {
     width: f64,
     means: Means,
 }
@@ -29,7 +29,7 @@ pub(super) enum Progress {
     Arrived,
 }
 
-impl Grip {
+impl FingerMotion {
     /// Fingers of this width, with nothing between them.
     pub(super) fn new(width: f64) -> Self {
         Self {
