@@ -1,5 +1,7 @@
 //! The motion of the fingers: by kinematics of their own, or by a plant that has fingers.
 
+use franka_model::CYCLE;
+
 use super::towards;
 use crate::plant::FingerDrive;
 
@@ -74,7 +76,7 @@ impl FingerMotion {
         match &mut self.means {
             Means::Kinematic { object } => {
                 let reachable = target.max(object.unwrap_or(0.0));
-                self.width = towards(self.width, reachable, speed * 1e-3);
+                self.width = towards(self.width, reachable, speed * CYCLE);
                 match self.width {
                     width if width == target => Progress::Arrived,
                     width if width == reachable => Progress::Blocked,
@@ -158,7 +160,7 @@ impl Stall {
     fn watch(&mut self, width: f64, speed: f64) -> bool {
         self.age += 1;
         if self.age == STALL_WINDOW_MS {
-            let way = speed * 1e-3 * f64::from(STALL_WINDOW_MS);
+            let way = speed * CYCLE * f64::from(STALL_WINDOW_MS);
             let is_stalled = (width - self.mark).abs() < STALLED * way;
             *self = Self {
                 is_stalled,

@@ -1,6 +1,7 @@
 //! The pump, valve and cup of a vacuum gripper.
 
 use bytes::Bytes;
+use franka_model::CYCLE;
 use franka_proto::vacuum::{DeviceStatus, Request, State, Status, Vacuum, Version};
 
 use super::{Mechanism, towards};
@@ -79,13 +80,13 @@ impl Suction {
     }
 
     fn lose(&mut self, rate: f64) {
-        self.vacuum = towards(self.vacuum, 0.0, rate * 1e-3);
+        self.vacuum = towards(self.vacuum, 0.0, rate * CYCLE);
     }
 
     fn pump(&mut self, target: f64) {
         if self.object {
             let reachable = target.min(Self::MAX_VACUUM);
-            self.vacuum = towards(self.vacuum, reachable, Self::PUMP_RATE * 1e-3);
+            self.vacuum = towards(self.vacuum, reachable, Self::PUMP_RATE * CYCLE);
         } else {
             self.lose(Self::VENT_RATE);
         }

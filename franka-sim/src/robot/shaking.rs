@@ -48,6 +48,8 @@ impl Shaking {
 
 #[cfg(test)]
 mod tests {
+    use franka_model::CYCLE;
+
     use super::*;
 
     /// After how many milliseconds a joint is found to shake that swings with this frequency,
@@ -55,7 +57,7 @@ mod tests {
     fn swing(frequency: f64, velocity: f64) -> Option<usize> {
         let mut shaking = Shaking::new();
         (0..2000).find(|k| {
-            let phase = core::f64::consts::TAU * frequency * (*k as f64) * 1e-3;
+            let phase = core::f64::consts::TAU * frequency * (*k as f64) * CYCLE;
             let mut dq = JointVector::zeros();
             dq[4] = velocity * phase.sin();
             shaking.is_seen(&dq, &Instability::default())
