@@ -1,4 +1,4 @@
-//! The causes that a diagnosis can name, and their text. `rules` selects them.
+//! The causes that a diagnosis can name, and their text. `reasoning` selects them.
 
 use core::fmt;
 use core::time::Duration;

@@ -1,5 +1,5 @@
 //! Why a Franka robot ended a motion, by a reflex or otherwise: which limit was exceeded, by how
-//! much, since when, what led up to it and what to change. `rules` holds the reasoning.
+//! much, since when, what led up to it and what to change. `reasoning` combines the evidence.
 //!
 //! ```text
 //! errors, log, model --> finding (one error: commanded | measured | contact | lost cycles)
@@ -19,7 +19,7 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `rules` | which error explains the others, which checks show it, which causes and advice follow |
+//! | `reasoning` | which error explains the others, which checks show it, which causes and advice follow |
 //! | `evidence` | the log, laid out for these checks |
 //! | `commanded`, `measured` | commands and sensor values against the limits of the model |
 //! | `command_steps`, `contact`, `lost_cycles`, `posture` | causes, one kind each |
@@ -72,7 +72,7 @@ mod finding;
 mod lost_cycles;
 mod measured;
 mod posture;
-mod rules;
+mod reasoning;
 #[cfg(test)]
 mod tests;
 
@@ -183,15 +183,15 @@ impl Diagnosis {
     }
 
     fn of_evidence(errors: Errors, evidence: &Evidence<'_>) -> Self {
-        let (error, finding) = rules::explaining(evidence, errors);
+        let (error, finding) = reasoning::explaining(evidence, errors);
         let causes = error.map_or_else(Vec::new, |error| {
-            rules::causes(evidence, error, finding.as_ref())
+            reasoning::causes(evidence, error, finding.as_ref())
         });
         Self {
             commander: evidence.commander,
             errors,
             error,
-            advice: error.map_or_else(Vec::new, |error| rules::advice(error, &causes)),
+            advice: error.map_or_else(Vec::new, |error| reasoning::advice(error, &causes)),
             finding,
             causes,
             end: evidence.last().map(|state| state.message_id),

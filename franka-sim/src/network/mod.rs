@@ -19,7 +19,7 @@
 
 mod conditions;
 mod line;
-mod loss;
+mod packet_loss;
 mod path;
 
 pub use conditions::{BurstLoss, Conditions, Loss, Reordering, Stalls};

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::conditions::Conditions;
 use super::line::Line;
-use super::loss::Losses;
+use super::packet_loss::Losses;
 use crate::noise::Random;
 
 /// One direction of a network: carries datagrams, and delays, loses or repeats them.
