@@ -22,7 +22,7 @@ use crate::sys;
 /// # Errors
 /// If the system refuses a socket or a port.
 pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
-    // An IPv4 address in the dress of IPv6 is one to the network.
+    // IPv4-mapped IPv6 counts as IPv4.
     match robot.to_canonical() {
         IpAddr::V4(_) => UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)),
         IpAddr::V6(_) => UdpSocket::bind((Ipv6Addr::UNSPECIFIED, 0)),

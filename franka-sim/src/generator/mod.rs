@@ -127,7 +127,7 @@ impl<'a> Input<'a> {
     }
 }
 
-/// A command that is no command: a number in it is not finite, or its flags make no sense.
+/// An invalid command: a non-finite number, or flags that make no sense.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct InvalidInput;
 
