@@ -34,7 +34,7 @@ impl Robot {
     }
 
     /// Control by joint positions for the robot's own controller; see [`Self::control_torques`] for
-    /// what a function may do, and [`Control::controller`] and [`Control::with_torques`] for who
+    /// what a function may do, and [`Control::controller`] and [`Control::with_torques`] for what
     /// turns them into torques.
     pub fn control_joint_positions<R: Into<Next<JointPositions>>>(
         &self,

@@ -28,7 +28,7 @@
 //! * [`Robot::model`], [`model`]: the model of the connected arm, from its own description (feature
 //!   `urdf`, on by default). `Robot::model_library` (feature `model-library`, off by default): the
 //!   code that a Franka Emika Robot hands out.
-//! * [`error`]: what can go wrong, grouped by who can act on it.
+//! * [`error`]: what can go wrong, grouped by the party that can act on it.
 //!
 //! ```no_run
 //! use franka_async::{Pose, Robot};

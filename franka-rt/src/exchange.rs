@@ -56,7 +56,7 @@ pub struct Exchange {
     incoming: Box<[u8]>,
     /// `message_id` of `newest`.
     message_id: Option<u64>,
-    /// Sender of `newest`, whom a command answers.
+    /// Sender of `newest`, to which a command is sent.
     reply_to: Option<SockAddr>,
     /// How long each receive waits for a datagram.
     wait: Duration,

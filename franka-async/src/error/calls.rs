@@ -30,7 +30,7 @@ pub enum CommandError {
     /// Peer: its answer cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation),
-    /// The connection has ended. Who can act on that depends on the reason.
+    /// The connection has ended. The party that can act on it depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// What ended it.
@@ -39,7 +39,7 @@ pub enum CommandError {
 }
 
 impl CommandError {
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::Refused(_) => Party::Robot,
@@ -64,7 +64,7 @@ pub enum ActionError<C: ServiceCommand> {
     /// Peer: its answer cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation<C>),
-    /// The connection has ended. Who can act on that depends on the reason.
+    /// The connection has ended. The party that can act on it depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// What ended it.
@@ -73,7 +73,7 @@ pub enum ActionError<C: ServiceCommand> {
 }
 
 impl<C: ServiceCommand> ActionError<C> {
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::Failure(_) => Party::Robot,
@@ -94,7 +94,7 @@ pub enum ReadError {
         /// The silence so far.
         silence: Duration,
     },
-    /// The connection has ended. Who can act on that depends on the reason.
+    /// The connection has ended. The party that can act on it depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// What ended it.
@@ -103,7 +103,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::LinkLost { .. } => Party::Link,
@@ -131,7 +131,7 @@ pub enum ActiveError {
 }
 
 impl ActiveError {
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::Motion(error) => error.party(),
@@ -156,7 +156,7 @@ pub enum ModelLibraryError {
 
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 impl ModelLibraryError {
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::Command(error) => error.party(),

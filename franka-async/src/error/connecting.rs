@@ -69,7 +69,8 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Peer: it speaks another protocol version.
     #[error(transparent)]
     IncompatibleVersion(#[from] IncompatibleVersion<P>),
-    /// The connection ended during the handshake. Who can act on that depends on the reason.
+    /// The connection ended during the handshake. The party that can act on it depends on the
+    /// reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// What ended it.
@@ -102,7 +103,7 @@ pub enum ConnectError<P: Protocol = Version> {
 }
 
 impl<P: Protocol> ConnectError<P> {
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::Endpoint(_) | Self::LinkTimeout(_) | Self::LogSize { .. } => Party::Caller,
@@ -177,7 +178,7 @@ pub enum ModelError {
 
 #[cfg(feature = "urdf")]
 impl ModelError {
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::Command(error) => error.party(),

@@ -1,5 +1,5 @@
-//! What can go wrong, grouped by who can act on it. Texts are those of the reference client where
-//! it has one.
+//! What can go wrong, grouped by the party that can act on it. Texts are those of the reference
+//! client where it has one.
 
 mod calls;
 mod connecting;
@@ -100,7 +100,7 @@ impl From<ActiveError> for Error {
 }
 
 impl Error {
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::Connect(error) => error.party(),

@@ -41,7 +41,7 @@ pub enum CloseReason {
 }
 
 impl CloseReason {
-    /// Returns who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::ClosedByUs | Self::RuntimeEnded => Party::Caller,

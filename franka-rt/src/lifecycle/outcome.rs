@@ -86,7 +86,7 @@ impl Counted {
     }
 }
 
-/// Why a motion ended short of its goal. Grouped by who can act on it.
+/// Why a motion ended short of its goal. Grouped by the party that can act on it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
@@ -164,7 +164,7 @@ pub enum MotionError {
         /// The silence when it was given up.
         silence: Duration,
     },
-    /// The command connection has ended. Who can act on that depends on the reason.
+    /// The command connection has ended. The party that can act on it depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// What ended it.
@@ -211,7 +211,7 @@ impl MotionError {
         }
     }
 
-    /// Who can act on it.
+    /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::Goal(_)

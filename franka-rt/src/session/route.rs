@@ -253,8 +253,8 @@ impl Route {
         let step = self
             .course
             .step(model, ee, posture, reference, arm, arm.time);
-        // The way of a brake was checked before the step that it begins from. Hand guiding is left
-        // to the person who guides.
+        // The way of a brake was checked before the step that it begins from. Hand guiding is not
+        // checked.
         if matches!(goal.target, Target::Rest | Target::Guide(_)) {
             return step;
         }

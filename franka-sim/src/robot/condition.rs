@@ -140,7 +140,7 @@ impl Robot {
         self.stops.push(id);
     }
 
-    /// Forgets whom to answer; the motion stops.
+    /// Forgets the requests that wait for an answer, and stops the motion.
     pub(super) fn forget_client(&mut self) {
         self.waiting = None;
         self.stops.clear();

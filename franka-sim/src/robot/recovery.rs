@@ -9,7 +9,7 @@ use crate::generator::PointToPoint;
 /// A recovery under way.
 #[derive(Debug, Clone)]
 pub(super) struct Recovery {
-    /// Whom to answer, if that client is still there.
+    /// The request to answer, if its client is still connected.
     id: Option<CommandId>,
     since: u64,
     /// Back into the range, if a person asks for it.
