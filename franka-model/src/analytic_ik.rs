@@ -120,8 +120,8 @@ pub fn solve(
 
 /// All solutions for a pose of the flange in the base frame, whatever the limits.
 ///
-/// Angles are in `(−π, π]`, given ones as given. The same for both kinds of robot. None for
-/// numbers that are not finite.
+/// Angles are in `(−π, π]`, given ones as given. The same for both kinds of robot. Empty if a
+/// number is non-finite.
 pub fn all(flange: &Isometry3<f64>, given: Redundancy) -> Solutions {
     find(flange, given, [FLIP_ANGLE - PI, FLIP_ANGLE + PI])
 }

@@ -35,7 +35,7 @@ pub enum Outcome {
     Optimal,
     /// After [`PASSES_MAX`] passes: inside the box, but perhaps not at the minimum.
     PassLimit,
-    /// On numbers that are not finite: inside the box, no more.
+    /// On non-finite numbers: the result is inside the box, nothing else is known of it.
     Degenerate,
 }
 

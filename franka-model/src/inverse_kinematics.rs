@@ -24,7 +24,7 @@ pub enum IkError {
         /// Angle left, `[rad]`.
         orientation: f64,
     },
-    /// The target or the seed has a number that is not finite.
+    /// The target or the seed has a non-finite number.
     NotFinite,
     /// The end-effector frame is not a rigid transform.
     EndEffectorNotRigid,

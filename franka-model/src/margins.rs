@@ -26,7 +26,7 @@ pub struct JointMargins {
 
 impl JointMargins {
     /// The joint with the least [`normalised`](Self::normalised) margin, counted from 0, and that
-    /// margin. A joint whose position is not a number comes before all others.
+    /// margin. A joint whose position is NaN comes before all others.
     pub fn tightest(&self) -> (usize, f64) {
         let mut tightest = (0, self.normalised[0]);
         for (i, &margin) in self.normalised.iter().enumerate() {

@@ -20,9 +20,9 @@ use crate::{Jacobian, JointVector, MassMatrix};
 /// a value of its own. Both answer the same questions, and take the same time to do so.
 ///
 /// Throughout, `q` are joint positions `[rad]`, `dq` velocities `[rad/s]`, `ddq` accelerations
-/// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in
-/// the base frame `[m/s²]` ([`GRAVITY_EARTH`](crate::GRAVITY_EARTH) for an upright robot). Numbers
-/// that are not finite give results that are not finite.
+/// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in the
+/// base frame `[m/s²]` ([`GRAVITY_EARTH`](crate::GRAVITY_EARTH) for an upright robot). Non-finite
+/// numbers give non-finite results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     pub(crate) kind: RobotKind,
@@ -138,8 +138,8 @@ impl Model {
     /// Accelerations under the torques `tau`: solves `(M + diag(armature)) ddq = tau − C dq − g`.
     ///
     /// `armature` is the rotor inertia felt at each joint `[kg·m²]`. `None` if the matrix is not
-    /// positive definite, which takes a number that is not finite, a negative armature, or a load
-    /// that no rigid body has.
+    /// positive definite, which takes a non-finite number, a negative armature, or a load that no
+    /// rigid body has.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,

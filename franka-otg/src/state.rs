@@ -93,7 +93,7 @@ impl<const N: usize> State<N> {
         self.acceleration[axis] = state.acceleration;
     }
 
-    /// Refuses what is not finite.
+    /// Refuses non-finite values.
     pub(crate) fn check(&self) -> Result<(), PlanError> {
         check_finite(&self.position, Quantity::Position)?;
         check_finite(&self.velocity, Quantity::Velocity)?;
@@ -101,7 +101,7 @@ impl<const N: usize> State<N> {
     }
 }
 
-/// Refuses the first of `values` that is not finite.
+/// Refuses the first non-finite one of `values`.
 pub(crate) fn check_finite(values: &[f64], quantity: Quantity) -> Result<(), PlanError> {
     match values.iter().position(|value| !value.is_finite()) {
         Some(axis) => Err(PlanError::NotFinite { quantity, axis }),

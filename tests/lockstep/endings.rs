@@ -270,10 +270,7 @@ fn bad_goals_are_named_and_change_nothing() {
             Target::Joints(beyond),
             "joint 4: 0.5 rad, expected between -3.0343 and -0.1596",
         ),
-        (
-            Target::Joints(nan),
-            "the target holds a number that is not finite",
-        ),
+        (Target::Joints(nan), "the target has a non-finite number"),
         (
             Target::Pose(far),
             "no joint positions inside their ranges reach",

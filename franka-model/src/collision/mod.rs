@@ -274,7 +274,7 @@ impl Placed<'_> {
     }
 }
 
-/// The item with the least distance; one whose distance is not a number comes before all others.
+/// The item with the least distance; one whose distance is NaN comes before all others.
 fn least<T>(items: impl Iterator<Item = (f64, T)>) -> Option<T> {
     let nearer = |best: (f64, T), next: (f64, T)| {
         if next.0 < best.0 || next.0.is_nan() {

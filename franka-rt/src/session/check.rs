@@ -15,8 +15,8 @@ use crate::session::{Budget, CHUNKS_MAX, ForceCap, Goal, KeepOut, Target, Watchd
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GoalError {
-    /// A number of the target is not finite.
-    #[error("the target holds a number that is not finite")]
+    /// The target has a non-finite number.
+    #[error("the target has a non-finite number")]
     NotFinite,
     /// A joint position lies outside the joint's range.
     #[error("joint {joint}: {got} rad, expected between {lower:.4} and {upper:.4}")]
@@ -210,7 +210,7 @@ pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError>
             }
         };
         if !finite {
-            return Err(refused("holds a number that is not finite"));
+            return Err(refused("has a non-finite number"));
         }
         if !positive {
             return Err(refused("has a negative side"));

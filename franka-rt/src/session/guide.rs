@@ -193,7 +193,7 @@ impl Inverse {
         Self((square + Matrix6::identity() * SQUARED_DAMPING).cholesky())
     }
 
-    /// Zero for numbers that are not finite, which have no inverse.
+    /// Zero for non-finite numbers, which have no inverse.
     fn solve(&self, arm: &Measured, change: &Twist) -> JointVector {
         let solved = self.0.as_ref().map(|square| square.solve(change));
         solved.map_or_else(JointVector::zeros, |solved| arm.jacobian.tr_mul(&solved))

@@ -83,7 +83,7 @@ impl SetpointStream {
     }
 
     /// The command for `reference`, and whether the backstop changed it. A command that cannot be
-    /// shaped, as from a reference that is not finite, is the robot's own setpoint.
+    /// shaped, as from a non-finite reference, is the robot's own setpoint.
     pub(super) fn command(
         &mut self,
         model: &Model,

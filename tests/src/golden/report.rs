@@ -88,7 +88,7 @@ impl Display for Report {
 
 impl Case<'_> {
     /// Compares numbers element by element: each may differ by `tolerance`, in their own unit. A
-    /// number that is not finite on one side only, or a different length, fails.
+    /// number that is non-finite on one side only, or a different length, fails.
     pub fn near(&mut self, quantity: &str, got: &[f64], want: &[f64], tolerance: f64) {
         if got.len() != want.len() {
             let (got, want) = (got.len(), want.len());

@@ -227,7 +227,7 @@ pub struct Arrangement<'a> {
 }
 
 impl Arrangement<'_> {
-    /// The margin of `item`, `[m]`, if it is less than `limit` or not a number; `None` otherwise.
+    /// The margin of `item`, `[m]`, if it is less than `limit` or NaN; `None` otherwise.
     #[inline]
     pub fn margin_below(&self, item: Item, limit: f64) -> Option<f64> {
         let margin = match item.0 {

@@ -236,7 +236,7 @@ fn device<P: Protocol>(version: P, replies: &[P::Reply<'_>], cut: Cut, stream: &
 }
 
 /// A request that was read can be written, and reads as the same bytes again. Values cannot be
-/// compared: some are no numbers.
+/// compared: some are NaN.
 fn comes_back<P: Protocol>(version: P, request: &P::Request, id: CommandId, cut: Cut) {
     let once = version.encode_request(request, id).expect("it was read");
     let again = version.decode_request(&whole(cut, &once));

@@ -10,9 +10,9 @@
 //! | pose | [`cartesian_pose`] | as of a twist; rotations keep 1 % more distance |
 //!
 //! The last values are those of the robot's state: last command, and its first and second
-//! derivative. Only the command is checked. Last values that are not finite, and commands whose
-//! derivatives overflow, may give a result that is not finite, as in libfranka;
-//! [`Shaper`](crate::control::Shaper) refuses it.
+//! derivative. Only the command is checked. Non-finite last values, and commands whose derivatives
+//! overflow, may give a non-finite result, as in libfranka; [`Shaper`](crate::control::Shaper)
+//! refuses it.
 //!
 //! # What they do not keep
 //!

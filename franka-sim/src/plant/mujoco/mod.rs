@@ -194,8 +194,8 @@ impl Plant for MujocoArm {
     /// Makes the scene anew, which takes milliseconds.
     ///
     /// # Panics
-    /// If no body has this load (a number that is not finite, a negative mass), or if the file of
-    /// the scene is no longer what it was.
+    /// If no body has this load (a non-finite number, a negative mass), or if the file of the scene
+    /// is no longer what it was.
     fn attach(&mut self, load: Load) {
         if load != self.load {
             self.load = load;
