@@ -55,14 +55,14 @@ pub enum EndpointError {
         text: String,
     },
     /// What stands behind the colon.
-    #[error("`{port}` is no port: expected a number from 1 to 65535")]
+    #[error("`{port}` is not a port: expected a number from 1 to 65535")]
     Port {
         /// What stands there.
         port: String,
     },
-    /// It looks like an address and is none.
+    /// It looks like an address and is not a valid one.
     #[error(
-        "`{address}` is no IP address: expected one like 172.16.0.2, fd00::2 or fe80::2%eth0; an IPv6 address with a \
+        "`{address}` is not an IP address: expected one like 172.16.0.2, fd00::2 or fe80::2%eth0; an IPv6 address with a \
          port takes brackets, [fd00::2]:1337"
     )]
     Address {
@@ -77,7 +77,7 @@ pub enum EndpointError {
     },
     /// No host is called that.
     #[error(
-        "`{name}` is no host name: expected letters, digits, hyphens and dots, without a scheme, a path or blanks"
+        "`{name}` is not a host name: expected letters, digits, hyphens and dots, without a scheme, a path or blanks"
     )]
     Name {
         /// What stands there.
@@ -281,32 +281,38 @@ mod tests {
             ),
             (
                 "robot.lan:",
-                "`` is no port: expected a number from 1 to 65535",
+                "`` is not a port: expected a number from 1 to 65535",
             ),
             (
                 "robot.lan:http",
-                "`http` is no port: expected a number from 1 to 65535",
+                "`http` is not a port: expected a number from 1 to 65535",
             ),
             (
                 "10.0.0.7:0",
-                "`0` is no port: expected a number from 1 to 65535",
+                "`0` is not a port: expected a number from 1 to 65535",
             ),
             (
                 "[::1]:65536",
-                "`65536` is no port: expected a number from 1 to 65535",
+                "`65536` is not a port: expected a number from 1 to 65535",
             ),
-            ("172.16.2", "`172.16.2` is no IP address: expected one like"),
+            (
+                "172.16.2",
+                "`172.16.2` is not an IP address: expected one like",
+            ),
             (
                 "172.16.0.256",
-                "`172.16.0.256` is no IP address: expected one like",
+                "`172.16.0.256` is not an IP address: expected one like",
             ),
-            ("1337", "`1337` is no IP address: expected one like"),
-            ("fe80:::1", "`fe80:::1` is no IP address: expected one like"),
+            ("1337", "`1337` is not an IP address: expected one like"),
+            (
+                "fe80:::1",
+                "`fe80:::1` is not an IP address: expected one like",
+            ),
             (
                 "http://robot.lan:80",
-                "`http://robot.lan:80` is no IP address",
+                "`http://robot.lan:80` is not an IP address",
             ),
-            ("[robot.lan]:1337", "`robot.lan` is no IP address"),
+            ("[robot.lan]:1337", "`robot.lan` is not an IP address"),
             (
                 "[::1",
                 "`[::1` is not whole: expected [address] or [address]:port",
@@ -318,16 +324,16 @@ mod tests {
             ("fe80::1%", "there is no network interface ``"),
             (
                 "robot.lan/fci",
-                "`robot.lan/fci` is no host name: expected letters",
+                "`robot.lan/fci` is not a host name: expected letters",
             ),
             (
                 " 172.16.0.2",
-                "` 172.16.0.2` is no host name: expected letters",
+                "` 172.16.0.2` is not a host name: expected letters",
             ),
-            ("robot..lan", "`robot..lan` is no host name"),
-            ("r\u{f6}bot", "`r\u{f6}bot` is no host name"),
-            (&"r".repeat(64), "is no host name"),
-            (&"r.".repeat(128), "is no host name"),
+            ("robot..lan", "`robot..lan` is not a host name"),
+            ("r\u{f6}bot", "`r\u{f6}bot` is not a host name"),
+            (&"r".repeat(64), "is not a host name"),
+            (&"r.".repeat(128), "is not a host name"),
         ] {
             let error = text.parse::<Endpoint>().expect_err(text);
             assert!(error.to_string().contains(says), "{text}: {error}");

@@ -82,8 +82,8 @@ impl Motion {
         self
     }
 
-    /// Begins the motion without a future: it runs on, and its outcome is only logged. It is no
-    /// handle: the last handle of its session or robot, dropped, still brakes it.
+    /// Begins the motion without a future: it runs on, and its outcome is only logged. It does not
+    /// count as a handle: dropping the last handle of its session or robot still brakes it.
     pub fn detach(mut self) {
         match self.begin() {
             Ok(motion) => drop(self.canceller.begin(motion)),

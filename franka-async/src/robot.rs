@@ -73,8 +73,8 @@ impl Robot {
     /// The newest state as it changes, in motion or not. Ends when the connection does. For every
     /// state, see [`Self::state_stream`] and [`Self::read`].
     ///
-    /// It begins with the newest state of now, which is no change. As long as one of these exists,
-    /// a task is woken for every state; drop it when it is no longer needed.
+    /// It begins with the newest state at the call. As long as one of these exists, a task is woken
+    /// for every state; drop it when it is no longer needed.
     pub fn states(&self) -> States {
         let closing = self.shared.channel.closing().clone();
         States::new(self.shared.newest.changes(), closing)

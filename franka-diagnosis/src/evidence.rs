@@ -130,7 +130,7 @@ impl Reading {
             origin,
             value,
             bound,
-            // Where nothing is allowed, nothing is no violation.
+            // Zero does not violate a limit of zero.
             score: if ratio.is_nan() { 0.0 } else { ratio },
             cycle,
         }

@@ -18,8 +18,8 @@ struct Case {
     gravity: Vector3<f64>,
 }
 
-/// Every constant model. That of the FER's clients is no set of physical bodies and does not load
-/// link 7 as mechanics does; the tests say where that matters.
+/// Every constant model. That of the FER's clients is not a set of physical bodies and does not
+/// load link 7 as mechanics does; the tests say where that matters.
 fn models() -> [&'static Model; 3] {
     [
         Model::fr3(),

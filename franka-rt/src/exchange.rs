@@ -42,7 +42,7 @@ pub fn wait_for(link_timeout: Duration) -> Duration {
     (link_timeout / 4).clamp(MIN_WAIT, TICK)
 }
 
-/// The shortest wait: a shorter one would be none at all, or one without end.
+/// The shortest wait: one that rounds to zero would be no wait, or last forever.
 const MIN_WAIT: Duration = Duration::from_millis(1);
 
 /// Receives states and sends commands.

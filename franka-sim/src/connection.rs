@@ -12,7 +12,7 @@ use franka_proto::{Command, CommandId, Protocol, ServiceCommand, Violation};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SessionError<C: ServiceCommand = Command> {
-    /// Its bytes are no messages.
+    /// It sent bytes that are not a message.
     #[error("{0}")]
     Frame(FrameError),
     /// Its messages are not allowed.

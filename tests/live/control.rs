@@ -280,7 +280,7 @@ async fn a_reflex_comes_back_with_the_cycles_that_led_to_it() {
 #[tokio::test(flavor = "multi_thread")]
 async fn the_robot_itself_goes_from_target_to_target() {
     let _alone = alone();
-    // Of a motion that needs no commands, the client's pace is none.
+    // The motion needs no commands, so the robot cannot wait for them.
     let sims = [Sim::fr3(), Sim::fer()];
     let [fr3, fer] = sims.map(|sim| by_the_clock(sim.tool(Tool::hand())));
     let (robot, sim) = &fr3.await;

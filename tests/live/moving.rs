@@ -100,7 +100,7 @@ async fn nothing_moves_before_the_first_poll_and_a_canceller_brakes() {
     under_way(&robot).await;
     canceller.cancel();
     assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
-    // Stopping what rests is no error.
+    // Stopping an arm at rest is not an error.
     robot.stop().await.unwrap();
     robot.shutdown().await;
 }

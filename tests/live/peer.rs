@@ -72,7 +72,7 @@ impl Peer {
         let (mischief, asked) = mpsc::channel();
         let mut server = Server {
             robot: franka_sim::Robot::new(Config {
-                // This thread is no robot's: it wakes when the machine lets it.
+                // This thread runs when the machine lets it, so it cannot judge punctuality.
                 enforce_communication: false,
                 ..Config::default()
             }),

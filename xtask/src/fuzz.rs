@@ -70,7 +70,7 @@ fn supported() -> Result<(), String> {
         Ok(())
     } else {
         Err(format!(
-            "libFuzzer needs a C++ compiler, and `{compiler}` is none"
+            "libFuzzer needs a C++ compiler, and `{compiler}` is not one"
         ))
     }
 }

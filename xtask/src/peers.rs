@@ -327,8 +327,8 @@ fn kill(child: &mut Child) {
 /// The binary of the tests package that runs our client beside franka-rs.
 const BESIDE: &str = "beside_franka_rs";
 
-/// The scripts, and the options of their simulators: in virtual time, to which no answer is late,
-/// wherever that is no part of what is shown.
+/// The scripts, and the options of their simulators: in virtual time, in which no answer is late,
+/// unless the pace of the robot is part of what is shown.
 const SCRIPTS: [(&str, &[&str]); 12] = [
     (
         "pylibfranka_hand.py",

@@ -20,7 +20,7 @@ fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {
             state.control_command_success_rate = 0.95;
         },
     );
-    // Going on from there as before is no leap, however far it is from the command before.
+    // Going on from `q_d` as before is not a step, however far it is from the last command.
     story.go(
         |before, command| command.q_c[1] = before.q_d[1] + 0.0005,
         |_| {},

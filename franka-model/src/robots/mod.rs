@@ -33,7 +33,7 @@ impl Model {
 
     /// The Franka Emika Robot (Panda), as its own model library computes it.
     ///
-    /// That library is no exact mechanics: some of the [`links`](Self::links) that meet it have
+    /// That library is not exact mechanics: some of the [`links`](Self::links) that meet it have
     /// negative moments, and a load joins link 7 without the lever of link 7's own mass, which is
     /// 3.0e-3 kg·m² of the mass matrix under 1.23 kg. For physics take
     /// [`physically_consistent`](Self::physically_consistent).

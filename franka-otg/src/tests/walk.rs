@@ -17,7 +17,7 @@ const JERK: f64 = 1e-7;
 
 /// Checks the step of one axis from one state to another `dt` later.
 ///
-/// `size` is the magnitude of the positions, whose rounding is no motion.
+/// `size` is the magnitude of the positions, whose rounding does not count as motion.
 #[track_caller]
 pub(super) fn check_step<const N: usize>(
     limits: &Limits<N>,

@@ -34,7 +34,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// The refusal that `status` means for `command`; `None` if it is no refusal.
+    /// The refusal that `status` means for `command`; `None` if it is not a refusal.
     ///
     /// `mode` is the robot's mode as the caller knows it, in general that of the newest state.
     #[must_use]

@@ -33,8 +33,8 @@ impl Modes {
         self.controller == ControllerMode::ExternalController
     }
 
-    /// Whether `state` shows both modes. `robot_mode` is no part of it: it may still be on its way
-    /// at the start.
+    /// Whether `state` shows both modes. `robot_mode` is not compared: it may change later than the
+    /// modes at the start.
     pub fn shown_by(&self, state: &RobotState) -> bool {
         state.motion_generator_mode == self.generator && state.controller_mode == self.controller
     }

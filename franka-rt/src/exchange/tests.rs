@@ -119,7 +119,7 @@ fn a_number_impossibly_far_ahead_does_not_make_the_link_deaf() {
 #[test]
 fn a_receive_that_fails_again_and_again_does_not_keep_the_processor_busy() {
     let mut bench = Bench::new();
-    // A descriptor that is no socket: every receive fails at once.
+    // A descriptor that is not a socket: every receive fails at once.
     let file = std::fs::File::open("/dev/null").expect("Linux has it");
     let working = std::mem::replace(&mut bench.exchange.socket, OwnedFd::from(file).into());
     let failed = Reception {

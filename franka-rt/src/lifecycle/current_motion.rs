@@ -154,8 +154,8 @@ impl CurrentMotion {
         since.map(|since| since + END_TIMEOUT)
     }
 
-    /// Whether it takes goals from callers outside a session: it is no program, nor a session that
-    /// goes on.
+    /// Whether it takes goals from callers outside a session: it is neither a program nor a session
+    /// that goes on.
     pub(super) fn takes_goals(&self) -> bool {
         match &self.work {
             Work::Goals(goals) => goals.engaged.is_none() || !goals.goes_on(),

@@ -57,7 +57,7 @@ impl Kernel {
     }
 
     /// Whether the version text has the word `PREEMPT_RT` or, as kernels with the older patch, the
-    /// words `PREEMPT RT`. `PREEMPT` and `PREEMPT_DYNAMIC` are no real time.
+    /// words `PREEMPT RT`. `PREEMPT` and `PREEMPT_DYNAMIC` are not real-time kernels.
     fn names_realtime(&self) -> bool {
         let words: Vec<&str> = self.version.split_whitespace().collect();
         words.contains(&"PREEMPT_RT") || words.windows(2).any(|pair| pair == ["PREEMPT", "RT"])

@@ -206,7 +206,7 @@ fn a_socket_is_polled_as_asked_or_the_refusal_is_told() {
 
 #[test]
 fn what_cannot_be_polled_is_refused_under_enforce_and_noted_under_ignore() {
-    // A descriptor that is no socket.
+    // A descriptor that is not a socket.
     let file = std::fs::File::open("/dev/null").expect("Linux has it");
     let duration = Duration::from_micros(50);
     let errno = libc::ENOTSOCK;

@@ -63,8 +63,8 @@ pub(super) fn follow(
     let now = rigid(&now);
     let offset = pose.pose.translation.vector - now.translation.vector;
     let turn = rotation::error(&pose.pose.rotation, &now.rotation);
-    // The motion of the pose in this cycle is no error. Counted as one, it would make the velocity
-    // step where following begins.
+    // The motion of the pose in this cycle is not an error. Counted as one, it would make the
+    // velocity step where following begins.
     let error =
         Twist::new(offset.x, offset.y, offset.z, turn.x, turn.y, turn.z) - pose.twist * CYCLE;
     let twist = pose.twist + error * FEEDBACK;

@@ -124,7 +124,7 @@ fn short_datagrams_are_reported_once_and_the_next_state_is_taken() {
     assert_eq!(handle.stats.malformed.get(), 20);
     assert!(
         handle.notices.pop().is_none(),
-        "nineteen more of the same are no news"
+        "nineteen more of the same are not reported"
     );
 }
 
@@ -155,7 +155,7 @@ fn silence_is_reported_and_a_later_state_taken() {
     );
 }
 
-/// How late a busy machine makes the thread is no matter: once, it is in time.
+/// A busy machine may delay single attempts: one of them has to be in time.
 #[test]
 fn the_shortest_link_timeout_is_noticed_before_another_has_passed() {
     let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");

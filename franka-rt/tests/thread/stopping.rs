@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// How late a busy machine makes the thread is no matter: once, it is in time.
+/// A busy machine may delay single attempts: one of them has to be in time.
 #[test]
 fn stopping_takes_less_than_a_tenth_of_a_second() {
     for silent in [true, false] {
@@ -70,7 +70,7 @@ fn what_is_enforced_and_refused_starts_nothing() {
             VERSION,
         );
         let Err(StartError::Scheduling(error)) = outcome else {
-            panic!("this kernel is no real-time one")
+            panic!("this kernel is not a real-time one")
         };
         assert!(
             matches!(

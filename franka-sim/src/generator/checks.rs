@@ -185,5 +185,6 @@ fn bounds(limits: &MotionLimits, velocity: f64, acceleration: f64, jerk: f64) ->
     }
 }
 
-/// Where the envelope is zero, at a position limit, a motion of rounding errors is none, `[rad/s]`.
+/// Velocities up to this count as zero, `[rad/s]`: the envelope is zero at a position limit, and
+/// rounding errors must not violate it.
 const ROUNDING: f64 = 1e-9;

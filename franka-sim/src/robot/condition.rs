@@ -216,7 +216,7 @@ impl Robot {
     pub(super) fn supervise(&mut self) {
         let moving = self.is_moving();
         let ddq = match &self.activity {
-            // What pushes the arm about is no acceleration phase of the motion.
+            // Accelerations by external forces are not phases of the motion.
             Activity::Moving(motion) if !motion.is_external() => self.desired.joints.ddq,
             _ => self.measurement.ddq,
         };

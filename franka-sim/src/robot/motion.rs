@@ -24,7 +24,7 @@ pub(super) struct ActiveMotion {
     success_rate: SuccessRate,
     /// `tau_J_d`: the last torques accepted, zero before the first, `[N·m]`.
     torque: JointVector,
-    /// Whether the last cycle had no command and so was none for the generator.
+    /// Whether the last cycle had no command, so that the generator did not advance.
     paused: bool,
     /// In place of one command per cycle.
     asynchronous: Option<PointToPoint>,
@@ -294,7 +294,7 @@ impl ActiveMotion {
     }
 }
 
-/// What of `errors` counts. A matrix that is no pose is never acceptable.
+/// Returns those of `errors` that count. An invalid pose always does.
 fn enforced(errors: Errors, rules: Rules) -> Errors {
     if rules.limits {
         return errors;

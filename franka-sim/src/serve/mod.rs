@@ -216,8 +216,8 @@ impl Sim {
     ///   keep up misses some of them.
     ///
     /// The times of a [`network`](Self::network) are the robot's, in which the client takes no time
-    /// to answer. Seconds that a client counts by a clock of its own, and not by the states, are no
-    /// seconds of the robot.
+    /// to answer. Seconds that a client counts by a clock of its own, and not by the states, differ
+    /// from those of the robot.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
         self.virtual_time = true;
         self.patience = patience;

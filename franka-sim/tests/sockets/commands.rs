@@ -84,7 +84,7 @@ fn non_finite_numbers_end_the_motion_and_disturb_no_other_client() {
                         break client.status(id);
                     }
                 };
-                // Refused as input; where it is a matrix that is no pose, as that.
+                // Refused as input; a matrix that is not a pose, by a reflex.
                 let refusals = [
                     Status::Move(MoveStatus::InputErrorAborted),
                     Status::Move(MoveStatus::ReflexAborted),

@@ -1,4 +1,4 @@
-//! Datagrams to the robot's UDP port that are no commands of its client.
+//! Datagrams to the robot's UDP port that are not commands of its client.
 
 use std::net::UdpSocket;
 

@@ -1,7 +1,7 @@
 //! A new target for moving axes, and the first step towards it: the most expensive cycle of the
 //! generator. The states are those of the generator's own benchmark.
 
-// By path: a benchmark is no part of the library.
+// By path: a benchmark is not part of the library.
 #[path = "../../../franka-otg/benches/replan/cases.rs"]
 mod cases;
 

@@ -84,7 +84,7 @@ fn of_the_setters() {
 fn of_the_models() {
     let unknown = "Unexpected response while handling Get Robot Model command!";
     check(Version::V10, Command::GetRobotModel, MODEL, unknown);
-    // Whatever is no success is this one error, a byte without a meaning too.
+    // Every status but success is this one error, also a byte without a meaning.
     let error = LIBRARY[1];
     check(Version::V5, Command::LoadModelLibrary, LIBRARY, error);
 }

@@ -214,8 +214,8 @@ impl Shaper {
     /// elbow against `elbow_c`. `first` is whether no command of the motion came before.
     ///
     /// # Errors
-    /// As of [`torques`](Self::torques); also if the pose is no transformation, or the elbow has no
-    /// sign.
+    /// As of [`torques`](Self::torques); also if the pose is not a transformation, or the elbow has
+    /// no sign.
     pub fn cartesian_pose(
         &self,
         command: &CartesianPose,
@@ -294,7 +294,7 @@ impl Shaper {
         )
     }
 
-    /// Shapes the angle of an elbow; the sign stays. Two zeros are no elbow, as on the wire.
+    /// Shapes the angle of an elbow; the sign stays. Two zeros stand for no elbow, as on the wire.
     fn elbow(
         &self,
         command: Option<[f64; 2]>,

@@ -49,7 +49,7 @@ pub fn cartesian_velocity(
 ///
 /// # Errors
 /// [`InvalidCommand::Pose`] if an element of `command` is not finite, then
-/// [`InvalidCommand::LimiterTransformation`] if it is no homogeneous transformation.
+/// [`InvalidCommand::LimiterTransformation`] if it is not a homogeneous transformation.
 pub fn cartesian_pose(
     bounds: &CartesianBounds,
     command: &[f64; 16],

@@ -42,11 +42,11 @@ enum Surroundings {
     File(PathBuf),
 }
 
-/// Why there is no such scene. The text is MuJoCo's, with the line it is about.
+/// Why a scene cannot be built. The text is MuJoCo's, with the line it is about.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// The surroundings are no MJCF.
+    /// The surroundings are not valid MJCF.
     #[error("cannot read the scene: {0}")]
     Unreadable(String),
     /// The arm cannot be put into them.

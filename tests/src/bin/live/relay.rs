@@ -267,7 +267,7 @@ fn read_message(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
 fn replace_port(hello: &mut [u8], port: u16) -> io::Result<(Version, u16)> {
     let payload = &mut hello[Header::SIZE..];
     let Ok((request, _)) = ConnectRequest::mut_from_prefix(payload) else {
-        return Err(io::Error::other("the first message is no Connect"));
+        return Err(io::Error::other("the first message is not a Connect"));
     };
     let version = request.version.get();
     let version = Version::from_number(version)

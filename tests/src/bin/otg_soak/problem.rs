@@ -1,6 +1,6 @@
 //! Random limits, states and targets.
 
-// By path: the generator's tests are no part of its library.
+// By path: the generator's tests are not part of its library.
 #[path = "../../../../franka-otg/src/tests/allowed.rs"]
 mod allowed;
 

@@ -38,7 +38,7 @@ pub(crate) fn print(seconds: u32) {
     }
 }
 
-/// Requests this priority, the highest if `None`; a refusal is no error.
+/// Requests this priority, the highest if `None`; a refusal is not an error.
 fn preferred(priority: Option<i32>) -> Scheduling {
     Scheduling {
         realtime: Realtime::Ignore,
