@@ -282,7 +282,7 @@ impl<C: GeneratorCommand> Active<C> {
 
 impl<C> Drop for Active<C> {
     fn drop(&mut self) {
-        // The cycle goes back first, so that the thread sees the motion through.
+        // The cycle goes back first, so that the thread ends the motion.
         self.lease = None;
         if let Some(outcome) = self.outcome.take()
             && outcome.now_or_never().is_none()

@@ -179,7 +179,7 @@ impl Drop for AsynchronousControl {
     }
 }
 
-/// The error for a caller whose request the end of the motion forestalls.
+/// The error for a request that the end of the motion leaves without an answer.
 fn end_of(outcome: Outcome) -> MotionError {
     outcome.err().unwrap_or(MotionError::Stopped)
 }

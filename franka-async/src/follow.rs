@@ -39,8 +39,8 @@ pub struct Follow {
 
 impl Robot {
     /// Follows the newest of the targets that `targets` shows, poses or joint positions `[rad]`,
-    /// until the sender is dropped, and then comes to rest at the last one. The sender sets its own
-    /// pace, and may step as far as it likes: the arm moves within its budget.
+    /// until the sender is dropped, and then comes to rest at the last one. Targets may come at any
+    /// pace and any distance apart: the arm moves within its budget.
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,

@@ -47,8 +47,8 @@
 //!
 //! Every future of this crate may be dropped at any point. A request that was sent is carried out
 //! by the robot all the same; its answer is then discarded. **Dropping a motion brakes it** within
-//! the robot's limits: the arm is still moving when `drop` returns, and rests soon after. What else
-//! a method has to say stands in its own section.
+//! the robot's limits: the arm is still moving when `drop` returns, and rests soon after. Methods
+//! that differ have a section of their own.
 //!
 //! # What it does not do
 //!

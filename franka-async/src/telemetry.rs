@@ -1,4 +1,4 @@
-//! What the statistics of the control thread have to tell, as `tracing` events: from here, never
+//! The statistics of the control thread as `tracing` events, which are sent from here and never
 //! from the thread.
 
 use std::sync::Arc;

@@ -68,7 +68,7 @@ pub enum Cause {
         /// Longest time from a state to its command.
         worst_turnaround: Duration,
     },
-    /// The robot felt something.
+    /// The estimate of an external force or torque was above the lower threshold.
     Contact {
         /// The joint, or the axis of the stiffness frame.
         subject: Subject,

@@ -258,7 +258,7 @@ pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<R
         .collect()
 }
 
-/// One of them: translation and rotation.
+/// One value of each: translation and rotation.
 pub(super) fn cartesian_readings_of(
     model: &Model,
     sample: &Sample<'_>,

@@ -1,4 +1,4 @@
-//! What the robot felt.
+//! External forces and torques that the robot estimated.
 
 use franka_proto::{RobotError, RobotState};
 

@@ -106,9 +106,9 @@ pub enum Bound {
 pub struct Finding {
     /// The error that it stands for.
     pub error: RobotError,
-    /// Which joint, axis or part.
+    /// The joint, axis or part that exceeded it.
     pub subject: Subject,
-    /// Of it, what.
+    /// The quantity that exceeded the limit.
     pub quantity: Quantity,
     /// Where the value comes from.
     pub origin: Origin,

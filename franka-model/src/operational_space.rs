@@ -8,9 +8,9 @@
 //! - `J M⁻¹ Jᵀ` is the **mobility**: the acceleration per wrench. It exists at every posture.
 //! - Its inverse is the **operational-space inertia** `Λ`: the wrench per acceleration, if the
 //!   point is made to accelerate in this way *and in no other*. In a singularity there is none.
-//! - The **effective mass** along a direction `u` is `1 / (uᵀ J M⁻¹ Jᵀ u)`: what a force along `u`
-//!   feels while the point moves as it likes. It is never above the number of `Λ` in the same
-//!   direction.
+//! - The **effective mass** along a direction `u` is `1 / (uᵀ J M⁻¹ Jᵀ u)`: the inertia against a
+//!   force along `u` while the point is free to move in every direction. It is never above the
+//!   number of `Λ` in the same direction.
 
 use nalgebra::{Cholesky, Matrix3, SMatrix, UnitVector3, Vector3};
 

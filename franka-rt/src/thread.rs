@@ -11,8 +11,8 @@
 //! and the `write` to the eventfd. What has to be freed (a program that ended) leaves inside
 //! an event.
 //!
-//! The cycle can be lent out: a thread of the user's then runs it in this one's place,
-//! through a [`Lease`], for as long as it likes.
+//! The cycle can be lent out: a thread of the user's then runs it in this one's place, through a
+//! [`Lease`], until it gives it back.
 //!
 //! This loop is the only reader of the clock in the crate: it measures how long the robot has been
 //! silent, how far apart its states arrive, and how long an answer takes and (feature

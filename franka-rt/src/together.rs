@@ -11,7 +11,7 @@
 //! ```
 //!
 //! A motion *arrives* when its robot shows the motion's modes. From then on its thread answers
-//! every state with a command that holds the arm, as the robot wants it of a motion's first
+//! every state with a command that holds the arm, as the robot requires of a motion's first
 //! commands, until the last member has arrived. Each thread looks once in each of its own cycles,
 //! so the motions begin within a millisecond of each other: the robots' clocks are not
 //! synchronised, and no start can be closer than the next state of each.

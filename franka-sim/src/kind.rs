@@ -20,9 +20,9 @@ pub(crate) struct Description {
 
 /// What requests are answered while a safety function forbids motion.
 pub(crate) struct SafetyStatuses {
-    /// A motion that was under way.
+    /// A motion that was running.
     pub(crate) preempted: MoveStatus,
-    /// One that is asked for.
+    /// A motion that is requested.
     pub(crate) rejected: MoveStatus,
     pub(crate) setter: SetterStatus,
     pub(crate) recovery: RecoveryStatus,

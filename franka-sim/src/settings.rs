@@ -64,7 +64,7 @@ impl Settings {
         }
     }
 
-    /// What the robot believes the flange to carry.
+    /// The load of the flange in the controllers' model.
     pub(crate) fn declared_load(&self) -> Load {
         self.tool.load.combine(&self.load)
     }

@@ -16,7 +16,7 @@ use core::fmt::Write;
 use franka_model::geometry::{FLANGE, JOINT_ORIGINS};
 use franka_model::{Model, RigidBody};
 
-/// The URDF text of a robot called `name` that a client shall believe to be `model`.
+/// The URDF text that describes `model` as a robot called `name`.
 ///
 /// The element of the velocity envelope is left out for a model that has none.
 pub(crate) fn text(name: &str, model: &Model) -> String {

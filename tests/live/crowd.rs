@@ -5,7 +5,7 @@
 //! goal. What reaches the wrong robot shows: a state in the lane, the load or the tool of a
 //! neighbour, a command in an arm that leaves its lane.
 //!
-//! The test takes [`SECONDS`]. For as long as one likes, of which the report tells more:
+//! The test takes [`SECONDS`]. To run it longer, with more in the report:
 //!
 //! ```text
 //! FRANKA_CROWD_SECONDS=60 cargo test --package franka-tests --test live crowd -- --nocapture

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`circles`] | the step that finds imports in a circle between modules |
-//! | [`fuzz`] | the fuzz targets, for a moment as a step or for as long as one likes |
+//! | [`fuzz`] | the fuzz targets, for a moment as a step, or for any time |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
 //! | [`peers`] | the step that drives the simulator with other clients |

@@ -33,7 +33,7 @@ impl Story {
         story
     }
 
-    /// One whose first state has not been answered.
+    /// A story whose first state has not been answered.
     fn unbegun(model: &'static Model, generator: MotionGeneratorMode) -> Self {
         let pose = model.pose(Frame::EndEffector, &READY, &EndEffector::default());
         let state = RobotState {

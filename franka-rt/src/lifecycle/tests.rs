@@ -36,7 +36,8 @@ impl LifecycleAndDriver {
         }
     }
 
-    /// Carries out what the lifecycle wants, and tells it what the driver has to say.
+    /// Passes outputs of the lifecycle to the driver and events of the driver to the lifecycle,
+    /// until there are none.
     fn settle(&mut self) {
         loop {
             while let Some(output) = self.lifecycle.poll() {

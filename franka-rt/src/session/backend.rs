@@ -19,7 +19,7 @@ use crate::session::{ForceCap, Goal, GoalError, Guard, SessionCommand, Target};
 /// | torque clamp and rate | yes | no: the torques are the robot's |
 /// | limiter of setpoints (backstop) | no | yes |
 ///
-/// [`Self::has`] tells the same of each [`Guard`]. Beside them the robot has its own limits,
+/// [`Self::has`] returns the same for each [`Guard`]. Beside them the robot has its own limits,
 /// reflexes and collision thresholds, whatever the backend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -49,7 +49,7 @@ pub enum Setpoints {
     /// kinematics nothing to choose: its joints are those of the reference, and keep their limits.
     /// A stretched arm is refused, and joint 4 stays on its side of [`FLIP_ANGLE`]: the robot takes
     /// the elbow's side for that of the beginning. Where joint 3 rests while the arm moves about
-    /// its pose, which takes wide turns of the joints 3 and 5, an elbow tells little about the
+    /// its pose, which takes wide turns of the joints 3 and 5, an elbow says little about the
     /// others: there only the robot's own check applies, and [`Self::Joints`] is the better choice.
     Poses,
 }

@@ -56,7 +56,7 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
     }
 }
 
-/// The cycle of a control thread, in the hands of another. Dropping it gives it back.
+/// The cycle of a control thread, borrowed by another thread. Dropping it gives it back.
 ///
 /// While it exists, states are read, published and counted in its turns and nowhere else. If it
 /// runs no turn for the link timeout, that is reported by

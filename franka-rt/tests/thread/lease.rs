@@ -1,4 +1,4 @@
-//! The cycle in the hands of another thread.
+//! The cycle borrowed by another thread.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -3,7 +3,7 @@
 use franka_model::{AsBuilt, JointVector, Load, Model, RobotKind, joint_vector};
 use nalgebra::{Isometry3, Vector3};
 
-/// How the arm's body differs from what the robot believes. The robot's controllers, its state and
+/// How the arm's body differs from the controllers' model. The robot's controllers, its state and
 /// its clients compute with the model; the physics and what touches the arm do not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
@@ -22,8 +22,8 @@ pub struct Body {
     /// Error of the tool's centre of mass in the flange frame, `[m]`. An estimate.
     pub load_com_error: Vector3<f64>,
     /// Gravitational acceleration in the base frame, `[m/s²]`: that of the physics alone. The
-    /// robot's controllers believe that the arm stands upright, and its state says so (`O_ddP_O`);
-    /// with another value here they feel a load that is not there. See [`tilted`](Self::tilted).
+    /// controllers' model has the arm upright, and so does the state (`O_ddP_O`); with another
+    /// value here they estimate a load that is not there. See [`tilted`](Self::tilted).
     pub gravity_earth: Vector3<f64>,
     /// Mechanical end stops.
     pub stops: EndStops,

@@ -58,7 +58,7 @@ impl Network {
         }
     }
 
-    /// One that everything passes at once.
+    /// A network without delay and loss.
     pub fn perfect() -> Self {
         Self::new(0, Conditions::default(), Conditions::default())
     }

@@ -38,14 +38,14 @@ pub struct Delivery {
     pub datagram: Vec<u8>,
 }
 
-/// What has become of the datagrams of a [`Path`].
+/// Counts the datagrams of a [`Path`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tally {
-    /// All of them.
+    /// The datagrams that were sent.
     pub sent: u64,
-    /// Those that do not arrive.
+    /// The datagrams that do not arrive.
     pub lost: u64,
-    /// Those among them of which some packets (IP fragments) arrive and others do not. The host
+    /// The lost datagrams of which some packets (IP fragments) arrive and others do not. The host
     /// cannot reassemble the datagram; programs see it as lost.
     pub fragment_lost: u64,
 }

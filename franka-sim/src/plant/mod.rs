@@ -1,8 +1,8 @@
 //! The physics under the robot's controllers.
 //!
 //! A [`DriveTrain`] turns commanded torques into torques on the links, a [`Plant`] those into
-//! motion. Nothing in it knows of the protocol, of desired values or of the model that the
-//! controllers believe in: it may carry a load that is not declared.
+//! motion. Nothing in it knows of the protocol, of desired values or of the controllers' model: it
+//! may carry a load that is not declared.
 //!
 //! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature
 //! `mujoco`) has surroundings that it touches, and fingers. Away from contact they move alike.

@@ -64,7 +64,7 @@ use watch::Watch;
 pub struct Robot {
     config: Config,
     kind: &'static Description,
-    /// What the robot's controllers believe.
+    /// The controllers' model.
     model: &'static Model,
     /// The arm as it is, and what that makes of its links and axes.
     arm: Arm,
@@ -129,7 +129,7 @@ impl Robot {
         Self::with_plant(config, Box::new(plant))
     }
 
-    /// A robot whose controllers believe in the model of `config.kind`, and move `plant`: it is
+    /// A robot whose controllers' model is that of `config.kind`, and that moves `plant`: it is
     /// fitted with the configured arm and placed at rest in the configured position, with the
     /// configured tool and payload.
     pub fn with_plant(config: Config, mut plant: Box<dyn Plant>) -> Self {

@@ -120,7 +120,7 @@ impl Robot {
         self.abort_recovery(recovery);
     }
 
-    /// Makes the robot believe in an error: a reflex with all that follows from it.
+    /// Raises an error, which causes a reflex.
     pub fn trip(&mut self, error: RobotError) {
         self.reflex(error.into());
     }

@@ -80,7 +80,7 @@ pub struct Sim {
     virtual_time: bool,
     /// How long to wait for a command that is late.
     patience: Duration,
-    /// That of the arm's interface, or the host's alone, if there is none.
+    /// The network of the arm's interface; `None` is the host's own.
     network: Option<Network>,
     every_millisecond: Option<EveryMillisecond>,
 }
@@ -255,7 +255,7 @@ impl Sim {
     /// number of robots may run in one process.
     ///
     /// # Errors
-    /// Those of binding the sockets and of starting the thread.
+    /// If a socket cannot be bound or the thread cannot be started.
     ///
     /// # Cancel safety
     /// Dropping the future before it completes leaves nothing behind.

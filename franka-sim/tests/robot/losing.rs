@@ -4,7 +4,7 @@ use franka_model::CYCLE;
 
 use crate::pair::*;
 
-/// The values that a kind of motion commands, as the state tells them, with their differences.
+/// The values that a kind of motion commands, as the state contains them, with their differences.
 struct Channel {
     name: &'static str,
     generator: MoveGeneratorMode,

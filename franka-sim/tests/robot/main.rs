@@ -13,7 +13,7 @@
 //! | `modes`, `people` | recovery, user stop, brakes, guiding, safety functions, the errors of the robot itself, touches |
 //! | `setters` | ranges, modes, and the effect of stiffnesses |
 //! | `stiffest` | the stiffest springs that clients set |
-//! | `echo` | what the state tells of a motion |
+//! | `echo` | what the state contains of a motion |
 //! | `hand`, `scene` | the Franka Hand and the vacuum gripper, alone and in MuJoCo |
 //! | `fer` | the Franka Emika Robot |
 //! | `open` | what is not known of a robot: each an option, with the default that is documented |

@@ -249,7 +249,7 @@ impl Pair {
         assert_eq!(seen, self.state.message_id, "the reply overtook its state");
     }
 
-    /// The model that the robot's controllers believe in.
+    /// The controllers' model.
     pub(crate) fn model(&self) -> &'static Model {
         Model::physically_consistent(self.robot.config().kind)
     }

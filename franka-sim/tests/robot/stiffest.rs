@@ -6,7 +6,7 @@ use crate::plants::robots;
 /// Every robot, with nothing on the flange: where it is least stable.
 fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
     let config = Config {
-        // The gains are the matter here, not what the robot thinks of a blow.
+        // This is about the gains. A blow must not cause a reflex.
         enforce_limits: false,
         ..Config::default()
     };

@@ -65,7 +65,7 @@ fn clients_that_crowd_at_the_door_do_not_disturb_a_motion() {
     });
 }
 
-/// One whose network has gone can say nothing of it: the kernel has to ask.
+/// A client whose network is gone cannot close the connection: the kernel has to find out.
 #[test]
 fn the_host_of_an_idle_client_is_asked_whether_it_is_there() {
     each_robot(|binary| {

@@ -266,7 +266,7 @@ impl Section {
         });
     }
 
-    /// Both as the model combines loads and as a state tells their total.
+    /// The total of loads, as the model combines them and as a state contains it.
     fn totals(&self, report: &mut Report, part: &str) {
         report.each(
             format!("{part}.load_totals"),

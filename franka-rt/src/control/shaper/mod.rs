@@ -46,7 +46,7 @@ enum FirstReference {
     State,
 }
 
-/// How precisely the state tells the last torques.
+/// How precisely the state contains the last torques.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Echo {
     /// As they were sent, or taken for that.
