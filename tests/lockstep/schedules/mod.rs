@@ -135,7 +135,7 @@ fn kind(outcome: &Outcome) -> &'static str {
         Err(MotionError::Held(Lapse::Silent { .. })) => "silent, held",
         Err(MotionError::Braked(Lapse::Silent { .. })) => "silent, braked",
         Err(MotionError::Held(Lapse::Deadman)) => "deadman",
-        Err(MotionError::Braked(Lapse::Displaced)) => "carried off",
+        Err(MotionError::Braked(Lapse::Displaced)) => "displaced",
         Err(MotionError::Braked(Lapse::Blocked)) => "blocked",
         Err(MotionError::Control(error)) if error.is_reflex() => "reflex",
         Err(MotionError::Rejected(_)) => "rejected",

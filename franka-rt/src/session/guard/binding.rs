@@ -33,7 +33,7 @@ pub enum Guard {
     /// The arm came near itself or a region to keep out of: the reference goes slowly, or brakes
     /// before it.
     Clearance,
-    /// The arm was carried off from its way; its goal was given up for that.
+    /// The arm was displaced from its path, and its goal given up for that.
     Deviation,
     /// The target was further ahead of the arm than it may be, and was drawn nearer.
     Lead,

@@ -1,4 +1,4 @@
-//! Deviation: an arm that is carried off too far is not swung back.
+//! Deviation: an arm that is displaced too far is not swung back.
 //!
 //! The leash takes the reference along with an arm that is pushed, and the course begins again
 //! wherever it is let go. So nothing else bounds how far from its way an arm can be taken, and how
@@ -9,13 +9,13 @@ use nalgebra::{Isometry3, Vector3};
 
 use crate::session::{Target, rigid};
 
-/// How far the end effector may be carried off, `[m]`.
+/// How far the end effector may be displaced, `[m]`.
 pub const TRANSLATION_DEVIATION: f64 = 0.30;
 
 /// How far it may be turned away, `[rad]`.
 pub const ROTATION_DEVIATION: f64 = 0.5;
 
-/// How far a joint may be carried off, `[rad]`.
+/// How far a joint may be displaced, `[rad]`.
 pub const JOINT_DEVIATION: f64 = 1.0;
 
 /// Remembers where the reference was before the leash took it along.
@@ -38,7 +38,7 @@ impl Deviation {
 
     /// Whether the arm, at `q` and `measured`, is further than it may be from the way between where
     /// the reference was last free and the target: an arm that comes along slowly is on its way,
-    /// and not carried off.
+    /// and not displaced.
     pub(crate) fn is_exceeded(
         &self,
         model: &Model,

@@ -305,8 +305,8 @@ impl RunningSession {
         };
         let leashed = leash.unwrap_or(true);
         bindings.set(Guard::Leash, leashed || guided);
-        let carried_off = self.watch_deviation(model, &arm, leashed);
-        bindings.set(Guard::Deviation, carried_off);
+        let displaced = self.watch_deviation(model, &arm, leashed);
+        bindings.set(Guard::Deviation, displaced);
         self.held_back = if leashed || held || self.route.is_hindered() {
             self.held_back + 1
         } else {

@@ -61,7 +61,7 @@ impl RunningSession {
         self.standing = Standing::GivenUp { action, cause };
     }
 
-    /// Gives up a goal whose arm is being carried off. Returns whether it is.
+    /// Gives up a goal whose arm is displaced. Returns whether it is.
     pub(super) fn watch_deviation(&mut self, model: &Model, arm: &Measured, leashed: bool) -> bool {
         if !leashed {
             self.deviation.set_free(&self.reference.q);
