@@ -9,7 +9,7 @@ use franka_otg::AxisLimits;
 use franka_proto::{RobotState, Version};
 
 use crate::law::{GainError, Law};
-use crate::session::{Budget, CHUNKS_MAX, ForceCap, Goal, KeepOut, Target, Watchdog, approach};
+use crate::session::{Budget, Chunk, ForceCap, Goal, KeepOut, Target, Watchdog, approach};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -188,7 +188,7 @@ pub(super) fn target(target: &Target, model: &Model, state: &RobotState) -> Resu
 
 /// Chunks came faster than the control thread takes them up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{CHUNKS_MAX} chunks are under way already")]
+#[error("{} chunks are under way already", Chunk::UNDER_WAY_MAX)]
 pub struct TooManyChunks;
 
 /// Checks regions to keep out of, and gives them the form of a session.

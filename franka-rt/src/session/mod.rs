@@ -47,9 +47,7 @@ use crate::together::StartFault;
 pub use backend::{Backend, Setpoints};
 pub use budget::Budget;
 pub use check::{GoalError, TooManyChunks};
-pub use chunk::{
-    CHUNKS_MAX, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring,
-};
+pub use chunk::{Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
 pub use goal::{Free, Goal, GoalId, OnArrival, Target, Tolerance};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub use guard::deadman::{Deadman, DeadmanMonitor};

@@ -29,5 +29,5 @@ mod value;
 
 pub(super) use course::{ChunkCourse, ChunkStart};
 pub use error::ChunkError;
-pub use ring::{CHUNKS_MAX, ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
+pub use ring::{ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
 pub use value::Chunk;

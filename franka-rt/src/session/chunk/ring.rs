@@ -13,9 +13,6 @@ use super::value::Chunk;
 use crate::queue::{self, Receiver, Sender};
 use crate::session::GoalId;
 
-/// Chunks that may be on their way, in use, or on their way back at a time.
-pub const CHUNKS_MAX: usize = 8;
-
 /// A chunk and the goal that it belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sent {
@@ -52,7 +49,7 @@ pub struct Returned {
 
 /// There is no room for another chunk: the thread has not taken up or given back those sent before.
 #[derive(Debug, thiserror::Error)]
-#[error("{CHUNKS_MAX} chunks are under way already")]
+#[error("{} chunks are under way already", Chunk::UNDER_WAY_MAX)]
 pub struct Full(
     /// The chunk that was to be sent.
     pub Chunk,
@@ -77,8 +74,8 @@ pub struct ChunkReader {
 
 /// The two ends of a way for chunks.
 pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
-    let (sender, receiver) = queue::queue(CHUNKS_MAX);
-    let (back, collector) = queue::queue(CHUNKS_MAX);
+    let (sender, receiver) = queue::queue(Chunk::UNDER_WAY_MAX);
+    let (back, collector) = queue::queue(Chunk::UNDER_WAY_MAX);
     let writer = ChunkWriter {
         chunks: sender,
         returns: collector,
@@ -99,13 +96,14 @@ impl ChunkWriter {
     /// slot: chunks of older goals are returned as [`Fate::Obsolete`].
     ///
     /// # Errors
-    /// [`Full`] with the chunk if [`CHUNKS_MAX`] of them have not been [collected](Self::collect).
+    /// [`Full`] with the chunk if [`Chunk::UNDER_WAY_MAX`] of them have not been
+    /// [collected](Self::collect).
     #[expect(
         clippy::result_large_err,
         reason = "once per chunk, outside the thread; the chunk goes back to its owner"
     )]
     pub fn send(&mut self, goal: GoalId, chunk: Chunk) -> Result<(), Full> {
-        if self.under_way >= CHUNKS_MAX {
+        if self.under_way >= Chunk::UNDER_WAY_MAX {
             return Err(Full(chunk));
         }
         match self.chunks.push(Sent { goal, chunk }) {
@@ -165,7 +163,7 @@ impl ChunkReader {
 
     fn receive(&mut self) {
         // At most as many as are under way: the writer cannot add to them without collecting.
-        for _ in 0..CHUNKS_MAX {
+        for _ in 0..Chunk::UNDER_WAY_MAX {
             let Some(sent) = self.chunks.pop() else { break };
             if let Some(before) = self.newest.replace(sent) {
                 self.give_back(before.goal, before.chunk, Fate::Superseded);
@@ -253,7 +251,7 @@ mod tests {
     #[test]
     fn no_more_chunks_go_in_than_may_come_back() {
         let (mut writer, mut reader) = chunk_ring();
-        for _ in 0..3 * CHUNKS_MAX {
+        for _ in 0..3 * Chunk::UNDER_WAY_MAX {
             if writer.send(GOAL, chunk()).is_err() {
                 break;
             }
@@ -262,7 +260,7 @@ mod tests {
         }
         let Full(refused) = writer.send(GOAL, chunk().observed_at(7)).unwrap_err();
         assert_eq!(refused, chunk().observed_at(7));
-        assert_eq!(fates(&mut writer).len(), CHUNKS_MAX - 1);
+        assert_eq!(fates(&mut writer).len(), Chunk::UNDER_WAY_MAX - 1);
         writer.send(GOAL, refused).unwrap();
         drop(reader);
         assert!(writer.is_abandoned());

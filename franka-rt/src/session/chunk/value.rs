@@ -81,6 +81,9 @@ impl Chunk {
     /// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.
     pub const POINTS_MAX: usize = 1024;
 
+    /// Chunks that may be on their way to the thread, in use, or on their way back at a time.
+    pub const UNDER_WAY_MAX: usize = 8;
+
     /// The latest that a point may lie after its chunk's origin. A later time is a mistake of
     /// units.
     pub const OFFSET_MAX: Duration = Duration::from_secs(60);
