@@ -103,6 +103,7 @@ pub enum Bound {
 /// A limit that was exceeded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Finding {
     /// The error that it stands for.
     pub error: RobotError,

@@ -70,6 +70,7 @@ pub const STALL_TIMEOUT: Duration = SETTLE_TIMEOUT;
 
 /// What a session reports to the lifecycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SessionEvent {
     /// A goal that was to finish has come to its end; the session releases the arm unless a newer
     /// goal comes.
@@ -88,6 +89,7 @@ pub enum SessionEvent {
 
 /// How a goal came to its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Settlement {
     /// At the target, within the tolerance, at rest and held there.
     Arrived(PoseError),

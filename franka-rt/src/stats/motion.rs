@@ -10,6 +10,7 @@ use crate::slot::Words;
 /// Counts over the running time of one motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct MotionStatistics {
     /// States of the motion that were received and not skipped.
     pub cycles: u64,

@@ -31,6 +31,7 @@ pub struct Path {
 
 /// A datagram that has arrived.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Delivery {
     /// When.
     pub at: Duration,
@@ -40,6 +41,7 @@ pub struct Delivery {
 
 /// Counts the datagrams of a [`Path`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct Tally {
     /// The datagrams that were sent.
     pub sent: u64,
