@@ -3,7 +3,8 @@
 //! A motion towards goals is braked within the robot's limits, a session likewise before it ends,
 //! and a control function or program has the robot stop. All of it is one input to the bridge,
 //! which carries it out after `cancel` or `drop` has returned. The `Drop` of a motion's future is
-//! that of `Moving`, in `motion`; what happens is decided by `Lifecycle::cancel`, in
+//! that of `Moving`, in `motion`; handles that cancel when dropped are in `session`,
+//! `active_control` and `asynchronous_control`; what happens is decided by `Lifecycle::cancel`, in
 //! `franka_rt::lifecycle::goals`.
 
 use franka_rt::lifecycle::{NewMotion, Outcome};

@@ -1,4 +1,5 @@
-//! From an address to a running connection.
+//! From an address to a running connection. If the robot refuses the version, the older one that it
+//! names is tried.
 
 use std::net::SocketAddr;
 use std::sync::Arc;

@@ -1,5 +1,5 @@
 //! `control_command_success_rate`: which cycles of a motion the client answered, and how many it
-//! lost in a row.
+//! lost in a row. What a lost command does: `robot::motion`.
 
 use crate::config::FirstCycles;
 

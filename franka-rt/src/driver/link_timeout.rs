@@ -1,4 +1,5 @@
-//! How long a robot may be silent.
+//! How long a robot may be silent; `Driver::on_silence` then ends the motion. Where late states go:
+//! `exchange` (overtaken ones) and `stats::arrivals`.
 
 use core::time::Duration;
 

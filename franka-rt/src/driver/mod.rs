@@ -1,5 +1,9 @@
 //! The state machine that returns the command for each robot state; the real-time thread runs it.
 //!
+//! Late states are answered like others ([`stats::arrivals`](crate::stats)), unless a newer one has
+//! overtaken them (`exchange`). Lost ones are counted in [`Driver::on_state`]; a silent robot ends
+//! the motion in [`Driver::on_silence`].
+//!
 //! ```text
 //!              Order::Arm            first state in the motion's modes
 //!  Watching ---------------> Armed ------------------------------------> Running

@@ -1,4 +1,5 @@
-//! How a motion ended: the value that its future resolves with.
+//! How a motion ended: the value that its future resolves with. Why the robot ended it:
+//! `franka_diagnosis`.
 
 use core::time::Duration;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The stream of setpoints to the robot's own controller.
+//! The stream of setpoints to the robot's own controller, and where it goes on after lost commands.
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model, transform};

@@ -1,4 +1,5 @@
-//! A motion under way: which commands count, what they do, and how it ends.
+//! A motion under way: which commands count (late ones do not), what a lost one does, and how it
+//! ends.
 
 use franka_model::limits::JointLimits;
 use franka_model::{CYCLE, JointVector};

@@ -1,4 +1,4 @@
-//! The handshake.
+//! The bytes of the handshake. Its rules: `client::session`, `server::session`.
 
 use zerocopy::byteorder::little_endian::U16;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};

@@ -1,6 +1,6 @@
 //! The torque-rate limit of target control: the commanded torque changes no faster than the robot
 //! accepts. Control functions have theirs, which can be off, in `control::shaper`; the arithmetic
-//! is in `shaping::limiter`.
+//! is in `shaping::limiter`, and the check of the simulated robot in `franka_sim`, `robot::motion`.
 
 use franka_model::JointVector;
 use franka_model::limits::CLIENT_MARGIN;
