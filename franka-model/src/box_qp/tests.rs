@@ -188,7 +188,7 @@ fn crossing_bounds_fix_a_variable_at_their_midpoint() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_end_the_search_without_panic() {
+fn non_finite_numbers_end_the_search_without_panic() {
     let mut random = Random::new(27);
     let good = Case::random(&mut random, 1e-2);
     let solve = |problem: &Problem<'_>, bounds: &JointBox| {

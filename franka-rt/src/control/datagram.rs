@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     #[allow(non_snake_case)]
-    fn no_datagram_carries_a_number_that_is_not_finite() {
+    fn no_datagram_carries_a_non_finite_number() {
         let identity = core::array::from_fn(|i| if i % 5 == 0 { 1.0 } else { 0.0 });
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let pose = |O_T_EE, elbow| CartesianPose { O_T_EE, elbow }.into();

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_not_finite_are_named_first() {
+    fn non_finite_numbers_are_named_first() {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert_eq!(pose(&with(3, value)), Err(InvalidCommand::NotFinite));
             assert_eq!(elbow(&[0.1, value]), Err(InvalidCommand::NotFinite));

@@ -5,7 +5,7 @@ use franka_model::CYCLE;
 use super::towards;
 use crate::plant::FingerDrive;
 
-/// How far the fingers are apart, and what becomes of it.
+/// How far the fingers are apart, and what moves them.
 #[derive(Debug, Clone)]
 pub(super) struct FingerMotion {
     width: f64,
@@ -14,20 +14,20 @@ pub(super) struct FingerMotion {
 
 #[derive(Debug, Clone)]
 enum Means {
-    /// The fingers move as they are told, up to an object of this width.
+    /// The fingers move at the commanded speed, up to an object of this width.
     Kinematic { object: Option<f64> },
-    /// A plant moves them, with what is between them.
+    /// A plant moves the fingers, with what is between them.
     Driven { drive: FingerDrive, stall: Stall },
 }
 
-/// What came of a millisecond on the way.
+/// The result of one millisecond of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Progress {
-    /// On the way, or so it seems.
+    /// Under way, or not yet known to be blocked.
     Moving,
-    /// Something is in the way.
+    /// An object stops the fingers.
     Blocked,
-    /// There.
+    /// The target is reached.
     Arrived,
 }
 
@@ -52,7 +52,7 @@ impl FingerMotion {
         }
     }
 
-    /// What to tell the plant's fingers: to stay, as long as they have not been felt.
+    /// The command for the plant's fingers: to stay, until their width has been read once.
     pub(super) fn drive(&self) -> FingerDrive {
         match &self.means {
             Means::Driven { drive, .. } => *drive,
@@ -113,7 +113,7 @@ impl FingerMotion {
         }
     }
 
-    /// Whether something holds the fingers apart that are told to close.
+    /// Whether an object stops the fingers while they close.
     pub(super) fn is_held(&self) -> bool {
         match &self.means {
             Means::Kinematic { object } => self.width <= object.unwrap_or(0.0),
@@ -138,7 +138,7 @@ fn resting(width: f64) -> FingerDrive {
     }
 }
 
-/// Finds out that fingers get nowhere.
+/// Detects fingers that do not move.
 #[derive(Debug, Clone, Copy)]
 struct Stall {
     /// Width at the start of the window, and milliseconds since.

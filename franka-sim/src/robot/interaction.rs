@@ -72,8 +72,8 @@ impl Robot {
             .attach(self.arm.body.load(&self.config.tool.load, &load));
     }
 
-    /// Lets the fingers of the plant, if it has some, do what `hand` wants, and lets `hand` feel
-    /// them. To be called once per millisecond, between this robot's [`tick`](Self::tick) and the
+    /// Passes the command of `hand` to the fingers of the plant, if it has some, and their width to
+    /// `hand`. To be called once per millisecond, between this robot's [`tick`](Self::tick) and the
     /// hand's.
     pub fn couple(&mut self, hand: &mut Hand) {
         let fingers = hand.mechanism_mut();

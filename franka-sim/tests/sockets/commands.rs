@@ -106,7 +106,7 @@ fn non_finite_numbers_end_the_motion_and_disturb_no_other_client() {
 }
 
 #[test]
-fn requests_of_the_end_effectors_with_numbers_that_are_none_fail() {
+fn requests_of_the_end_effectors_with_non_finite_numbers_fail() {
     each_robot(|binary| {
         let [_, hand, vacuum] = binary.ports();
         let numbers =
