@@ -5,7 +5,7 @@
 //! the velocity is back at its limit and will stay there. It is a convention and not part of the
 //! optimum. A rule that only asks the velocity to converge to its limit can be shorter, but stays
 //! above the limit for longer. The state is never clamped, since a clamp is a step in what the
-//! robot sees.
+//! robot receives.
 
 use crate::scalar::sqrt;
 use crate::task::Task;

@@ -32,7 +32,7 @@
 //! for _ in 0..500 {
 //!     robot.tick();
 //! }
-//! // The robot feels what it does to the hand that pushes: upwards, 20 N.
+//! // The estimate is the force on the hand that pushes: upwards, 20 N.
 //! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
 //! ```
 //!

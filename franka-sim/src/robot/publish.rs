@@ -1,4 +1,4 @@
-//! The state of one millisecond, from everything that the robot knows.
+//! The state of one millisecond, as the robot publishes it.
 
 use franka_model::{Frame, JointVector, Load, Twist, elbow, transform};
 use nalgebra::Matrix4;

@@ -165,7 +165,7 @@ impl Sim {
         self
     }
 
-    /// Mounts a tool that the robot knows of.
+    /// Mounts a tool that the controllers' model includes.
     pub fn tool(mut self, tool: Tool) -> Self {
         self.config.tool = tool;
         self

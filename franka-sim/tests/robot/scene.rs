@@ -132,7 +132,7 @@ impl Cell {
         }
     }
 
-    /// What the robot feels pull it down, `[N]`.
+    /// The estimated vertical force, `[N]`; positive for a load that hangs.
     fn weight(&self) -> f64 {
         self.pair.state.O_F_ext_hat_K[2]
     }
