@@ -19,7 +19,7 @@
 //! ```
 //!
 //! The words are atomics, so a torn read is a wrong value and not a data race, and no `unsafe` is
-//! needed. Memory order is argued at the two loops; `tests/loom/main.rs` explores the
+//! needed. Memory order is argued at the two loops; `tests/loom` explores the
 //! interleavings.
 //!
 //! The count has no cache line of its own. With a reader on a second core, and the count padded to

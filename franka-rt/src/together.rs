@@ -399,5 +399,7 @@ impl From<u64> for Word {
     }
 }
 
+// The path also holds where `tests/loom` includes this file.
 #[cfg(all(test, not(loom)))]
+#[path = "together/tests.rs"]
 mod tests;

@@ -24,8 +24,6 @@ pub(crate) enum Check {
     Doc,
     /// All tests and documentation examples.
     Test,
-    /// Interleavings of what crosses threads.
-    Loom,
     /// Protocol and model without the standard library.
     NoStd,
     /// Any bytes for the protocol.
@@ -56,7 +54,6 @@ impl Check {
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
             Self::Test => ("test", "all tests and documentation examples"),
-            Self::Loom => ("loom", "interleavings of what crosses threads"),
             Self::NoStd => (
                 "no-std",
                 "protocol, model and generator without the standard library",
@@ -101,7 +98,6 @@ impl Check {
                 workspace.run(command.env("RUSTDOCFLAGS", "-Dwarnings"))?;
             }
             Self::Test => return test(workspace),
-            Self::Loom => loom(workspace)?,
             Self::NoStd => return no_std(workspace),
             Self::Fuzz => return fuzz::check(workspace),
             Self::Peers => return peers::run(workspace),
@@ -139,20 +135,6 @@ fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
         Ok(()) => Outcome::Passed,
         Err(why) => Outcome::Partly(why),
     })
-}
-
-/// Loom replaces the atomics of the whole build, which therefore has a directory of its own.
-fn loom(workspace: &Workspace) -> anyhow::Result<()> {
-    let mut command = workspace.cargo();
-    command
-        .args(["test", "--release", "--package", "franka-rt"])
-        .args(["--test", "loom", "--target-dir"])
-        .arg(workspace.target().join("loom"))
-        .env("RUSTFLAGS", "--cfg loom")
-        // Of little use to a program that runs for seconds, and half of the time to build it.
-        .env("CARGO_PROFILE_RELEASE_LTO", "off")
-        .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
-    workspace.run(&mut command)
 }
 
 /// Builds for this machine, where the standard library exists and must not be used, and for one

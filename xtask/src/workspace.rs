@@ -153,11 +153,11 @@ mod tests {
     fn the_line_shows_variables_program_and_arguments() {
         let mut command = Command::new("/usr/bin/cargo");
         command
-            .env("RUSTFLAGS", "--cfg loom")
-            .args(["test", "--test", "loom"]);
+            .env("RUSTFLAGS", "-Dwarnings")
+            .args(["test", "--test", "live"]);
         assert_eq!(
             line(&command),
-            "RUSTFLAGS=\"--cfg loom\" cargo test --test loom"
+            "RUSTFLAGS=\"-Dwarnings\" cargo test --test live"
         );
     }
 }

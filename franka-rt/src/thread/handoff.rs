@@ -6,7 +6,7 @@
 //!   borrower:                    borrow --> Lent --> give_back
 //! ```
 //!
-//! Nothing here knows what is lent: `tests/loom/main.rs` includes this file and explores the
+//! Nothing here knows what is lent: `tests/loom` includes this file and explores the
 //! hand-overs.
 
 use std::sync::PoisonError;

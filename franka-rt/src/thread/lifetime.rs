@@ -1,6 +1,6 @@
 //! What the thread and its owner tell each other by flags.
 //!
-//! Nothing here knows the thread: `tests/loom/main.rs` includes this file and explores what the
+//! Nothing here knows the thread: `tests/loom` includes this file and explores what the
 //! flags order.
 
 #[cfg(not(loom))]

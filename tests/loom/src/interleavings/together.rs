@@ -1,7 +1,8 @@
 //! Members of a common start: whatever they do at once, they agree on whether it takes place.
 
-use franka_rt::together::{Gate, StartBarrier};
 use loom::thread;
+
+use crate::together::{Gate, StartBarrier};
 
 #[test]
 fn nobody_begins_alone() {

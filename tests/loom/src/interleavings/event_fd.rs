@@ -4,16 +4,12 @@
 //! condition variable here; what is explored is the order of our operations around it, which is
 //! that of the thread (publish, note the end, notify) and of the bridge (wait, drain, look).
 
-// Private to the crate, and free of everything else in it.
-#[path = "../../src/thread/lifetime.rs"]
-mod lifetime;
-
-use franka_rt::slot::{Read, slot};
 use loom::sync::atomic::{AtomicU64, Ordering};
 use loom::sync::{Arc, Condvar, Mutex};
 use loom::thread;
 
-use self::lifetime::Lifetime;
+use crate::lifetime::Lifetime;
+use crate::slot::{Read, slot};
 
 /// What an eventfd does.
 #[derive(Default)]

@@ -1,9 +1,10 @@
 //! Wake-ups per state: a request is never lost to a release at the same time.
 
-use franka_rt::state_wakeups::StateWakeups;
 use loom::sync::Arc;
 use loom::sync::atomic::{AtomicUsize, Ordering};
 use loom::thread;
+
+use crate::state_wakeups::StateWakeups;
 
 /// A subscriber is counted before it requests; the bridge finds none and releases meanwhile.
 #[test]

@@ -1,7 +1,8 @@
 //! The slot.
 
-use franka_rt::slot::{Read, SlotReader, slot};
 use loom::thread;
+
+use crate::slot::{Read, SlotReader, slot};
 
 /// The two words of the `n`th value; no mix of two values looks like one.
 fn value(n: u64) -> [u64; 2] {

@@ -1,18 +1,13 @@
 //! The handoff where the cycle changes hands. What is lent here is a count of the turns that it has
 //! run.
 
-// Private to the crate, and free of everything else in it.
-#[path = "../../src/thread/handoff.rs"]
-#[allow(unreachable_pub, reason = "what the crate exports is exported there")]
-mod handoff;
-
 use std::time::Duration;
 
 use loom::sync::Arc;
 use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use loom::thread;
 
-use self::handoff::{BorrowError, Handoff};
+use crate::handoff::{BorrowError, Handoff};
 
 /// Ticks that never end: a thread that waits for a change has to be told of it.
 const FOREVER: Duration = Duration::MAX;

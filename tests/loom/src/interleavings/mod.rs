@@ -1,9 +1,6 @@
 //! Every interleaving of what crosses threads, and every value that the memory model lets a load
 //! return.
 //!
-//! Run with `cargo xtask test --only loom`, or
-//! `RUSTFLAGS="--cfg loom" cargo test --release -p franka-rt --test loom`.
-//!
 //! | module | crossing |
 //! |---|---|
 //! | [`slot`] | newest values: goals in, states out |
@@ -16,7 +13,6 @@
 //! into a crate that is not built for it. rtrb 0.4 has no loom models; its own tests are written
 //! for Miri and the thread sanitizer. Counters and histograms are relaxed on purpose: each number
 //! stands for itself, and nothing is concluded from two.
-#![cfg(loom)]
 
 mod event_fd;
 mod handoff;

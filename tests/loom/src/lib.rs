@@ -1,0 +1,18 @@
+//! The modules of franka-rt in which threads meet, with the atomics and locks of loom in place of
+//! the standard library's. They need nothing else of their crate.
+#![cfg(test)]
+#![allow(dead_code, reason = "not all of it takes part in an interleaving")]
+#![allow(unreachable_pub, reason = "what franka-rt exports is exported there")]
+
+#[path = "../../../franka-rt/src/thread/handoff.rs"]
+mod handoff;
+#[path = "../../../franka-rt/src/thread/lifetime.rs"]
+mod lifetime;
+#[path = "../../../franka-rt/src/slot.rs"]
+mod slot;
+#[path = "../../../franka-rt/src/state_wakeups.rs"]
+mod state_wakeups;
+#[path = "../../../franka-rt/src/together.rs"]
+mod together;
+
+mod interleavings;
