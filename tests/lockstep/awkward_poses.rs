@@ -82,7 +82,8 @@ fn a_distant_pose_is_reached_or_reported_as_not_reached() {
         ..EndEffector::default()
     };
     let (mut reached, mut short, mut blocked) = (0, 0, 0);
-    for case in 0..40 {
+    let cases = if franka_tests::thorough() { 40 } else { 20 };
+    for case in 0..cases {
         // In general no straight path is possible: joints reach their limits on the way, and the
         // arm folds.
         let posture = JointVector::from_fn(|i, _| {
@@ -104,7 +105,7 @@ fn a_distant_pose_is_reached_or_reported_as_not_reached() {
         }
     }
     println!("seed {seed}: {reached} reached, {short} short, {blocked} blocked");
-    assert!(reached > 25);
+    assert!(reached > cases * 6 / 10);
 }
 
 #[test]
@@ -143,7 +144,11 @@ fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
 #[test]
 fn joints_reach_the_ends_of_their_ranges_at_any_speed() {
     let limits = Model::fr3().joint_limits();
-    for speed in [0.5, 1.0, 1.5] {
+    let speeds: &[f64] = match franka_tests::thorough() {
+        true => &[0.5, 1.0, 1.5],
+        false => &[0.5, 1.5],
+    };
+    for &speed in speeds {
         for joint in 0..7 {
             for upper in [false, true] {
                 let mut lockstep = Lockstep::ready();

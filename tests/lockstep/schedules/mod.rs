@@ -43,10 +43,10 @@ use motions::Motions;
 use sessions::Sessions;
 
 /// Schedules of motions in one run; each takes some five seconds of the robot's time.
-const MOTIONS: u64 = 120;
+const MOTIONS: u64 = 60;
 
 /// Schedules of sessions in one run; each takes some two seconds of the robot's time.
-const SESSIONS: u64 = 200;
+const SESSIONS: u64 = 100;
 
 /// The number of goals with each outcome, and the robot's time.
 #[derive(Debug, Default)]
