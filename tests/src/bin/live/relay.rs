@@ -310,7 +310,7 @@ mod tests {
             size: Header::SIZE as u32,
         };
         let error = replace_port(&mut header.to_bytes(), 815).unwrap_err();
-        assert!(error.to_string().contains("no Connect"), "{error}");
+        assert!(error.to_string().contains("not a Connect"), "{error}");
     }
 
     #[test]
