@@ -6,8 +6,9 @@ use std::time::Duration;
 use franka_async::error::{ConnectError, Party};
 use franka_async::{Endpoint, Gripper, Pose, Realtime, Robot};
 use franka_sim::{Fingers, Sim, Tool};
+use franka_tests::PATIENCE;
 
-use crate::{PATIENCE, alone};
+use crate::alone;
 
 /// Connects to `endpoint`, moves the arm by a centimetre, and ends the connection.
 async fn moves(endpoint: impl Into<Endpoint>) -> SocketAddr {

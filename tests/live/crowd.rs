@@ -21,10 +21,11 @@ use franka_async::settings::Load;
 use franka_async::{MotionError, MotionReport, Pose, Robot, RobotError, RobotState, Version};
 use franka_model::READY;
 use franka_sim::{Running, Sim, Tool};
+use franka_tests::PATIENCE;
 use tokio::task::{JoinHandle, JoinSet};
 use tokio::time::timeout;
 
-use crate::{PATIENCE, alone, connect, robot_time, until};
+use crate::{alone, connect, robot_time, until};
 
 type Outcome = Result<MotionReport, MotionError>;
 

@@ -10,9 +10,10 @@ use franka_async::vacuum::{Profile, Vacuum};
 use franka_async::{Gripper, Pose, VacuumGripper};
 use franka_proto::{gripper, server, vacuum};
 use franka_sim::{Fingers, Running, Sim, Suction};
+use franka_tests::PATIENCE;
 use tokio::time::{sleep, timeout};
 
-use crate::{PATIENCE, SOON, alone, connect};
+use crate::{SOON, alone, connect};
 
 const ABORTED: &str = "libfranka gripper: Command aborted!";
 const FAILED: &str = "libfranka gripper: Command failed!";

@@ -35,6 +35,7 @@ use std::time::Duration;
 
 use franka_async::{Motion, Pose, Realtime, Robot, RobotState};
 use franka_sim::{Running, Sim, Tool};
+use franka_tests::PATIENCE;
 use tokio::sync::watch;
 use tokio::time::timeout;
 
@@ -135,10 +136,6 @@ async fn follow_steps(robot: &Robot) -> Pose {
     outcome.expect("the last target is reached");
     last
 }
-
-/// How long a robot at the client's pace waits for a command. Twenty that are missing in a row end
-/// a motion.
-const PATIENCE: Duration = Duration::from_millis(100);
 
 /// What has not happened within this time never will, on a machine that is busy as well.
 const SOON: Duration = Duration::from_secs(30);

@@ -6,8 +6,9 @@ use std::time::Duration;
 use franka_async::error::SchedError;
 use franka_async::{Pose, Realtime, Robot};
 use franka_sim::Sim;
+use franka_tests::PATIENCE;
 
-use crate::{PATIENCE, alone};
+use crate::alone;
 
 /// What the kernel says of one thread.
 #[derive(Debug)]

@@ -19,6 +19,7 @@ use franka_rt::session::{ForceCap, Goal, GoalId, Guard, Lapse, OnArrival, Target
 use franka_sim::{Arm, Touch, TouchId};
 use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
 use franka_tests::push::{PUSH, STIFFNESS, hand};
+use franka_tests::thorough;
 use nalgebra::{SMatrix, Translation3, Vector3};
 
 /// A robot whose collision thresholds tolerate pushes.
@@ -73,6 +74,14 @@ fn head_for(
     lockstep.submit_within(engaged, goal).expect("within reach");
 }
 
+/// The caps that a suite tries, `[N]`.
+fn caps() -> &'static [f64] {
+    match thorough() {
+        true => &[15.0, 25.0, ForceCap::DEFAULT_NEWTONS],
+        false => &[15.0, ForceCap::DEFAULT_NEWTONS],
+    }
+}
+
 /// Returns the mean and the greatest force on a wall in the last of three seconds. The wall is 3 cm
 /// from the arm, and the goal 5 cm beyond it.
 ///
@@ -112,7 +121,7 @@ fn an_arm_held_at_its_leash_pulls_with_no_more_than_the_cap() {
         for way in directions() {
             for (name, gains) in each_gains() {
                 let (free, _) = on_a_wall(ready, way, gains, ForceCap::Off);
-                for cap in [15.0, ForceCap::DEFAULT_NEWTONS] {
+                for &cap in caps() {
                     let (mean, most) = on_a_wall(ready, way, gains, ForceCap::Newtons(cap));
                     println!("{name}: {free:.1} N, {mean:.2} N ({most:.2} N) under {cap} N");
                     // Joint friction opposes the spring a little.
@@ -218,7 +227,7 @@ fn a_pushing_hand_meets_at_most_the_cap_and_more_without_one() {
                     free.pressed > 1.1 * ForceCap::DEFAULT_NEWTONS,
                     "{way}, {name}: {free:?}"
                 );
-                for cap in [15.0, ForceCap::DEFAULT_NEWTONS] {
+                for &cap in caps() {
                     let felt = pushed(ready, way, gains, ForceCap::Newtons(cap));
                     println!("  {cap} N: {felt:.1?}");
                     assert!(felt.capped > 20, "{way}, {name}: {felt:?}");

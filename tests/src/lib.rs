@@ -11,6 +11,8 @@
 //! | [`push`] | the path of a hand that pushes an arm |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
+use std::time::Duration;
+
 pub mod bench;
 pub mod broken_socket;
 pub mod cycle_counts;
@@ -18,6 +20,10 @@ pub mod golden;
 pub mod lockstep;
 pub mod mishaps;
 pub mod push;
+
+/// How long a robot at the pace of its client waits for a command. Twenty that are missing in a row
+/// end a motion.
+pub const PATIENCE: Duration = Duration::from_millis(100);
 
 /// Whether suites that draw or enumerate many cases run all of them: the variable
 /// `FRANKA_THOROUGH`, as the nightly run sets it. Otherwise they run a sample with all boundaries.

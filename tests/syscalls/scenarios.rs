@@ -24,6 +24,7 @@ use franka_rt::exchange;
 use franka_rt::sched::Scheduling;
 use franka_rt::thread::{self, ThreadConfig};
 use franka_sim::{Running, Sim, Tool};
+use franka_tests::PATIENCE;
 use franka_tests::broken_socket::BrokenSocket;
 use tokio::sync::watch;
 use tokio::time::sleep;
@@ -39,9 +40,6 @@ async fn simulated() -> (Robot, Running) {
     let robot = builder.connect().await.expect("it takes a client");
     (robot, sim)
 }
-
-/// How long the robot waits for a command. Twenty that are missing in a row end a motion.
-const PATIENCE: Duration = Duration::from_millis(100);
 
 /// A motion that takes the robot some twenty seconds.
 fn long_way(robot: &Robot) -> <Motion as IntoFuture>::IntoFuture {

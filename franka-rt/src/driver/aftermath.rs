@@ -2,7 +2,7 @@
 
 use franka_proto::RobotState;
 
-use super::{Driver, DriverPhase, Event};
+use super::{Driver, Event};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 impl Driver {
@@ -15,10 +15,7 @@ impl Driver {
             self.record.turnaround = sent.turnaround;
             self.record.slack = Some(sent.slack);
         }
-        if let DriverPhase::Running(motion)
-        | DriverPhase::Finishing(motion)
-        | DriverPhase::Silent(motion) = &mut self.phase
-        {
+        if let Some(motion) = self.phase.begun_mut() {
             motion.log.note_state(state);
             motion.log.note_command(&motion.sent);
             if let Some(interval) = arrival.interval {
@@ -36,12 +33,7 @@ impl Driver {
     /// Notes the times of a cycle whose command has left, when all of them are known. Returns the
     /// counts of the motion that runs; `None` if none does.
     pub fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
-        let (DriverPhase::Running(motion)
-        | DriverPhase::Finishing(motion)
-        | DriverPhase::Silent(motion)) = &self.phase
-        else {
-            return None;
-        };
+        let motion = self.phase.begun()?;
         self.statistics.note_cycle(cycle);
         motion.times.turnaround.note(cycle.turnaround);
         Some(&self.statistics)
@@ -49,10 +41,6 @@ impl Driver {
 
     /// Counts of the motion that runs; `None` if none does.
     pub fn statistics(&self) -> Option<&MotionStatistics> {
-        matches!(
-            self.phase,
-            DriverPhase::Running(_) | DriverPhase::Finishing(_) | DriverPhase::Silent(_)
-        )
-        .then_some(&self.statistics)
+        self.phase.begun().map(|_| &self.statistics)
     }
 }

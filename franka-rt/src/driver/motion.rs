@@ -25,6 +25,24 @@ pub(super) enum DriverPhase {
     Silent(Execution),
 }
 
+impl DriverPhase {
+    /// The motion that the robot has begun; `None` if it has begun none, or has left it.
+    pub(super) fn begun(&self) -> Option<&Execution> {
+        match self {
+            Self::Running(motion) | Self::Finishing(motion) | Self::Silent(motion) => Some(motion),
+            Self::Watching | Self::Armed(_) | Self::Unwanted(..) => None,
+        }
+    }
+
+    /// [`Self::begun`], to be changed.
+    pub(super) fn begun_mut(&mut self) -> Option<&mut Execution> {
+        match self {
+            Self::Running(motion) | Self::Finishing(motion) | Self::Silent(motion) => Some(motion),
+            Self::Watching | Self::Armed(_) | Self::Unwanted(..) => None,
+        }
+    }
+}
+
 /// States in a row without a motion after which a robot that was told to stop is taken not to begin
 /// it any more. A reply and a state that cross on their way are apart by less than that.
 pub(super) const UNWANTED_STATES: u32 = 20;

@@ -15,4 +15,7 @@ mod state_wakeups;
 #[path = "../../../franka-rt/src/together.rs"]
 mod together;
 
+#[cfg(not(loom))]
+compile_error!("without cfg(loom) a test would explore a single interleaving");
+
 mod interleavings;
