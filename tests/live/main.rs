@@ -138,4 +138,4 @@ async fn follow_steps(robot: &Robot) -> Pose {
 }
 
 /// What has not happened within this time never will, on a machine that is busy as well.
-const SOON: Duration = Duration::from_secs(30);
+const SOON: Duration = Duration::from_secs(300);

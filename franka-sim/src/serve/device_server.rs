@@ -43,6 +43,35 @@ const JOB_POLL: Duration = Duration::from_millis(1);
 /// milliseconds; whatever took longer, the host held this process up, and maybe the client.
 const WAIT_MAX: Duration = Duration::from_millis(10);
 
+/// The longest that one such wait counts as silence: a stopped process is no busy machine.
+const HELD_UP_MAX: Duration = Duration::from_millis(100);
+
+/// The longest silence, unless the patience is greater. A client that hears nothing for a second
+/// takes the link for lost, and on a busy machine many short waits may add up to that.
+const SILENCE_MAX: Duration = Duration::from_millis(500);
+
+/// For how long an answer has been waited for.
+#[derive(Debug, Default)]
+struct Wait {
+    /// Without the time in which this process was stopped.
+    silence: Duration,
+    /// Without most of the time, too, in which it waited for a processor.
+    counted: Duration,
+}
+
+impl Wait {
+    /// Adds a wait for a datagram.
+    fn add(&mut self, took: Duration) {
+        self.silence += took.min(HELD_UP_MAX);
+        self.counted += took.min(WAIT_MAX);
+    }
+
+    /// Whether there is to be no more waiting.
+    fn is_over(&self, patience: Duration) -> bool {
+        self.counted >= patience || self.silence >= patience.max(SILENCE_MAX)
+    }
+}
+
 /// Replies that may wait for a client. Without room for the answers to all open requests and to one
 /// more, which may take two replies, no request is read.
 pub(super) const REPLIES: usize = 2 * ANSWERS;
@@ -136,14 +165,13 @@ impl<D: Device> DeviceServer<D> {
     }
 
     /// Waits, at the device's time `now`, for the [answer that is awaited](Self::awaits_answer),
-    /// and no longer than `patience`; time in which the host held this thread up takes little of
-    /// that. Orders and jobs are taken meanwhile as they are between two milliseconds. False at the
-    /// end.
+    /// and no longer than `patience` ([`Wait`]). Orders and jobs are taken meanwhile as they are
+    /// between two milliseconds. False at the end.
     pub(super) fn await_command(&mut self, now: Instant, patience: Duration, pace: Pace) -> bool {
-        let mut waited = Duration::ZERO;
+        let mut wait = Wait::default();
         loop {
             self.relay(now);
-            if self.awaits_answer() == Awaited::Nothing || waited >= patience {
+            if self.awaits_answer() == Awaited::Nothing || wait.is_over(patience) {
                 return true;
             }
             self.take_orders();
@@ -153,7 +181,7 @@ impl<D: Device> DeviceServer<D> {
             self.send_replies();
             let begun = Instant::now();
             self.wait_for_datagram(JOB_POLL);
-            waited += begun.elapsed().min(WAIT_MAX);
+            wait.add(begun.elapsed());
         }
     }
 
@@ -295,4 +323,26 @@ impl<D: Device> DeviceServer<D> {
 /// A client that does not listen loses states; TCP tells when it has gone.
 fn publish(socket: &UdpSocket, state: &[u8], listener: SocketAddr) {
     let _ = socket.send_to(state, listener);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(waits: u32, each: Duration) -> Wait {
+        let mut wait = Wait::default();
+        (0..waits).for_each(|_| wait.add(each));
+        wait
+    }
+
+    #[test]
+    fn a_busy_host_takes_little_of_the_patience_and_leaves_no_client_in_silence() {
+        const PATIENCE: Duration = Duration::from_millis(100);
+        let held_up = Duration::from_millis(60);
+        assert!(!after(8, held_up).is_over(PATIENCE));
+        assert!(after(9, held_up).is_over(PATIENCE), "540 ms of silence");
+        assert!(after(10, WAIT_MAX).is_over(PATIENCE));
+        assert!(!after(9, held_up).is_over(Duration::from_secs(1)));
+        assert!(!after(1, Duration::from_secs(2)).is_over(PATIENCE));
+    }
 }

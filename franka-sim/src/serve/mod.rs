@@ -207,10 +207,10 @@ impl Sim {
     /// * In a motion whose every state takes an answer, the next millisecond begins as soon as the
     ///   answer to the last state is there. However long the client takes for it, no command is
     ///   late, up to `patience`: after that the cycle counts as lost, so a client that falls silent
-    ///   is noticed after 20 times that. Time in which the host holds the simulator up does not
-    ///   count. Half a second is a good choice: a client that reads two states in a row, and so
-    ///   skips an answer, waits that long for the second, and libfranka takes a second without a
-    ///   state for a lost connection.
+    ///   is noticed after 20 times that. Time in which the host holds the simulator up hardly
+    ///   counts, unless the client has heard nothing for half a second. That is a good choice: a
+    ///   client that reads two states in a row, and so skips an answer, waits that long for the
+    ///   second, and libfranka takes a second without a state for a lost connection.
     /// * Otherwise, at rest, braking, in a recovery, while a hand grasps, in an asynchronous
     ///   motion, there are up to ten states per millisecond on the wall. A client that does not
     ///   keep up misses some of them.

@@ -9,7 +9,7 @@ use franka_proto::{Command, Version, gripper, vacuum};
 use socket2::SockRef;
 
 /// Time for whatever happens at once, on a loaded machine too.
-pub(crate) const SOON: Duration = Duration::from_secs(30);
+pub(crate) const SOON: Duration = Duration::from_secs(300);
 
 /// The robot's port, the hand's or the vacuum gripper's.
 pub(crate) struct Port {
