@@ -163,10 +163,7 @@ mod tests {
     use super::*;
     use crate::config::Config;
     use crate::end_effector::Fingers;
-    use crate::serve::service;
-
-    /// What has not happened within this time never will, on a machine that is busy as well.
-    const SOON: Duration = Duration::from_secs(300);
+    use crate::serve::{service, tests::SOON};
 
     #[test]
     fn a_client_of_the_hand_is_a_client() {

@@ -43,11 +43,12 @@ const JOB_POLL: Duration = Duration::from_millis(1);
 /// milliseconds; whatever took longer, the host held this process up, and maybe the client.
 const WAIT_MAX: Duration = Duration::from_millis(10);
 
-/// The longest that one such wait counts as silence: a stopped process is no busy machine.
+/// The longest that one such wait counts as silence: whatever took longer, this process was
+/// stopped.
 const HELD_UP_MAX: Duration = Duration::from_millis(100);
 
 /// The longest silence, unless the patience is greater. A client that hears nothing for a second
-/// takes the link for lost, and on a busy machine many short waits may add up to that.
+/// takes the link for lost, and on a busy machine the waits for one answer may add up to that.
 const SILENCE_MAX: Duration = Duration::from_millis(500);
 
 /// For how long an answer has been waited for.

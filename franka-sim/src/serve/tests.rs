@@ -11,7 +11,7 @@ use crate::network::Conditions;
 use crate::robot::Touch;
 
 /// What has not happened within this time never will, on a machine that is busy as well.
-const SOON: Duration = Duration::from_secs(300);
+pub(super) const SOON: Duration = Duration::from_secs(300);
 
 /// A plain blocking client.
 struct Client {
