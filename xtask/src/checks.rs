@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::process::{Command, Stdio};
+use std::thread;
 
 use clap::ValueEnum;
 
@@ -24,6 +25,8 @@ pub(crate) enum Check {
     Doc,
     /// All tests and documentation examples.
     Test,
+    /// What the next three steps need.
+    Builds,
     /// Protocol and model without the standard library.
     NoStd,
     /// Any bytes for the protocol.
@@ -54,6 +57,7 @@ impl Check {
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
             Self::Test => ("test", "all tests and documentation examples"),
+            Self::Builds => ("builds", "what the next three steps need, side by side"),
             Self::NoStd => (
                 "no-std",
                 "protocol, model and generator without the standard library",
@@ -102,6 +106,7 @@ impl Check {
                 workspace.run(command.env("RUSTDOCFLAGS", "-Dwarnings"))?;
             }
             Self::Test => return test(workspace),
+            Self::Builds => builds(workspace)?,
             Self::NoStd => return no_std(workspace),
             Self::Fuzz => return fuzz::check(workspace),
             Self::Peers => return peers::run(workspace),
@@ -138,6 +143,20 @@ fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
     Ok(match realtime {
         Ok(()) => Outcome::Passed,
         Err(why) => Outcome::Partly(why),
+    })
+}
+
+/// Builds in directories of their own, each of which waits for its slowest part on one processor.
+/// What is missing on this machine, the steps themselves say.
+fn builds(workspace: &Workspace) -> anyhow::Result<()> {
+    thread::scope(|scope| {
+        let builds = [
+            scope.spawn(|| no_std(workspace).map(drop)),
+            scope.spawn(|| fuzz::prepare(workspace)),
+            scope.spawn(|| peers::prepare(workspace)),
+        ];
+        let ended = builds.map(|build| build.join().expect("no panic"));
+        ended.into_iter().collect()
     })
 }
 

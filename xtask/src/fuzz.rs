@@ -13,6 +13,14 @@ use anyhow::{Context as _, bail, ensure};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
+/// Builds the targets, if this machine can.
+pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<()> {
+    match supported() {
+        Ok(()) => Fuzz::build(workspace).map(drop),
+        Err(_) => Ok(()),
+    }
+}
+
 /// Runs every target for a moment: the step of `cargo xtask test`.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     match supported() {
@@ -212,7 +220,8 @@ fn host() -> anyhow::Result<String> {
     Ok(host.context("rustc names no host")?.to_owned())
 }
 
-/// The flags of cargo-fuzz 0.13: what libFuzzer needs to see of a program, and the sanitizer.
+/// The flags of cargo-fuzz 0.13 with `--strip-dead-code`: what libFuzzer needs to see of a program,
+/// and the sanitizer.
 const FLAGS: &[&str] = &[
     "--cfg=fuzzing",
     "-Cpasses=sancov-module",
@@ -221,7 +230,6 @@ const FLAGS: &[&str] = &[
     "-Cllvm-args=-sanitizer-coverage-pc-table",
     "-Cllvm-args=-sanitizer-coverage-trace-compares",
     "-Zsanitizer=address",
-    "-Clink-dead-code",
     "-Ccodegen-units=1",
 ];
 

@@ -18,6 +18,15 @@ use crate::python::{Python, Version};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
+/// Builds and installs the other clients.
+pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<()> {
+    thread::scope(|scope| {
+        let interpreter = scope.spawn(|| interpreter(workspace).map(drop));
+        workspace.run(&mut franka_rs(workspace))?;
+        interpreter.join().expect("no panic")
+    })
+}
+
 /// Runs our client beside another one, and the scripts of `tests/peers` that check something
 /// against a simulator of their own: as many at once as there are processors.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
@@ -30,18 +39,16 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
             .map(|(n, (name, arguments))| script(workspace, interpreter, n, name, arguments))
     });
     let programs = iter::once(beside).chain(scripts).collect();
-    summarise(&side_by_side(workspace, programs))?;
+    summarise(&side_by_side(programs))?;
     match interpreter {
         Ok(_) => Ok(Outcome::Passed),
         Err(why) => Outcome::without(why),
     }
 }
 
-/// A program that prints a line per step, and what it needs, if anything: a build before, and a
-/// simulator beside it.
+/// A program that prints a line per step, and the simulator that it needs beside it, if any.
 struct Program {
     name: &'static str,
-    build: Option<Command>,
     command: Command,
     simulator: Option<Command>,
 }
@@ -62,15 +69,13 @@ fn script(
     command.arg(directory(workspace).join(name)).arg(address);
     Program {
         name,
-        build: None,
         command,
         simulator: Some(simulator),
     }
 }
 
-/// Builds our programs. The one returned holds our target control against that of franka-rs on the
-/// same robots. Its build is that of franka-rs, in a workspace of its own: while it lasts, the
-/// scripts run, which mostly wait.
+/// Builds our programs and franka-rs. The program returned holds our target control against that of
+/// franka-rs on the same robots.
 fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Program> {
     // With one test of each package come its programs, built as for the tests, so that what those
     // have built is used again.
@@ -79,33 +84,44 @@ fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Program> {
     programs.args(["--test", "sockets", "--test", "golden_vectors"]);
     programs.arg("--features").arg(mujoco::features(workspace)?);
     workspace.run(&mut programs)?;
+    workspace.run(&mut franka_rs(workspace))?;
 
-    let target = workspace.target().join("peers");
-    let mut build = workspace.cargo();
-    build.args(["build", "--quiet", "--locked", "--manifest-path"]);
-    build.arg(directory(workspace).join("franka_rs").join("Cargo.toml"));
-    build.arg("--target-dir").arg(&target);
     let mut command = workspace.program(workspace.target().join("debug").join(BESIDE));
-    command.arg(target.join("debug").join("franka-rs-peer"));
+    command.arg(
+        franka_rs_target(workspace)
+            .join("debug")
+            .join("franka-rs-peer"),
+    );
     Ok(Program {
         name: BESIDE,
-        build: Some(build),
         command,
         simulator: None,
     })
 }
 
+/// The build of franka-rs, in a workspace of its own.
+fn franka_rs(workspace: &Workspace) -> Command {
+    let mut build = workspace.cargo();
+    build.args(["build", "--quiet", "--locked", "--manifest-path"]);
+    build.arg(directory(workspace).join("franka_rs").join("Cargo.toml"));
+    build.arg("--target-dir").arg(franka_rs_target(workspace));
+    build
+}
+
+fn franka_rs_target(workspace: &Workspace) -> PathBuf {
+    workspace.target().join("peers")
+}
+
 /// Runs the programs in this order, one per processor at a time.
-fn side_by_side(workspace: &Workspace, programs: Vec<Program>) -> Vec<Summary> {
+fn side_by_side(programs: Vec<Program>) -> Vec<Summary> {
     let workers = thread::available_parallelism().map_or(1, usize::from);
     let waiting = Mutex::new(programs.into_iter());
     let next = || {
         let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.next()
     };
-    let run = |program: Program| program.run(workspace);
     thread::scope(|scope| {
-        let work = || iter::from_fn(next).map(run).collect::<Vec<_>>();
+        let work = || iter::from_fn(next).map(Program::run).collect::<Vec<_>>();
         let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
         let ended = workers.into_iter().map(|worker| worker.join());
         ended.flat_map(|ended| ended.expect("no panic")).collect()
@@ -116,16 +132,11 @@ fn side_by_side(workspace: &Workspace, programs: Vec<Program>) -> Vec<Summary> {
 type Summary = (&'static str, ReportedSteps, Duration, anyhow::Result<()>);
 
 impl Program {
-    fn run(self, workspace: &Workspace) -> Summary {
+    fn run(self) -> Summary {
         let Self { name, command, .. } = self;
-        let built = self.build.map(|mut build| workspace.run(&mut build));
         let start = Instant::now();
-        let simulator = || {
-            built.transpose()?;
-            let simulator = self.simulator.map(|command| Running::start(name, command));
-            simulator.transpose()
-        };
-        let (steps, result) = match simulator() {
+        let simulator = self.simulator.map(|command| Running::start(name, command));
+        let (steps, result) = match simulator.transpose() {
             Ok(_simulator) => count(name, command, PROGRAM_TIME_MAX),
             Err(error) => (ReportedSteps::default(), Err(error)),
         };
