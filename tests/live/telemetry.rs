@@ -98,7 +98,22 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
             shown.store(robot.state().message_id, Ordering::Relaxed);
         });
     let (robot, _sim) = ahead_of_the_client(sim).await;
-    let report = dawdle(&robot, time).await;
+    let phase = if cfg!(feature = "cycle-phases") {
+        Phase::Program
+    } else {
+        Phase::Answer
+    };
+    let mut motions = 0;
+    let (report, worst) = loop {
+        let report = dawdle(&robot, time.clone()).await;
+        motions += 1;
+        let worst = report.worst_cycle.expect("commands left");
+        if worst.longest().0 == phase {
+            break (report, worst);
+        }
+        // The host held the thread up elsewhere, for longer than the function dawdled.
+        assert!(begun.elapsed() < SOON, "{worst:?}");
+    };
 
     assert!(report.overruns >= 3, "{report:?}");
     assert!(report.skipped_states + report.lost_states > 0, "{report:?}");
@@ -108,19 +123,7 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
         slack.overrun() >= Some(Duration::from_millis(19)),
         "{slack}"
     );
-    let worst = report.worst_cycle.expect("commands left");
     assert!(worst.total() >= Duration::from_millis(20), "{worst:?}");
-    let phase = if cfg!(feature = "cycle-phases") {
-        Phase::Program
-    } else {
-        Phase::Answer
-    };
-    // Unless the host held the thread up elsewhere, for longer than the function dawdled.
-    let (longest, took) = worst.longest();
-    assert!(
-        longest == phase || took >= Duration::from_millis(20),
-        "{worst:?}"
-    );
     let turnaround = report.turnaround.expect("commands left");
     assert_eq!(turnaround.max, report.worst_turnaround);
     assert!(turnaround.p50 < turnaround.max, "{turnaround:?}");
@@ -152,14 +155,14 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
     assert!(!threads.contains(&"franka-rt"), "{threads:?}");
     let of = |level| events.iter().filter(move |told| told.level == level);
     let sums: Vec<_> = of(Level::INFO).collect();
-    assert_eq!(sums.len(), 1, "one motion");
-    let field = |name| sums[0].fields[name].as_str();
+    assert_eq!(sums.len(), motions);
+    let field = |name| sums[motions - 1].fields[name].as_str();
     assert_eq!(field("ending"), "Finished");
     assert_eq!(field("lost"), report.lost_states.to_string());
     assert_eq!(field("skipped"), report.skipped_states.to_string());
     assert_eq!(field("overruns"), report.overruns.to_string());
     assert_eq!(field("worst_time"), worst.time.to_string());
-    assert_eq!(field("worst_phase"), longest.to_string());
+    assert_eq!(field("worst_phase"), phase.to_string());
     assert_eq!(warned(&events), overruns, "each is told of once");
     let seconds = begun.elapsed().as_secs() as usize;
     assert!(
