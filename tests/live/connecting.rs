@@ -11,10 +11,7 @@ use franka_proto::server::{Event, Session};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 
-use crate::{alone, simulated};
-
-/// Time within which every failure has to show, on a loaded machine too.
-const DEADLINE: Duration = Duration::from_secs(30);
+use crate::{SOON, alone, simulated};
 
 async fn refused(endpoint: impl Into<franka_async::Endpoint>) -> ConnectError {
     let begun = Instant::now();
@@ -22,11 +19,7 @@ async fn refused(endpoint: impl Into<franka_async::Endpoint>) -> ConnectError {
         .realtime(Realtime::Ignore)
         .connect();
     let error = connecting.await.expect_err("there is no robot");
-    assert!(
-        begun.elapsed() < DEADLINE,
-        "{error} took {:?}",
-        begun.elapsed()
-    );
+    assert!(begun.elapsed() < SOON, "{error} took {:?}", begun.elapsed());
     // And the process can connect again.
     let (robot, _sim) = simulated().await;
     robot.shutdown().await;
@@ -166,7 +159,7 @@ async fn garbage_in_the_handshake_is_an_error_at_once() {
 async fn a_silent_server_a_closing_one_and_one_without_states_are_told_apart() {
     let _alone = alone();
     let silent = server(|stream| async move {
-        tokio::time::sleep(DEADLINE).await;
+        tokio::time::sleep(SOON).await;
         drop(stream);
     })
     .await;
@@ -185,7 +178,7 @@ async fn a_silent_server_a_closing_one_and_one_without_states_are_told_apart() {
     );
     let stateless = server(|stream| async move {
         let stream = handshake(stream, Version::V10).await;
-        tokio::time::sleep(DEADLINE).await;
+        tokio::time::sleep(SOON).await;
         drop(stream);
     })
     .await;

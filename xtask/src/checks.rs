@@ -146,8 +146,8 @@ fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
     })
 }
 
-/// Builds in directories of their own, each of which waits for its slowest part on one processor.
-/// What is missing on this machine, the steps themselves say.
+/// Builds what the next three steps use, in directories of their own. One after the other, each build
+/// would leave processors idle. A step says itself what it lacks on this machine.
 fn builds(workspace: &Workspace) -> anyhow::Result<()> {
     thread::scope(|scope| {
         let builds = [

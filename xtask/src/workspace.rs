@@ -139,8 +139,8 @@ fn cargo_in(root: &Path) -> Command {
     let mut command = Command::new(cargo);
     command.current_dir(root);
     if crate::step::is_ci() {
-        // A build from nothing is slower for what only the next one would use, and for the parts of
-        // a crate that side by side save time only where there are processors for them.
+        // What makes the next build faster, and one crate on many processors, makes a build from
+        // nothing on two slower.
         command.env("CARGO_INCREMENTAL", "0");
         command.env("CARGO_PROFILE_DEV_CODEGEN_UNITS", "1");
     }

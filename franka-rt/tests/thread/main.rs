@@ -27,7 +27,7 @@ use cores::Probe;
 const VERSION: Version = Version::V10;
 
 /// Longer than any wait of a working thread, on any machine.
-const DEADLINE: Duration = Duration::from_secs(30);
+const DEADLINE: Duration = Duration::from_secs(300);
 
 const ROBOT: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
