@@ -9,18 +9,8 @@ use franka_rt::session::Guard;
 /// Keeps the previous command, for rates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandGuard {
-    limits: Limits,
+    limits: &'static JointLimits,
     last: Option<Last>,
-}
-
-/// As arrays: this runs in every cycle, unoptimised.
-#[derive(Clone, Copy, Debug)]
-struct Limits {
-    velocity: [f64; 7],
-    acceleration: [f64; 7],
-    jerk: [f64; 7],
-    torque: [f64; 7],
-    torque_rate: [f64; 7],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -36,14 +26,7 @@ struct Last {
 
 impl CommandGuard {
     /// Returns a guard for a robot with these limits.
-    pub(super) fn new(limits: &JointLimits) -> Self {
-        let limits = Limits {
-            velocity: limits.velocity.into(),
-            acceleration: limits.acceleration.into(),
-            jerk: limits.jerk.into(),
-            torque: limits.torque.into(),
-            torque_rate: limits.torque_rate.into(),
-        };
+    pub(super) fn new(limits: &'static JointLimits) -> Self {
         Self { limits, last: None }
     }
 
@@ -57,7 +40,7 @@ impl CommandGuard {
             command.message_id, state.message_id,
             "a command answers the state it was made for"
         );
-        let limits = &self.limits;
+        let limits = self.limits;
         let at = state.message_id;
         for i in 0..7 {
             let joint = i + 1;
