@@ -12,6 +12,10 @@ use crate::robot::{Awaited, Robot};
 /// them.
 const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 
+/// How long the first state of a motion waits for a first command: longer than a shared host keeps
+/// a thread of the client's from its processor, which takes several milliseconds every second.
+const FIRST_WAIT: Duration = Duration::from_millis(16);
+
 /// The devices, which share one clock.
 pub(super) struct Cycle {
     pub(super) robot: DeviceServer<Robot>,
@@ -88,8 +92,8 @@ impl Cycle {
     }
 
     /// Waits for the client's answer, if the newest state asks for one. A client may look at
-    /// several states before its first command: the wait for it starts short and doubles with each
-    /// of the `attempts`, up to `patience`. False at the end.
+    /// several states before its first command: the wait for it starts short ([`FIRST_WAIT`]) and
+    /// doubles with each of the `attempts`, up to `patience`. False at the end.
     fn await_answer(
         &mut self,
         now: Instant,
@@ -100,8 +104,9 @@ impl Cycle {
         let patience = match self.robot.awaits_answer() {
             Awaited::Nothing => return true,
             Awaited::First => {
+                let wait = FIRST_WAIT.saturating_mul(2_u32.saturating_pow(*attempts));
                 *attempts += 1;
-                patience.min(PERIOD * 2_u32.saturating_pow(*attempts))
+                patience.min(wait)
             }
             Awaited::Next => {
                 *attempts = 0;
