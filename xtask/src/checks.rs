@@ -8,7 +8,7 @@ use clap::ValueEnum;
 
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
-use crate::{circles, fuzz, mujoco, peers, realtime, tidy};
+use crate::{circles, mujoco, peers, realtime, tidy};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -25,12 +25,10 @@ pub(crate) enum Check {
     Doc,
     /// All tests and documentation examples.
     Test,
-    /// What the next three steps need.
+    /// What the next two steps need.
     Builds,
-    /// Protocol and model without the standard library.
-    NoStd,
-    /// Any bytes for the protocol.
-    Fuzz,
+    /// What is there without features, and without the standard library.
+    Bare,
     /// Other clients against the simulator.
     Peers,
 }
@@ -57,12 +55,8 @@ impl Check {
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
             Self::Test => ("test", "all tests and documentation examples"),
-            Self::Builds => ("builds", "what the next three steps need, side by side"),
-            Self::NoStd => (
-                "no-std",
-                "protocol, model and generator without the standard library",
-            ),
-            Self::Fuzz => ("fuzz", "any bytes for the protocol"),
+            Self::Builds => ("builds", "what the next two steps need, side by side"),
+            Self::Bare => ("bare", "without features, and without the standard library"),
             Self::Peers => ("peers", "other clients against the simulator"),
         }
     }
@@ -84,16 +78,9 @@ impl Check {
                 }
             }
             Self::Clippy => {
-                let deny = |arguments: &[&str]| {
-                    let mut command = workspace.cargo();
-                    command.arg("clippy").args(arguments);
-                    workspace.run(command.args(["--", "-Dwarnings"]))
-                };
                 let features = mujoco::features(workspace)?;
-                deny(&["--workspace", "--all-targets", "--features", &features])?;
-                // What is there only without a feature.
-                let driver_and_simulator = ["--package", "franka-async", "--package", "franka-sim"];
-                deny(&[&driver_and_simulator[..], &["--no-default-features"]].concat())?;
+                let all = ["--workspace", "--all-targets", "--features", &features];
+                clippy(workspace, &all)?;
             }
             Self::Doc => {
                 let mut command = workspace.cargo();
@@ -107,8 +94,7 @@ impl Check {
             }
             Self::Test => return test(workspace),
             Self::Builds => builds(workspace)?,
-            Self::NoStd => return no_std(workspace),
-            Self::Fuzz => return fuzz::check(workspace),
+            Self::Bare => return bare(workspace),
             Self::Peers => return peers::run(workspace),
         }
         Ok(Outcome::Passed)
@@ -146,13 +132,12 @@ fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
     })
 }
 
-/// Builds what the next three steps use, in directories of their own. One after the other, each
-/// build would leave processors idle. A step says itself what it lacks on this machine.
+/// Builds what the next two steps use. One after the other, each build would leave processors idle.
+/// A step says itself what it lacks on this machine.
 fn builds(workspace: &Workspace) -> anyhow::Result<()> {
     thread::scope(|scope| {
         let builds = [
-            scope.spawn(|| no_std(workspace).map(drop)),
-            scope.spawn(|| fuzz::prepare(workspace)),
+            scope.spawn(|| bare(workspace).map(drop)),
             scope.spawn(|| peers::prepare(workspace)),
         ];
         let ended = builds.map(|build| build.join().expect("no panic"));
@@ -160,9 +145,16 @@ fn builds(workspace: &Workspace) -> anyhow::Result<()> {
     })
 }
 
-/// Builds for this machine, where the standard library exists and must not be used, and for one
-/// where it does not.
-fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
+/// Lints, warnings denied.
+fn clippy(workspace: &Workspace, arguments: &[&str]) -> anyhow::Result<()> {
+    let mut command = workspace.cargo();
+    command.arg("clippy").args(arguments);
+    workspace.run(command.args(["--", "-Dwarnings"]))
+}
+
+/// Protocol, model and generator without the standard library: for this machine, where it exists
+/// and must not be used, and for one where it does not. Then driver and simulator without features.
+fn bare(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let package = workspace.root().join("tests").join("no_std");
     // The package resolves by itself, to the versions that the workspace has.
     fs::copy(
@@ -173,12 +165,18 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let host = None;
     for target in [Some(host), bare.map(Some)].into_iter().flatten() {
         let mut command = workspace.cargo();
-        command.arg("build").arg("--manifest-path");
+        command.arg("check").arg("--manifest-path");
         command.arg(package.join("Cargo.toml")).arg("--target-dir");
         command.arg(workspace.target().join("no-std"));
         command.args(target.map(|target| format!("--target={target}")));
         workspace.run(&mut command)?;
     }
+    let optional = [
+        "--package=franka-async",
+        "--package=franka-sim",
+        "--no-default-features",
+    ];
+    clippy(workspace, &optional)?;
     Ok(match bare {
         Some(_) => Outcome::Passed,
         None => Outcome::Partly(format!(

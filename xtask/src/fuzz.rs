@@ -10,33 +10,12 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail, ensure};
 
-use crate::step::Outcome;
 use crate::workspace::Workspace;
 
-/// Builds the targets, if this machine can.
-pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<()> {
-    match supported() {
-        Ok(()) => Fuzz::build(workspace).map(drop),
-        Err(_) => Ok(()),
-    }
-}
-
-/// Runs every target for a moment: the step of `cargo xtask test`.
-pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    match supported() {
-        Ok(()) => run_all(workspace, RUNS_OF_A_CHECK).map(|()| Outcome::Passed),
-        Err(why) => Outcome::without(why),
-    }
-}
-
-/// Runs each target for `runs` executions.
+/// Runs each target for `runs` executions, as many targets at a time as there are processors. A
+/// finding ends its target and not the others.
 pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     supported().map_err(anyhow::Error::msg)?;
-    run_all(workspace, runs)
-}
-
-/// As many targets at a time as there are processors. A finding ends its target and not the others.
-fn run_all(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     let fuzz = Fuzz::build(workspace)?;
     let targets = fuzz.targets()?;
     let (next, reports) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
@@ -232,9 +211,6 @@ const FLAGS: &[&str] = &[
     "-Zsanitizer=address",
     "-Ccodegen-units=1",
 ];
-
-/// Executions of each target in `cargo xtask test`: some seconds for the slowest.
-const RUNS_OF_A_CHECK: u64 = 50_000;
 
 /// Longest input in bytes: beyond the longest datagram, and a stream of some messages.
 const INPUT_MAX: usize = 4096;

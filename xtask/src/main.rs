@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`circles`] | the step that finds imports in a circle between modules |
-//! | [`fuzz`] | the fuzz targets, for a moment as a step, or for any time |
+//! | [`fuzz`] | the fuzz targets |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
 //! | [`peers`] | the step that drives the simulator with other clients |
@@ -56,7 +56,7 @@ enum Task {
         /// Directory of the vectors; without it the project's own.
         dir: Option<PathBuf>,
     },
-    /// Run the fuzz targets one after the other and print a line per target.
+    /// Run the fuzz targets and print a line per target.
     Fuzz {
         /// Executions of each target.
         #[arg(long, default_value_t = 10_000_000)]

@@ -87,11 +87,7 @@ fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Program> {
     workspace.run(&mut franka_rs(workspace))?;
 
     let mut command = workspace.program(workspace.target().join("debug").join(BESIDE));
-    command.arg(
-        franka_rs_target(workspace)
-            .join("debug")
-            .join("franka-rs-peer"),
-    );
+    command.arg(workspace.target().join("debug").join("franka-rs-peer"));
     Ok(Program {
         name: BESIDE,
         command,
@@ -99,17 +95,14 @@ fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Program> {
     })
 }
 
-/// The build of franka-rs, in a workspace of its own.
+/// The build of franka-rs, in a workspace of its own. Dependencies that are built alike there are
+/// those of the tests.
 fn franka_rs(workspace: &Workspace) -> Command {
     let mut build = workspace.cargo();
     build.args(["build", "--quiet", "--locked", "--manifest-path"]);
     build.arg(directory(workspace).join("franka_rs").join("Cargo.toml"));
-    build.arg("--target-dir").arg(franka_rs_target(workspace));
+    build.arg("--target-dir").arg(workspace.target());
     build
-}
-
-fn franka_rs_target(workspace: &Workspace) -> PathBuf {
-    workspace.target().join("peers")
 }
 
 /// Runs the programs in this order, one per processor at a time.
