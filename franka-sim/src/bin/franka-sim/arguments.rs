@@ -137,6 +137,12 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(crate) strict_clock: bool,
 
+    /// Waits for commands that come late, each for so many seconds at most, while the robot's clock
+    /// stands still: for clients on a busy machine.
+    #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
+          require_equals = true, default_missing_value = "0.5", conflicts_with = "virtual_time")]
+    pub(crate) wait_for_commands: Option<Duration>,
+
     /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a
     /// motion the next millisecond begins when the answer to the last state is there, or counts as
     /// missing after so many seconds. For tests, and for clients slower than a robot allows.
@@ -225,6 +231,8 @@ mod tests {
         for wrong in [
             ["--virtual-time", "--realtime"],
             ["--virtual-time", "--strict-clock"],
+            ["--virtual-time", "--wait-for-commands"],
+            ["--wait-for-commands=0", "--hand"],
             ["--virtual-time=0", "--hand"],
             ["--virtual-time=nan", "--hand"],
             ["--virtual-time=1e30", "--hand"],

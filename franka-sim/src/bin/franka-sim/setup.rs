@@ -85,9 +85,10 @@ impl Arguments {
             .bind(SocketAddr::new(self.bind, self.port))
             .realtime(self.realtime)
             .strict_clock(self.strict_clock);
-        let sim = match self.virtual_time {
-            Some(patience) => sim.virtual_time(patience),
-            None => sim,
+        let sim = match (self.virtual_time, self.wait_for_commands) {
+            (Some(patience), _) => sim.virtual_time(patience),
+            (None, Some(patience)) => sim.wait_for_commands(patience),
+            (None, None) => sim,
         };
         let sim = match self.network.network(self.seed) {
             Some(network) => sim.network(network),
