@@ -94,7 +94,10 @@ impl Check {
             }
             Self::Test => return test(workspace),
             Self::Builds => builds(workspace)?,
-            Self::Bare => return bare(workspace),
+            Self::Bare => {
+                without_features(workspace)?;
+                return no_std(workspace);
+            }
             Self::Peers => return peers::run(workspace),
         }
         Ok(Outcome::Passed)
@@ -137,7 +140,8 @@ fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
 fn builds(workspace: &Workspace) -> anyhow::Result<()> {
     thread::scope(|scope| {
         let builds = [
-            scope.spawn(|| bare(workspace).map(drop)),
+            scope.spawn(|| no_std(workspace).map(drop)),
+            scope.spawn(|| without_features(workspace)),
             scope.spawn(|| peers::prepare(workspace)),
         ];
         let ended = builds.map(|build| build.join().expect("no panic"));
@@ -152,9 +156,15 @@ fn clippy(workspace: &Workspace, arguments: &[&str]) -> anyhow::Result<()> {
     workspace.run(command.args(["--", "-Dwarnings"]))
 }
 
-/// Protocol, model and generator without the standard library: for this machine, where it exists
-/// and must not be used, and for one where it does not. Then driver and simulator without features.
-fn bare(workspace: &Workspace) -> anyhow::Result<Outcome> {
+/// Lints driver and simulator without features.
+fn without_features(workspace: &Workspace) -> anyhow::Result<()> {
+    let (driver, simulator) = ("--package=franka-async", "--package=franka-sim");
+    clippy(workspace, &[driver, simulator, "--no-default-features"])
+}
+
+/// Checks protocol, model and generator for this machine, where the standard library exists and
+/// must not be used, and for one where it does not.
+fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let package = workspace.root().join("tests").join("no_std");
     // The package resolves by itself, to the versions that the workspace has.
     fs::copy(
@@ -171,12 +181,6 @@ fn bare(workspace: &Workspace) -> anyhow::Result<Outcome> {
         command.args(target.map(|target| format!("--target={target}")));
         workspace.run(&mut command)?;
     }
-    let optional = [
-        "--package=franka-async",
-        "--package=franka-sim",
-        "--no-default-features",
-    ];
-    clippy(workspace, &optional)?;
     Ok(match bare {
         Some(_) => Outcome::Passed,
         None => Outcome::Partly(format!(
