@@ -95,8 +95,7 @@ fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Program> {
     })
 }
 
-/// The build of franka-rs, in a workspace of its own. Dependencies that are built alike there are
-/// those of the tests.
+/// The build of franka-rs, in a workspace of its own. It uses what the tests have built alike.
 fn franka_rs(workspace: &Workspace) -> Command {
     let mut build = workspace.cargo();
     build.args(["build", "--quiet", "--locked", "--manifest-path"]);

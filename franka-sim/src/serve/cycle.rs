@@ -12,8 +12,8 @@ use crate::robot::{Awaited, Robot};
 /// them.
 const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 
-/// How long the first state of a motion waits for a first command: longer than a shared host keeps
-/// a thread of the client's from its processor, which takes several milliseconds every second.
+/// How long the first state of a motion waits for a first command. A shared host keeps a thread of
+/// the client's from its processor for some 10 ms now and then.
 const FIRST_WAIT: Duration = Duration::from_millis(16);
 
 /// The devices, which share one clock.

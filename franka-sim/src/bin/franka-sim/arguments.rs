@@ -140,7 +140,8 @@ pub(crate) struct Arguments {
     /// Waits for commands that come late, each for so many seconds at most, while the robot's clock
     /// stands still: for clients on a busy machine.
     #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
-          require_equals = true, default_missing_value = "0.5", conflicts_with = "virtual_time")]
+          require_equals = true, default_missing_value = "0.5",
+          conflicts_with_all = ["strict_clock", "virtual_time"])]
     pub(crate) wait_for_commands: Option<Duration>,
 
     /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a
@@ -232,6 +233,7 @@ mod tests {
             ["--virtual-time", "--realtime"],
             ["--virtual-time", "--strict-clock"],
             ["--virtual-time", "--wait-for-commands"],
+            ["--strict-clock", "--wait-for-commands"],
             ["--wait-for-commands=0", "--hand"],
             ["--virtual-time=0", "--hand"],
             ["--virtual-time=nan", "--hand"],
