@@ -42,6 +42,28 @@ fn a_pose_is_reached_and_the_arm_rests_there() {
     });
 }
 
+/// No plan delays a command: it is made after the command, for the next one.
+#[test]
+fn a_new_target_moves_the_reference_in_the_cycle_after_the_one_that_reads_it() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let here = lockstep.goal(Target::Joints(READY.into()), OnArrival::Hold);
+        let goal = lockstep.submit(here).unwrap();
+        lockstep.run(100);
+        for (joint, target) in [(0, 0.1), (0, -0.1), (1, 0.1)] {
+            let mut q = READY;
+            q[joint] += target;
+            let still = lockstep.client.record.ddq_ref;
+            lockstep.update(goal, Target::Joints(q.into())).unwrap();
+            lockstep.tick();
+            assert_eq!(lockstep.client.record.ddq_ref, still, "the plan before");
+            lockstep.tick();
+            assert_ne!(lockstep.client.record.ddq_ref, still, "the new plan");
+            lockstep.run(2000);
+        }
+    });
+}
+
 #[test]
 fn the_hand_moves_on_a_straight_line() {
     for_each_robot(|ready| {

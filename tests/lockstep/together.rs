@@ -96,7 +96,7 @@ fn goals_begin_in_the_same_millisecond_for_any_delay_of_the_second() {
         for ms in 0..100 {
             two.tick();
             for (robot, began) in [&two.left, &two.right].into_iter().zip(&mut began) {
-                if robot.client.record.goal != 0 {
+                if robot.client.record.dq_ref != [0.0; 7] {
                     began.get_or_insert(ms);
                 }
             }

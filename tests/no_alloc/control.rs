@@ -115,6 +115,7 @@ fn calls_of(
                 driver.note_cycle(sent);
                 commands += 1;
             }
+            driver.prepare();
         });
     }
     assert!(commands >= CYCLES / 10, "{commands} commands");

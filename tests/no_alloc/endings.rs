@@ -168,6 +168,7 @@ impl Counted {
         self.calls += calls_during(|| {
             let sent = self.driver.on_state(&state).map(|_| &times);
             self.driver.after_send(&state, &Arrival::default(), sent);
+            self.driver.prepare();
             self.driver.note_cycle(&times);
             // Only one kind of program accepts this order.
             let _ = self.driver.write(&command, false);

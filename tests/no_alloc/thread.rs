@@ -73,6 +73,10 @@ impl Core for Watched {
         self.driver.after_send(state, arrival, sent);
     }
 
+    fn prepare(&mut self) {
+        self.driver.prepare();
+    }
+
     /// Returns statistics in every cycle, so that they are published.
     fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
         self.driver.note_cycle(cycle);

@@ -2,6 +2,7 @@
 
 use franka_proto::RobotState;
 
+use super::motion::DriverPhase;
 use super::{Driver, Event};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
@@ -27,6 +28,14 @@ impl Driver {
                 let motion = motion.id;
                 self.events.push(Event::Unobserved { motion });
             }
+        }
+    }
+
+    /// Computes what the answer to the next state does not need that state for: the program's next
+    /// goal, plan and reference. To be called once everything that waits for this cycle is done.
+    pub fn prepare(&mut self) {
+        if let DriverPhase::Running(motion) = &mut self.phase {
+            motion.program.prepare();
         }
     }
 

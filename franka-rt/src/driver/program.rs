@@ -78,11 +78,7 @@ impl Program {
     ) -> ProgramStep {
         let outcome = match self {
             Self::Target(session) => {
-                let step = match gate {
-                    Gate::Open => session.step(state),
-                    Gate::Closed => session.hold(state),
-                    Gate::Broken(fault) => session.give_up(fault, state),
-                };
+                let step = session.answer(gate, state);
                 let Trace {
                     goal,
                     reference,
@@ -127,6 +123,14 @@ impl Program {
         ProgramStep {
             outcome,
             event: None,
+        }
+    }
+
+    /// Computes what the next step does not need the next state for.
+    pub(super) fn prepare(&mut self) {
+        match self {
+            Self::Target(session) => session.prepare(),
+            Self::Callback(_) | Self::Active(_) | Self::Asynchronous(_) => {}
         }
     }
 }

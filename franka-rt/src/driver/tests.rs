@@ -55,6 +55,7 @@ fn answer(driver: &mut Driver, state: &RobotState) -> Option<RobotCommand> {
     let command = driver.on_state(state);
     let sent = command.map(|_| times(state.message_id, 0, 0));
     driver.after_send(state, &Arrival::default(), sent.as_ref());
+    driver.prepare();
     if let Some(sent) = sent {
         driver.note_cycle(&sent);
     }

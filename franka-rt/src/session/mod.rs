@@ -2,9 +2,13 @@
 //! out.
 //!
 //! ```text
-//! goal slot -> lead -> course (joint generator | pose generator -> inverse kinematics) -> clearance -> leash
-//!           -> law -> guards of the torques -> torques
+//! prepared: goal slot -> lead -> course (joint generator | pose generator -> inverse kinematics)
+//!           -> clearance
+//! answered: -> leash -> law -> guards of the torques -> torques
 //! ```
+//!
+//! Only what needs the newest state is computed between that state and its answer. The rest is
+//! prepared before the state comes.
 //!
 //! The state of a session is a joint reference `q, dq, ddq`. A course moves it: over seven joints
 //! for joint goals and for braking, over three axes of translation and three of rotation for poses.
@@ -42,7 +46,7 @@ use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
 use crate::control::{MotionCommand, Torques};
 use crate::slot::{Read, SlotReader};
-use crate::together::StartFault;
+use crate::together::{Gate, StartFault};
 
 pub use backend::{Backend, Setpoints};
 pub use budget::Budget;
@@ -191,6 +195,8 @@ pub struct TargetSession {
     keep_out: KeepOut,
     /// What follows a goal that is held and has to be given up.
     afterwards: OnArrival,
+    /// Whether goals may be followed, as of the newest state.
+    gate: Gate,
 }
 
 impl TargetSession {
@@ -209,6 +215,7 @@ impl TargetSession {
             chunks: None,
             keep_out: KeepOut::default(),
             afterwards: OnArrival::ReportAndFinish,
+            gate: Gate::Closed,
         }
     }
 
@@ -272,11 +279,73 @@ impl TargetSession {
         self.backend.can_read(state)
     }
 
-    /// Answers one state. Bounded work, no allocation.
-    pub(crate) fn step(&mut self, state: &RobotState) -> SessionStep {
-        let held = self.held.take();
-        let newer = self.read().or(held);
-        self.follow(newer, state)
+    /// Answers one state, with what [`Self::prepare`] has computed. Bounded work, no allocation.
+    ///
+    /// While the gate is closed the arm is held where it is, with the gains of the goal that waits.
+    /// If the gate is broken, the arm lands there, unless another goal comes.
+    pub(crate) fn answer(&mut self, gate: Gate, state: &RobotState) -> SessionStep {
+        self.gate = gate;
+        if self.active.is_none() {
+            let Some(goal) = self.newer() else {
+                // The first goal is torn: the arm is held for this cycle.
+                return SessionStep {
+                    answer: self.backend.holding(state),
+                    trace: Trace::default(),
+                    finished: false,
+                    event: None,
+                };
+            };
+            self.active = RunningSession::begin(
+                &self.model,
+                goal,
+                self.backend,
+                self.version,
+                self.keep_out,
+                self.afterwards,
+                state,
+            );
+        }
+        self.prepare_for(state.message_id);
+        let Some(active) = &mut self.active else {
+            return SessionStep {
+                answer: self.backend.holding(state),
+                trace: Trace::default(),
+                finished: true,
+                event: Some(SessionEvent::BadTool),
+            };
+        };
+        let mut step = active.answer(&self.model, state);
+        if let Some(SessionEvent::Settled {
+            goal, settlement, ..
+        }) = &mut step.event
+            && let Some((unstarted, fault)) = self.unstarted
+            && *goal == unstarted
+        {
+            *settlement = Settlement::Unstarted(fault);
+        }
+        step
+    }
+
+    /// Computes what the answer to the next state does not need that state for: takes up goals and
+    /// chunks, plans, and moves the reference by one step. Bounded work, no allocation.
+    pub(crate) fn prepare(&mut self) {
+        if let Some(active) = &self.active {
+            let next = active.newest() + 1;
+            self.prepare_for(next);
+        }
+    }
+
+    /// Prepares the answer to the state `now`, `message_id`, unless one is prepared.
+    fn prepare_for(&mut self, now: u64) {
+        if self.active.as_ref().is_none_or(RunningSession::is_prepared) {
+            return;
+        }
+        let newer = self.newer();
+        let alive = |monitor: &mut DeadmanMonitor| monitor.is_alive(now);
+        let alive = self.deadman.as_mut().is_none_or(alive);
+        if let Some(active) = &mut self.active {
+            active.prepare(&self.model, newer, alive, self.chunks.as_mut(), now);
+        }
     }
 
     /// Whether the goal that waits for its common start has been taken back, or another one has
@@ -289,29 +358,33 @@ impl TargetSession {
         goal.target == Target::Rest || before.is_some_and(|before| before.id != goal.id)
     }
 
-    /// Answers one state by holding the arm where it is, with the gains of the goal that waits.
-    pub(crate) fn hold(&mut self, state: &RobotState) -> SessionStep {
-        let nothing = self.active.is_none();
-        let rest = self.held.filter(|_| nothing).map(|held| Goal {
-            id: GoalId::default(), // no goal's
-            watchdog: None,        // None may expire before the common start.
-            ..held.at_rest(OnArrival::Hold)
-        });
-        self.follow(rest, state)
-    }
-
-    /// Answers one state of a goal whose common start has failed: lands where the arm is held,
-    /// unless another goal comes.
-    pub(crate) fn give_up(&mut self, fault: StartFault, state: &RobotState) -> SessionStep {
-        let held = self.held.take();
-        let newer = self.read().or(held).map(|goal| {
-            let (unstarted, _) = *self.unstarted.get_or_insert((goal.id, fault));
-            if goal.id != unstarted {
-                return goal;
+    /// The newest goal, or what takes its place before the common start, if it has not been taken
+    /// up.
+    fn newer(&mut self) -> Option<Goal> {
+        match self.gate {
+            Gate::Open => {
+                let held = self.held.take();
+                self.read().or(held)
             }
-            goal.at_rest(OnArrival::ReportAndFinish)
-        });
-        self.follow(newer, state)
+            Gate::Closed => {
+                let nothing = self.active.is_none();
+                self.held.filter(|_| nothing).map(|held| Goal {
+                    id: GoalId::default(), // no goal's
+                    watchdog: None,        // None may expire before the common start.
+                    ..held.at_rest(OnArrival::Hold)
+                })
+            }
+            Gate::Broken(fault) => {
+                let held = self.held.take();
+                self.read().or(held).map(|goal| {
+                    let (unstarted, _) = *self.unstarted.get_or_insert((goal.id, fault));
+                    if goal.id != unstarted {
+                        return goal;
+                    }
+                    goal.at_rest(OnArrival::ReportAndFinish)
+                })
+            }
+        }
     }
 
     fn read(&mut self) -> Option<Goal> {
@@ -321,68 +394,6 @@ impl TargetSession {
             // whole.
             Read::Same | Read::Torn => None,
         }
-    }
-
-    /// Takes up a newer goal, if there is one, and answers one state.
-    fn follow(&mut self, newer: Option<Goal>, state: &RobotState) -> SessionStep {
-        let active = match (&mut self.active, newer) {
-            (Some(active), newer) => {
-                if let Some(goal) = newer {
-                    active.take_up(&self.model, goal, state.message_id);
-                }
-                active
-            }
-            (none, Some(goal)) => {
-                let Self {
-                    backend,
-                    version,
-                    keep_out,
-                    afterwards,
-                    ..
-                } = *self;
-                match RunningSession::begin(
-                    &self.model,
-                    goal,
-                    backend,
-                    version,
-                    keep_out,
-                    afterwards,
-                    state,
-                ) {
-                    Some(active) => none.insert(active),
-                    None => {
-                        let event = Some(SessionEvent::BadTool);
-                        return SessionStep {
-                            answer: self.backend.holding(state),
-                            trace: Trace::default(),
-                            finished: true,
-                            event,
-                        };
-                    }
-                }
-            }
-            // The first goal is torn: the arm is held for this cycle.
-            (None, None) => {
-                return SessionStep {
-                    answer: self.backend.holding(state),
-                    trace: Trace::default(),
-                    finished: false,
-                    event: None,
-                };
-            }
-        };
-        let alive = |monitor: &mut DeadmanMonitor| monitor.is_alive(state.message_id);
-        let alive = self.deadman.as_mut().is_none_or(alive);
-        let mut step = active.step(&self.model, alive, self.chunks.as_mut(), state);
-        if let Some(SessionEvent::Settled {
-            goal, settlement, ..
-        }) = &mut step.event
-            && let Some((unstarted, fault)) = self.unstarted
-            && *goal == unstarted
-        {
-            *settlement = Settlement::Unstarted(fault);
-        }
-        step
     }
 }
 

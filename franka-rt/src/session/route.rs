@@ -28,8 +28,7 @@ pub(super) struct Route {
     pub(super) course: Course,
     clearance: Clearance,
     pace: Pace,
-    /// Whether the pace is another one since the last step. The plan for it is made in the cycle
-    /// after.
+    /// Whether the pace is another one since the last step. The next step plans for it.
     repaced: bool,
     /// Cycles for which it still counts as hindered.
     hindered: u32,
@@ -74,8 +73,8 @@ impl Route {
         }
     }
 
-    /// Plans the course towards `goal` from the reference. The pace is kept; after a brake it is
-    /// slow.
+    /// Plans the course towards `goal` from the reference; a chunk in force is kept, within the
+    /// budget of `goal`. The pace is kept; after a brake it is slow.
     pub(super) fn head_for(
         &mut self,
         model: &Model,
@@ -84,7 +83,10 @@ impl Route {
         goal: &Goal,
     ) {
         let paced = self.paced(goal);
-        self.plan(model, ee, reference, &paced);
+        match &mut self.course {
+            Course::Chunk(chunk) => chunk.keep_to(model, reference, paced.budget),
+            _ => self.plan(model, ee, reference, &paced),
+        }
     }
 
     /// Plans the course towards `goal`, or notes that no plan could be made.
@@ -120,21 +122,6 @@ impl Route {
         match core::mem::replace(&mut self.course, Course::Chunk(next)) {
             Course::Chunk(before) => Some(before),
             _ => None,
-        }
-    }
-
-    /// Goes on as before within the changed budget of `goal`.
-    pub(super) fn tune(
-        &mut self,
-        model: &Model,
-        ee: &EndEffector,
-        reference: &Reference,
-        goal: &Goal,
-    ) {
-        let paced = self.paced(goal);
-        match &mut self.course {
-            Course::Chunk(chunk) => chunk.keep_to(model, reference, paced.budget),
-            _ => self.plan(model, ee, reference, &paced),
         }
     }
 
@@ -216,16 +203,9 @@ impl Route {
         self.pace = Pace::Full;
     }
 
-    /// Keeps the reference for one cycle and checks the clearance, whose result the first step can
-    /// then use.
-    pub(super) fn stay(&mut self, reference: &Reference) -> course::CourseStep {
-        let Reference { q, .. } = reference;
-        // Nothing comes nearer to an arm that stays.
-        let _ = self.clearance.ahead(q, q, q);
-        course::CourseStep::free(*reference)
-    }
-
-    /// Advances by one nominal millisecond towards `goal`, or brakes before something too near.
+    /// Advances by one nominal millisecond towards `goal`, for the answer to the state `now`, or
+    /// brakes before something too near.
+    #[expect(clippy::too_many_arguments, reason = "each is of another type")]
     pub(super) fn step(
         &mut self,
         model: &Model,
@@ -234,25 +214,21 @@ impl Route {
         reference: &Reference,
         arm: &Measured,
         goal: &Goal,
+        now: u64,
     ) -> course::CourseStep {
         self.hindered = self.hindered.saturating_sub(1);
         if let Pace::Braked(since) = &mut self.pace {
             *since += 1;
             if *since < RETRY || !self.course.is_done() {
                 self.hindered = HINDERED;
-                return self
-                    .course
-                    .step(model, ee, posture, reference, arm, arm.time);
+                return self.course.step(model, ee, posture, reference, arm, now);
             }
             self.head_for(model, ee, reference, goal);
         }
-        let repaced = self.repaced;
-        if repaced {
-            self.tune(model, ee, reference, goal);
+        if self.repaced {
+            self.head_for(model, ee, reference, goal);
         }
-        let step = self
-            .course
-            .step(model, ee, posture, reference, arm, arm.time);
+        let step = self.course.step(model, ee, posture, reference, arm, now);
         // The way of a brake was checked before the step that it begins from. Hand guiding is not
         // checked.
         if matches!(goal.target, Target::Rest | Target::Guide(_)) {
@@ -260,20 +236,13 @@ impl Route {
         }
         let next = &step.reference;
         let end = course::end_of_brake(model, next, &goal.budget);
-        if repaced && self.clearance.is_known_safe(&next.q, &end) {
-            // Planning has used the time of this cycle; the result of the last check is enough.
-            self.judged = goal.budget;
-            return step;
-        }
         let ahead = self.clearance.ahead(&reference.q, &next.q, &end);
         match (ahead, &mut self.pace) {
             (Ahead::TooNear, _) => {
                 self.pace = Pace::Braked(0);
                 self.hindered = HINDERED;
                 self.brake(model, ee, reference, goal);
-                return self
-                    .course
-                    .step(model, ee, posture, reference, arm, arm.time);
+                return self.course.step(model, ee, posture, reference, arm, now);
             }
             (Ahead::Near, pace @ Pace::Full) => {
                 *pace = Pace::Slow(0);

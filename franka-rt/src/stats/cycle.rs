@@ -45,14 +45,17 @@ pub struct Phases {
     pub orders: Duration,
     /// The state read from its bytes.
     pub decode: Duration,
-    /// The driver: session, generator, inverse kinematics, law, guards; or a function of the
-    /// user's. Under active control, also what the user's thread did until it wrote.
+    /// The driver: law and guards; or a function of the user's. Under active control, also what the
+    /// user's thread did until it wrote.
     pub program: Duration,
     /// The command written into bytes and handed to the kernel.
     pub send: Duration,
     /// What follows the command: log, newest state, rings, events, wake-up. It delays the next
     /// cycle if it is long. Under active control it comes before the command.
     pub publish: Duration,
+    /// What the next answer does not need the next state for: goals, plans, generator, inverse
+    /// kinematics. Like the publishing, it delays the next cycle if it is long.
+    pub prepare: Duration,
 }
 
 /// Where the time of a cycle goes.
@@ -74,6 +77,8 @@ pub enum Phase {
     Send,
     /// [`Phases::publish`].
     Publish,
+    /// [`Phases::prepare`].
+    Prepare,
 }
 
 impl CycleTimes {
@@ -158,17 +163,19 @@ impl Phases {
             Phase::Program => Some(&mut self.program),
             Phase::Send => Some(&mut self.send),
             Phase::Publish => Some(&mut self.publish),
+            Phase::Prepare => Some(&mut self.prepare),
             Phase::Arrival | Phase::Answer => None,
         }
     }
 
-    fn parts(&self) -> [(Phase, Duration); 5] {
+    fn parts(&self) -> [(Phase, Duration); 6] {
         [
             (Phase::Orders, self.orders),
             (Phase::Decode, self.decode),
             (Phase::Program, self.program),
             (Phase::Send, self.send),
             (Phase::Publish, self.publish),
+            (Phase::Prepare, self.prepare),
         ]
     }
 
@@ -189,12 +196,13 @@ impl fmt::Display for Phase {
             Self::Program => "program",
             Self::Send => "send",
             Self::Publish => "publish",
+            Self::Prepare => "prepare",
         })
     }
 }
 
 impl Words for CycleTimes {
-    const WORDS: usize = 10;
+    const WORDS: usize = 11;
 
     fn store(&self, words: &mut [u64]) {
         let phases = self.phases.unwrap_or_default();
@@ -209,6 +217,7 @@ impl Words for CycleTimes {
             nanos(phases.program),
             nanos(phases.send),
             nanos(phases.publish),
+            nanos(phases.prepare),
         ]);
     }
 
@@ -227,6 +236,7 @@ impl Words for CycleTimes {
                 program: duration(7),
                 send: duration(8),
                 publish: duration(9),
+                prepare: duration(10),
             }),
         }
     }
@@ -254,6 +264,7 @@ mod tests {
                 program: US(50),
                 send: US(7),
                 publish: US(30),
+                prepare: US(20),
             }),
             ..CycleTimes::new(17, US(20), US(60))
         }
@@ -275,7 +286,7 @@ mod tests {
 
     #[test]
     fn the_total_counts_what_follows_the_command_and_not_twice_what_precedes_it() {
-        assert_eq!(timed().total(), US(20 + 60 + 30));
+        assert_eq!(timed().total(), US(20 + 60 + 30 + 20));
         let untimed = CycleTimes {
             phases: None,
             ..timed()
@@ -283,7 +294,7 @@ mod tests {
         assert_eq!(untimed.total(), US(80));
         let mut active = timed();
         active.turnaround = US(90); // The command came after the publishing.
-        assert_eq!(active.total(), US(110));
+        assert_eq!(active.total(), US(130));
     }
 
     #[test]

@@ -78,6 +78,7 @@ mod tests {
             (Phase::Publish, 14),
             (Phase::Program, 30),
             (Phase::Send, 35),
+            (Phase::Prepare, 41),
         ] {
             laps.end_at(phase, start + US(at));
         }
@@ -87,6 +88,7 @@ mod tests {
             program: US(7 + 16),
             send: US(5),
             publish: US(4),
+            prepare: US(6),
         };
         assert_eq!(laps.phases(), Some(expected));
     }

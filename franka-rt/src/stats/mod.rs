@@ -1,11 +1,11 @@
 //! Counts and times of the loop, always on.
 //!
 //! ```text
-//!  due          received                          left                  published
-//!   |--- late ---|--- turnaround ------------------|                      |
-//!   |            | orders | decode | program | send |      publish        |
-//!   |-------------------- 1 ms --------------------------|-- next state due
-//!                                                   slack
+//!  due          received                           left      published  prepared
+//!   |--- late ---|--- turnaround --------------------|          |          |
+//!   |            | orders | decode | program | send  | publish  | prepare  |
+//!   |------------------------------- 1 ms -------------------------------------|-- next state
+//!                                                    |-------- slack ----------|   due
 //! ```
 //!
 //! One writer, the thread; readers anywhere, at any time, without a lock. Every counter is an

@@ -81,6 +81,8 @@ impl<C: Core> Cycle<C> {
             self.event_fd.notify();
         }
         self.laps.end(Phase::Publish);
+        self.core.prepare();
+        self.laps.end(Phase::Prepare);
         if let Some(cycle) = sent {
             self.note(cycle);
         }

@@ -48,6 +48,10 @@ pub trait Core: Send + 'static {
     /// The record of the last cycle, after [`Self::after_send`].
     fn record(&self) -> Self::Record;
 
+    /// Does the work for the next state that can be done before it comes. Called when everything
+    /// else of the cycle is done.
+    fn prepare(&mut self) {}
+
     /// Notes all times of a cycle whose command has left. Returns the counts of the motion that
     /// runs, if one does.
     fn note_cycle(&mut self, _cycle: &CycleTimes) -> Option<&MotionStatistics> {
@@ -89,6 +93,10 @@ impl Core for Driver {
 
     fn record(&self) -> Record {
         *Self::record(self)
+    }
+
+    fn prepare(&mut self) {
+        Self::prepare(self);
     }
 
     fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {

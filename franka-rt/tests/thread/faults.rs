@@ -45,6 +45,10 @@ impl Core for Counted {
         self.0.after_send(state, arrival, sent);
     }
 
+    fn prepare(&mut self) {
+        self.0.prepare();
+    }
+
     fn record(&self) -> (Record, u64) {
         (*self.0.record(), faults())
     }

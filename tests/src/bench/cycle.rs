@@ -22,6 +22,11 @@ pub fn all() -> Vec<Benchmark> {
             &[Statistic::P50, Statistic::P99, Statistic::Max],
         ),
         target("rt.after_send_ns", Part::Aftermath, &[Statistic::P50]),
+        target(
+            "rt.prepare_ns",
+            Part::Preparation,
+            &[Statistic::P50, Statistic::P99],
+        ),
         callback(),
     ]
 }

@@ -19,6 +19,13 @@ pub fn all() -> Vec<Benchmark> {
     let mut benchmarks = vec![
         sampled(
             "rt.cycle_guarded_ns",
+            Part::Answer,
+            &Workload::ALL,
+            &[Statistic::P50, Statistic::P99],
+        ),
+        sampled(
+            "rt.prepare_guarded_ns",
+            Part::Preparation,
             &Workload::ALL,
             &[Statistic::P50, Statistic::P99],
         ),
@@ -43,7 +50,7 @@ pub fn all() -> Vec<Benchmark> {
     benchmarks.extend(
         kinds
             .into_iter()
-            .map(|(key, workloads)| sampled(key, workloads, &[Statistic::P50])),
+            .map(|(key, workloads)| sampled(key, Part::Answer, workloads, &[Statistic::P50])),
     );
     benchmarks
 }
@@ -71,9 +78,10 @@ pub fn subjects() -> Vec<Subject> {
     }]
 }
 
-/// Samples of one episode of each of these kinds per round.
+/// Samples of a part of the cycle, from one episode of each of these kinds per round.
 fn sampled(
     key: &'static str,
+    part: Part,
     workloads: &'static [Workload],
     statistics: &'static [Statistic],
 ) -> Benchmark {
@@ -85,7 +93,7 @@ fn sampled(
             seed += 1;
             let mut samples = Vec::with_capacity(workloads.len() * EPISODE);
             for &workload in workloads {
-                run(Episode { workload, seed }, EPISODE, |_, took| {
+                run(Episode { workload, seed }, EPISODE, part, |_, took| {
                     samples.push(took);
                 });
             }
@@ -100,15 +108,16 @@ struct Episode {
     seed: u64,
 }
 
-/// Runs `cycles` cycles of an episode, and passes the number and the nanoseconds of each to `each`.
-fn run(episode: Episode, cycles: usize, mut each: impl FnMut(usize, u64)) {
+/// Runs `cycles` cycles of an episode, and passes the number of each, and the nanoseconds of this
+/// part of it, to `each`.
+fn run(episode: Episode, cycles: usize, timed: Part, mut each: impl FnMut(usize, u64)) {
     let mut arm = Guarded::new(episode.workload, episode.seed);
     let mut cycle = 0;
     while cycle < cycles {
         arm.tick_around(|part, work| {
             let start = Instant::now();
             work();
-            if part == Part::Answer {
+            if part == timed {
                 let took = start.elapsed().as_nanos();
                 each(cycle, u64::try_from(took).unwrap_or(u64::MAX));
                 cycle += 1;
@@ -138,7 +147,7 @@ impl Survey {
         self.survey();
         for (episode, suspects) in &mut self.suspects {
             let last = suspects.keys().next_back().copied().unwrap_or(0);
-            run(*episode, last + 1, |cycle, took| {
+            run(*episode, last + 1, Part::Answer, |cycle, took| {
                 if let Some(shortest) = suspects.get_mut(&cycle) {
                     *shortest = took.min(*shortest);
                 }
@@ -159,12 +168,12 @@ impl Survey {
         for seed in 0..SEEDS {
             for workload in Workload::ALL {
                 let episode = Episode { workload, seed };
-                run(episode, EPISODE, |cycle, took| {
+                run(episode, EPISODE, Part::Answer, |cycle, took| {
                     self.longest = self.longest.max(took);
                     shortest[cycle] = took;
                 });
                 for _ in 1..SWEEPS {
-                    run(episode, EPISODE, |cycle, took| {
+                    run(episode, EPISODE, Part::Answer, |cycle, took| {
                         shortest[cycle] = took.min(shortest[cycle]);
                     });
                 }

@@ -51,6 +51,8 @@ pub enum Part {
     Answer,
     /// The driver's work after the command has left.
     Aftermath,
+    /// Its work for the next state.
+    Preparation,
 }
 
 /// The whole system, one millisecond at a time.
@@ -129,7 +131,7 @@ impl Lockstep {
         self.tick_around(|_, work| work());
     }
 
-    /// Like [`Self::tick`], but `around` runs both parts of the control cycle, to time them or to
+    /// Like [`Self::tick`], but `around` runs each part of the control cycle, to time them or to
     /// count their allocations.
     ///
     /// # Panics
@@ -192,6 +194,7 @@ impl Lockstep {
             around(Part::Aftermath, &mut || {
                 self.client.conclude(answer.is_some());
             });
+            around(Part::Preparation, &mut || self.client.driver.prepare());
             if let Some(size) = answer {
                 self.pass_command(&command[..size]);
             }

@@ -30,18 +30,6 @@ impl MotionBound {
         q: &JointVector,
         turns: &JointVector,
     ) -> CandidateMask {
-        self.candidates_below(0.0, spacing, q, turns)
-    }
-
-    /// The distances whose margin may be below the limit less `less`, `[m]`, at such a posture.
-    #[must_use]
-    pub fn candidates_below(
-        &self,
-        less: f64,
-        spacing: &super::Spacing,
-        q: &JointVector,
-        turns: &JointVector,
-    ) -> CandidateMask {
         let groups = &spacing.groups;
         // Padded to full SIMD rows: groups beyond the count have no levers.
         let mut moved = [0.0; GROUPS_MAX];
@@ -54,7 +42,7 @@ impl MotionBound {
         let all = moved.iter().zip(&self.spare).enumerate();
         // NaN compares false, so it stays a candidate.
         let clear = all.fold(0, |clear, (i, (moved, spare))| {
-            clear | u64::from(*moved <= spare + less) << i
+            clear | u64::from(moved <= spare) << i
         });
         CandidateMask(!clear & groups.mask())
     }

@@ -19,6 +19,7 @@ use crate::session::{
     Budget, Goal, GoalId, OnArrival, SessionEvent, Settlement, Target, TargetSession, rigid,
 };
 use crate::slot::{SlotWriter, slot};
+use crate::together::Gate;
 
 const GOAL: GoalId = GoalId(1);
 
@@ -384,7 +385,8 @@ impl Session {
         let mut event = None;
         for _ in 0..cycles {
             self.state.message_id += 1;
-            let step = self.session.step(&self.state);
+            let step = self.session.answer(Gate::Open, &self.state);
+            self.session.prepare();
             self.state.q = step.trace.reference.q.into();
             self.state.dq = step.trace.reference.dq.into();
             event = step.event.or(event);

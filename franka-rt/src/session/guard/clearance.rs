@@ -121,19 +121,6 @@ impl Clearance {
         self.on_the_way(now, (&middle, there), (end, candidates))
     }
 
-    /// Whether it is known without another look that nothing is too near ahead of `next`, if the
-    /// reference came to rest at `end` from there.
-    pub(crate) fn is_known_safe(&self, next: &JointVector, end: &JointVector) -> bool {
-        let half = (next + end) * 0.5;
-        let way = (end - half).abs();
-        self.known.as_ref().is_some_and(|known| {
-            let candidates = known
-                .bound
-                .candidates_below(SLOW_ZONE, &self.spacing, &half, &way);
-            candidates.is_empty()
-        })
-    }
-
     /// Checks the way from `now` to `half` and to `end`, where only distances of the candidates may
     /// be small.
     ///

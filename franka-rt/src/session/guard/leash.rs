@@ -8,6 +8,7 @@ use nalgebra::{Isometry3, Translation3};
 use crate::session::course::Course;
 use crate::session::pose::PoseGenerator;
 use crate::session::reference::Reference;
+use crate::session::running::Measured;
 
 /// Longest distance from the measured end effector to its reference, `[m]`.
 pub const TRANSLATION_LEASH: f64 = 0.025;
@@ -25,49 +26,53 @@ const TRANSLATION_TETHER: f64 = 1e-3;
 /// Largest angle between the two, `[rad]`.
 const ROTATION_TETHER: f64 = 5e-3;
 
-/// Holds course and reference within the leash of the measured arm. Returns whether that moved
-/// them.
-///
-/// The course keeps its velocity and plans on from where it is held, so the arm follows smoothly
-/// once it is free.
-///
-/// # Errors
-/// [`PlanError`], by a defect only; the reference is held, and the course goes on as planned.
-pub(crate) fn hold(
-    course: &mut Course,
-    reference: &mut Reference,
-    q: &JointVector,
-    measured: &Isometry3<f64>,
-) -> Result<bool, PlanError> {
-    let held = reference.q.zip_map(q, |reference, q| {
+/// What the leash has held in a cycle.
+#[derive(Debug)]
+pub(crate) struct Held {
+    /// The joints of the reference, which it may have moved.
+    q: JointVector,
+    /// The pose that the reference is to follow on from, if it was too far ahead.
+    pose: Option<Isometry3<f64>>,
+}
+
+/// Holds the reference within the leash of the measured arm. Returns what it held, from which the
+/// course has to go on; `None` if it held nothing.
+pub(crate) fn hold(course: &Course, reference: &mut Reference, arm: &Measured) -> Option<Held> {
+    let q = reference.q.zip_map(&arm.q, |reference, q| {
         reference.clamp(q - JOINT_LEASH, q + JOINT_LEASH)
     });
-    let mut bound = held != reference.q;
-    reference.q = held;
-    match course {
-        Course::Joints(generator) if bound => generator.set_state(State {
-            position: held.into(),
-            ..*generator.state()
-        })?,
-        Course::Pose(generator, _) => {
-            let pose = generator.pose();
-            if let Some(pose) = within(&pose, measured, TRANSLATION_LEASH, ROTATION_LEASH) {
-                bound = true;
-                generator.reanchor(pose)?;
-            }
-        }
-        Course::Chunk(chunk) => {
-            let ahead = chunk.pose().and_then(|(state, _)| {
-                within(&state.pose, measured, TRANSLATION_LEASH, ROTATION_LEASH)
-            });
-            if let Some(pose) = ahead {
-                bound = true;
+    let moved = q != reference.q;
+    reference.q = q;
+    let followed = match course {
+        Course::Pose(generator, _) => Some(generator.pose()),
+        Course::Chunk(chunk) => chunk.pose().map(|(state, _)| state.pose),
+        Course::Rest | Course::Joints(_) | Course::Guide(_) => None,
+    };
+    let pose =
+        followed.and_then(|pose| within(&pose, &arm.pose, TRANSLATION_LEASH, ROTATION_LEASH));
+    (moved || pose.is_some()).then_some(Held { q, pose })
+}
+
+impl Held {
+    /// Moves the course to where the leash has held it. The course keeps its velocity and plans on
+    /// from there, so the arm follows smoothly once it is free.
+    ///
+    /// # Errors
+    /// [`PlanError`], by a defect only; the course goes on as planned.
+    pub(crate) fn move_course(self, course: &mut Course) -> Result<(), PlanError> {
+        match (course, self.pose) {
+            (Course::Joints(generator), _) => generator.set_state(State {
+                position: self.q.into(),
+                ..*generator.state()
+            }),
+            (Course::Pose(generator, _), Some(pose)) => generator.reanchor(pose),
+            (Course::Chunk(chunk), Some(pose)) => {
                 chunk.reanchor(pose);
+                Ok(())
             }
+            _ => Ok(()),
         }
-        Course::Rest | Course::Joints(_) | Course::Guide(_) => {}
     }
-    Ok(bound)
 }
 
 /// Holds a pose that runs ahead of the joints that are to follow it, where their bounds keep them

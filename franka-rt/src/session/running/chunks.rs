@@ -36,7 +36,7 @@ impl RunningSession {
                 before.end(chunks, now);
             }
             self.aim = self.heading();
-            self.planned = true;
+            self.replan = false;
             // A goal that had fallen silent was to be held until a newer one.
             if self.is_given_up() {
                 self.standing = Standing::InForce;
@@ -46,7 +46,7 @@ impl RunningSession {
             self.stage = GoalStage::UnderWay;
         } else if over && let Course::Chunk(chunk) = &self.route.course {
             let target = chunk.target();
-            self.turn_to(model, target);
+            self.turn_to(target);
             self.route.chunk_end = Some(target);
         }
     }

@@ -1,10 +1,13 @@
 //! A session under way: the reference, what moves it, and the torques that follow it.
+//!
+//! What needs the newest state answers it: the law, the leash, the judgement of the arrival. All
+//! that does not is prepared after the answer before: goals, plans and the reference's next step.
 
 mod chunks;
 mod stages;
 mod watch;
 
-use franka_model::{EndEffector, GRAVITY_EARTH, Jacobian, JointVector, Load, Model};
+use franka_model::{EndEffector, Frame, GRAVITY_EARTH, Jacobian, JointVector, Load, Model};
 use franka_proto::{RobotState, Version};
 use nalgebra::Isometry3;
 
@@ -13,13 +16,14 @@ use crate::session::reference::Reference;
 
 use super::backend::Backend;
 use super::chunk::ChunkReader;
-use super::course;
+use super::course::CourseStep;
 use super::effort::Effort;
 use super::goal::{Goal, OnArrival, Target};
 use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Deviation;
+use super::guard::leash::{self, Held};
 use super::guard::watchdog::OnTimeout;
-use super::guard::{Bindings, Guard, leash};
+use super::guard::{Bindings, Guard};
 use super::landing;
 use super::route::Route;
 use super::setpoint_stream::SetpointStream;
@@ -33,11 +37,14 @@ pub(super) struct RunningSession {
     load: Load,
     posture: JointVector,
     pub(super) goal: Goal,
-    /// Whether a course has been planned since the last answer, as before the first one.
-    planned: bool,
-    /// Whether the last cycle was used for planning, and the reference stayed. Two cycles in a row
-    /// are never used in this way, even if a goal comes in each.
-    stayed: bool,
+    /// The arm in the newest state that was answered.
+    arm: Measured,
+    /// For the answer to the next state, once it is prepared.
+    next: Option<Next>,
+    /// Whether the course is to be planned anew.
+    replan: bool,
+    /// What the leash held in the last answer, if it did.
+    held: Option<Held>,
     /// When the goal was first seen, `message_id` of the state.
     since: u64,
     /// What the reference heads for: the goal's target, or one nearer, or rest.
@@ -78,6 +85,14 @@ enum Drive {
     Setpoints(SetpointStream),
 }
 
+/// What was prepared for the answer to the next state.
+#[derive(Debug)]
+struct Next {
+    step: CourseStep,
+    /// The guards that have bound so far.
+    bindings: Bindings,
+}
+
 /// The arm as it was measured.
 #[derive(Debug)]
 pub(super) struct Measured {
@@ -111,6 +126,8 @@ impl RunningSession {
         let reference = Reference::at_rest(q);
         let ee = end_effector_of(state)?;
         let load = load_of(state, version)?;
+        let measured = JointVector::from(state.q);
+        let (pose, jacobian) = model.pose_and_jacobian(Frame::EndEffector, &measured, &ee);
         let mut this = Self {
             drive,
             aim: goal.target,
@@ -123,8 +140,19 @@ impl RunningSession {
             afterwards,
             stage: GoalStage::UnderWay,
             held_back: 0,
-            planned: true,
-            stayed: false,
+            arm: Measured {
+                time: state.message_id,
+                q: measured,
+                pose: rigid(&pose),
+                jacobian,
+            },
+            // The first answer holds the arm without torques.
+            next: Some(Next {
+                step: CourseStep::free(reference),
+                bindings: Bindings::default(),
+            }),
+            replan: false,
+            held: None,
             since: state.message_id,
             heard: state.message_id,
             standing: Standing::InForce,
@@ -134,13 +162,23 @@ impl RunningSession {
             load,
             ee,
         };
-        this.set_out(model);
+        this.set_out();
         Some(this)
+    }
+
+    /// `message_id` of the newest state that was answered.
+    pub(super) fn newest(&self) -> u64 {
+        self.arm.time
+    }
+
+    /// Whether the answer to the next state is prepared.
+    pub(super) fn is_prepared(&self) -> bool {
+        self.next.is_some()
     }
 
     /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
     /// anew.
-    pub(super) fn take_up(&mut self, model: &Model, goal: Goal, now: u64) {
+    fn take_up(&mut self, goal: Goal, now: u64) {
         if matches!(self.stage, GoalStage::Finished) {
             return;
         }
@@ -151,7 +189,7 @@ impl RunningSession {
         // The caller has not yet seen the abort: ignore where the update leads.
         let aborted = !taken_back && self.is_given_up_for_good();
         if named && (tuned || aborted) {
-            return self.tune(model, goal);
+            return self.tune(goal);
         }
         self.heard = now;
         let same = named
@@ -159,7 +197,7 @@ impl RunningSession {
             && goal.target == self.goal.target
             && goal.on_arrival == self.goal.on_arrival;
         if same && !matches!(self.stage, GoalStage::Releasing(_)) {
-            return self.tune(model, goal);
+            return self.tune(goal);
         }
         if !named {
             self.since = now;
@@ -171,12 +209,12 @@ impl RunningSession {
         } else {
             Standing::InForce
         };
-        self.set_out(model);
+        self.set_out();
     }
 
     /// Keeps the target, and takes budget, gains, tolerance and guards from `goal`. Gains for
     /// guiding would release an arm that is held by now.
-    fn tune(&mut self, model: &Model, goal: Goal) {
+    fn tune(&mut self, goal: Goal) {
         let Goal {
             target, on_arrival, ..
         } = self.goal;
@@ -194,13 +232,8 @@ impl RunningSession {
             },
         );
         self.fade_gains();
-        if goal.budget != before.budget && !matches!(self.stage, GoalStage::Releasing(_)) {
-            let aim = Goal {
-                target: self.aim,
-                ..self.goal
-            };
-            self.route.tune(model, &self.ee, &self.reference, &aim);
-        }
+        self.replan |=
+            goal.budget != before.budget && !matches!(self.stage, GoalStage::Releasing(_));
     }
 
     /// Starts the fade of gains and force cap to those of the goal.
@@ -211,103 +244,118 @@ impl RunningSession {
     }
 
     /// Sets out for the target of the goal.
-    fn set_out(&mut self, model: &Model) {
+    fn set_out(&mut self) {
         self.stage = GoalStage::UnderWay;
         self.held_back = 0;
         self.route.chunk_end = None;
-        self.turn_to(model, self.goal.target);
+        self.turn_to(self.goal.target);
     }
 
-    /// Plans the course to `target`, in place of the one before.
-    fn turn_to(&mut self, model: &Model, target: Target) {
+    /// Ends the course, and has the next one planned to `target`.
+    fn turn_to(&mut self, target: Target) {
         self.route.retire_chunk();
         self.aim = target;
-        let goal = Goal {
-            target,
-            ..self.goal
-        };
-        self.route.head_for(model, &self.ee, &self.reference, &goal);
-        self.planned |= matches!(target, Target::Pose(_) | Target::Joints(_));
+        self.replan = true;
     }
 
-    /// Answers one state; `alive` is false once the deadman of the session is silent or dropped.
-    pub(super) fn step(
+    /// Prepares the answer to the state `now`, `message_id`: takes up a `newer` goal, if there is
+    /// one, plans, and moves the reference by one step. `alive` is false once the deadman of the
+    /// session is silent or dropped.
+    pub(super) fn prepare(
         &mut self,
         model: &Model,
+        newer: Option<Goal>,
         alive: bool,
         chunks: Option<&mut ChunkReader>,
-        state: &RobotState,
-    ) -> SessionStep {
+        now: u64,
+    ) {
+        let held = self.held.take();
+        let leashed = held.is_some();
+        let moved = held.map_or(Ok(()), |held| held.move_course(&mut self.route.course));
+        let mut bindings = Bindings::default();
+        bindings.set(Guard::Deviation, self.watch_deviation(model, leashed));
+        if let Some(goal) = newer {
+            self.take_up(goal, now);
+        }
+        if let Some(chunks) = chunks {
+            self.follow_chunks(model, chunks, now);
+        }
+        self.watch(alive, now);
+        bindings.set(Guard::Deadman, !alive);
+        let silent = matches!(
+            self.standing,
+            Standing::GivenUp {
+                cause: Lapse::Silent { .. },
+                ..
+            }
+        );
+        bindings.set(Guard::Watchdog, silent);
+        bindings.set(Guard::Lead, self.draw_nearer(now));
+        if core::mem::take(&mut self.replan) {
+            let aim = self.aim();
+            self.route.head_for(model, &self.ee, &self.reference, &aim);
+        }
+        self.advance(model, bindings, now);
+        if let Some(next) = &mut self.next {
+            next.step.failed |= moved.is_err();
+        }
+    }
+
+    /// Moves the reference by one step, for the answer to the state `now`.
+    fn advance(&mut self, model: &Model, mut bindings: Bindings, now: u64) {
+        let aim = self.aim();
+        let mut step = self.route.step(
+            model,
+            &self.ee,
+            &self.posture,
+            &self.reference,
+            &self.arm,
+            &aim,
+            now,
+        );
+        step.failed |= self.route.take_failure();
+        let bounds = &step.bounds;
+        bindings.set(Guard::Clearance, self.route.is_bound());
+        bindings.set(Guard::InverseKinematics, bounds.acceleration);
+        bindings.set(Guard::JointVelocity, bounds.velocity);
+        bindings.set(Guard::PositionEnvelope, bounds.position);
+        self.next = Some(Next { step, bindings });
+    }
+
+    /// The goal with what the reference heads for as its target.
+    fn aim(&self) -> Goal {
+        Goal {
+            target: self.aim,
+            ..self.goal
+        }
+    }
+
+    /// Answers one state, once the answer is prepared.
+    pub(super) fn answer(&mut self, model: &Model, state: &RobotState) -> SessionStep {
         let q = JointVector::from(state.q);
         let dq = JointVector::from(state.dq);
         let dynamics = model.dynamics(&q, &dq, &self.ee, &self.load, &GRAVITY_EARTH);
-        let arm = Measured {
+        self.arm = Measured {
             time: state.message_id,
             q,
             pose: rigid(&dynamics.pose),
             jacobian: dynamics.jacobian,
         };
-        let mut bindings = Bindings::default();
-
-        if let Some(chunks) = chunks {
-            self.follow_chunks(model, chunks, state.message_id);
-        }
-        self.watch(model, alive, state.message_id);
-        bindings.set(Guard::Deadman, !alive);
-        bindings.set(
-            Guard::Watchdog,
-            matches!(
-                self.standing,
-                Standing::GivenUp {
-                    cause: Lapse::Silent { .. },
-                    ..
-                }
-            ),
-        );
-
         self.reanchor(model, state);
-        let drawn = self.draw_nearer(model, &arm, state.message_id);
-        bindings.set(Guard::Lead, drawn);
-        let aim = Goal {
-            target: self.aim,
-            ..self.goal
+        let (step, mut bindings) = match self.next.take() {
+            Some(Next { step, bindings }) => (step, bindings),
+            None => (CourseStep::free(self.reference), Bindings::default()),
         };
-        // A plan takes as long to compute as a step. A reference at rest stays for one cycle after
-        // a new plan and steps in the next, so that the first answer starts with zero torque.
-        let at_rest = self.reference == Reference::at_rest(self.reference.q);
-        self.stayed = core::mem::take(&mut self.planned) && at_rest && !self.stayed;
-        let course::CourseStep {
-            reference,
-            bounds,
-            held,
-            leashed: guided,
-            failed,
-        } = if self.stayed {
-            self.route.stay(&self.reference)
-        } else {
-            self.route
-                .step(model, &self.ee, &self.posture, &self.reference, &arm, &aim)
-        };
-        self.reference = reference;
-        bindings.set(Guard::Clearance, self.route.is_bound());
-        bindings.set(Guard::InverseKinematics, bounds.acceleration);
-        bindings.set(Guard::JointVelocity, bounds.velocity);
-        bindings.set(Guard::PositionEnvelope, bounds.position);
+        self.reference = step.reference;
         let at_rest = dq.amax() < landing::REST_VELOCITY;
-        let event = self.advance_stage(model, &arm, at_rest, state.message_id);
-        let leash = match self.drive {
-            Drive::Torques(_) => {
-                leash::hold(&mut self.route.course, &mut self.reference, &q, &arm.pose)
-            }
-            // What pulls is the robot's own controller, on whose setpoint the reference is
-            // anchored.
-            Drive::Setpoints(_) => Ok(false),
-        };
-        let leashed = leash.unwrap_or(true);
-        bindings.set(Guard::Leash, leashed || guided);
-        let displaced = self.watch_deviation(model, &arm, leashed);
-        bindings.set(Guard::Deviation, displaced);
-        self.held_back = if leashed || held || self.route.is_hindered() {
+        let event = self.advance_stage(model, at_rest, state.message_id);
+        // Under the robot's own controller the reference is anchored on that one's setpoint.
+        if let Drive::Torques(_) = self.drive {
+            self.held = leash::hold(&self.route.course, &mut self.reference, &self.arm);
+        }
+        let leashed = self.held.is_some();
+        bindings.set(Guard::Leash, leashed || step.leashed);
+        self.held_back = if leashed || step.held || self.route.is_hindered() {
             self.held_back + 1
         } else {
             self.held_back.saturating_sub(1)
@@ -324,9 +372,7 @@ impl RunningSession {
                 SessionCommand::Setpoint(command)
             }
         };
-
-        let failed = failed || leash.is_err() || self.route.take_failure();
-        bindings.set(Guard::PlanFailure, failed);
+        bindings.set(Guard::PlanFailure, step.failed);
         SessionStep {
             answer,
             trace: Trace {
@@ -339,7 +385,8 @@ impl RunningSession {
         }
     }
 
-    /// Puts the reference at the setpoint that the robot's controller has, and goes on from there.
+    /// Puts the reference at the setpoint that the robot's controller has, if that differs, and
+    /// prepares the answer anew from there.
     fn reanchor(&mut self, model: &Model, state: &RobotState) {
         let Drive::Setpoints(stream) = &self.drive else {
             return;
@@ -359,6 +406,8 @@ impl RunningSession {
             };
             self.route
                 .begin_again(model, &self.ee, &self.reference, &aim);
+            let bindings = self.next.take().map(|next| next.bindings);
+            self.advance(model, bindings.unwrap_or_default(), state.message_id);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use franka_model::{Frame, Model};
 
-use super::{Drive, Measured, RunningSession, Standing};
+use super::{Drive, RunningSession, Standing};
 use crate::session::landing::{Landing, Release, Verdict};
 use crate::session::reference::Reference;
 use crate::session::{
@@ -34,7 +34,6 @@ impl RunningSession {
     pub(super) fn advance_stage(
         &mut self,
         model: &Model,
-        arm: &Measured,
         at_rest: bool,
         now: u64,
     ) -> Option<SessionEvent> {
@@ -42,11 +41,13 @@ impl RunningSession {
         match &mut self.stage {
             GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                if self.goal.on_arrival != OnArrival::Hold && (self.route.is_done() || stalled) {
+                // In the first cycle the course is still to be planned.
+                let done = !self.replan && self.route.is_done();
+                if self.goal.on_arrival != OnArrival::Hold && (done || stalled) {
                     if stalled && self.route.is_hindered() {
-                        self.give_up(model, Lapse::Blocked);
+                        self.give_up(Lapse::Blocked);
                     } else if stalled && heading != Target::Rest {
-                        self.turn_to(model, Target::Rest);
+                        self.turn_to(Target::Rest);
                     }
                     let target = match heading {
                         // It counts as held at any place.
@@ -62,7 +63,7 @@ impl RunningSession {
                 None
             }
             GoalStage::Landing(landing) => {
-                let (settlement, held) = match landing.judge(&arm.pose, at_rest) {
+                let (settlement, held) = match landing.judge(&self.arm.pose, at_rest) {
                     Verdict::Settling => return None,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
@@ -70,7 +71,7 @@ impl RunningSession {
                     && self.reference.dq.amax() > REFERENCE_REST
                 {
                     if self.aim != Target::Rest {
-                        self.turn_to(model, Target::Rest);
+                        self.turn_to(Target::Rest);
                     }
                     return None;
                 }
@@ -78,7 +79,7 @@ impl RunningSession {
                     (OnArrival::Hold | OnArrival::ReportAndHold, _) => GoalStage::Staying,
                     (OnArrival::ReportAndFinish, Drive::Torques(_)) => {
                         self.route.rest();
-                        GoalStage::Releasing(Release::new(arm.q, &self.reference.q))
+                        GoalStage::Releasing(Release::new(self.arm.q, &self.reference.q))
                     }
                     // The robot holds the arm at its setpoint as it is.
                     (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => GoalStage::Finished,

@@ -5,14 +5,14 @@ use core::time::Duration;
 
 use franka_model::Model;
 
-use super::{GoalStage, Measured, RunningSession, Standing};
+use super::{GoalStage, RunningSession, Standing};
 use crate::session::course::Course;
 use crate::session::guard::lead::Lead;
 use crate::session::{Lapse, OnArrival, OnTimeout, Target};
 
 impl RunningSession {
     /// Draws a target nearer that is too far ahead of the arm. Returns whether it is.
-    pub(super) fn draw_nearer(&mut self, model: &Model, arm: &Measured, now: u64) -> bool {
+    pub(super) fn draw_nearer(&mut self, now: u64) -> bool {
         let Some(lead) = self.goal.lead else {
             return false;
         };
@@ -22,20 +22,20 @@ impl RunningSession {
             return false;
         }
         if now.saturating_sub(self.heard) <= Lead::FRESH_MS {
-            let drawn = lead.drawn(&self.goal.target, &arm.q, &arm.pose);
+            let drawn = lead.drawn(&self.goal.target, &self.arm.q, &self.arm.pose);
             let target = drawn.unwrap_or(self.goal.target);
             if target != self.aim {
-                self.turn_to(model, target);
+                self.turn_to(target);
             }
         }
         self.aim != self.goal.target
     }
 
     /// Gives the goal up, and brakes.
-    pub(super) fn give_up(&mut self, model: &Model, lapse: Lapse) {
+    pub(super) fn give_up(&mut self, lapse: Lapse) {
         self.goal = self.goal.at_rest(self.goal.on_arrival);
         self.fade_gains();
-        self.set_out(model);
+        self.set_out();
         self.lapse(OnTimeout::Brake, lapse);
     }
 
@@ -62,7 +62,7 @@ impl RunningSession {
     }
 
     /// Gives up a goal whose arm is displaced. Returns whether it is.
-    pub(super) fn watch_deviation(&mut self, model: &Model, arm: &Measured, leashed: bool) -> bool {
+    pub(super) fn watch_deviation(&mut self, model: &Model, leashed: bool) -> bool {
         if !leashed {
             self.deviation.set_free(&self.reference.q);
             return false;
@@ -76,6 +76,7 @@ impl RunningSession {
                 }
             );
         }
+        let arm = &self.arm;
         let exceeded = self
             .deviation
             .is_exceeded(model, &self.ee, &arm.q, &arm.pose, &self.aim);
@@ -84,13 +85,13 @@ impl RunningSession {
             GoalStage::UnderWay | GoalStage::Landing(_) | GoalStage::Staying
         );
         if exceeded && follows {
-            self.give_up(model, Lapse::Displaced);
+            self.give_up(Lapse::Displaced);
         }
         exceeded
     }
 
     /// Gives the goal up if its updates stay away or its deadman is silent.
-    pub(super) fn watch(&mut self, model: &Model, alive: bool, now: u64) {
+    pub(super) fn watch(&mut self, alive: bool, now: u64) {
         let braked = matches!(
             self.standing,
             Standing::GivenUp {
@@ -108,7 +109,7 @@ impl RunningSession {
             return;
         }
         if !alive {
-            return self.give_up(model, Lapse::Deadman);
+            return self.give_up(Lapse::Deadman);
         }
         let silence = Duration::from_millis(now.saturating_sub(self.heard));
         if let Some(watchdog) = self.goal.watchdog
@@ -118,7 +119,7 @@ impl RunningSession {
             let silent = Lapse::Silent { silence };
             match (watchdog.on_timeout, self.goal.target) {
                 // Guiding has no target to hold: brake.
-                (OnTimeout::Brake, _) | (_, Target::Guide(_)) => self.give_up(model, silent),
+                (OnTimeout::Brake, _) | (_, Target::Guide(_)) => self.give_up(silent),
                 (OnTimeout::Hold, _) => self.lapse(OnTimeout::Hold, silent),
             }
         }

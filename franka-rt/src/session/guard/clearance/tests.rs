@@ -71,7 +71,7 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
     let limits = model.joint_limits();
     let budget = Budget::of(limits);
     let mut seen = [0; 3];
-    let (mut known, mut safely_near) = (0, 0);
+    let mut known = 0;
     for _ in 0..400 {
         let keep_out = random_regions(&mut random);
         let mut clearance = of(keep_out);
@@ -94,19 +94,15 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
             let end = course::end_of_brake(model, &next, &budget);
             let half = (next.q + end) * 0.5;
             known += usize::from(is_clear(&clearance, &half, &(end - half).abs()));
-            let safe = clearance.is_known_safe(&next.q, &end);
             let ahead = clearance.ahead(&reference.q, &next.q, &end);
             let expected = plain(&keep_out, &reference.q, &next.q, &end);
             assert_eq!(ahead, expected, "cycle {cycle} of {keep_out:?}, {next:?}");
             seen[ahead as usize] += 1;
-            assert!(!safe || expected < Ahead::TooNear, "cycle {cycle}");
-            safely_near += usize::from(safe && expected == Ahead::Near);
             reference = next;
         }
     }
     assert!(seen.iter().all(|&count| count > 1500), "{seen:?}");
     assert!(known > 10_000, "{known}");
-    assert!(safely_near > 1000, "{safely_near}");
 }
 
 /// The arm bent forwards at joint 2 until its distance to itself has this margin.
