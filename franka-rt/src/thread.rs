@@ -3,7 +3,8 @@
 //! ```text
 //! receive (wait <= 20 ms) -> orders -> decode -> Core::on_state -> encode -> send
 //!                                  |                 then: Core::after_send, newest-state slot, queues of states and
-//!                                  +-> nothing came: on_silence            records, notices, eventfd, statistics
+//!                                  |                       records, notices, eventfd, Core::prepare, statistics
+//!                                  +-> nothing came: on_silence
 //! ```
 //!
 //! The command leaves before anything is published. After [`spawn`] has returned, the loop neither

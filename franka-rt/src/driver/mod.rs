@@ -25,9 +25,10 @@
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are
 //! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. What can
 //! wait until the command has left is done in [`Driver::after_send`], once for each state, and
-//! [`Driver::note_cycle`]. No clock, socket, allocation or log: the thread, and the lockstep tests,
-//! supply time and carry the effects out. A program that has ended leaves inside an [`Event`], so
-//! that its memory is freed elsewhere.
+//! [`Driver::note_cycle`]; what can be done before the next state comes, in [`Driver::prepare`]. No
+//! clock, socket, allocation or log: the thread, and the lockstep tests, supply time and carry the
+//! effects out. A program that has ended leaves inside an [`Event`], so that its memory is freed
+//! elsewhere.
 
 mod aftermath;
 mod commander;

@@ -36,6 +36,8 @@ mod reference;
 mod route;
 mod running;
 mod setpoint_stream;
+#[cfg(test)]
+mod tests;
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -376,6 +378,10 @@ impl TargetSession {
             }
             Gate::Broken(fault) => {
                 let held = self.held.take();
+                // The goal that waited, even if another one has just come.
+                if let Some(waited) = &held {
+                    self.unstarted.get_or_insert((waited.id, fault));
+                }
                 self.read().or(held).map(|goal| {
                     let (unstarted, _) = *self.unstarted.get_or_insert((goal.id, fault));
                     if goal.id != unstarted {

@@ -1,5 +1,5 @@
-//! One turn of the loop: receive, answer, publish, count. Which state is the newest is decided in
-//! `exchange`.
+//! One turn of the loop: receive, answer, publish, prepare, count. Which state is the newest is
+//! decided in `exchange`.
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -13,7 +13,8 @@ use crate::bench::{Benchmark, Statistic};
 use crate::lockstep::{Part, Wander};
 
 /// Benchmarks: a state decoded, answered by target control and the answer encoded; the driver's
-/// work after that; and the first under a control function that does nothing.
+/// work after that, and for the next state; and the first under a control function that does
+/// nothing.
 pub fn all() -> Vec<Benchmark> {
     vec![
         target(

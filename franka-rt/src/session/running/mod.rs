@@ -16,7 +16,7 @@ use crate::session::reference::Reference;
 
 use super::backend::Backend;
 use super::chunk::ChunkReader;
-use super::course::CourseStep;
+use super::course::{Course, CourseStep};
 use super::effort::Effort;
 use super::goal::{Goal, OnArrival, Target};
 use super::guard::clearance::{Clearance, KeepOut};
@@ -86,9 +86,10 @@ enum Drive {
 }
 
 /// What was prepared for the answer to the next state.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Next {
-    step: CourseStep,
+    /// The step of the course; none where the course goes with the measured arm.
+    step: Option<CourseStep>,
     /// The guards that have bound so far.
     bindings: Bindings,
 }
@@ -148,7 +149,7 @@ impl RunningSession {
             },
             // The first answer holds the arm without torques.
             next: Some(Next {
-                step: CourseStep::free(reference),
+                step: Some(CourseStep::free(reference)),
                 bindings: Bindings::default(),
             }),
             replan: false,
@@ -273,6 +274,7 @@ impl RunningSession {
         let leashed = held.is_some();
         let moved = held.map_or(Ok(()), |held| held.move_course(&mut self.route.course));
         let mut bindings = Bindings::default();
+        bindings.set(Guard::PlanFailure, moved.is_err());
         bindings.set(Guard::Deviation, self.watch_deviation(model, leashed));
         if let Some(goal) = newer {
             self.take_up(goal, now);
@@ -295,16 +297,15 @@ impl RunningSession {
             let aim = self.aim();
             self.route.head_for(model, &self.ee, &self.reference, &aim);
         }
-        self.advance(model, bindings, now);
-        if let Some(next) = &mut self.next {
-            next.step.failed |= moved.is_err();
-        }
+        let guided = matches!(self.route.course, Course::Guide(_));
+        let step = (!guided).then(|| self.advance(model, now, &mut bindings));
+        self.next = Some(Next { step, bindings });
     }
 
-    /// Moves the reference by one step, for the answer to the state `now`.
-    fn advance(&mut self, model: &Model, mut bindings: Bindings, now: u64) {
+    /// Moves the course by one step, for the answer to the state `now`.
+    fn advance(&mut self, model: &Model, now: u64, bindings: &mut Bindings) -> CourseStep {
         let aim = self.aim();
-        let mut step = self.route.step(
+        let step = self.route.step(
             model,
             &self.ee,
             &self.posture,
@@ -313,13 +314,14 @@ impl RunningSession {
             &aim,
             now,
         );
-        step.failed |= self.route.take_failure();
         let bounds = &step.bounds;
         bindings.set(Guard::Clearance, self.route.is_bound());
         bindings.set(Guard::InverseKinematics, bounds.acceleration);
         bindings.set(Guard::JointVelocity, bounds.velocity);
         bindings.set(Guard::PositionEnvelope, bounds.position);
-        self.next = Some(Next { step, bindings });
+        let failed = self.route.take_failure();
+        bindings.set(Guard::PlanFailure, step.failed || failed);
+        step
     }
 
     /// The goal with what the reference heads for as its target.
@@ -341,10 +343,11 @@ impl RunningSession {
             pose: rigid(&dynamics.pose),
             jacobian: dynamics.jacobian,
         };
-        self.reanchor(model, state);
-        let (step, mut bindings) = match self.next.take() {
-            Some(Next { step, bindings }) => (step, bindings),
-            None => (CourseStep::free(self.reference), Bindings::default()),
+        let Next { step, mut bindings } = self.next.take().unwrap_or_default();
+        let anchored = self.reanchor(model, state);
+        let step = match step {
+            Some(step) if !anchored => step,
+            _ => self.advance(model, state.message_id, &mut bindings),
         };
         self.reference = step.reference;
         let at_rest = dq.amax() < landing::REST_VELOCITY;
@@ -372,7 +375,6 @@ impl RunningSession {
                 SessionCommand::Setpoint(command)
             }
         };
-        bindings.set(Guard::PlanFailure, step.failed);
         SessionStep {
             answer,
             trace: Trace {
@@ -386,28 +388,28 @@ impl RunningSession {
     }
 
     /// Puts the reference at the setpoint that the robot's controller has, if that differs, and
-    /// prepares the answer anew from there.
-    fn reanchor(&mut self, model: &Model, state: &RobotState) {
+    /// plans the course anew from there. Returns whether it did.
+    fn reanchor(&mut self, model: &Model, state: &RobotState) -> bool {
         let Drive::Setpoints(stream) = &self.drive else {
-            return;
+            return false;
         };
-        if let Some(echo) = stream.echo(model, &self.ee, &self.reference, state) {
-            self.reference = echo;
-            let target = match self.stage {
-                GoalStage::UnderWay => self.aim,
-                GoalStage::Landing(_)
-                | GoalStage::Staying
-                | GoalStage::Releasing(_)
-                | GoalStage::Finished => Target::Rest,
-            };
-            let aim = Goal {
-                target,
-                ..self.goal
-            };
-            self.route
-                .begin_again(model, &self.ee, &self.reference, &aim);
-            let bindings = self.next.take().map(|next| next.bindings);
-            self.advance(model, bindings.unwrap_or_default(), state.message_id);
-        }
+        let Some(echo) = stream.echo(model, &self.ee, &self.reference, state) else {
+            return false;
+        };
+        self.reference = echo;
+        let target = match self.stage {
+            GoalStage::UnderWay => self.aim,
+            GoalStage::Landing(_)
+            | GoalStage::Staying
+            | GoalStage::Releasing(_)
+            | GoalStage::Finished => Target::Rest,
+        };
+        let aim = Goal {
+            target,
+            ..self.goal
+        };
+        self.route
+            .begin_again(model, &self.ee, &self.reference, &aim);
+        true
     }
 }

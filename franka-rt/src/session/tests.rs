@@ -1,0 +1,111 @@
+//! A session between a state and its answer, and before the next state.
+
+use super::*;
+use crate::slot::{SlotWriter, slot};
+use franka_model::READY;
+
+/// A session whose arm is wherever its reference is.
+struct Arm {
+    session: TargetSession,
+    goals: SlotWriter<Goal>,
+    state: RobotState,
+}
+
+impl Arm {
+    fn new() -> Self {
+        let (goals, reader) = slot();
+        let rigid = transform::array(&Isometry3::identity());
+        Self {
+            session: TargetSession::new(Arc::new(Model::fr3().clone()), Version::V10, reader),
+            goals,
+            state: RobotState {
+                q: READY.into(),
+                F_T_EE: rigid,
+                EE_T_K: rigid,
+                ..RobotState::default()
+            },
+        }
+    }
+
+    /// Asks for a turn of joint 1, `[rad]`, from the ready posture.
+    fn turn(&mut self, id: u64, by: f64) {
+        let mut q: [f64; 7] = READY.into();
+        q[0] += by;
+        let limits = Model::fr3().joint_limits();
+        let goal = Goal::new(GoalId(id), q.into(), OnArrival::ReportAndHold, limits);
+        self.goals.write(&goal);
+    }
+
+    /// The answer to the next state.
+    fn answer(&mut self, gate: Gate) -> SessionStep {
+        self.state.message_id += 1;
+        let step = self.session.answer(gate, &self.state);
+        self.state.q = step.trace.reference.q.into();
+        self.state.dq = step.trace.reference.dq.into();
+        step
+    }
+
+    /// How the next goal ends.
+    fn settles(&mut self, gate: Gate) -> (GoalId, Settlement) {
+        for _ in 0..10_000 {
+            self.session.prepare();
+            if let Some(SessionEvent::Settled {
+                goal, settlement, ..
+            }) = self.answer(gate).event
+            {
+                return (goal, settlement);
+            }
+        }
+        panic!("no goal settles")
+    }
+}
+
+#[test]
+fn a_goal_moves_the_answer_that_is_prepared_after_it() {
+    let mut arm = Arm::new();
+    arm.turn(1, 0.0);
+    arm.answer(Gate::Open);
+    arm.session.prepare();
+    arm.turn(2, 0.1);
+    assert_eq!(arm.answer(Gate::Open).trace.goal, GoalId(1));
+    arm.session.prepare();
+    // Nothing is prepared twice.
+    arm.turn(3, -0.1);
+    arm.session.prepare();
+    let step = arm.answer(Gate::Open);
+    assert_eq!(step.trace.goal, GoalId(2));
+    assert!(step.trace.reference.dq[0] > 0.0);
+}
+
+#[test]
+fn an_answer_that_is_not_prepared_is_computed_all_the_same() {
+    let mut arm = Arm::new();
+    arm.turn(1, 0.1);
+    for _ in 0..100 {
+        arm.answer(Gate::Open);
+    }
+    assert!(arm.state.dq[0] > 0.0);
+}
+
+#[test]
+fn a_goal_that_comes_as_its_common_start_breaks_is_not_taken_for_the_one_that_waited() {
+    let fault = StartFault::Withdrawn { member: 1 };
+    for another in [false, true] {
+        let mut arm = Arm::new();
+        arm.turn(1, 0.1);
+        assert!(!arm.session.is_withdrawn());
+        arm.answer(Gate::Closed);
+        arm.session.prepare();
+        arm.answer(Gate::Broken(fault));
+        let expected = if another {
+            arm.turn(2, 0.1);
+            GoalId(2)
+        } else {
+            GoalId(1)
+        };
+        let (goal, settlement) = arm.settles(Gate::Broken(fault));
+        assert_eq!(goal, expected);
+        let unstarted = settlement == Settlement::Unstarted(fault);
+        assert_eq!(unstarted, !another, "{settlement:?}");
+    }
+}
