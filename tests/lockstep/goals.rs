@@ -46,21 +46,30 @@ fn a_pose_is_reached_and_the_arm_rests_there() {
 #[test]
 fn a_new_target_moves_the_reference_in_the_cycle_after_the_one_that_reads_it() {
     for_each_robot(|ready| {
-        let mut lockstep = ready();
-        let here = lockstep.goal(Target::Joints(READY.into()), OnArrival::Hold);
-        let goal = lockstep.submit(here).unwrap();
-        lockstep.run(100);
-        for (joint, target) in [(0, 0.1), (0, -0.1), (1, 0.1)] {
+        let turned = |by: f64| {
             let mut q = READY;
-            q[joint] += target;
-            let still = lockstep.client.record.ddq_ref;
-            lockstep.update(goal, Target::Joints(q.into())).unwrap();
-            lockstep.tick();
-            assert_eq!(lockstep.client.record.ddq_ref, still, "the plan before");
-            lockstep.tick();
-            assert_ne!(lockstep.client.record.ddq_ref, still, "the new plan");
-            lockstep.run(2000);
-        }
+            q[0] += by;
+            Target::Joints(q.into())
+        };
+        let [mut changed, mut kept] = [(); 2].map(|()| {
+            let mut lockstep = ready();
+            let there = lockstep.goal(turned(0.3), OnArrival::Hold);
+            let goal = lockstep.submit(there).unwrap();
+            lockstep.run(300);
+            (lockstep, goal)
+        });
+        assert!(changed.0.client.record.dq_ref[0] > 0.1, "under way");
+        changed.0.update(changed.1, turned(-0.3)).unwrap();
+        let mut references = || {
+            [&mut changed.0, &mut kept.0].map(|lockstep| {
+                lockstep.tick();
+                lockstep.client.record.q_ref
+            })
+        };
+        let [of_changed, of_kept] = references();
+        assert_eq!(of_changed, of_kept, "the plan before");
+        let [of_changed, of_kept] = references();
+        assert_ne!(of_changed, of_kept, "the new plan");
     });
 }
 

@@ -377,17 +377,15 @@ impl TargetSession {
                 })
             }
             Gate::Broken(fault) => {
-                let held = self.held.take();
-                // The goal that waited, even if another one has just come.
-                if let Some(waited) = &held {
-                    self.unstarted.get_or_insert((waited.id, fault));
-                }
-                self.read().or(held).map(|goal| {
-                    let (unstarted, _) = *self.unstarted.get_or_insert((goal.id, fault));
-                    if goal.id != unstarted {
-                        return goal;
-                    }
+                let waited = self.held.take();
+                let newer = self.read();
+                let unstarted = waited.or(newer)?.id;
+                let (unstarted, _) = *self.unstarted.get_or_insert((unstarted, fault));
+                let goal = newer.or(waited)?;
+                Some(if goal.id == unstarted {
                     goal.at_rest(OnArrival::ReportAndFinish)
+                } else {
+                    goal
                 })
             }
         }

@@ -28,8 +28,9 @@ pub(super) struct Route {
     pub(super) course: Course,
     clearance: Clearance,
     pace: Pace,
-    /// Whether the pace is another one since the last step. The next step plans for it.
-    repaced: bool,
+    /// Whether the course has to be planned anew before its next step: for another target, budget
+    /// or pace.
+    stale: bool,
     /// Cycles for which it still counts as hindered.
     hindered: u32,
     /// The budget with which the way to rest was last found clear.
@@ -64,7 +65,7 @@ impl Route {
             course: Course::Rest,
             clearance,
             pace: Pace::Full,
-            repaced: false,
+            stale: false,
             hindered: 0,
             judged: budget,
             retired_chunk: None,
@@ -73,15 +74,27 @@ impl Route {
         }
     }
 
-    /// Plans the course towards `goal` from the reference; a chunk in force is kept, within the
-    /// budget of `goal`. The pace is kept; after a brake it is slow.
-    pub(super) fn head_for(
+    /// Has the course planned anew before its next step.
+    pub(super) fn outdate(&mut self) {
+        self.stale = true;
+    }
+
+    /// Plans anew towards `goal` if that is due.
+    pub(super) fn renew(
         &mut self,
         model: &Model,
         ee: &EndEffector,
         reference: &Reference,
         goal: &Goal,
     ) {
+        if self.stale {
+            self.head_for(model, ee, reference, goal);
+        }
+    }
+
+    /// Plans the course towards `goal` from the reference; a chunk in force is kept, within the
+    /// budget of `goal`. The pace is kept; after a brake it is slow.
+    fn head_for(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
         let paced = self.paced(goal);
         match &mut self.course {
             Course::Chunk(chunk) => chunk.keep_to(model, reference, paced.budget),
@@ -128,7 +141,7 @@ impl Route {
     /// Returns `goal` with less velocity if something is near. Also ends a brake: the goal goes on
     /// slowly, and may be paced anew.
     fn paced(&mut self, goal: &Goal) -> Goal {
-        self.repaced = false;
+        self.stale = false;
         if matches!(self.pace, Pace::Braked(_)) {
             self.pace = Pace::Slow(0);
         }
@@ -201,6 +214,7 @@ impl Route {
     pub(super) fn rest(&mut self) {
         self.course = Course::Rest;
         self.pace = Pace::Full;
+        self.stale = false;
     }
 
     /// Advances by one nominal millisecond towards `goal`, for the answer to the state `now`, or
@@ -225,9 +239,6 @@ impl Route {
             }
             self.head_for(model, ee, reference, goal);
         }
-        if self.repaced {
-            self.head_for(model, ee, reference, goal);
-        }
         let step = self.course.step(model, ee, posture, reference, arm, now);
         // The way of a brake was checked before the step that it begins from. Hand guiding is not
         // checked.
@@ -246,14 +257,14 @@ impl Route {
             }
             (Ahead::Near, pace @ Pace::Full) => {
                 *pace = Pace::Slow(0);
-                self.repaced = true;
+                self.stale = true;
             }
             (Ahead::Near, pace) => *pace = Pace::Slow(0),
             (Ahead::Clear, Pace::Slow(clear)) => {
                 *clear += 1;
                 if *clear >= CLEAR {
                     self.pace = Pace::Full;
-                    self.repaced = true;
+                    self.stale = true;
                 }
             }
             (Ahead::Clear, Pace::Full | Pace::Braked(_)) => {}
@@ -274,7 +285,7 @@ impl Route {
 
     /// Whether the course has come to the end of its way.
     pub(super) fn is_done(&self) -> bool {
-        self.course.is_done() && !matches!(self.pace, Pace::Braked(_))
+        !self.stale && self.course.is_done() && !matches!(self.pace, Pace::Braked(_))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::slot::{SlotWriter, slot};
-use franka_model::READY;
+use franka_model::{JointVector, READY};
 
 /// A session whose arm is wherever its reference is.
 struct Arm {
@@ -85,6 +85,23 @@ fn an_answer_that_is_not_prepared_is_computed_all_the_same() {
         arm.answer(Gate::Open);
     }
     assert!(arm.state.dq[0] > 0.0);
+}
+
+/// A reference that lagged by a cycle would pull the hand back.
+#[test]
+fn a_guided_arm_is_answered_from_where_it_is() {
+    let mut arm = Arm::new();
+    let limits = Model::fr3().joint_limits();
+    let guided = Target::Guide(Free::ALL);
+    let goal = Goal::new(GoalId(1), guided, OnArrival::Hold, limits);
+    arm.goals.write(&goal);
+    for cycle in 0..1000 {
+        arm.state.q[0] += if cycle < 10 { 0.0 } else { 1e-3 };
+        let q = arm.state.q;
+        let reference = arm.answer(Gate::Open).trace.reference;
+        arm.session.prepare();
+        assert_eq!(reference.q, JointVector::from(q), "cycle {cycle}");
+    }
 }
 
 #[test]

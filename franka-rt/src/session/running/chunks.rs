@@ -36,7 +36,6 @@ impl RunningSession {
                 before.end(chunks, now);
             }
             self.aim = self.heading();
-            self.replan = false;
             // A goal that had fallen silent was to be held until a newer one.
             if self.is_given_up() {
                 self.standing = Standing::InForce;

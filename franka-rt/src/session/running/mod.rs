@@ -41,8 +41,6 @@ pub(super) struct RunningSession {
     arm: Measured,
     /// For the answer to the next state, once it is prepared.
     next: Option<Next>,
-    /// Whether the course is to be planned anew.
-    replan: bool,
     /// What the leash held in the last answer, if it did.
     held: Option<Held>,
     /// When the goal was first seen, `message_id` of the state.
@@ -152,7 +150,6 @@ impl RunningSession {
                 step: Some(CourseStep::free(reference)),
                 bindings: Bindings::default(),
             }),
-            replan: false,
             held: None,
             since: state.message_id,
             heard: state.message_id,
@@ -233,8 +230,9 @@ impl RunningSession {
             },
         );
         self.fade_gains();
-        self.replan |=
-            goal.budget != before.budget && !matches!(self.stage, GoalStage::Releasing(_));
+        if goal.budget != before.budget && !matches!(self.stage, GoalStage::Releasing(_)) {
+            self.route.outdate();
+        }
     }
 
     /// Starts the fade of gains and force cap to those of the goal.
@@ -256,7 +254,7 @@ impl RunningSession {
     fn turn_to(&mut self, target: Target) {
         self.route.retire_chunk();
         self.aim = target;
-        self.replan = true;
+        self.route.outdate();
     }
 
     /// Prepares the answer to the state `now`, `message_id`: takes up a `newer` goal, if there is
@@ -293,10 +291,8 @@ impl RunningSession {
         );
         bindings.set(Guard::Watchdog, silent);
         bindings.set(Guard::Lead, self.draw_nearer(now));
-        if core::mem::take(&mut self.replan) {
-            let aim = self.aim();
-            self.route.head_for(model, &self.ee, &self.reference, &aim);
-        }
+        let aim = self.aim();
+        self.route.renew(model, &self.ee, &self.reference, &aim);
         let guided = matches!(self.route.course, Course::Guide(_));
         let step = (!guided).then(|| self.advance(model, now, &mut bindings));
         self.next = Some(Next { step, bindings });

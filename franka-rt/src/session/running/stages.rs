@@ -41,9 +41,7 @@ impl RunningSession {
         match &mut self.stage {
             GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                // In the first cycle the course is still to be planned.
-                let done = !self.replan && self.route.is_done();
-                if self.goal.on_arrival != OnArrival::Hold && (done || stalled) {
+                if self.goal.on_arrival != OnArrival::Hold && (self.route.is_done() || stalled) {
                     if stalled && self.route.is_hindered() {
                         self.give_up(Lapse::Blocked);
                     } else if stalled && heading != Target::Rest {
