@@ -11,16 +11,16 @@
 //! M ddq + c = tau - friction + J' f    =>    f - Lambda (J ddq) = -Lambda J M^-1 (tau - friction - c)
 //! ```
 
-use franka_model::{EndEffector, JointVector, Load, Model, OperationalSpace, transform};
+use franka_model::Load;
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{ForceCap, Goal, GoalId, Guard, Lapse, OnArrival, Target, Tolerance};
-use franka_sim::{Arm, Touch, TouchId};
+use franka_sim::{Touch, TouchId};
 use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
-use franka_tests::push::{PUSH, STIFFNESS, hand};
+use franka_tests::push::{ArmInertia, PUSH, STIFFNESS, hand};
 use franka_tests::thorough;
-use nalgebra::{SMatrix, Translation3, Vector3};
+use nalgebra::{Translation3, Vector3};
 
 /// A robot whose collision thresholds tolerate pushes.
 fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
@@ -131,40 +131,6 @@ fn an_arm_held_at_its_leash_pulls_with_no_more_than_the_cap() {
             }
         }
     });
-}
-
-/// The simulated arm's inertia, to compute the part of a push that accelerates it.
-struct ArmInertia {
-    model: &'static Model,
-    load: Load,
-    arm: Arm,
-    ee: EndEffector,
-}
-
-impl ArmInertia {
-    fn of(lockstep: &Lockstep) -> Self {
-        let config = lockstep.robot.config();
-        let f_t_ee = transform::isometry_from_array(&lockstep.robot.state().F_T_EE);
-        Self {
-            model: Model::of(config.kind),
-            load: config.tool.load,
-            arm: config.chosen_arm(),
-            ee: EndEffector {
-                f_t_ee: transform::matrix(&f_t_ee.expect("a rigid frame")),
-                ..EndEffector::default()
-            },
-        }
-    }
-
-    /// The force of a hand at the end effector that accelerates the joints by `ddq`.
-    fn inertial(&self, q: &JointVector, dq: &JointVector, ddq: &JointVector) -> Vector3<f64> {
-        let gravity = &self.arm.body.gravity_earth;
-        let dynamics = self.model.dynamics(q, dq, &self.ee, &self.load, gravity);
-        let mass = dynamics.mass + SMatrix::from_diagonal(&self.arm.drive.felt_inertia());
-        let felt = OperationalSpace::new(&dynamics.jacobian, &mass).expect("positive definite");
-        let acceleration = (dynamics.jacobian * ddq).xyz();
-        felt.translational_inertia().expect("regular") * acceleration
-    }
 }
 
 /// Forces of a push, `[N]`.

@@ -1,23 +1,46 @@
-//! Holds of arms that stick: how far from its target an arm rests after steps of 5 cm.
+//! Arms that stick: how far from its target an arm rests after steps of 5 cm, how it holds, and
+//! what a person feels who pushes it.
 
 use franka_model::RobotKind;
-use franka_rt::session::OnArrival;
-use franka_sim::Config;
+use franka_proto::{CollisionBehavior, Request};
+use franka_rt::law::Gains;
+use franka_rt::session::{Goal, OnArrival};
 use franka_sim::arm::{Arm, Family};
+use franka_sim::{Config, Touch};
 use franka_tests::lockstep::Lockstep;
+use franka_tests::push::{PUSH, STIFFNESS, hand};
 use nalgebra::{Translation3, Vector3};
 
 /// The time from the start of a step to the reading, `[ms]`.
 const HOLD: u64 = 1200;
 
-/// Distances from the target in the holds of sixteen steps along the axes, in increasing order,
-/// `[m]`.
-fn holds(arm: Arm, seed: u64) -> Vec<f64> {
-    let mut lockstep = Lockstep::new(Config {
+/// An FER of the realistic family.
+fn sticking(seed: u64) -> Lockstep {
+    of(
+        Arm::sample(RobotKind::Fer, seed, &Family::realistic()),
+        seed,
+    )
+}
+
+fn of(arm: Arm, seed: u64) -> Lockstep {
+    Lockstep::new(Config {
         arm: Some(arm),
         seed,
         ..Lockstep::config_of(RobotKind::Fer)
-    });
+    })
+}
+
+/// One that a push does not stop.
+fn tolerant(mut lockstep: Lockstep) -> Lockstep {
+    let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
+    lockstep.request(&Request::SetCollisionBehavior(tolerant));
+    lockstep.run(5);
+    lockstep
+}
+
+/// Distances from the target in the holds of sixteen steps along the axes, in increasing order,
+/// `[m]`.
+fn holds(mut lockstep: Lockstep, gains: Gains) -> Vec<f64> {
     let engaged = lockstep.engage();
     let home = lockstep.arm_pose();
     let ways = [Vector3::x(), Vector3::y(), -Vector3::z(), -Vector3::x()];
@@ -28,7 +51,11 @@ fn holds(arm: Arm, seed: u64) -> Vec<f64> {
             _ => Vector3::zeros(),
         };
         let target = Translation3::from(away) * home;
-        let goal = lockstep.within(engaged, target.into(), OnArrival::Hold);
+        let goal = Goal {
+            gains,
+            ..lockstep.goal(target.into(), OnArrival::Hold)
+        };
+        let goal = lockstep.submit_within(engaged, goal);
         goal.expect("within reach");
         lockstep.run(HOLD);
         let off = lockstep.arm_pose().translation.vector - target.translation.vector;
@@ -39,28 +66,254 @@ fn holds(arm: Arm, seed: u64) -> Vec<f64> {
     errors
 }
 
-#[test]
-fn realistic_arms_rest_millimetres_from_their_targets_and_ideal_ones_do_not() {
-    let mut medians: Vec<f64> = (0..10)
+/// Medians over arms of the median and of the greatest distance in their holds, `[m]`.
+fn medians(gains: Gains) -> (f64, f64) {
+    let all: Vec<[f64; 2]> = (0..10)
         .map(|seed| {
-            let errors = holds(
-                Arm::sample(RobotKind::Fer, seed, &Family::realistic()),
-                seed,
-            );
-            let (median, most) = (errors[errors.len() / 2], errors[errors.len() - 1]);
+            let errors = holds(sticking(seed), gains);
+            let [median, most] = [errors[errors.len() / 2], errors[errors.len() - 1]];
             println!(
                 "seed {seed}: {:.2} mm, at most {:.2} mm",
                 median * 1e3,
                 most * 1e3
             );
-            median
+            [median, most]
         })
         .collect();
-    medians.sort_by(f64::total_cmp);
-    // Two robots under a law of 750 N/m rested 2.8 and 4.6 mm off: these stick somewhat more (the
-    // book, real-arm.md).
-    let median = (medians[4] + medians[5]) / 2.0;
-    assert!((2e-3..5e-3).contains(&median), "{medians:?}");
-    let ideal = holds(Arm::ideal(RobotKind::Fer), 1);
-    assert!(ideal[15] < 1e-3, "{ideal:?}");
+    let middle = |of: usize| {
+        let mut each: Vec<f64> = all.iter().map(|one| one[of]).collect();
+        each.sort_by(f64::total_cmp);
+        (each[4] + each[5]) / 2.0
+    };
+    (middle(0), middle(1))
+}
+
+#[test]
+fn realistic_arms_rest_millimetres_away_by_their_springs_alone_and_at_the_target_otherwise() {
+    // Two robots under such a law rested 2.8 and 4.6 mm off: these stick somewhat more (the book,
+    // real-arm.md), and what is fed forward for the inertia of their rotors lets them swing on
+    // less.
+    let published = Gains {
+        feedforward: 1.0,
+        ..Gains::droid()
+    };
+    let (median, _) = medians(published);
+    assert!((2e-3..6.5e-3).contains(&median), "{median}");
+    let (median, most) = medians(Gains::cartesian());
+    // The first steps know nothing of the arm.
+    assert!(median < 0.5e-3 && most < 2.0e-3, "{median} {most}");
+    for gains in [
+        Gains::cartesian(),
+        Gains::cartesian().without_compensation(),
+    ] {
+        let ideal = holds(of(Arm::ideal(RobotKind::Fer), 1), gains);
+        assert!(ideal[15] < 1e-3, "{ideal:?}");
+    }
+}
+
+#[test]
+fn an_arm_that_sticks_is_held_without_hunting() {
+    for arm in [
+        Arm::realistic(RobotKind::Fer),
+        Arm::bad(RobotKind::Fer),
+        Arm::sample(RobotKind::Fer, 3, &Family::bad()),
+    ] {
+        let mut lockstep = of(arm, 7);
+        let engaged = lockstep.engage();
+        let target = Translation3::new(0.05, -0.03, 0.04) * lockstep.arm_pose();
+        let goal = lockstep.within(engaged, target.into(), OnArrival::ReportAndHold);
+        let goal = goal.expect("within reach");
+        lockstep.until_resolved(goal, 5000).expect("it arrives");
+        // The integral comes to its end: up to two seconds on bad arms.
+        lockstep.run(3000);
+        let first = lockstep.arm_pose().translation.vector;
+        let (mut least, mut most) = (first, first);
+        for _ in 0..9000 {
+            lockstep.tick();
+            let at = lockstep.arm_pose().translation.vector;
+            (least, most) = (least.inf(&at), most.sup(&at));
+        }
+        let moved = (most - least).norm();
+        println!("{:.4} mm", moved * 1e3);
+        assert!(moved < 0.1e-3, "{moved} m");
+    }
+}
+
+/// The hand holds the arm back for four seconds after the push, in which nothing may wind up.
+#[test]
+fn an_arm_that_was_held_back_comes_home_without_a_kick() {
+    for seed in 0..4 {
+        let mut lockstep = tolerant(sticking(seed));
+        let engaged = lockstep.engage();
+        let home = lockstep.arm_pose();
+        let away = Translation3::new(0.0, 0.05, 0.0) * home;
+        for target in [away, home] {
+            let goal = lockstep.within(engaged, target.into(), OnArrival::ReportAndHold);
+            let goal = goal.expect("within reach");
+            lockstep.until_resolved(goal, 5000).expect("it arrives");
+        }
+        for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
+            let from = lockstep.arm_pose().translation.vector;
+            let last = PUSH as f64 * 1e-3;
+            let path = move |t: f64| from + way * hand(t.min(last)) / 3.0;
+            let push = lockstep.robot.touch(Touch::carry(path, STIFFNESS));
+            let mut felt = 0.0_f64;
+            for cycle in 0..PUSH + 4000 {
+                lockstep.tick();
+                if cycle > PUSH + 1000 {
+                    let force = lockstep.robot.felt(push).expect("it has not ended");
+                    felt = felt.max(force.fixed_rows::<3>(0).norm());
+                }
+            }
+            lockstep.robot.release(push);
+            let mut beyond = 0.0_f64;
+            for _ in 0..3000 {
+                lockstep.tick();
+                let off = lockstep.arm_pose().translation.vector - home.translation.vector;
+                beyond = beyond.max(-off.dot(&way));
+            }
+            println!("seed {seed}: {felt:.1} N, {:.2} mm beyond", beyond * 1e3);
+            // The cap, and what friction adds at the end effector.
+            assert!(felt < 38.0, "{felt} N");
+            assert!(beyond < 5e-3, "{beyond} m");
+        }
+    }
+}
+
+/// A hand that moves the end effector so far away at 2 cm/s, holds it there until 5 s are over, and
+/// lets go. Returns the greatest force that it meets, the mean over its last second, `[N]`, and how
+/// far the arm swings beyond its target, `[m]`.
+fn slow_push(arm: Arm, way: Vector3<f64>, distance: f64, gains: Gains) -> [f64; 3] {
+    let mut lockstep = tolerant(of(arm, 3));
+    let engaged = lockstep.engage();
+    let home = lockstep.arm_pose();
+    let far = Translation3::new(0.03, 0.05, 0.02) * home;
+    for target in [far, home, far, home] {
+        let goal = Goal {
+            gains,
+            ..lockstep.goal(target.into(), OnArrival::Hold)
+        };
+        let goal = lockstep.submit_within(engaged, goal);
+        goal.expect("within reach");
+        lockstep.run(2000);
+    }
+    let from = lockstep.arm_pose().translation.vector;
+    let path = move |t: f64| from + way * (0.02 * t).min(distance);
+    let push = lockstep.robot.touch(Touch::carry(path, STIFFNESS));
+    let (mut most, mut last) = (0.0_f64, 0.0);
+    for cycle in 0..5000 {
+        lockstep.tick();
+        let force = lockstep.robot.felt(push).expect("it has not ended");
+        let force = force.fixed_rows::<3>(0).norm();
+        most = most.max(force);
+        last += if cycle >= 4000 { force / 1000.0 } else { 0.0 };
+    }
+    lockstep.robot.release(push);
+    let mut beyond = 0.0_f64;
+    for _ in 0..3000 {
+        lockstep.tick();
+        let off = lockstep.arm_pose().translation.vector - home.translation.vector;
+        beyond = beyond.max(-off.dot(&way));
+    }
+    assert_eq!(lockstep.client.outcome(engaged), None);
+    [most, last, beyond]
+}
+
+/// A push within what friction may take cannot be told from friction, and the integral answers it.
+#[test]
+fn a_slow_push_meets_little_more_with_compensation_than_without() {
+    let realistic = (0..3).map(|seed| Arm::sample(RobotKind::Fer, seed, &Family::realistic()));
+    for arm in realistic.chain([Arm::ideal(RobotKind::Fer)]) {
+        for (distance, more) in [(0.008, 2.0), (0.015, 2.0), (0.06, 1.0)] {
+            for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
+                let springs = Gains::cartesian().without_compensation();
+                let [most, last, _] = slow_push(arm.clone(), way, distance, springs);
+                let compensated = Gains::cartesian();
+                let [felt, held, beyond] = slow_push(arm.clone(), way, distance, compensated);
+                println!(
+                    "{distance}: {felt:.1} N for {most:.1}, {held:.1} N for {last:.1}, {:.2} mm",
+                    beyond * 1e3
+                );
+                assert!(felt < most + more, "{felt} N for {most} N");
+                assert!(held < last + more, "{held} N for {last} N");
+                assert!(beyond < 5e-3, "{beyond} m");
+            }
+        }
+    }
+}
+
+/// A block that stops the arm short of its target for four seconds, before it has come to rest.
+#[test]
+fn an_arm_that_was_stopped_on_its_way_comes_home_without_a_kick() {
+    let realistic = (0..3).map(|seed| Arm::sample(RobotKind::Fer, seed, &Family::realistic()));
+    for arm in realistic.chain([Arm::ideal(RobotKind::Fer), Arm::bad(RobotKind::Fer)]) {
+        for short in [0.003, 0.01, 0.03] {
+            let mut lockstep = tolerant(of(arm.clone(), 3));
+            let engaged = lockstep.engage();
+            let home = lockstep.arm_pose();
+            for away in [0.05, 0.0, 0.05, 0.0] {
+                let target = Translation3::new(0.0, away, 0.0) * home;
+                let goal = lockstep.within(engaged, target.into(), OnArrival::Hold);
+                goal.expect("within reach");
+                lockstep.run(2000);
+            }
+            let from = lockstep.arm_pose().translation.vector;
+            let stop = from + Vector3::y() * (0.05 - short);
+            let target = Translation3::new(0.0, 0.05, 0.0) * home;
+            let goal = lockstep.within(engaged, target.into(), OnArrival::Hold);
+            goal.expect("within reach");
+            // Once it is there, something holds it.
+            let mut block = None;
+            let mut felt = 0.0_f64;
+            for cycle in 0..5000 {
+                lockstep.tick();
+                let at = lockstep.arm_pose().translation.vector;
+                if block.is_none() && at.y >= stop.y {
+                    block = Some(lockstep.robot.touch(Touch::carry(move |_| at, STIFFNESS)));
+                }
+                if let Some(block) = block.filter(|_| cycle > 1000) {
+                    let force = lockstep.robot.felt(block).expect("it has not ended");
+                    felt = felt.max(force.fixed_rows::<3>(0).norm());
+                }
+            }
+            lockstep.robot.release(block.expect("it came by"));
+            let mut beyond = 0.0_f64;
+            for _ in 0..3000 {
+                lockstep.tick();
+                let off = lockstep.arm_pose().translation.vector - target.translation.vector;
+                beyond = beyond.max(off.y);
+            }
+            println!("{short}: {felt:.1} N, {:.2} mm beyond", beyond * 1e3);
+            assert!(felt < 38.0, "{felt} N");
+            assert!(beyond < 5e-3, "{beyond} m");
+        }
+    }
+}
+
+/// Each step is a motion of its own.
+#[test]
+fn what_one_motion_learns_of_an_arm_is_there_for_the_next() {
+    let mut lockstep = sticking(2);
+    let home = lockstep.arm_pose();
+    let mut lags = Vec::new();
+    for step in 0..8 {
+        let away = [0.05, 0.0][step % 2];
+        let target = Translation3::new(0.0, away, 0.0) * home;
+        let goal = lockstep.goal(target.into(), OnArrival::ReportAndFinish);
+        let goal = lockstep.submit(goal).expect("within reach");
+        let mut lag = 0.0_f64;
+        while lockstep.client.outcome(goal).is_none() {
+            lockstep.tick();
+            if lockstep.client.record.goal == goal.0 {
+                let off = lockstep.arm_pose().translation.vector
+                    - lockstep.reference_pose().translation.vector;
+                lag = lag.max(off.norm());
+            }
+        }
+        lockstep.until_resolved(goal, 1).expect("it arrives");
+        lockstep.until_idle(1000);
+        lags.push(lag);
+    }
+    println!("{lags:?}");
+    assert!(lags[7] < 0.6 * lags[0], "{lags:?}");
 }

@@ -8,7 +8,7 @@
 //! | [`cycle_counts`] | cycles, calls and success rates that a control function counts |
 //! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
 //! | [`mishaps`] | networks with one kind of fault each |
-//! | [`push`] | the path of a hand that pushes an arm |
+//! | [`push`] | a hand that pushes an arm, and the inertia that it meets |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
 use std::time::Duration;

@@ -27,7 +27,7 @@ pub use franka_rt::driver::LinkTimeoutError;
 pub use franka_rt::law::GainError;
 pub use franka_rt::lifecycle::{CloseReason, ControlError, MotionError, Party, Stage};
 pub use franka_rt::sched::SchedError;
-pub use franka_rt::session::{ChunkError, GoalError, Lapse, PoseError, TooManyChunks};
+pub use franka_rt::session::{ChunkError, GoalError, Lapse, PoseError, Shortfall, TooManyChunks};
 pub use franka_rt::shaping::InvalidCommand;
 pub use franka_rt::thread::{BorrowError, LinkFault, WriteFault};
 pub use franka_rt::together::StartFault;

@@ -82,12 +82,14 @@ impl Program {
                 let Trace {
                     goal,
                     reference,
+                    compensation,
                     bindings,
                 } = step.trace;
                 record.goal = goal.0;
                 record.q_ref = reference.q.into();
                 record.dq_ref = reference.dq.into();
                 record.ddq_ref = reference.ddq.into();
+                record.compensation = compensation.into();
                 record.bindings = bindings;
                 let command = match step.answer {
                     SessionCommand::Torques(torques) => Ok(Command::torques(version, torques)),

@@ -40,6 +40,9 @@ pub struct Record {
     pub ddq_ref: [f64; 7],
     /// Commanded joint torques without gravity and friction, `[N m]`.
     pub tau_c: [f64; 7],
+    /// Part of it that compensates friction and bias, before the guards, `[N m]`; zero outside
+    /// target control.
+    pub compensation: [f64; 7],
     /// Which guards bound the command.
     pub bindings: Bindings,
     /// From when the state was due to when the thread had it: see

@@ -23,6 +23,7 @@ pub(crate) struct BlendedGains {
     pub(crate) operational: f64,
     /// One over the force cap, `[1/N]`: 0 without one, which no other number continues to.
     pub(crate) inverse_force_cap: f64,
+    pub(crate) compensation: [f64; 7],
 }
 
 impl BlendedGains {
@@ -43,6 +44,7 @@ impl BlendedGains {
             projection: f64::from(u8::from(operational || gains.project_joint_gains)),
             operational: f64::from(u8::from(operational)),
             inverse_force_cap: force_cap.map_or(0.0, f64::recip),
+            compensation: gains.compensation,
         }
     }
 
@@ -74,6 +76,7 @@ impl BlendedGains {
             projection: mix(self.projection, other.projection),
             operational: mix(self.operational, other.operational),
             inverse_force_cap: mix(self.inverse_force_cap, other.inverse_force_cap),
+            compensation: each!(compensation),
         }
     }
 }

@@ -43,6 +43,9 @@ pub struct Gains {
     /// where they move the elbow but do not push at the hand. [`Law::OperationalSpace`] always does
     /// this.
     pub project_joint_gains: bool,
+    /// The most that friction and bias of a joint are compensated by, `[N m]`; zero for none. The
+    /// springs alone leave an arm that sticks millimetres from its target.
+    pub compensation: [f64; 7],
 }
 
 /// A gain out of its bounds.
@@ -73,13 +76,14 @@ impl Gains {
         feedforward: 0.0,
         feedforward_cutoff: 1.0,
         project_joint_gains: false,
+        compensation: [0.0; 7],
     };
 
     /// The most of each number that [`check`](Self::check) accepts.
     ///
     /// Stiffness at the end effector: the bounds of the robot's own impedance commands, 3000 N/m
     /// and 300 N m/rad. Joints and damping: ten times the stiff preset. All of it on every axis at
-    /// once has not been tried on hardware.
+    /// once has not been tried on hardware. Compensation: twice the default and more.
     pub const MOST: Self = Self {
         law: Law::OperationalSpace,
         cartesian_stiffness: [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0],
@@ -89,47 +93,67 @@ impl Gains {
         feedforward: 1.0,
         feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
         project_joint_gains: true,
+        compensation: [10.0, 10.0, 10.0, 10.0, 5.0, 5.0, 5.0],
     };
 
-    /// How many numbers [`to_array`](Self::to_array) gives.
-    pub(crate) const NUMBERS: usize = 30;
+    /// The default of [`compensation`](Self::compensation): the friction of the worst simulated
+    /// arms (`franka_sim::arm::Family::bad`), and as much as half a kilogram that is not declared
+    /// and their torque sensors take.
+    pub const COMPENSATION: [f64; 7] = [5.0, 6.0, 5.0, 7.0, 4.0, 4.0, 2.0];
 
-    /// Compliant at the end effector: 750 N/m and 15 N m/rad, with light joint springs that keep
-    /// the elbow.
+    /// How many numbers [`to_array`](Self::to_array) gives.
+    pub(crate) const NUMBERS: usize = 37;
+
+    /// Compliant at the end effector: 750 N/m and 60 N m/rad, with light joint springs that keep
+    /// the elbow. A softer wrist slips by several milliradians when it breaks away.
     pub const fn cartesian() -> Self {
         Self {
             law: Law::Hybrid,
-            cartesian_stiffness: [750.0, 750.0, 750.0, 15.0, 15.0, 15.0],
-            cartesian_damping: [50.0, 50.0, 90.0, 2.0, 2.0, 2.0],
+            cartesian_stiffness: [750.0, 750.0, 750.0, 60.0, 60.0, 60.0],
+            cartesian_damping: [50.0, 50.0, 90.0, 3.0, 3.0, 3.0],
             joint_stiffness: [40.0, 30.0, 50.0, 25.0, 35.0, 25.0, 10.0],
             joint_damping: [4.0, 6.0, 5.0, 5.0, 3.0, 2.0, 1.0],
             feedforward: 1.0,
             feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
             project_joint_gains: false,
+            compensation: Self::COMPENSATION,
         }
     }
 
-    /// As compliant, with the lighter damping of the DROID platform and without feedforward: for a
-    /// policy that was trained on its data.
+    /// As compliant, with the softer wrist and the lighter damping of the DROID platform, without
+    /// feedforward and compensation: for a policy that was trained on its data.
     pub const fn droid() -> Self {
         Self {
+            cartesian_stiffness: [750.0, 750.0, 750.0, 15.0, 15.0, 15.0],
             cartesian_damping: [37.0, 37.0, 37.0, 2.0, 2.0, 2.0],
             feedforward: 0.0,
+            compensation: [0.0; 7],
             ..Self::cartesian()
         }
     }
 
-    /// Stiff joints, no spring at the end effector.
+    /// Stiff joints, no spring at the end effector. More damping begins to oscillate on arms whose
+    /// torques lag by 10 ms.
     pub const fn joint() -> Self {
         Self {
             law: Law::Hybrid,
             cartesian_stiffness: [0.0; 6],
             cartesian_damping: [0.0; 6],
-            joint_stiffness: [600.0, 600.0, 600.0, 600.0, 250.0, 150.0, 50.0],
-            joint_damping: [50.0, 50.0, 50.0, 50.0, 30.0, 25.0, 15.0],
+            joint_stiffness: [300.0, 300.0, 300.0, 300.0, 125.0, 75.0, 25.0],
+            joint_damping: [20.0, 20.0, 20.0, 20.0, 12.0, 10.0, 6.0],
             feedforward: 1.0,
             feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
             project_joint_gains: false,
+            compensation: Self::COMPENSATION,
+        }
+    }
+
+    /// The same gains, friction and bias left to the springs.
+    #[must_use]
+    pub const fn without_compensation(self) -> Self {
+        Self {
+            compensation: [0.0; 7],
+            ..self
         }
     }
 
@@ -169,6 +193,7 @@ impl Gains {
                     12..19 => ("joint stiffness", i - 12),
                     19..26 => ("joint damping", i - 19),
                     26 => ("feedforward weight", 0),
+                    30.. => ("compensation", i - 30),
                     _ => ("feedforward cutoff frequency", 0),
                 };
                 return Err(GainError {
@@ -183,7 +208,7 @@ impl Gains {
         Ok(())
     }
 
-    /// Everything as numbers, springs and dampers first, choices last.
+    /// Everything as numbers, springs and dampers first, then choices and compensation.
     pub(crate) fn to_array(self) -> [f64; Self::NUMBERS] {
         let mut all = [0.0; Self::NUMBERS];
         all[..6].copy_from_slice(&self.cartesian_stiffness);
@@ -194,6 +219,7 @@ impl Gains {
         all[27] = self.feedforward_cutoff;
         all[28] = f64::from(u8::from(self.project_joint_gains));
         all[29] = f64::from(u8::from(self.law == Law::OperationalSpace));
+        all[30..].copy_from_slice(&self.compensation);
         all
     }
 
@@ -211,6 +237,7 @@ impl Gains {
             } else {
                 Law::OperationalSpace
             },
+            compensation: core::array::from_fn(|i| all[30 + i]),
         }
     }
 }
@@ -222,8 +249,8 @@ mod tests {
     #[test]
     fn another_stiffness_keeps_the_damping_ratio() {
         let soft =
-            Gains::cartesian().with_cartesian_stiffness([187.5, 750.0, 750.0, 15.0, 15.0, 60.0]);
-        assert_eq!(soft.cartesian_damping, [25.0, 50.0, 90.0, 2.0, 2.0, 4.0]);
+            Gains::cartesian().with_cartesian_stiffness([187.5, 750.0, 750.0, 15.0, 60.0, 240.0]);
+        assert_eq!(soft.cartesian_damping, [25.0, 50.0, 90.0, 1.5, 3.0, 6.0]);
         let from_joints = Gains::joint().with_cartesian_stiffness([750.0; 6]);
         assert_eq!(from_joints.cartesian_damping[0], 50.0);
     }
@@ -246,6 +273,10 @@ mod tests {
         gains = Gains::droid();
         gains.feedforward = -0.1;
         assert_eq!(gains.check().unwrap_err().what, "feedforward weight");
+        gains = Gains::droid();
+        gains.compensation[3] = -1.0;
+        let error = gains.check().unwrap_err();
+        assert_eq!((error.what, error.axis), ("compensation", 3));
         gains = Gains::droid();
         gains.feedforward_cutoff = 0.0;
         assert_eq!(

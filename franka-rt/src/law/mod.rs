@@ -3,12 +3,14 @@
 //! ```text
 //! Gains -> GainFade -> BlendedGains --+-> wrench at the end effector: hybrid or operational -> J' --+
 //! errors of q and dq -----------------+-> springs and dampers of the joints -> null space ---------+-> Interaction
+//! springs, dq_ref ----------------------> Compensation of friction and bias
 //! ```
 //!
 //! [`Gains`] are what a goal asks for. `gain_fade` has the same in numbers, where a choice is a
 //! weight, so that the way from one to the next is continuous. `interaction` makes torques of them
 //! by either law; the two differ in the wrench at the end effector and in where the springs of the
-//! joints act. What bounds these torques are guards of the session.
+//! joints act. `compensation` adds what springs cannot do on an arm that sticks or carries what it
+//! does not know of. What bounds these torques are guards of the session.
 //!
 //! # The hybrid law
 //!
@@ -20,13 +22,14 @@
 //! ```
 //!
 //! With the reference in joint space the spring at the end effector needs no pose error of its own:
-//! `J (q_ref - q)` is that error to first order, and the leash keeps it small. Gravity and friction
-//! are compensated by the robot.
+//! `J (q_ref - q)` is that error to first order, and the leash keeps it small. Gravity is
+//! compensated by the robot, and friction in part.
 //!
 //! `g` and the low-pass on `dq_ref` are [`Gains::feedforward`] and its cutoff. With
 //! [`Gains::project_joint_gains`] the torques of `Kq` and `Kqd` pass through the null-space
 //! projection of the [operational-space law](operational) first.
 
+pub(crate) mod compensation;
 pub(crate) mod gain_fade;
 mod gains;
 pub(crate) mod interaction;

@@ -7,7 +7,7 @@ use franka_proto::Request;
 use super::current_motion::{CommandSide, ThreadSide, Work};
 use super::outcome::{Counted, Outcome};
 use super::{Lifecycle, LifecyclePhase, MotionError, MotionReport, NewMotion, Output};
-use crate::driver::{Ended, Ending};
+use crate::driver::{Ended, Ending, Program};
 use crate::session::{GoalId, OnArrival, Target};
 
 /// Why no motion begins: the one before was given up, and does not end.
@@ -19,6 +19,9 @@ pub(super) const STILL_SHOWN: MotionError = MotionError::Protocol {
 impl Lifecycle {
     /// Takes note that a motion is over for the thread.
     pub(super) fn on_ended(&mut self, ended: Ended, now: Duration) {
+        if let Program::Target(session) = &ended.program {
+            self.learned = session.learned();
+        }
         match &mut self.phase {
             LifecyclePhase::UnderWay(current) if current.motion == ended.motion => {
                 current.thread = ThreadSide::Ended(ended);

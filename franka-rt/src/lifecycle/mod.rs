@@ -46,6 +46,7 @@ use franka_model::Model;
 use franka_proto::{Request, Version};
 
 use crate::driver::{ControlLog, MotionId, Order};
+use crate::law::compensation::Learned;
 use crate::session::{GoalId, KeepOut};
 
 use current_motion::CurrentMotion;
@@ -104,6 +105,8 @@ pub struct Lifecycle {
     log_size: usize,
     /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,
+    /// What sessions have learned of the arm.
+    learned: Learned,
     outputs: VecDeque<Output>,
 }
 
@@ -152,6 +155,7 @@ impl Lifecycle {
             motions: 0,
             log_size: ControlLog::DEFAULT_CAPACITY,
             keep_out: KeepOut::default(),
+            learned: Learned::default(),
             outputs: VecDeque::new(),
         }
     }

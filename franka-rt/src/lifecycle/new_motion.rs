@@ -209,8 +209,9 @@ impl Lifecycle {
     ) {
         let (mut slot, reader) = slot::slot();
         slot.write(&goal);
-        let mut session =
-            TargetSession::new(self.model.clone(), self.version, reader).out_of(self.keep_out);
+        let mut session = TargetSession::new(self.model.clone(), self.version, reader)
+            .out_of(self.keep_out)
+            .knowing(self.learned);
         let mut goals = Goals::new(goal, slot);
         let mut observer = None;
         if let Some(engagement) = engagement {

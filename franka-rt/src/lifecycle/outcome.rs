@@ -9,7 +9,7 @@ use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, St
 
 use super::CloseReason;
 use crate::driver::{Commander, ControlLog, Ended};
-use crate::session::{GoalError, Lapse, PoseError};
+use crate::session::{GoalError, Lapse, PoseError, Shortfall};
 use crate::shaping::InvalidCommand;
 use crate::stats::{CycleTimes, MotionStatistics, MotionTimes, Quantiles, Slack};
 use crate::together::StartFault;
@@ -154,11 +154,9 @@ pub enum MotionError {
     /// Robot or surroundings: the reference reached the target and the arm did not follow. It rests
     /// where it is.
     #[error(
-        "the arm came to rest {:.1} mm and {:.1} mrad from the target: something holds it, or its load differs from \
-         the one declared",
-        .0.translation * 1e3, .0.rotation * 1e3
+        "the arm came to rest {0}: something holds it, or its load differs from the one declared"
     )]
-    TargetNotReached(PoseError),
+    TargetNotReached(Shortfall),
     /// Link: the robot fell silent.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {

@@ -2,16 +2,18 @@
 //! accepts.
 //!
 //! ```text
-//! springs and dampers -> clamp -> force cap -> + coriolis + M ddq_ref -> velocity barrier -> robot's range -> low-pass -> rate
+//! springs, dampers, compensation -> clamp -> force cap -> + coriolis + M ddq_ref -> velocity barrier -> robot's range -> low-pass -> rate
 //! ```
 
 use franka_model::limits::JointLimits;
-use franka_model::{Dynamics, JointVector};
+use franka_model::{Dynamics, Jacobian, JointVector, MassMatrix, Wrench};
 use franka_proto::RobotState;
+use nalgebra::Matrix6;
 
+use crate::law::compensation::{Compensation, Demand, Learned};
 use crate::law::gain_fade::{BlendedGains, GainFade};
 use crate::law::interaction::Interaction;
-use crate::law::task_space::TaskSpace;
+use crate::law::task_space::{ROTORS, TaskSpace};
 use crate::session::guard::torque_clamp::{TORQUE_CLAMP, clamp};
 use crate::session::guard::torque_rate::limit_rate;
 use crate::session::guard::{force_cap, velocity_barrier};
@@ -26,6 +28,14 @@ pub(super) struct Effort {
     /// Reference velocity behind its low-pass, `[rad/s]`.
     feedforward: JointVector,
     inertia: Inertia,
+    compensation: Compensation,
+    /// What it came to in the last cycle, `[N m]`.
+    compensated: JointVector,
+    /// Torques of springs, dampers and compensation in the last cycle, behind clamp and force cap,
+    /// `[N m]`.
+    interaction: JointVector,
+    /// Whether clamp or force cap bound in the last cycle.
+    bound: bool,
 }
 
 /// The acceleration that is fed forward as a torque.
@@ -56,6 +66,9 @@ impl Inertia {
     }
 }
 
+/// Keeps the wrench finite at a singular posture, `[m^2]`.
+const SINGULAR: f64 = 1e-6;
+
 /// Cycles of a free reference after which its whole acceleration counts again.
 const RETURN: u32 = 300;
 
@@ -73,7 +86,39 @@ impl Effort {
                 acceleration: JointVector::zeros(),
                 free: RETURN,
             },
+            compensation: Compensation::new(Learned::default()),
+            compensated: JointVector::zeros(),
+            interaction: JointVector::zeros(),
+            bound: false,
         }
+    }
+
+    /// Takes what is known of the arm.
+    pub(super) fn know(&mut self, learned: Learned) {
+        self.compensation = Compensation::new(learned);
+    }
+
+    /// What was learned of the arm.
+    pub(super) fn learned(&self) -> Learned {
+        self.compensation.learned()
+    }
+
+    /// What friction and bias were compensated by in the last cycle, `[N m]`.
+    pub(super) fn compensated(&self) -> JointVector {
+        self.compensated
+    }
+
+    /// With what the torques of the last cycle pull at the end effector of an arm at rest: the
+    /// wrench that comes nearest to them, `[N, N m]`.
+    pub(super) fn pull(&self, jacobian: &Jacobian) -> Wrench {
+        let damped = jacobian * jacobian.transpose() + Matrix6::identity() * SINGULAR;
+        let pull = jacobian * self.interaction;
+        damped.cholesky().map_or(pull, |factor| factor.solve(&pull))
+    }
+
+    /// Whether the compensation still grows, to move a joint that rests away from its target.
+    pub(super) fn is_working(&self) -> bool {
+        self.compensation.is_working()
     }
 
     /// Starts the fade to the gains and the force cap of another goal.
@@ -83,13 +128,14 @@ impl Effort {
     }
 
     /// The torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
-    /// velocities.
+    /// velocities. A motion that is `ending` gets rid of what is compensated.
     pub(super) fn step(
         &mut self,
         reference: &Reference,
         state: &RobotState,
         dynamics: &Dynamics,
         limits: &JointLimits,
+        ending: bool,
         bindings: &mut Bindings,
     ) -> JointVector {
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
@@ -105,7 +151,20 @@ impl Effort {
         let feedforward = self.feedforward * tuning.feedforward;
         let springs = Interaction::springs(&tuning, jacobian, space.as_ref());
         let dampers = Interaction::dampers(&tuning, jacobian, space.as_ref());
-        let springs = springs.torques(&(reference.q - q));
+        let error = reference.q - q;
+        let springs = springs.torques(&error);
+        let leashed = bindings.contains(Guard::Leash);
+        self.compensated = self.compensation.step(&Demand {
+            dq_ref: &reference.dq,
+            ddq_ref: &reference.ddq,
+            dq: &dq,
+            error: &error,
+            springs: &springs,
+            bounds: &tuning.compensation,
+            held: self.bound || leashed,
+            ending,
+        });
+        let springs = springs + self.compensated;
         let dampers = dampers.torques(&(feedforward - dq));
         let (tau, clamped) = clamp(&(springs + dampers), &most);
         let (tau, capped) = match (tuning.force_cap(), &space) {
@@ -116,11 +175,13 @@ impl Effort {
             }
             _ => (tau, false),
         };
+        self.bound = clamped || capped;
+        self.interaction = tau;
         // The torques of the motion itself are added after clamp and cap, which bound the
         // interaction.
-        let leashed = bindings.contains(Guard::Leash);
         let acceleration = self.inertia.step(&reference.ddq, leashed);
-        let inertial = dynamics.mass * (acceleration * tuning.feedforward);
+        let mass = dynamics.mass + MassMatrix::from_diagonal(&ROTORS.into());
+        let inertial = mass * (acceleration * tuning.feedforward);
         let tau = tau + dynamics.coriolis + inertial;
         let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &most);
         let (tau, full) = clamp(&tau, &limits.torque);

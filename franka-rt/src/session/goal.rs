@@ -93,11 +93,11 @@ pub struct Tolerance {
 }
 
 impl Default for Tolerance {
-    /// 1 mm and 1 mrad.
+    /// 1 mm and 3 mrad.
     fn default() -> Self {
         Self {
             translation: 1e-3,
-            rotation: 1e-3,
+            rotation: 3e-3,
         }
     }
 }

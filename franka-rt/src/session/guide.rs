@@ -19,7 +19,7 @@ const SQUARED_DAMPING: f64 = 1e-4;
 
 impl Gains {
     /// For hand guiding: springs at the end effector as by [`Self::cartesian`] on the axes that are
-    /// not free, and a light damping of the joints.
+    /// not free, and a light damping of the joints. Nothing is compensated.
     pub fn guiding(free: Free) -> Self {
         let preset = Self::cartesian();
         let locked =
@@ -28,6 +28,7 @@ impl Gains {
             cartesian_stiffness: locked(preset.cartesian_stiffness),
             cartesian_damping: locked(preset.cartesian_damping),
             joint_damping: [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5],
+            compensation: [0.0; 7],
             ..preset
         }
     }

@@ -10,7 +10,8 @@ use crate::session::{Settlement, Tolerance};
 /// Joint velocity below which the arm counts as resting, `[rad/s]`.
 pub(super) const REST_VELOCITY: f64 = 0.01;
 
-/// Time that the arm gets to settle once its reference has arrived.
+/// Longest time that the arm gets to settle once its reference has arrived. One that makes no
+/// progress is given up earlier.
 pub const SETTLE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Cycles that the arm has to stay at the target and at rest: a swing through the target does not
@@ -19,6 +20,12 @@ const HOLD_AT_TARGET: u64 = 250;
 
 /// The same for coming to rest without a target.
 const HOLD_AT_REST: u64 = 100;
+
+/// Cycles without progress after which an arm at rest is short of its target for certain.
+const STUCK: u64 = 500;
+
+/// What counts as progress, as a part of the tolerance.
+const PROGRESS: f64 = 0.02;
 
 /// Cycles over which the spring is let go.
 const RELEASE: u32 = 100;
@@ -46,7 +53,47 @@ impl PoseError {
     }
 
     fn within(&self, tolerance: &Tolerance) -> bool {
-        self.translation <= tolerance.translation && self.rotation <= tolerance.rotation
+        self.in_parts_of(tolerance) <= 1.0
+    }
+
+    /// The greater part of a tolerance that one of the two is.
+    fn in_parts_of(&self, tolerance: &Tolerance) -> f64 {
+        let translation = self.translation / tolerance.translation;
+        translation.max(self.rotation / tolerance.rotation)
+    }
+}
+
+/// How an arm rests that does not come to its target.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Shortfall {
+    /// How far it is from there.
+    pub error: PoseError,
+    /// With what it pulls towards its target at the end effector, base axes, `[N, N m]`: what holds
+    /// it does so with the opposite. `None` where the robot's controller turns setpoints into
+    /// torques.
+    pub pull: Option<[f64; 6]>,
+}
+
+impl core::fmt::Display for Shortfall {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let PoseError {
+            translation,
+            rotation,
+        } = self.error;
+        write!(
+            f,
+            "{:.1} mm and {:.1} mrad from the target",
+            translation * 1e3,
+            rotation * 1e3
+        )?;
+        let Some([x, y, z, about_x, about_y, about_z]) = self.pull else {
+            return Ok(());
+        };
+        write!(
+            f,
+            ", where it pulls with {x:.1} {y:.1} {z:.1} N and {about_x:.1} {about_y:.1} {about_z:.1} N m (x y z of the base)",
+        )
     }
 }
 
@@ -57,6 +104,10 @@ pub(super) struct Landing {
     tolerance: Tolerance,
     cycles: u64,
     held: u64,
+    /// The least error so far, in parts of the tolerance, and the cycles since then in which
+    /// nothing has changed.
+    nearest: f64,
+    stuck: u64,
 }
 
 pub(super) enum Verdict {
@@ -73,24 +124,38 @@ impl Landing {
             tolerance,
             cycles: 0,
             held: 0,
+            nearest: f64::INFINITY,
+            stuck: 0,
         }
     }
 
-    pub(super) fn judge(&mut self, measured: &Isometry3<f64>, at_rest: bool) -> Verdict {
+    /// Judges one cycle; `working` says that the law does something yet to move an arm at rest.
+    pub(super) fn judge(
+        &mut self,
+        measured: &Isometry3<f64>,
+        at_rest: bool,
+        working: bool,
+    ) -> Verdict {
         let error = self
             .target
             .map(|target| PoseError::between(measured, &target));
         let there = at_rest && error.is_none_or(|error| error.within(&self.tolerance));
         self.cycles += 1;
         self.held = if there { self.held + 1 } else { 0 };
+        let parts = error.map_or(0.0, |error| error.in_parts_of(&self.tolerance));
+        let nearer = parts < self.nearest - PROGRESS;
+        self.nearest = if nearer { parts } else { self.nearest };
+        let changing = nearer || working || !at_rest || there;
+        self.stuck = if changing { 0 } else { self.stuck + 1 };
+        let given_up = self.stuck >= STUCK || u128::from(self.cycles) >= SETTLE_TIMEOUT.as_millis();
         let settlement = match error {
             None if self.held >= HOLD_AT_REST => Settlement::AtRest,
             Some(error) if self.held >= HOLD_AT_TARGET => Settlement::Arrived(error),
-            _ if u128::from(self.cycles) < SETTLE_TIMEOUT.as_millis() => return Verdict::Settling,
+            _ if !given_up => return Verdict::Settling,
             // An arm that does not rest after all this time is being moved from outside; the
             // reference rests.
             None => Settlement::AtRest,
-            Some(error) => Settlement::TargetNotReached(error),
+            Some(error) => Settlement::TargetNotReached(Shortfall { error, pull: None }),
         };
         Verdict::Settled(settlement, self.held)
     }
@@ -136,10 +201,10 @@ mod tests {
         landing: &mut Landing,
         cycles: u64,
         pose: &Isometry3<f64>,
-        at_rest: bool,
+        (at_rest, working): (bool, bool),
     ) -> Option<Settlement> {
         for _ in 0..cycles {
-            if let Verdict::Settled(settlement, _) = landing.judge(pose, at_rest) {
+            if let Verdict::Settled(settlement, _) = landing.judge(pose, at_rest, working) {
                 return Some(settlement);
             }
         }
@@ -152,24 +217,46 @@ mod tests {
         let there = Isometry3::translation(0.0, 0.0, 0.9e-3);
         let away = Isometry3::translation(0.0, 0.0, 1.1e-3);
         assert_eq!(
-            judge_for(&mut landing, HOLD_AT_TARGET - 1, &there, true),
+            judge_for(&mut landing, HOLD_AT_TARGET - 1, &there, RESTS),
             None
         );
-        assert_eq!(judge_for(&mut landing, 1, &away, true), None);
-        assert_eq!(judge_for(&mut landing, 1000, &there, false), None);
-        let arrived = judge_for(&mut landing, HOLD_AT_TARGET, &there, true);
+        assert_eq!(judge_for(&mut landing, 1, &away, RESTS), None);
+        assert_eq!(judge_for(&mut landing, 1000, &there, MOVES), None);
+        let arrived = judge_for(&mut landing, HOLD_AT_TARGET, &there, RESTS);
         assert!(matches!(arrived, Some(Settlement::Arrived(error)) if error.translation == 0.9e-3));
     }
 
+    const RESTS: (bool, bool) = (true, false);
+    const MOVES: (bool, bool) = (false, false);
+    const WORKING: (bool, bool) = (true, true);
+
     #[test]
-    fn an_arm_held_short_of_its_target_is_reported_after_the_timeout() {
+    fn an_arm_without_progress_is_short_of_its_target_after_half_a_second() {
+        let mut landing = Landing::new(Some(Isometry3::identity()), Tolerance::default());
+        let at = |x: f64| Isometry3::translation(x, 0.0, 0.0);
+        // It creeps, moves, and the law works on it.
+        for i in 0..20 {
+            let on_its_way = at(0.03 - 1e-4 * f64::from(i));
+            assert_eq!(judge_for(&mut landing, 50, &on_its_way, RESTS), None);
+        }
+        assert_eq!(judge_for(&mut landing, 600, &at(0.03), MOVES), None);
+        assert_eq!(judge_for(&mut landing, 600, &at(0.03), WORKING), None);
+        assert_eq!(judge_for(&mut landing, STUCK - 1, &at(0.03), RESTS), None);
+        let short = judge_for(&mut landing, 1, &at(0.03), RESTS);
+        assert!(
+            matches!(short, Some(Settlement::TargetNotReached(short)) if short.error.translation == 0.03)
+        );
+    }
+
+    #[test]
+    fn an_arm_that_goes_on_moving_is_short_of_its_target_after_the_timeout() {
         let mut landing = Landing::new(Some(Isometry3::identity()), Tolerance::default());
         let away = Isometry3::translation(0.02, 0.0, 0.0);
         let cycles = SETTLE_TIMEOUT.as_millis() as u64;
-        assert_eq!(judge_for(&mut landing, cycles - 1, &away, true), None);
-        let short = judge_for(&mut landing, 1, &away, true);
+        assert_eq!(judge_for(&mut landing, cycles - 1, &away, MOVES), None);
+        let short = judge_for(&mut landing, 1, &away, MOVES);
         assert!(
-            matches!(short, Some(Settlement::TargetNotReached(error)) if error.translation == 0.02)
+            matches!(short, Some(Settlement::TargetNotReached(short)) if short.error.translation == 0.02)
         );
     }
 

@@ -42,11 +42,12 @@ mod tests;
 use core::time::Duration;
 use std::sync::Arc;
 
-use franka_model::{EndEffector, Load, Model, transform};
+use franka_model::{EndEffector, JointVector, Load, Model, transform};
 use franka_proto::{RobotState, Version};
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
 use crate::control::{MotionCommand, Torques};
+use crate::law::compensation::Learned;
 use crate::slot::{Read, SlotReader};
 use crate::together::{Gate, StartFault};
 
@@ -65,7 +66,7 @@ pub use guard::torque_clamp::TORQUE_CLAMP;
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
-pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT};
+pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT, Shortfall};
 
 use reference::Reference;
 use running::RunningSession;
@@ -103,7 +104,7 @@ pub enum Settlement {
     AtRest,
     /// The reference reached the target, the arm did not: something holds it, or its load is not
     /// what was declared.
-    TargetNotReached(PoseError),
+    TargetNotReached(Shortfall),
     /// Given up, and held: at the last target, or where it came to rest without its deadman.
     Held(Lapse),
     /// Given up, and braked: it is held where it came to rest.
@@ -168,6 +169,8 @@ pub(crate) struct SessionStep {
 pub(crate) struct Trace {
     pub(crate) goal: GoalId,
     pub(crate) reference: Reference,
+    /// `[N m]`
+    pub(crate) compensation: JointVector,
     pub(crate) bindings: Bindings,
 }
 
@@ -199,6 +202,8 @@ pub struct TargetSession {
     afterwards: OnArrival,
     /// Whether goals may be followed, as of the newest state.
     gate: Gate,
+    /// What is known of the arm from earlier sessions.
+    known: Learned,
 }
 
 impl TargetSession {
@@ -218,7 +223,21 @@ impl TargetSession {
             keep_out: KeepOut::default(),
             afterwards: OnArrival::ReportAndFinish,
             gate: Gate::Closed,
+            known: Learned::default(),
         }
+    }
+
+    /// Begins with what earlier sessions have [learned](Self::learned) of the arm.
+    #[must_use]
+    pub(crate) fn knowing(mut self, learned: Learned) -> Self {
+        self.known = learned;
+        self
+    }
+
+    /// What is known of the arm by now.
+    pub(crate) fn learned(&self) -> Learned {
+        let active = self.active.as_ref();
+        active.map_or(self.known, |active| active.learned(self.known))
     }
 
     /// Holds the arm where a goal was given up that was to be held, until a newer one comes. By
@@ -305,7 +324,8 @@ impl TargetSession {
                 self.keep_out,
                 self.afterwards,
                 state,
-            );
+            )
+            .map(|active| active.knowing(self.known));
         }
         self.prepare_for(state.message_id);
         let Some(active) = &mut self.active else {

@@ -160,8 +160,9 @@ impl Submission {
             MotionError::Braked(Lapse::Silent { silence }) => {
                 goal && self.was_silent(OnTimeout::Brake, *silence, now)
             }
-            MotionError::TargetNotReached(off) => {
-                let far = off.translation > 1e-3 || off.rotation > 1e-3;
+            MotionError::TargetNotReached(short) => {
+                let (off, most) = (short.error, Tolerance::default());
+                let far = off.translation > most.translation || off.rotation > most.rotation;
                 let may = causes.pushed || self.soft || self.hindered;
                 far && may && (goal || self.finishing)
             }

@@ -438,7 +438,8 @@ impl Lockstep {
         self.pose_at(&self.client.record.q_ref.into())
     }
 
-    fn pose_at(&self, q: &JointVector) -> Isometry3<f64> {
+    /// The pose of the end effector at these joint positions.
+    pub fn pose_at(&self, q: &JointVector) -> Isometry3<f64> {
         let rigid =
             |column_major| transform::isometry_from_array(column_major).expect("a rigid frame");
         let ee = EndEffector {

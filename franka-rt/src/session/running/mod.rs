@@ -12,6 +12,7 @@ use franka_proto::{RobotState, Version};
 use nalgebra::Isometry3;
 
 use crate::control::Torques;
+use crate::law::compensation::Learned;
 use crate::session::reference::Reference;
 
 use super::backend::Backend;
@@ -172,6 +173,22 @@ impl RunningSession {
     /// Whether the answer to the next state is prepared.
     pub(super) fn is_prepared(&self) -> bool {
         self.next.is_some()
+    }
+
+    /// Begins with what is known of the arm.
+    pub(super) fn knowing(mut self, known: Learned) -> Self {
+        if let Drive::Torques(effort) = &mut self.drive {
+            effort.know(known);
+        }
+        self
+    }
+
+    /// What is known of the arm by now, of which so much was known before.
+    pub(super) fn learned(&self, known: Learned) -> Learned {
+        match &self.drive {
+            Drive::Torques(effort) => effort.learned(),
+            Drive::Setpoints(_) => known,
+        }
     }
 
     /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
@@ -362,7 +379,9 @@ impl RunningSession {
         let answer = match &mut self.drive {
             Drive::Torques(effort) => {
                 let limits = model.joint_limits();
-                let tau = effort.step(&self.reference, state, &dynamics, limits, &mut bindings);
+                let ending = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished);
+                let reference = &self.reference;
+                let tau = effort.step(reference, state, &dynamics, limits, ending, &mut bindings);
                 SessionCommand::Torques(Torques(tau.into()))
             }
             Drive::Setpoints(stream) => {
@@ -376,6 +395,10 @@ impl RunningSession {
             trace: Trace {
                 goal: self.goal.id,
                 reference: self.reference,
+                compensation: match &self.drive {
+                    Drive::Torques(effort) => effort.compensated(),
+                    Drive::Setpoints(_) => JointVector::zeros(),
+                },
                 bindings,
             },
             finished: matches!(self.stage, GoalStage::Finished),

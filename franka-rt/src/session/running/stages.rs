@@ -38,6 +38,7 @@ impl RunningSession {
         now: u64,
     ) -> Option<SessionEvent> {
         let heading = self.heading();
+        let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
         match &mut self.stage {
             GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
@@ -61,7 +62,7 @@ impl RunningSession {
                 None
             }
             GoalStage::Landing(landing) => {
-                let (settlement, held) = match landing.judge(&self.arm.pose, at_rest) {
+                let (mut settlement, held) = match landing.judge(&self.arm.pose, at_rest, working) {
                     Verdict::Settling => return None,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
@@ -72,6 +73,11 @@ impl RunningSession {
                         self.turn_to(Target::Rest);
                     }
                     return None;
+                }
+                if let (Settlement::TargetNotReached(short), Drive::Torques(effort)) =
+                    (&mut settlement, &self.drive)
+                {
+                    short.pull = Some(effort.pull(&self.arm.jacobian).into());
                 }
                 self.stage = match (self.goal.on_arrival, &self.drive) {
                     (OnArrival::Hold | OnArrival::ReportAndHold, _) => GoalStage::Staying,

@@ -1,0 +1,146 @@
+//! What each joint takes in steady motion: friction against the way it goes, and bias either way.
+//!
+//! In one direction only their sum shows, so they are told apart by a Kalman filter of two states
+//! per joint: `takes = direction * friction + bias`. Friction changes slowly, bias quickly, since a
+//! load weighs differently in every pose. Covariances are in parts of the noise density of what is
+//! measured, `[1/s]`: so they are the rates at which is learned.
+
+use crate::shaping::CYCLE;
+
+/// Friction and bias of each joint, as far as they are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Learned([Joint; 7]);
+
+/// Those of one joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Joint {
+    /// `[N m]`, at least zero.
+    friction: f64,
+    /// `[N m]`.
+    bias: f64,
+    /// Covariance of the friction, of the bias, and of both, `[1/s]`.
+    covariance: [f64; 3],
+}
+
+impl Default for Joint {
+    fn default() -> Self {
+        Self {
+            friction: 0.0,
+            bias: 0.0,
+            covariance: [UNKNOWN[0], UNKNOWN[1], 0.0],
+        }
+    }
+}
+
+impl Learned {
+    /// Friction and bias of a joint, `[N m]`.
+    ///
+    /// An arm without friction takes a little, too, by the lag of its torques; for it both are
+    /// zero.
+    pub(super) fn of(&self, joint: usize) -> (f64, f64) {
+        let Joint { friction, bias, .. } = self.0[joint];
+        let sticks = (friction / SMOOTH - 1.0).clamp(0.0, 1.0);
+        let unsure = bias.clamp(-UNBIASED, UNBIASED) * (1.0 - sticks);
+        (friction * sticks, bias - unsure)
+    }
+
+    /// How little is known of a joint: 1 until it has moved both ways, then down to 0.
+    pub(super) fn unknown(&self, joint: usize) -> f64 {
+        let [of_friction, ..] = self.0[joint].covariance;
+        (of_friction / KNOWN - 1.0).clamp(0.0, 1.0)
+    }
+
+    /// Learns from a joint that moves in the direction of `sign` and takes this torque, `[N m]`.
+    pub(super) fn learn(&mut self, joint: usize, sign: f64, takes: f64) {
+        let Joint {
+            friction,
+            bias,
+            covariance: [of_friction, of_bias, of_both],
+        } = &mut self.0[joint];
+        *of_friction += DRIFT[0] * CYCLE;
+        *of_bias += DRIFT[1] * CYCLE;
+        let by_friction = *of_friction * sign + *of_both;
+        let by_bias = *of_both * sign + *of_bias;
+        let of_takes = by_friction * sign + by_bias + 1.0 / CYCLE;
+        let off = takes - (sign * *friction + *bias);
+        *friction = (*friction + by_friction / of_takes * off).max(0.0);
+        *bias += by_bias / of_takes * off;
+        *of_friction -= by_friction * by_friction / of_takes;
+        *of_bias -= by_bias * by_bias / of_takes;
+        *of_both -= by_friction * by_bias / of_takes;
+    }
+}
+
+/// Friction up to which a joint counts as smooth, `[N m]`; from twice as much on it sticks.
+const SMOOTH: f64 = 0.1;
+
+/// Bias of a smooth joint that is left to springs and integral, `[N m]`.
+pub(super) const UNBIASED: f64 = 0.1;
+
+/// Covariance of friction and bias of an arm that nothing is known of, `[1/s]`.
+const UNKNOWN: [f64; 2] = [5.0, 3.0];
+
+/// Covariance of the friction of a joint that has moved both ways, `[1/s]`: in one direction it
+/// does not fall below twice as much.
+const KNOWN: f64 = 1.5;
+
+/// What the covariances of friction and bias grow by, `[1/s^2]`.
+const DRIFT: [f64; 2] = [1.0, 4.0];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two seconds to and fro, in which a joint takes friction and this bias over time.
+    fn to_and_fro(friction: f64, bias: impl Fn(f64) -> f64) -> Learned {
+        let mut this = Learned::default();
+        for cycle in 0..4000 {
+            let sign = if cycle / 500 % 2 == 0 { 1.0 } else { -1.0 };
+            this.learn(0, sign, sign * friction + bias(f64::from(cycle) * CYCLE));
+        }
+        this
+    }
+
+    #[test]
+    fn friction_and_bias_are_told_apart() {
+        let (friction, bias) = to_and_fro(0.8, |_| -0.3).of(0);
+        assert!((friction - 0.8).abs() < 0.02, "{friction}");
+        assert!((bias + 0.3).abs() < 0.02, "{bias}");
+    }
+
+    /// A load that weighs more on the way out than on the way back is no friction.
+    #[test]
+    fn a_bias_that_changes_with_the_pose_is_not_taken_for_friction() {
+        let pose = |t: f64| 2.0 * (core::f64::consts::PI * t).sin().abs();
+        let (friction, _) = to_and_fro(0.8, pose).of(0);
+        assert!((friction - 0.8).abs() < 0.25, "{friction}");
+    }
+
+    #[test]
+    fn one_direction_says_little_of_the_other() {
+        let mut this = Learned::default();
+        assert_eq!(this.unknown(0), 1.0);
+        for _ in 0..2000 {
+            this.learn(0, 1.0, 0.9);
+        }
+        let (friction, bias) = this.of(0);
+        assert!((friction + bias - 0.9).abs() < 0.02, "{friction} {bias}");
+        assert_eq!(this.unknown(0), 1.0, "{this:?}");
+        assert_eq!(to_and_fro(0.8, |_| 0.0).unknown(0), 0.0);
+    }
+
+    #[test]
+    fn covariances_stay_sound_whatever_moves() {
+        for period in [1, 10, 1000, 100_000] {
+            let mut this = Learned::default();
+            for cycle in 0..100_000 {
+                let sign = if cycle / period % 2 == 0 { 1.0 } else { -1.0 };
+                this.learn(0, sign, sign);
+            }
+            let [friction, bias, both] = this.0[0].covariance;
+            assert!(friction > 0.0 && bias > 0.0, "{this:?}");
+            assert!(both * both < friction * bias, "{this:?}");
+            assert!(friction + bias < 1000.0, "{this:?}");
+        }
+    }
+}

@@ -1,0 +1,408 @@
+//! What the springs cannot do: torques against friction, and against a load or a torque sensor that
+//! is not as the robot believes.
+//!
+//! A joint that sticks leaves a spring stretched by its static torque over the stiffness:
+//! millimetres under a spring that is soft enough to push a person with. Three torques per joint
+//! take its place:
+//!
+//! ```text
+//! tau = c tanh(dq_ref / v0)                       friction, along the reference in motion
+//!     + 0.6 c tanh((q_ref - q) / e0)              and towards the target at rest
+//!     + b                                         bias: load, tilt, torque sensors
+//!     + i                                         what is still missing at rest
+//! ```
+//!
+//! - `c` and `b` are [`learned`] in motion, from what the springs take there beside them. On an arm
+//!   without friction and bias both are zero.
+//! - `i` is an integral that runs where the arm rests outside its [`DEAD_ZONE`]. It decays in
+//!   motion. Inside the dead zone it stands still, so that nothing hunts. Springs and integral
+//!   together take no more than friction may, counted from where the arm came to rest: what moves
+//!   the arm away meets little more than the springs.
+//! - The second line is a spring that ends at 0.6 of the friction. So it takes less energy into a
+//!   swing than friction takes out, whatever the delay of the torque loop, and it makes the slip
+//!   of a joint that breaks away short, also where the springs are soft.
+//!
+//! The sum is bounded by [`Gains::compensation`](crate::law::Gains::compensation) for each joint,
+//! and counts as part of the springs under clamp and force cap. Where something holds the arm, i.e.
+//! springs demand more than that bound or a guard binds, nothing is learned, the torques against
+//! friction at rest are let go, and the integral goes back to what held the arm at rest.
+
+mod learned;
+
+use franka_model::JointVector;
+
+use crate::shaping::CYCLE;
+use learned::UNBIASED;
+
+pub(crate) use learned::Learned;
+
+/// The three torques of each joint.
+#[derive(Debug)]
+pub(crate) struct Compensation {
+    learned: Learned,
+    /// The integral at rest, `[N m]`.
+    rest: JointVector,
+    /// Share of the sum that acts: it rises from zero at the start, and falls to zero at the end.
+    acting: f64,
+    /// Share of what is let go where something holds the arm.
+    free: f64,
+    /// Cycles for which each joint has rested, and its reference.
+    rested: [u32; 7],
+    /// Cycles for which the reference has rested and the arm has not settled.
+    arrived: u32,
+    /// The integral when the arm settled, `[N m]`; none before that.
+    settled: Option<JointVector>,
+    /// Whether the integral of a joint runs.
+    is_working: bool,
+}
+
+/// The arm against its reference in one cycle.
+#[derive(Debug)]
+pub(crate) struct Demand<'a> {
+    /// Velocity of the reference, `[rad/s]`.
+    pub(crate) dq_ref: &'a JointVector,
+    /// Its acceleration, `[rad/s^2]`.
+    pub(crate) ddq_ref: &'a JointVector,
+    /// Velocity of the arm, `[rad/s]`.
+    pub(crate) dq: &'a JointVector,
+    /// From the arm to the reference, `[rad]`.
+    pub(crate) error: &'a JointVector,
+    /// Of the springs alone, `[N m]`.
+    pub(crate) springs: &'a JointVector,
+    /// Most of the compensation, `[N m]`.
+    pub(crate) bounds: &'a [f64; 7],
+    /// Whether a guard of the interaction binds.
+    pub(crate) held: bool,
+    /// Whether the motion is about to end, without a torque.
+    pub(crate) ending: bool,
+}
+
+impl Compensation {
+    /// Starts with what is known of the arm.
+    pub(crate) fn new(learned: Learned) -> Self {
+        Self {
+            learned,
+            rest: JointVector::zeros(),
+            acting: 0.0,
+            free: 1.0,
+            rested: [0; 7],
+            arrived: 0,
+            settled: None,
+            is_working: false,
+        }
+    }
+
+    pub(crate) fn learned(&self) -> Learned {
+        self.learned
+    }
+
+    /// Whether it still grows towards moving a joint that rests outside its dead zone.
+    pub(crate) fn is_working(&self) -> bool {
+        self.is_working
+    }
+
+    /// Notes what held the arm when it came to rest where it was to.
+    fn settle(&mut self, demand: &Demand<'_>) {
+        let rests = |i: usize| self.rested[i] > SETTLED && demand.error[i].abs() < DEAD_ZONE[i];
+        if demand.dq_ref.amax() > MOVING {
+            self.settled = None;
+            self.arrived = 0;
+        } else if self.settled.is_none() {
+            self.arrived += 1;
+            self.settled = (0..7).all(rests).then_some(self.rest);
+        }
+    }
+
+    /// The torques of one cycle, `[N m]`.
+    pub(crate) fn step(&mut self, demand: &Demand<'_>) -> JointVector {
+        let Demand {
+            springs, bounds, ..
+        } = *demand;
+        let stretched = (0..7).any(|i| springs[i].abs() > bounds[i]);
+        let held = demand.held || stretched;
+        self.settle(demand);
+        self.acting = (self.acting + if demand.ending { -RAMP } else { RAMP }).clamp(0.0, 1.0);
+        self.free = (self.free + if held { -LET_GO } else { TAKE_UP }).clamp(0.0, 1.0);
+        self.is_working = false;
+        JointVector::from_fn(|i, _| {
+            let (friction, bias) = self.learned.of(i);
+            self.integrate(i, friction, held, demand);
+            let along = (demand.dq_ref[i] / SIGN_VELOCITY).tanh();
+            let to_target = (demand.error[i] / SIGN_ERROR).tanh();
+            let towards = (1.0 - along.abs()) * AT_REST * to_target * self.free;
+            let sum = friction * (along + towards) + bias + self.rest[i];
+            let sum = sum.clamp(-bounds[i], bounds[i]) * self.acting;
+            self.learn(i, sum, demand);
+            sum
+        })
+    }
+
+    /// The integral of one joint.
+    fn integrate(&mut self, i: usize, friction: f64, held: bool, demand: &Demand<'_>) {
+        let (v, e) = (demand.dq_ref[i], demand.error[i]);
+        let bound = demand.bounds[i];
+        // Springs and integral together need no more than friction may take, and for a while what
+        // is not known of the arm yet. What stands against more is no friction.
+        let resists = FRICTION_SPREAD * friction + FELT;
+        let (settled, resists) = match self.settled {
+            None if self.arrived > ARRIVES => (0.0, resists),
+            None => (0.0, resists + self.learned.unknown(i) * bound),
+            Some(settled) => (settled[i], resists),
+        };
+        let room = (resists - demand.springs[i].abs()).max(0.0);
+        let within = |torque: f64| torque.clamp(-bound, bound);
+        let (least, most) = (within(settled - room), within(settled + room));
+        let rests = !held && v.abs() < MOVING && demand.dq[i].abs() < REST_VELOCITY;
+        self.rested[i] = if rests { self.rested[i] + 1 } else { 0 };
+        let sticks = friction > 0.0;
+        let rest = &mut self.rest[i];
+        if held || v.abs() > MOVING {
+            *rest -= (*rest - settled) * CYCLE / FORGET;
+        } else if self.rested[i] > RESTED[usize::from(sticks)] && e.abs() > DEAD_ZONE[i] {
+            let rate = (INTEGRAL * demand.springs[i].abs()).max(BREAK_AWAY * friction);
+            let grown = *rest + rate.copysign(e) * CYCLE;
+            self.is_working |= (least < grown && grown < most) || grown.abs() < rest.abs();
+            *rest = grown.clamp(least.min(*rest), most.max(*rest));
+        } else if !sticks && rest.abs() < UNBIASED {
+            // Without friction and load the springs bring the joint to its target exactly.
+            *rest -= *rest * CYCLE / FORGET;
+        }
+        // In every cycle: bounds that shrink do not step it.
+        *rest = rest.clamp(-bound, bound);
+    }
+
+    /// Learns what a joint takes that is compensated by `compensated`, while its reference moves
+    /// steadily and nothing holds the arm.
+    fn learn(&mut self, i: usize, compensated: f64, demand: &Demand<'_>) {
+        let v = demand.dq_ref[i];
+        let steady = v.abs() > MOVING && demand.ddq_ref[i].abs() < STEADY;
+        // One that runs into something stops long before its springs demand more than friction.
+        let keeps_up = demand.dq[i] * v.signum() > KEEPS_UP * v.abs();
+        if self.free < 1.0 || !steady || !keeps_up {
+            return;
+        }
+        let bound = demand.bounds[i];
+        let takes = (compensated + demand.springs[i]).clamp(-bound, bound);
+        self.learned.learn(i, v.signum(), takes);
+    }
+}
+
+/// Distances from the reference within which a joint is left alone at rest, `[rad]`: together some
+/// 0.3 mm and 1 mrad at the end effector.
+pub(crate) const DEAD_ZONE: [f64; 7] = [3e-4, 3e-4, 3e-4, 3e-4, 5e-4, 5e-4, 5e-4];
+
+/// Velocity of the reference above which a joint counts as moving, `[rad/s]`.
+const MOVING: f64 = 0.02;
+
+/// Acceleration of the reference above which nothing is learned, `[rad/s^2]`: the springs then take
+/// what is missing in the inertia, too.
+const STEADY: f64 = 1.5;
+
+/// Share of its reference's velocity below which nothing is learned of a joint.
+const KEEPS_UP: f64 = 0.2;
+
+/// Velocity of the reference at which friction is compensated by 76 %, `[rad/s]`.
+const SIGN_VELOCITY: f64 = 0.01;
+
+/// Error at rest at which friction is compensated by 76 % of [`AT_REST`], `[rad]`.
+const SIGN_ERROR: f64 = 1e-3;
+
+/// Share of the friction that is compensated towards the target at rest. What is learned includes
+/// viscous friction, up to a third on the simulated arms; with it the share is still below 1.
+const AT_REST: f64 = 0.6;
+
+/// How fast the integral runs per torque of the springs, `[1/s]`: slower than the springs settle.
+const INTEGRAL: f64 = 5.0;
+
+/// How fast it runs at least outside the dead zone of a joint that sticks, in parts of the friction
+/// per second.
+const BREAK_AWAY: f64 = 2.5;
+
+/// Velocity below which a joint of the arm rests, `[rad/s]`.
+const REST_VELOCITY: f64 = 0.01;
+
+/// Cycles of rest after which the integral runs, of a joint that is not known to stick and of one
+/// that does: the springs alone have brought the former as near as they can.
+const RESTED: [u32; 2] = [150, 20];
+
+/// Time in which the integral decays in motion and where something holds the arm, `[s]`.
+const FORGET: f64 = 0.15;
+
+/// Cycles of rest after which an arm moves no more by itself.
+const SETTLED: u32 = 300;
+
+/// Cycles of a resting reference within which what is not known of an arm is compensated.
+const ARRIVES: u32 = 2500;
+
+/// Greatest ratio of the torque at which a joint breaks away to the friction that was learned.
+const FRICTION_SPREAD: f64 = 2.0;
+
+/// What the integral of a joint without friction may change by when the arm has come to rest,
+/// `[N m]`.
+const FELT: f64 = 0.3;
+
+/// Share by which the sum rises at the start and falls at the end, per cycle.
+const RAMP: f64 = 0.01;
+
+/// Share by which the torques at rest are let go per cycle where something holds the arm.
+const LET_GO: f64 = 0.02;
+
+/// Share by which they come back.
+const TAKE_UP: f64 = 1.0 / 300.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Gains;
+    use proptest::prelude::*;
+
+    const BOUNDS: [f64; 7] = Gains::COMPENSATION;
+
+    /// One cycle in which every joint has this error and its spring this torque.
+    fn step(this: &mut Compensation, v: f64, e: f64, spring: f64, held: bool) -> f64 {
+        let demand = Demand {
+            dq_ref: &JointVector::repeat(v),
+            ddq_ref: &JointVector::zeros(),
+            dq: &JointVector::repeat(v),
+            error: &JointVector::repeat(e),
+            springs: &JointVector::repeat(spring),
+            bounds: &BOUNDS,
+            held,
+            ending: false,
+        };
+        this.step(&demand)[0]
+    }
+
+    fn run(this: &mut Compensation, cycles: u32, v: f64, e: f64, spring: f64) -> f64 {
+        (0..cycles)
+            .map(|_| step(this, v, e, spring, false))
+            .last()
+            .expect("a cycle")
+    }
+
+    /// Learned over motions to and fro, as springs show it that take what is not compensated.
+    fn learned(friction: f64, bias: f64) -> Compensation {
+        let mut this = Compensation::new(Learned::default());
+        let mut last = 0.0;
+        for cycle in 0..20_000 {
+            let v: f64 = if cycle / 500 % 2 == 0 { 0.2 } else { -0.2 };
+            let spring = friction * v.signum() + bias - last;
+            last = step(&mut this, v, 0.0, spring, false);
+        }
+        this
+    }
+
+    #[test]
+    fn a_joint_is_left_alone_inside_its_dead_zone_and_broken_away_outside() {
+        let mut this = learned(0.8, 0.0);
+        let inside = run(&mut this, 1, 0.0, 2e-4, 0.05);
+        assert_eq!(run(&mut this, 5000, 0.0, 2e-4, 0.05), inside);
+        assert!(!this.is_working());
+        let outside = run(&mut this, 1, 0.0, 5e-4, 0.05);
+        assert!(this.is_working());
+        assert!(run(&mut this, 500, 0.0, 5e-4, 0.05) > outside + 0.3);
+        run(&mut this, 10_000, 0.0, 5e-4, 0.05);
+        assert!(!this.is_working(), "at its bound");
+    }
+
+    #[test]
+    fn the_integral_waits_for_the_springs_to_have_done_what_they_can() {
+        let mut this = learned(0.8, 0.0);
+        let at_once = run(&mut this, 1, 0.0, 5e-4, 0.05);
+        assert_eq!(run(&mut this, RESTED[1] - 1, 0.0, 5e-4, 0.05), at_once);
+        assert!(run(&mut this, 100, 0.0, 5e-4, 0.05) > at_once + 0.05);
+    }
+
+    #[test]
+    fn an_arm_without_friction_and_bias_is_not_compensated() {
+        let mut this = learned(0.08, -0.04);
+        assert_eq!(run(&mut this, 1000, 0.0, 2e-4, 0.05), 0.0);
+    }
+
+    #[test]
+    fn where_something_holds_the_arm_only_the_bias_stays_and_nothing_is_learned() {
+        let mut this = learned(0.8, -0.3);
+        run(&mut this, 1000, 0.0, 5e-3, 0.5);
+        let before = this.learned();
+        for _ in 0..1500 {
+            step(&mut this, 0.0, 5e-3, 0.5, true);
+        }
+        let held = step(&mut this, 0.0, 5e-3, 0.5, true);
+        assert!((held - before.of(0).1).abs() < 1e-3, "{held}");
+        // Springs that demand more than friction and bias can be.
+        for _ in 0..1500 {
+            step(&mut this, 0.0, 2e-2, 6.0, false);
+        }
+        assert_eq!(this.learned(), before);
+        let held = step(&mut this, 0.0, 2e-2, 6.0, false);
+        assert!((held - before.of(0).1).abs() < 1e-3, "{held}");
+    }
+
+    #[test]
+    fn it_begins_and_ends_at_zero_without_a_step() {
+        let known = learned(0.8, -0.6).learned();
+        let mut this = Compensation::new(known);
+        let mut last = 0.0;
+        for cycle in 0..400 {
+            let demand = Demand {
+                dq_ref: &JointVector::zeros(),
+                ddq_ref: &JointVector::zeros(),
+                dq: &JointVector::zeros(),
+                error: &JointVector::zeros(),
+                springs: &JointVector::zeros(),
+                bounds: &BOUNDS,
+                held: false,
+                ending: cycle >= 200,
+            };
+            let now = this.step(&demand)[0];
+            assert!((now - last).abs() < 0.01, "{cycle}: {now}");
+            assert!(
+                !(120..200).contains(&cycle) || now < -0.55,
+                "{cycle}: {now}"
+            );
+            last = now;
+        }
+        assert_eq!(last, 0.0);
+    }
+
+    #[test]
+    fn bounds_that_shrink_do_not_step_it() {
+        let mut this = learned(0.8, 0.0);
+        let mut last = run(&mut this, 5000, 0.0, 3.1e-4, 0.05);
+        for cycle in (0..300).rev() {
+            // The joint is just within its dead zone for a while, where the integral stands still.
+            let error = if (100..200).contains(&cycle) {
+                2.9e-4
+            } else {
+                3.1e-4
+            };
+            let demand = Demand {
+                dq_ref: &JointVector::zeros(),
+                ddq_ref: &JointVector::zeros(),
+                dq: &JointVector::zeros(),
+                error: &JointVector::repeat(error),
+                springs: &JointVector::zeros(),
+                bounds: &BOUNDS.map(|most| most * f64::from(cycle) / 300.0),
+                held: false,
+                ending: false,
+            };
+            let now = this.step(&demand)[0];
+            assert!((now - last).abs() < 0.03, "{cycle}: {now} after {last}");
+            last = now;
+        }
+        assert_eq!(last, 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn it_is_bounded_whatever_springs_demand(
+            demands in prop::collection::vec((-0.5..0.5f64, -0.01..0.01f64, -5.0..5.0f64), 20),
+        ) {
+            let mut this = Compensation::new(Learned::default());
+            for (v, e, spring) in demands {
+                let torque = run(&mut this, 300, v, e, spring);
+                prop_assert!(torque.abs() <= BOUNDS[0], "{torque}");
+            }
+        }
+    }
+}
