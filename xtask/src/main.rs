@@ -1,5 +1,5 @@
 //! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`,
-//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask mujoco`.
+//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask mujoco`.
 //!
 //! | module | task |
 //! |---|---|
@@ -88,6 +88,16 @@ enum Task {
         #[arg(long, default_value_t = 30, requires = "sockets")]
         seconds: u32,
     },
+    /// Measure target control on simulated arms like real ones, and write `target/arms.json`.
+    ///
+    /// Arguments: --family ideal|nominal|realistic|bad|FILE.json, --arms N, --seed S, --robot
+    /// fr3|fer; --help has the others.
+    #[command(disable_help_flag = true)]
+    Arms {
+        /// Passed on.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
 }
@@ -140,6 +150,12 @@ fn run(task: Task) -> anyhow::Result<()> {
             };
             let mut command = workspace.cargo_release_binary_with(features, "bench");
             command.arg(&output).arg(rounds.to_string());
+            workspace.run(&mut command)
+        }
+        Task::Arms { arguments } => {
+            let mut command = workspace.cargo_release_binary("arms");
+            command.args(arguments);
+            command.arg(workspace.target().join("arms.json"));
             workspace.run(&mut command)
         }
         Task::Mujoco => mujoco::provide(&workspace),

@@ -1,0 +1,182 @@
+//! Measures target control on simulated arms like real ones: `arms [--family F] [--arms N]
+//! [--seed S] [--robot R] OUTPUT`.
+//!
+//! ```text
+//! Family, seed -> Arm -> Programme (lockstep) -> ArmFigures -> Summary -> JSON
+//! ```
+//!
+//! Each arm has a seed of its own, which its line names: `--arms 1 --seed SEED` runs it alone.
+
+mod figures;
+mod programme;
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use anyhow::Context;
+use clap::{Parser, ValueEnum};
+use franka_model::RobotKind;
+use franka_rt::law::Gains;
+use franka_rt::session::{Goal, Target};
+use franka_sim::arm::{Arm, Family};
+
+use figures::Summary;
+
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// ideal, nominal, realistic, bad, or a file.
+    #[arg(long, default_value = "realistic")]
+    family: String,
+    /// Number of arms.
+    #[arg(long, default_value_t = 20)]
+    arms: u64,
+    /// Seed of the first arm; the others count on.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The model of the arms.
+    #[arg(long, value_enum, default_value_t = Kind::Fr3)]
+    robot: Kind,
+    /// Factor on all gains of the law, to find the margin to the first oscillation.
+    #[arg(long, default_value_t = 1.0)]
+    gain: f64,
+    /// The law.
+    #[arg(long, value_enum, default_value_t = LawChoice::Default)]
+    law: LawChoice,
+    /// Threads.
+    #[arg(long, default_value_t = 2)]
+    threads: u64,
+    /// A line for every arm, not only for those that fell short.
+    #[arg(long)]
+    all: bool,
+    /// The file to write.
+    output: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Kind {
+    Fr3,
+    Fer,
+}
+
+fn scaled(gains: Gains, by: f64) -> Gains {
+    Gains {
+        cartesian_stiffness: gains.cartesian_stiffness.map(|k| k * by),
+        cartesian_damping: gains.cartesian_damping.map(|d| d * by),
+        joint_stiffness: gains.joint_stiffness.map(|k| k * by),
+        joint_damping: gains.joint_damping.map(|d| d * by),
+        ..gains
+    }
+}
+
+/// The law of the goals for poses, and a factor on all gains.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LawUnderTest {
+    choice: LawChoice,
+    scale: f64,
+}
+
+impl LawUnderTest {
+    /// The gains of a goal: its own where it is not for a pose.
+    pub(crate) fn gains(self, goal: &Goal) -> Gains {
+        match goal.target {
+            Target::Pose(_) => scaled(self.choice.gains(), self.scale),
+            Target::Joints(_) if self.choice.is_compensated() => scaled(goal.gains, self.scale),
+            Target::Joints(_) => scaled(goal.gains.without_compensation(), self.scale),
+            _ => goal.gains,
+        }
+    }
+}
+
+/// Laws to compare.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum LawChoice {
+    /// That of a goal for a pose.
+    Default,
+    /// Its springs and dampers alone.
+    Springs,
+    /// 1500 N/m and 60 N m/rad.
+    Stiff,
+    /// These alone.
+    StiffSprings,
+    /// That of a goal for joint positions.
+    Joint,
+    /// Its springs and dampers alone.
+    JointSprings,
+}
+
+impl LawChoice {
+    fn is_compensated(self) -> bool {
+        matches!(self, Self::Default | Self::Stiff | Self::Joint)
+    }
+
+    fn gains(self) -> Gains {
+        let stiff = Gains {
+            cartesian_damping: [120.0, 120.0, 120.0, 3.0, 3.0, 3.0],
+            cartesian_stiffness: [1500.0, 1500.0, 1500.0, 60.0, 60.0, 60.0],
+            ..Gains::cartesian()
+        };
+        match self {
+            Self::Default => Gains::cartesian(),
+            Self::Springs => Gains::cartesian().without_compensation(),
+            Self::Stiff => stiff,
+            Self::StiffSprings => stiff.without_compensation(),
+            Self::Joint => Gains::joint(),
+            Self::JointSprings => Gains::joint().without_compensation(),
+        }
+    }
+}
+
+fn main() -> anyhow::Result<()> {
+    let arguments = Arguments::parse();
+    let kind = match arguments.robot {
+        Kind::Fr3 => RobotKind::Fr3,
+        Kind::Fer => RobotKind::Fer,
+    };
+    let family = match arguments.family.as_str() {
+        "ideal" => None,
+        "nominal" => Some(Family::nominal()),
+        "realistic" => Some(Family::realistic()),
+        "bad" => Some(Family::bad()),
+        file => {
+            let text = std::fs::read_to_string(file).with_context(|| file.to_owned())?;
+            Some(Family::from_json(&text).with_context(|| file.to_owned())?)
+        }
+    };
+    let (next, start) = (AtomicU64::new(0), Instant::now());
+    let all = Mutex::new(Vec::new());
+    let work = || loop {
+        let i = next.fetch_add(1, Ordering::Relaxed);
+        if i >= arguments.arms {
+            return;
+        }
+        let seed = arguments.seed + i;
+        let arm = match &family {
+            Some(family) => Arm::sample(kind, seed, family),
+            None => Arm::ideal(kind),
+        };
+        let law = LawUnderTest {
+            choice: arguments.law,
+            scale: arguments.gain,
+        };
+        let figures = programme::run(kind, arm, seed, law);
+        if arguments.all || figures.fell_short() {
+            println!("{figures}");
+        }
+        let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+        all.push(figures);
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..arguments.threads {
+            scope.spawn(work);
+        }
+    });
+    let all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let summary = Summary::of(&all);
+    println!("{summary}");
+    println!("{:.0} s", start.elapsed().as_secs_f64());
+    let json = serde_json::to_string_pretty(&summary.values())?;
+    let output = &arguments.output;
+    std::fs::write(output, json + "\n").with_context(|| output.display().to_string())
+}
