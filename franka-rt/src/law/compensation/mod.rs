@@ -126,7 +126,7 @@ impl Compensation {
         self.is_working = false;
         JointVector::from_fn(|i, _| {
             let (friction, bias) = self.learned.of(i);
-            self.integrate(i, friction, held, demand);
+            self.integrate(i, held, demand);
             let along = (demand.dq_ref[i] / SIGN_VELOCITY).tanh();
             let to_target = (demand.error[i] / SIGN_ERROR).tanh();
             let towards = (1.0 - along.abs()) * AT_REST * to_target * self.free;
@@ -138,12 +138,14 @@ impl Compensation {
     }
 
     /// The integral of one joint.
-    fn integrate(&mut self, i: usize, friction: f64, held: bool, demand: &Demand<'_>) {
+    fn integrate(&mut self, i: usize, held: bool, demand: &Demand<'_>) {
+        let (friction, bias) = self.learned.of(i);
         let (v, e) = (demand.dq_ref[i], demand.error[i]);
         let bound = demand.bounds[i];
-        // Springs and integral together need no more than friction may take, and for a while what
-        // is not known of the arm yet. What stands against more is no friction.
-        let resists = FRICTION_SPREAD * friction + FELT;
+        // Springs and integral together need no more than friction may take, what a bias may differ
+        // by from pose to pose, and for a while what is not known of the arm yet. What stands
+        // against more is something else.
+        let resists = FRICTION_SPREAD * friction + BIAS_SPREAD * bias.abs() + FELT;
         let (settled, resists) = match self.settled {
             None if self.arrived > ARRIVES => (0.0, resists),
             None => (0.0, resists + self.learned.unknown(i) * bound),
@@ -196,7 +198,7 @@ const MOVING: f64 = 0.02;
 
 /// Acceleration of the reference above which nothing is learned, `[rad/s^2]`: the springs then take
 /// what is missing in the inertia, too.
-const STEADY: f64 = 1.5;
+const STEADY: f64 = 2.5;
 
 /// Share of its reference's velocity below which nothing is learned of a joint.
 const KEEPS_UP: f64 = 0.2;
@@ -236,6 +238,9 @@ const ARRIVES: u32 = 2500;
 
 /// Greatest ratio of the torque at which a joint breaks away to the friction that was learned.
 const FRICTION_SPREAD: f64 = 2.0;
+
+/// Share of a bias by which it may differ in another pose.
+const BIAS_SPREAD: f64 = 0.5;
 
 /// What the integral of a joint without friction may change by when the arm has come to rest,
 /// `[N m]`.

@@ -229,28 +229,23 @@ impl Programme {
         self.step(self.home, false)
     }
 
-    /// Is guided by hand for 2 s, and goes home.
+    /// Is guided 10 cm to the side and back by a hand that holds it until it is let go of, and goes
+    /// home.
     fn guide(&mut self) -> Result<(), Ended> {
+        let from = self.lockstep.arm_pose().translation.vector;
+        // The springs have let go of the arm by then.
+        let turned = |t: f64| ((t - 0.4) / 2.0).clamp(0.0, 1.0) * core::f64::consts::TAU;
+        let path = move |t: f64| from + Vector3::y() * (0.05 * (1.0 - turned(t).cos()));
+        let leading = self.lockstep.robot.touch(Touch::carry(path, STIFFNESS));
         self.head_for(Target::Guide(Free::ALL), OnArrival::Hold);
-        // Until the springs have let go of the arm.
-        for _ in 0..400 {
+        for _ in 0..2500 {
             self.tick()?;
+            let felt = self.lockstep.robot.felt(leading).expect("it has not ended");
+            let force = felt.fixed_rows::<3>(0).norm();
+            self.figures.guide_force_n = self.figures.guide_force_n.max(force);
         }
-        for way in [Vector3::y(), -Vector3::y()] {
-            let from = self.lockstep.arm_pose().translation.vector;
-            let path = move |t: f64| from + way * (0.1 * hand(t.min(1.0)) / hand(1.0));
-            let leading = self.lockstep.robot.touch(Touch::carry(path, STIFFNESS));
-            for _ in 0..1000 {
-                self.tick()?;
-                let felt = self.lockstep.robot.felt(leading).expect("it has not ended");
-                let force = felt.fixed_rows::<3>(0).norm();
-                self.figures.guide_force_n = self.figures.guide_force_n.max(force);
-            }
-            self.lockstep.robot.release(leading);
-            for _ in 0..500 {
-                self.tick()?;
-            }
-        }
+        self.head_for(self.home.into(), OnArrival::Hold);
+        self.lockstep.robot.release(leading);
         self.step(self.home, false)
     }
 
