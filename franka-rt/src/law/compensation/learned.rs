@@ -82,10 +82,10 @@ const UNKNOWN: [f64; 2] = [5.0, 3.0];
 
 /// Covariance of the friction of a joint that has moved both ways, `[1/s]`: in one direction it
 /// does not fall below twice as much.
-const KNOWN: f64 = 1.5;
+const KNOWN: f64 = 0.9;
 
 /// What the covariances of friction and bias grow by, `[1/s^2]`.
-const DRIFT: [f64; 2] = [1.0, 4.0];
+const DRIFT: [f64; 2] = [0.2, 5.0];
 
 #[cfg(test)]
 mod tests {
@@ -104,8 +104,8 @@ mod tests {
     #[test]
     fn friction_and_bias_are_told_apart() {
         let (friction, bias) = to_and_fro(0.8, |_| -0.3).of(0);
-        assert!((friction - 0.8).abs() < 0.02, "{friction}");
-        assert!((bias + 0.3).abs() < 0.02, "{bias}");
+        assert!((friction - 0.8).abs() < 0.05, "{friction}");
+        assert!((bias + 0.3).abs() < 0.05, "{bias}");
     }
 
     /// A load that weighs more on the way out than on the way back is no friction.
