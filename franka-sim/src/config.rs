@@ -27,7 +27,8 @@ pub struct Config {
     /// What the flange carries besides, undeclared; a client declares it with `SetLoad`.
     pub payload: Load,
     /// The arm: friction, drives, sensors, and how it differs from its model. `None` for the
-    /// [ideal](Arm::ideal) one of its kind, which no real arm is like.
+    /// [ideal](Arm::ideal) one of its kind, which no real arm is like; robots of
+    /// [`Sim::fr3`](crate::Sim::fr3) and [`Sim::fer`](crate::Sim::fer) name a realistic one.
     pub arm: Option<Arm>,
     /// Seed of all randomness: the same seed and the same input give the same states.
     pub seed: u64,

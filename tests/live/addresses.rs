@@ -27,6 +27,7 @@ async fn moves(endpoint: impl Into<Endpoint>) -> SocketAddr {
 /// Connects, moves and ends on every way to say where a robot is that listens on `bind`.
 async fn moves_on(bind: SocketAddr, texts: impl Fn(u16) -> Vec<String>) {
     let sim = Sim::fr3()
+        .ideal()
         .tool(Tool::hand())
         .hand(Fingers::new(), 0)
         .bind(bind)
@@ -98,7 +99,7 @@ async fn an_arm_moves_by_its_host_name() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_simulator_for_both_families_serves_both() {
     let _alone = alone();
-    let sim = Sim::fr3().bind((Ipv6Addr::UNSPECIFIED, 0).into());
+    let sim = Sim::fr3().ideal().bind((Ipv6Addr::UNSPECIFIED, 0).into());
     let sim = sim.virtual_time(PATIENCE).start().await;
     let sim = sim.expect("a simulator starts");
     let port = sim.addr().port();

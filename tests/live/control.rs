@@ -18,7 +18,7 @@ use crate::{SOON, alone, at_the_clients_pace, by_the_clock, under_way, until};
 /// on it.
 pub(crate) async fn each() -> Vec<(Robot, Running)> {
     let mut robots = Vec::new();
-    for sim in [Sim::fr3(), Sim::fer()] {
+    for sim in [Sim::fr3().ideal(), Sim::fer().ideal()] {
         robots.push(at_the_clients_pace(sim.tool(Tool::hand())).await);
     }
     robots
@@ -281,7 +281,7 @@ async fn a_reflex_comes_back_with_the_cycles_that_led_to_it() {
 async fn the_robot_itself_goes_from_target_to_target() {
     let _alone = alone();
     // The motion needs no commands, so the robot cannot wait for them.
-    let sims = [Sim::fr3(), Sim::fer()];
+    let sims = [Sim::fr3().ideal(), Sim::fer().ideal()];
     let [fr3, fer] = sims.map(|sim| by_the_clock(sim.tool(Tool::hand())));
     let (robot, sim) = &fr3.await;
     let (fer, _sim) = &fer.await;

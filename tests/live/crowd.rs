@@ -98,8 +98,8 @@ impl Member {
     /// An FR3 or an FER, in its lane, with its load and its tool.
     async fn new(number: usize, strict: bool) -> Self {
         let sim = match number % 2 {
-            0 => Sim::fr3(),
-            _ => Sim::fer(),
+            0 => Sim::fr3().ideal(),
+            _ => Sim::fer().ideal(),
         };
         let payload = franka_model::Load {
             mass: mass(number),

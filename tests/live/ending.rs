@@ -167,7 +167,7 @@ fn a_runtime_that_ends_in_mid_motion_leaves_nothing_running() {
             .unwrap()
     };
     let (elsewhere, runtime) = (build(), build());
-    let (first, sim) = elsewhere.block_on(at_the_clients_pace(Sim::fr3()));
+    let (first, sim) = elsewhere.block_on(at_the_clients_pace(Sim::fr3().ideal()));
     elsewhere.block_on(first.shutdown());
     let robot = runtime.block_on(connect(&sim));
     let moving = elsewhere.spawn(long_way(&robot).into_future());

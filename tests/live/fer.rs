@@ -11,7 +11,7 @@ use crate::{alone, at_the_clients_pace, simulated, under_way};
 
 /// A simulated FER with a hand, and a handle on it.
 async fn fer() -> (Robot, Running) {
-    at_the_clients_pace(Sim::fer().tool(Tool::hand())).await
+    at_the_clients_pace(Sim::fer().ideal().tool(Tool::hand())).await
 }
 
 fn assert_near(robot: &Robot, target: &Pose) {
@@ -98,7 +98,11 @@ async fn what_only_protocol_5_has_is_there_and_what_it_lacks_is_refused_here() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_pinned_version_is_the_only_one_that_connects() {
     let _alone = alone();
-    let sim = Sim::fer().start().await.expect("a simulator starts");
+    let sim = Sim::fer()
+        .ideal()
+        .start()
+        .await
+        .expect("a simulator starts");
     let pinned = |version| {
         Robot::builder(sim.addr())
             .realtime(Realtime::Ignore)
@@ -119,7 +123,11 @@ async fn a_pinned_version_is_the_only_one_that_connects() {
     let robot = pinned(Version::V5).await.expect("its own version");
     robot.shutdown().await;
 
-    let sim = Sim::fr3().start().await.expect("a simulator starts");
+    let sim = Sim::fr3()
+        .ideal()
+        .start()
+        .await
+        .expect("a simulator starts");
     let error = Robot::builder(sim.addr())
         .realtime(Realtime::Ignore)
         .version(VersionPolicy::Exact(Version::V5))

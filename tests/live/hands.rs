@@ -20,7 +20,7 @@ const FAILED: &str = "libfranka gripper: Command failed!";
 
 /// A robot with a hand that has an object of 5 cm between its fingers and knows its width.
 async fn with_hand() -> (Gripper, Running) {
-    let sim = Sim::fr3().hand(Fingers::new().with_object(0.05), 0);
+    let sim = Sim::fr3().ideal().hand(Fingers::new().with_object(0.05), 0);
     let sim = sim.wait_for_commands(PATIENCE).start().await;
     let sim = sim.expect("a simulator starts");
     let gripper = hand_of(&sim).await.expect("a hand takes a client");
@@ -212,6 +212,7 @@ async fn a_hand_that_goes_ends_everything_and_says_why() {
 async fn garbage_costs_a_client_its_connection_and_nobody_else() {
     let _alone = alone();
     let sim = Sim::fr3()
+        .ideal()
         .hand(Fingers::new(), 0)
         .start()
         .await
@@ -246,7 +247,9 @@ async fn nobody_listening_is_a_refused_connection() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_vacuum_gripper_holds_drops_and_stops() {
     let _alone = alone();
-    let sim = Sim::fr3().vacuum_gripper(Suction::new().with_object(), 0);
+    let sim = Sim::fr3()
+        .ideal()
+        .vacuum_gripper(Suction::new().with_object(), 0);
     let sim = sim.start().await.expect("a simulator starts");
     let address = sim.vacuum_gripper().expect("a gripper").addr();
     let gripper = VacuumGripper::connect(address).await.expect("a session");

@@ -54,7 +54,7 @@ fn alone() -> Alone {
 
 /// A simulated FR3 with a hand, at the pace of the client's answers, and a handle on it.
 async fn simulated() -> (Robot, Running) {
-    at_the_clients_pace(Sim::fr3().tool(Tool::hand())).await
+    at_the_clients_pace(Sim::fr3().ideal().tool(Tool::hand())).await
 }
 
 /// This robot, which waits for each command of the client.

@@ -60,9 +60,9 @@ async fn travel(sim: Sim, network: Network, speed: f64) -> Seen {
 async fn what_a_network_loses_is_counted_and_the_arm_arrives() {
     let _alone = alone();
     for (sim, network) in [
-        (Sim::fr3(), mishaps::loss(3)),
-        (Sim::fer(), mishaps::bursts(3)),
-        (Sim::fer(), mishaps::halves(3)),
+        (Sim::fr3().ideal(), mishaps::loss(3)),
+        (Sim::fer().ideal(), mishaps::bursts(3)),
+        (Sim::fer().ideal(), mishaps::halves(3)),
     ] {
         let seen = travel(sim, network, 0.5).await;
         assert!(seen.lost > 10 && seen.success_rate_min < 1.0, "{seen:?}");
@@ -72,12 +72,17 @@ async fn what_a_network_loses_is_counted_and_the_arm_arrives() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn what_a_network_delays_reorders_or_doubles_is_told_apart_and_the_arm_arrives() {
     let _alone = alone();
-    travel(Sim::fer(), mishaps::delay(Duration::from_micros(150)), 0.5).await;
-    let seen = travel(Sim::fr3(), mishaps::jitter(3), 0.5).await;
+    travel(
+        Sim::fer().ideal(),
+        mishaps::delay(Duration::from_micros(150)),
+        0.5,
+    )
+    .await;
+    let seen = travel(Sim::fr3().ideal(), mishaps::jitter(3), 0.5).await;
     assert!(seen.success_rate_min < 0.95, "{seen:?}");
-    let seen = travel(Sim::fer(), mishaps::reordering(3), 0.5).await;
+    let seen = travel(Sim::fer().ideal(), mishaps::reordering(3), 0.5).await;
     assert!(seen.lost > 10 && seen.stale > 10, "{seen:?}");
-    let seen = travel(Sim::fr3(), mishaps::duplication(3), 0.5).await;
+    let seen = travel(Sim::fr3().ideal(), mishaps::duplication(3), 0.5).await;
     assert!(seen.stale > 100, "{seen:?}");
 }
 
@@ -86,7 +91,7 @@ async fn what_a_network_delays_reorders_or_doubles_is_told_apart_and_the_arm_arr
 async fn states_are_as_old_as_the_network_makes_them() {
     let _alone = alone();
     let network = mishaps::delay(Duration::from_millis(30));
-    let (robot, sim) = behind(network, Sim::fr3()).await;
+    let (robot, sim) = behind(network, Sim::fr3().ideal()).await;
     let moving = tokio::spawn(long_way(&robot).into_future());
     for _ in 0..10 {
         let published = sim.state().await.expect("it runs").message_id;
@@ -118,7 +123,7 @@ fn cuts(milliseconds: u64) -> Network {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_cut_is_bridged() {
     let _alone = alone();
-    let seen = travel(Sim::fr3(), cuts(16), 0.1).await;
+    let seen = travel(Sim::fr3().ideal(), cuts(16), 0.1).await;
     assert!(seen.lost > 0, "{seen:?}");
 }
 
@@ -126,7 +131,7 @@ async fn a_cut_is_bridged() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_cut_of_too_many_commands_is_a_reflex_to_recover_from() {
     let _alone = alone();
-    let sim = Sim::fer().tool(Tool::hand()).network(cuts(60));
+    let sim = Sim::fer().ideal().tool(Tool::hand()).network(cuts(60));
     let (robot, _sim) = at_the_clients_pace(sim).await;
     let outcome = timeout(SOON, long_way(&robot).into_future()).await;
     let Err(MotionError::Control(error)) = outcome.expect("it resolves") else {

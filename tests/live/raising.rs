@@ -60,7 +60,7 @@ async fn nothing_but_the_control_threads_is_raised_or_pinned() {
     let before = threads();
     let usual = before.values().next().expect("this one").processors.clone();
     let (mut sims, mut robots) = (Vec::new(), Vec::new());
-    for sim in [Sim::fr3(), Sim::fer()] {
+    for sim in [Sim::fr3().ideal(), Sim::fer().ideal()] {
         let sim = sim.virtual_time(PATIENCE).start().await;
         let sim = sim.expect("a simulator starts");
         let builder = Robot::builder(sim.addr())
@@ -130,7 +130,11 @@ async fn nothing_but_the_control_threads_is_raised_or_pinned() {
 #[tokio::test]
 async fn what_is_enforced_and_refused_connects_nothing_and_raises_nobody() {
     let _alone = alone();
-    let sim = Sim::fr3().start().await.expect("a simulator starts");
+    let sim = Sim::fr3()
+        .ideal()
+        .start()
+        .await
+        .expect("a simulator starts");
     let builder = Robot::builder(sim.addr()).priority(1_000);
     let error = builder.connect().await.expect_err("no such priority");
     assert_eq!(

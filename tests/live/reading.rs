@@ -17,7 +17,7 @@ use crate::{SOON, alone, by_the_clock, robot_time, under_way};
 
 /// A robot that does not mind what a busy machine loses.
 async fn patient() -> (Robot, Running) {
-    by_the_clock(Sim::fr3().tool(Tool::hand())).await
+    by_the_clock(Sim::fr3().ideal().tool(Tool::hand())).await
 }
 
 /// `message_id` of all states of a stream, each with what was missed before it. Ends with the

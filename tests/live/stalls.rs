@@ -23,7 +23,7 @@ async fn the_stalls_of_an_fer_are_bridged_and_make_commands_late() {
     let _alone = alone();
     let seconds = std::env::var("FRANKA_STALLS_SECONDS").ok();
     let seconds: u64 = seconds.map_or(SECONDS, |text| text.parse().expect("a number"));
-    let (robot, sim) = ahead_of_the_client(Sim::fer().network(Network::fer(1))).await;
+    let (robot, sim) = ahead_of_the_client(Sim::fer().ideal().network(Network::fer(1))).await;
     let counts = Arc::new(Mutex::new(CycleCounts::default()));
     let noted = Arc::clone(&counts);
     let before = sim.pace().await.expect("it runs");

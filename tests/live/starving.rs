@@ -44,7 +44,7 @@ impl Setting {
     /// run by itself stops it.
     fn patient() -> Self {
         let (runtime, elsewhere) = (runtime(WORKERS), runtime(1));
-        let sim = Sim::fr3().tool(Tool::hand()).virtual_time(SOON);
+        let sim = Sim::fr3().ideal().tool(Tool::hand()).virtual_time(SOON);
         let sim = elsewhere.block_on(sim.start()).expect("a simulator starts");
         let robot = runtime.block_on(connect(&sim));
         Self {

@@ -93,6 +93,7 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
     let time = Arc::new(AtomicU64::new(0));
     let shown = time.clone();
     let sim = Sim::fr3()
+        .ideal()
         .tool(Tool::hand())
         .every_millisecond(move |robot| {
             shown.store(robot.state().message_id, Ordering::Relaxed);

@@ -15,8 +15,8 @@ use crate::{alone, by_the_clock, robot_time, until};
 
 /// Two robots, and the simulators behind them.
 async fn two() -> ([Robot; 2], [Running; 2]) {
-    let (left, left_sim) = by_the_clock(Sim::fr3()).await;
-    let (right, right_sim) = by_the_clock(Sim::fer()).await;
+    let (left, left_sim) = by_the_clock(Sim::fr3().ideal()).await;
+    let (right, right_sim) = by_the_clock(Sim::fer().ideal()).await;
     ([left, right], [left_sim, right_sim])
 }
 

@@ -31,12 +31,14 @@ fn served_with(number: &str, other: &str) -> String {
 
 /// A robot that serves this description.
 fn serving(text: String) -> Sim {
-    Sim::fr3().configure(|config| config.urdf = Some(text))
+    Sim::fr3()
+        .ideal()
+        .configure(|config| config.urdf = Some(text))
 }
 
 #[tokio::test]
 async fn an_fr3_is_asked_for_its_model_over_the_network() {
-    let (robot, _sim) = connected(Sim::fr3()).await;
+    let (robot, _sim) = connected(Sim::fr3().ideal()).await;
     assert_eq!(robot.model(), Model::fr3());
     robot.shutdown().await;
 }
@@ -136,7 +138,7 @@ async fn a_description_of_something_else_is_refused_unless_the_constants_are_cho
 
 #[tokio::test]
 async fn an_fer_has_the_constants_of_its_library() {
-    let (robot, _sim) = connected(Sim::fer()).await;
+    let (robot, _sim) = connected(Sim::fer().ideal()).await;
     assert_eq!(robot.model().kind(), RobotKind::Fer);
     assert_eq!(robot.model(), Model::fer());
     robot.shutdown().await;

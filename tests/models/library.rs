@@ -55,7 +55,9 @@ fn assert_numbers(got: &[f64], tag: u32, inputs: &[&[f64]]) {
 #[tokio::test]
 async fn every_function_of_a_downloaded_library_gets_its_inputs() {
     let bytes = stand_in("whole", &[]);
-    let sim = Sim::fer().configure(|config| config.model_library = Some(bytes.clone().into()));
+    let sim = Sim::fer()
+        .ideal()
+        .configure(|config| config.model_library = Some(bytes.clone().into()));
     let (robot, _sim) = connected(sim).await;
     let downloaded = robot.load_model_library(Architecture::X64, System::Linux);
     assert_eq!(downloaded.await, Ok(bytes));
@@ -112,7 +114,7 @@ async fn every_function_of_a_downloaded_library_gets_its_inputs() {
 
 #[tokio::test]
 async fn a_robot_without_a_library_refuses_with_the_vendors_text() {
-    let (robot, _sim) = connected(Sim::fer()).await;
+    let (robot, _sim) = connected(Sim::fer().ideal()).await;
     let refused = robot.load_model_library(Architecture::Arm64, System::Linux);
     let error = refused.await.expect_err("a refusal");
     assert_eq!(
@@ -132,7 +134,7 @@ async fn a_robot_without_a_library_refuses_with_the_vendors_text() {
 
 #[tokio::test]
 async fn no_request_is_sent_to_an_fr3() {
-    let (robot, _sim) = connected(Sim::fr3()).await;
+    let (robot, _sim) = connected(Sim::fr3().ideal()).await;
     let refused = robot.load_model_library(Architecture::X64, System::Linux);
     let error = refused.await.expect_err("no such command");
     assert!(

@@ -34,7 +34,7 @@ pub(crate) const ACTIVE: &str = "active-control";
 
 /// A simulated FR3, which waits for each command, as tracing makes them late, and a handle on it.
 async fn simulated() -> (Robot, Running) {
-    let sim = Sim::fr3().tool(Tool::hand()).virtual_time(PATIENCE);
+    let sim = Sim::fr3().ideal().tool(Tool::hand()).virtual_time(PATIENCE);
     let sim = sim.start().await.expect("a simulator starts");
     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
     let robot = builder.connect().await.expect("it takes a client");

@@ -63,7 +63,7 @@ fn script(
 ) -> Program {
     let address = loopback_address(std::process::id(), n);
     let mut simulator = workspace.program(workspace.target().join("debug").join("franka-sim"));
-    simulator.args(["--bind", &address, "--port", PORT]);
+    simulator.args(["--bind", &address, "--port", PORT, "--arm", "ideal"]);
     simulator.args(arguments);
     let mut command = workspace.program(interpreter);
     command.arg(directory(workspace).join(name)).arg(address);

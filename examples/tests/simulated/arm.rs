@@ -91,8 +91,8 @@ impl Arm {
     /// Starts the robot of this name, which calls `meet` every millisecond.
     fn start_with(robot: &str, scene: Scene, mut meet: impl FnMut() + Send + 'static) -> Self {
         let sim = match robot {
-            "fr3" => Sim::fr3(),
-            "fer" => Sim::fer(),
+            "fr3" => Sim::fr3().ideal(),
+            "fer" => Sim::fer().ideal(),
             other => panic!("no robot is called {other}"),
         };
         let sim = sim

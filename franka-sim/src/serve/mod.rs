@@ -95,21 +95,28 @@ impl fmt::Debug for EveryMillisecond {
 }
 
 impl Sim {
-    /// A Franka Research 3 with a bare flange in the ready pose, on a free port of 127.0.0.1.
+    /// A Franka Research 3 with a [realistic](Arm::realistic) arm and a bare flange in the ready
+    /// pose, on a free port of 127.0.0.1.
     pub fn fr3() -> Self {
-        Self::new(Config::default())
+        Self::realistic(RobotKind::Fr3)
     }
 
-    /// A Franka Emika Robot (Panda) with a bare flange in the ready pose, on a free port of
-    /// 127.0.0.1.
+    /// A Franka Emika Robot (Panda) with a [realistic](Arm::realistic) arm and a bare flange in the
+    /// ready pose, on a free port of 127.0.0.1. Its states come as late as those of a Panda.
     pub fn fer() -> Self {
+        Self::realistic(RobotKind::Fer)
+    }
+
+    fn realistic(kind: RobotKind) -> Self {
         Self::new(Config {
-            kind: RobotKind::Fer,
+            kind,
+            arm: Some(Arm::realistic(kind)),
             ..Config::default()
         })
     }
 
-    /// A robot of this configuration, on a free port of 127.0.0.1.
+    /// A robot of this configuration, on a free port of 127.0.0.1. Its arm is ideal if it names
+    /// none.
     pub fn new(config: Config) -> Self {
         Self {
             config: Box::new(config),
@@ -152,7 +159,7 @@ impl Sim {
         self
     }
 
-    /// Simulates this arm instead of the ideal one: see [`Config::arm`].
+    /// Simulates this arm: see [`Config::arm`].
     ///
     /// ```
     /// # use franka_model::RobotKind;
@@ -163,6 +170,13 @@ impl Sim {
     pub fn arm(mut self, arm: Arm) -> Self {
         self.config.arm = Some(arm);
         self
+    }
+
+    /// Simulates the [ideal](Arm::ideal) arm, which no real one is like: for tests that need
+    /// exactness.
+    pub fn ideal(self) -> Self {
+        let kind = self.config.kind;
+        self.arm(Arm::ideal(kind))
     }
 
     /// Mounts a tool that the controllers' model includes.

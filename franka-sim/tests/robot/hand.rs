@@ -140,6 +140,7 @@ fn a_robot_with_hand_and_vacuum_gripper_needs_nothing_but_this_process() {
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     runtime.block_on(async {
         let sim = Sim::fr3()
+            .ideal()
             .hand(Fingers::new(), 0)
             .vacuum_gripper(Suction::new(), 0)
             .start()

@@ -57,7 +57,11 @@ fn a_second_client_is_refused_at_once_instead_of_waiting_in_the_backlog() {
         use tokio::net::TcpStream;
         use tokio::time::{Duration, timeout};
 
-        let sim = franka_sim::Sim::fr3().start().await.expect("a robot");
+        let sim = franka_sim::Sim::fr3()
+            .ideal()
+            .start()
+            .await
+            .expect("a robot");
         let mut hello = client::Session::new(Version::V10);
         let hello = hello.connect(5000);
         let mut first = TcpStream::connect(sim.addr()).await.expect("a listener");

@@ -33,7 +33,7 @@ impl Binary {
     pub(crate) fn start_with(arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_franka-sim"))
             .args(arguments)
-            .args(["--port", "0"])
+            .args(["--port", "0", "--arm", "ideal"])
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()

@@ -31,7 +31,7 @@ async fn states_follow_faster_than_on_the_wall_and_are_as_many_every_time() {
     for sim in [Sim::fr3, Sim::fer] {
         let mut runs = Vec::new();
         for _ in 0..2 {
-            let (sim, robot) = start(sim(), PATIENCE).await;
+            let (sim, robot) = start(sim().ideal(), PATIENCE).await;
             let begun = Instant::now();
             let mut moved = Duration::ZERO;
             let mut typical = Duration::MAX;
@@ -62,7 +62,7 @@ async fn states_follow_faster_than_on_the_wall_and_are_as_many_every_time() {
 #[tokio::test(flavor = "multi_thread")]
 async fn no_answer_is_too_late_for_a_patient_robot() {
     let _alone = alone();
-    let (sim, robot) = start(Sim::fr3(), PATIENCE).await;
+    let (sim, robot) = start(Sim::fr3().ideal(), PATIENCE).await;
     let mut calls = 0;
     let control = robot.control_torques(move |_, period| {
         calls += 1;
@@ -87,7 +87,7 @@ async fn no_answer_is_too_late_for_a_patient_robot() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_robot_that_waits_for_commands_is_no_faster_than_the_wall() {
     let _alone = alone();
-    let sim = Sim::fr3().wait_for_commands(PATIENCE).start().await;
+    let sim = Sim::fr3().ideal().wait_for_commands(PATIENCE).start().await;
     let sim = sim.expect("a robot");
     let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
     let robot = robot.connect().await.expect("a session");
@@ -112,7 +112,7 @@ async fn a_robot_that_waits_for_commands_is_no_faster_than_the_wall() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_client_that_falls_silent_is_noticed_when_patience_is_over() {
     let _alone = alone();
-    let (sim, robot) = start(Sim::fr3(), Duration::from_millis(5)).await;
+    let (sim, robot) = start(Sim::fr3().ideal(), Duration::from_millis(5)).await;
     let mut calls = 0;
     let control = robot.control_torques(move |_, _| {
         calls += 1;
@@ -138,7 +138,7 @@ async fn a_client_that_falls_silent_is_noticed_when_patience_is_over() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_hand_grasps_in_the_time_of_the_robot() {
     let _alone = alone();
-    let (sim, robot) = start(Sim::fr3(), PATIENCE).await;
+    let (sim, robot) = start(Sim::fr3().ideal(), PATIENCE).await;
     let address = sim.hand().expect("a hand").addr();
     let hand = Gripper::connect(address).await.expect("a session");
     let begun = robot.state().message_id;

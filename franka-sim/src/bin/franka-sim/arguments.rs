@@ -65,10 +65,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, default_value = "0,0,0.05", allow_hyphen_values = true)]
     pub(crate) payload_com: [f64; 3],
 
-    /// Which arm: `ideal`, without stiction, delay and noise, as no real arm is; the middle of one
-    /// of the families `nominal`, `realistic` and `bad`; or the middle of the family in a JSON
-    /// file. The book (docs/src/real-arm.md) has the parameters.
-    #[arg(long, value_name = "ARM|FILE.json", default_value = "ideal")]
+    /// Which arm: the middle of one of the families `nominal`, `realistic` and `bad`, or of the
+    /// family in a JSON file; or `ideal`, without stiction, delay and noise, as no real arm is. The
+    /// book (docs/src/real-arm.md) has the parameters.
+    #[arg(long, value_name = "ARM|FILE.json", default_value = "realistic")]
     pub(crate) arm: String,
 
     /// Draws an arm from the family by this seed, instead of its middle.
@@ -200,7 +200,8 @@ Examples:
                                                 a Panda with its hand, and something to grasp
   franka-sim --payload 0.5 --noise --seed 7     half a kilogram that no client has declared, and sensors
                                                 that are not perfect, the same way every time
-  franka-sim --arm realistic --arm-seed 3       an arm that sticks, flexes, lags and drifts like a real one
+  franka-sim --arm-seed 3                       another arm that sticks, flexes, lags and drifts like a real one
+  franka-sim --arm ideal                        one that is as its model says, for tests that need exactness
   franka-sim --robot fer --network fer-stalls   a Panda that sends its states as late as a Panda does
   franka-sim --virtual-time                     seconds of motion in as little time as the client takes
   franka-sim --enforce-comm-constraints=false   for a client in a debugger

@@ -231,11 +231,11 @@ mod tests {
     fn an_arm_is_one_of_a_family_or_says_why_there_is_none() {
         let arm = |arguments: &[&str]| parsed(arguments).arm(RobotKind::Fer);
         let family = Family::realistic();
-        assert_eq!(arm(&[]), Ok(Arm::ideal(RobotKind::Fer)));
+        assert_eq!(arm(&[]), Ok(Arm::realistic(RobotKind::Fer)));
         assert_eq!(arm(&["--arm", "bad"]), Ok(Arm::bad(RobotKind::Fer)));
         let sampled = arm(&["--arm", "realistic", "--arm-seed", "3"]);
         assert_eq!(sampled, Ok(Arm::sample(RobotKind::Fer, 3, &family)));
-        let error = arm(&["--arm-seed", "3"]).expect_err("one arm");
+        let error = arm(&["--arm", "ideal", "--arm-seed", "3"]).expect_err("one arm");
         assert!(error.contains("needs a family"), "{error}");
         let error = arm(&["--arm", "/no/such.json"]).expect_err("no such file");
         assert!(

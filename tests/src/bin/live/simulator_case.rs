@@ -79,7 +79,7 @@ impl Plant {
 
     fn simulator(self, programs: &Path) -> Command {
         let mut command = Command::new(programs.join("franka-sim"));
-        command.args(["--port", "0", "--plant", self.name()]);
+        command.args(["--port", "0", "--plant", self.name(), "--arm", "ideal"]);
         command
     }
 
@@ -205,6 +205,9 @@ mod tests {
         let command = Plant::Mujoco.simulator(Path::new("/bin"));
         assert_eq!(command.get_program(), "/bin/franka-sim");
         let arguments: Vec<_> = command.get_args().collect();
-        assert_eq!(arguments, ["--port", "0", "--plant", "mujoco"]);
+        assert_eq!(
+            arguments,
+            ["--port", "0", "--plant", "mujoco", "--arm", "ideal"]
+        );
     }
 }
