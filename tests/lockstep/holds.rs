@@ -1,7 +1,7 @@
 //! Arms that stick: how far from its target an arm rests after steps of 5 cm, how it holds, and
 //! what a person feels who pushes it.
 
-use franka_model::RobotKind;
+use franka_model::{Load, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::law::Gains;
 use franka_rt::session::{Goal, OnArrival};
@@ -9,7 +9,7 @@ use franka_sim::arm::{Arm, Family};
 use franka_sim::{Config, Touch};
 use franka_tests::lockstep::Lockstep;
 use franka_tests::push::{PUSH, STIFFNESS, hand};
-use nalgebra::{Translation3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
 
 /// The time from the start of a step to the reading, `[ms]`.
 const HOLD: u64 = 1200;
@@ -139,6 +139,17 @@ fn an_arm_that_sticks_is_held_without_hunting() {
     }
 }
 
+/// How far an arm that was let go swings beyond its target along `way` within 3 s, `[m]`.
+fn swing(lockstep: &mut Lockstep, target: &Isometry3<f64>, way: Vector3<f64>) -> f64 {
+    let mut beyond = 0.0_f64;
+    for _ in 0..3000 {
+        lockstep.tick();
+        let off = lockstep.arm_pose().translation.vector - target.translation.vector;
+        beyond = beyond.max(off.dot(&way));
+    }
+    beyond
+}
+
 /// The hand holds the arm back for four seconds after the push, in which nothing may wind up.
 #[test]
 fn an_arm_that_was_held_back_comes_home_without_a_kick() {
@@ -166,12 +177,7 @@ fn an_arm_that_was_held_back_comes_home_without_a_kick() {
                 }
             }
             lockstep.robot.release(push);
-            let mut beyond = 0.0_f64;
-            for _ in 0..3000 {
-                lockstep.tick();
-                let off = lockstep.arm_pose().translation.vector - home.translation.vector;
-                beyond = beyond.max(-off.dot(&way));
-            }
+            let beyond = swing(&mut lockstep, &home, -way);
             println!("seed {seed}: {felt:.1} N, {:.2} mm beyond", beyond * 1e3);
             // The cap, and what friction adds at the end effector.
             assert!(felt < 38.0, "{felt} N");
@@ -209,12 +215,7 @@ fn slow_push(arm: Arm, way: Vector3<f64>, distance: f64, gains: Gains) -> [f64; 
         last += if cycle >= 4000 { force / 1000.0 } else { 0.0 };
     }
     lockstep.robot.release(push);
-    let mut beyond = 0.0_f64;
-    for _ in 0..3000 {
-        lockstep.tick();
-        let off = lockstep.arm_pose().translation.vector - home.translation.vector;
-        beyond = beyond.max(-off.dot(&way));
-    }
+    let beyond = swing(&mut lockstep, &home, -way);
     assert_eq!(lockstep.client.outcome(engaged), None);
     [most, last, beyond]
 }
@@ -277,15 +278,40 @@ fn an_arm_that_was_stopped_on_its_way_comes_home_without_a_kick() {
                 }
             }
             lockstep.robot.release(block.expect("it came by"));
-            let mut beyond = 0.0_f64;
-            for _ in 0..3000 {
-                lockstep.tick();
-                let off = lockstep.arm_pose().translation.vector - target.translation.vector;
-                beyond = beyond.max(off.y);
-            }
+            let beyond = swing(&mut lockstep, &target, Vector3::y());
             println!("{short}: {felt:.1} N, {:.2} mm beyond", beyond * 1e3);
             assert!(felt < 38.0, "{felt} N");
             assert!(beyond < 5e-3, "{beyond} m");
+        }
+    }
+}
+
+/// 300 g that are not declared, in the middle of a session, and without them again.
+#[test]
+fn a_load_that_is_gripped_and_dropped_is_compensated() {
+    let gripped = Load {
+        mass: 0.3,
+        com: Vector3::new(0.0, 0.0, 0.12),
+        inertia: Matrix3::identity() * 3e-4,
+    };
+    for seed in 0..3 {
+        let mut lockstep = sticking(seed);
+        let engaged = lockstep.engage();
+        let home = lockstep.arm_pose();
+        for load in [Load::NONE, gripped, Load::NONE] {
+            lockstep.robot.attach(load);
+            lockstep.run(1000);
+            for away in [
+                Vector3::z(),
+                Vector3::zeros(),
+                -Vector3::y(),
+                Vector3::zeros(),
+            ] {
+                let target = Translation3::from(away * 0.05) * home;
+                let goal = lockstep.within(engaged, target.into(), OnArrival::ReportAndHold);
+                let goal = goal.expect("within reach");
+                lockstep.until_resolved(goal, 5000).expect("it arrives");
+            }
         }
     }
 }

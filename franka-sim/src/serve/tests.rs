@@ -87,7 +87,7 @@ fn states_come_every_millisecond_even_while_the_runtime_is_blocked() {
     let (read, reads) = std::sync::mpsc::channel();
     (0..10).for_each(|_| read.send(()).expect("a receiver"));
     let mut served = false;
-    let sim = Sim::fr3().ideal().every_millisecond(move |robot| {
+    let sim = Sim::fr3().every_millisecond(move |robot| {
         served |= robot.is_connected();
         // The test has ended if there is no sender.
         let _ = served.then(|| reads.recv());
@@ -114,7 +114,7 @@ fn states_come_every_millisecond_even_while_the_runtime_is_blocked() {
 fn a_job_of_every_millisecond_misses_none() {
     let (sender, seen) = std::sync::mpsc::channel();
     // Sends nothing once the test has seen enough.
-    let sim = Sim::fr3().ideal().every_millisecond(move |robot| {
+    let sim = Sim::fr3().every_millisecond(move |robot| {
         let _ = sender.send(robot.state().message_id);
     });
     let runtime = runtime();
@@ -127,9 +127,7 @@ fn a_job_of_every_millisecond_misses_none() {
 #[test]
 fn a_second_client_is_refused_by_a_reset_and_the_next_one_served() {
     let runtime = runtime();
-    let sim = runtime
-        .block_on(Sim::fr3().ideal().start())
-        .expect("a robot");
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
     let first = Client::connect(sim.addr());
     let refused = Client::try_connect(sim.addr()).map(drop);
     let kind = refused.expect_err("the robot has a client").kind();
@@ -145,9 +143,7 @@ fn a_second_client_is_refused_by_a_reset_and_the_next_one_served() {
 #[test]
 fn a_connection_that_says_nothing_is_closed_and_keeps_no_client_out() {
     let runtime = runtime();
-    let sim = runtime
-        .block_on(Sim::fr3().ideal().start())
-        .expect("a robot");
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
     let mut silent = TcpStream::connect(sim.addr()).expect("a listener");
     Client::connect(sim.addr()).state();
     assert_eq!(silent.read(&mut [0; 1]).expect("an orderly end"), 0);
@@ -156,9 +152,7 @@ fn a_connection_that_says_nothing_is_closed_and_keeps_no_client_out() {
 #[test]
 fn garbage_closes_the_connection_and_the_robot_stays() {
     let runtime = runtime();
-    let sim = runtime
-        .block_on(Sim::fr3().ideal().start())
-        .expect("a robot");
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
     let mut stream = TcpStream::connect(sim.addr()).expect("a listener");
     stream.set_read_timeout(Some(SOON)).expect("a timeout");
     stream.write_all(&[0xff; 100]).expect("an open stream");
@@ -169,9 +163,7 @@ fn garbage_closes_the_connection_and_the_robot_stays() {
 #[test]
 fn a_client_that_does_not_read_makes_room_for_the_next() {
     let runtime = runtime();
-    let sim = runtime
-        .block_on(Sim::fr3().ideal().start())
-        .expect("a robot");
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
     let mut deaf = Client::connect(sim.addr());
     let pause = Some(Duration::from_millis(200));
     deaf.stream.set_write_timeout(pause).expect("a timeout");
@@ -198,7 +190,7 @@ fn a_client_that_does_not_read_makes_room_for_the_next() {
 fn jobs_reach_the_robot_and_stopping_frees_the_port() {
     let runtime = runtime();
     runtime.block_on(async {
-        let sim = Sim::fr3().ideal().start().await.expect("a robot");
+        let sim = Sim::fr3().start().await.expect("a robot");
         let address = sim.addr();
         sim.with(|robot| robot.press_user_stop(true))
             .await
@@ -207,7 +199,7 @@ fn jobs_reach_the_robot_and_stopping_frees_the_port() {
         assert_eq!(state.robot_mode, RobotMode::UserStopped);
         assert!(sim.pace().await.expect("running").cycles > 0);
         sim.stop().await;
-        let again = Sim::fr3().ideal().bind(address).start().await;
+        let again = Sim::fr3().bind(address).start().await;
         assert!(again.is_ok(), "{again:?}");
     });
 }
@@ -217,7 +209,6 @@ fn a_person_beside_the_robot_reaches_it_from_any_task() {
     let runtime = runtime();
     runtime.block_on(async {
         let sim = Sim::fr3()
-            .ideal()
             .hand(Fingers::new(), 0)
             .realtime(true)
             .start()
@@ -267,7 +258,7 @@ fn a_person_beside_the_robot_reaches_it_from_any_task() {
 fn a_simulation_that_dies_says_so_and_closes_its_port() {
     let runtime = runtime();
     runtime.block_on(async {
-        let sim = Sim::fr3().ideal().start().await.expect("a robot");
+        let sim = Sim::fr3().start().await.expect("a robot");
         let still = tokio::time::timeout(Duration::from_millis(20), sim.ended());
         still.await.expect_err("it runs");
         let died = sim.with(|_| panic!("by a test")).await;
@@ -289,7 +280,7 @@ fn what_clients_hear_passes_the_network() {
         ..Conditions::default()
     };
     let network = Network::new(1, late, Conditions::default());
-    let sim = Sim::fr3().ideal().network(network);
+    let sim = Sim::fr3().network(network);
     let sim = runtime.block_on(sim.start()).expect("a robot");
     let newest = || runtime.block_on(sim.state()).expect("running").message_id;
     let client = Client::connect(sim.addr());
@@ -314,9 +305,7 @@ fn in_virtual_time_a_network_delays_by_the_time_of_the_robot() {
         delay: Duration::from_micros(29_500),
         ..Conditions::default()
     };
-    let sim = Sim::fr3()
-        .ideal()
-        .network(Network::new(1, late, Conditions::default()));
+    let sim = Sim::fr3().network(Network::new(1, late, Conditions::default()));
     let sim = sim.virtual_time(SOON);
     let sim = runtime.block_on(sim.start()).expect("a robot");
     let client = Client::connect(sim.addr());
@@ -332,7 +321,7 @@ fn what_the_network_cuts_reaches_no_client() {
     let runtime = runtime();
     let mut network = Network::perfect();
     network.to_client.cut(Duration::ZERO..Duration::MAX);
-    let sim = Sim::fr3().ideal().network(network);
+    let sim = Sim::fr3().network(network);
     let sim = runtime.block_on(sim.start()).expect("a robot");
     let client = Client::connect(sim.addr());
     runtime.block_on(robot_time(&sim, 200));
@@ -341,11 +330,19 @@ fn what_the_network_cuts_reaches_no_client() {
     assert_eq!(heard, Err(ErrorKind::WouldBlock));
 }
 
+#[test]
+fn robots_are_realistic_unless_they_are_to_be_ideal() {
+    for (sim, kind) in [(Sim::fr3(), RobotKind::Fr3), (Sim::fer(), RobotKind::Fer)] {
+        assert_eq!(sim.config.chosen_arm(), Arm::realistic(kind));
+        assert_eq!(sim.ideal().config.chosen_arm(), Arm::ideal(kind));
+    }
+}
+
 /// A program keeps it on a stack that may be a thread's of 2 MiB, and builds without optimisation
 /// copy it from frame to frame.
 #[test]
 fn the_future_of_a_start_is_small() {
-    let size = size_of_val(&Sim::fr3().ideal().start());
+    let size = size_of_val(&Sim::fr3().start());
     assert!(size < 10_000, "{size} bytes");
 }
 
@@ -353,11 +350,7 @@ fn the_future_of_a_start_is_small() {
 fn robots_share_a_process() {
     let runtime = runtime();
     let sims: Vec<_> = (0..3)
-        .map(|_| {
-            runtime
-                .block_on(Sim::fr3().ideal().start())
-                .expect("a robot")
-        })
+        .map(|_| runtime.block_on(Sim::fr3().start()).expect("a robot"))
         .collect();
     let clients: Vec<_> = sims.iter().map(|s| Client::connect(s.addr())).collect();
     for client in &clients {
@@ -390,7 +383,7 @@ fn a_hand_on_sockets_moves_the_fingers_in_the_scene() {
     runtime.block_on(async {
         let scene = Scene::table().with_hand();
         let arm = MujocoArm::new(RobotKind::Fr3, scene).expect("a scene");
-        let sim = Sim::fr3().ideal().tool(Tool::hand()).plant(arm);
+        let sim = Sim::fr3().tool(Tool::hand()).plant(arm);
         let sim = sim.hand(Fingers::new(), 0).start().await.expect("a robot");
         assert!((gap(&sim).await - Fingers::STROKE).abs() < 2e-3);
         let hand = sim.hand().expect("a hand");

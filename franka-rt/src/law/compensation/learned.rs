@@ -91,7 +91,7 @@ const DRIFT: [f64; 2] = [0.2, 5.0];
 mod tests {
     use super::*;
 
-    /// Two seconds to and fro, in which a joint takes friction and this bias over time.
+    /// Four seconds to and fro, in which a joint takes friction and this bias over time.
     fn to_and_fro(friction: f64, bias: impl Fn(f64) -> f64) -> Learned {
         let mut this = Learned::default();
         for cycle in 0..4000 {

@@ -48,12 +48,18 @@ pub(crate) struct Compensation {
     free: f64,
     /// Cycles for which each joint has rested, and its reference.
     rested: [u32; 7],
-    /// Cycles for which the reference has rested and the arm has not settled.
-    arrived: u32,
-    /// The integral when the arm settled, `[N m]`; none before that.
-    settled: Option<JointVector>,
+    stand: Stand,
     /// Whether the integral of a joint runs.
     is_working: bool,
+}
+
+/// How an arm stands to a reference that rests.
+#[derive(Debug)]
+enum Stand {
+    /// It has not come to rest there yet, for so many cycles; zero while the reference moves.
+    Arriving(u32),
+    /// It has come to rest, with this integral, `[N m]`.
+    Settled(JointVector),
 }
 
 /// The arm against its reference in one cycle.
@@ -86,8 +92,7 @@ impl Compensation {
             acting: 0.0,
             free: 1.0,
             rested: [0; 7],
-            arrived: 0,
-            settled: None,
+            stand: Stand::Arriving(0),
             is_working: false,
         }
     }
@@ -105,11 +110,13 @@ impl Compensation {
     fn settle(&mut self, demand: &Demand<'_>) {
         let rests = |i: usize| self.rested[i] > SETTLED && demand.error[i].abs() < DEAD_ZONE[i];
         if demand.dq_ref.amax() > MOVING {
-            self.settled = None;
-            self.arrived = 0;
-        } else if self.settled.is_none() {
-            self.arrived += 1;
-            self.settled = (0..7).all(rests).then_some(self.rest);
+            self.stand = Stand::Arriving(0);
+        } else if let Stand::Arriving(cycles) = self.stand {
+            self.stand = if (0..7).all(rests) {
+                Stand::Settled(self.rest)
+            } else {
+                Stand::Arriving(cycles.saturating_add(1))
+            };
         }
     }
 
@@ -126,7 +133,7 @@ impl Compensation {
         self.is_working = false;
         JointVector::from_fn(|i, _| {
             let (friction, bias) = self.learned.of(i);
-            self.integrate(i, held, demand);
+            self.integrate(i, (friction, bias), held, demand);
             let along = (demand.dq_ref[i] / SIGN_VELOCITY).tanh();
             let to_target = (demand.error[i] / SIGN_ERROR).tanh();
             let towards = (1.0 - along.abs()) * AT_REST * to_target * self.free;
@@ -137,19 +144,24 @@ impl Compensation {
         })
     }
 
-    /// The integral of one joint.
-    fn integrate(&mut self, i: usize, held: bool, demand: &Demand<'_>) {
-        let (friction, bias) = self.learned.of(i);
+    /// The integral of one joint that has this friction and this bias.
+    fn integrate(
+        &mut self,
+        i: usize,
+        (friction, bias): (f64, f64),
+        held: bool,
+        demand: &Demand<'_>,
+    ) {
         let (v, e) = (demand.dq_ref[i], demand.error[i]);
         let bound = demand.bounds[i];
         // Springs and integral together need no more than friction may take, what a bias may differ
         // by from pose to pose, and for a while what is not known of the arm yet. What stands
         // against more is something else.
         let resists = FRICTION_SPREAD * friction + BIAS_SPREAD * bias.abs() + FELT;
-        let (settled, resists) = match self.settled {
-            None if self.arrived > ARRIVES => (0.0, resists),
-            None => (0.0, resists + self.learned.unknown(i) * bound),
-            Some(settled) => (settled[i], resists),
+        let (settled, resists) = match self.stand {
+            Stand::Arriving(cycles) if cycles > ARRIVES => (0.0, resists),
+            Stand::Arriving(_) => (0.0, resists + self.learned.unknown(i) * bound),
+            Stand::Settled(settled) => (settled[i], resists),
         };
         let room = (resists - demand.springs[i].abs()).max(0.0);
         let within = |torque: f64| torque.clamp(-bound, bound);

@@ -9,11 +9,10 @@ pub(crate) struct ArmFigures {
     pub(crate) seed: u64,
     /// What ended the programme early.
     pub(crate) reflex: Option<String>,
-    /// Goals that were to arrive, those that did, and those that were reported as held by
-    /// something. Nothing holds the arm while they are counted.
+    /// Goals that were to arrive, and those that did. The others were reported as held by
+    /// something, though nothing holds the arm while they are counted.
     pub(crate) goals: u32,
     pub(crate) arrived: u32,
-    pub(crate) short: u32,
     /// Distances from the target at rest, `[mm]` and `[mrad]`.
     pub(crate) errors_mm: Vec<f64>,
     pub(crate) errors_mrad: Vec<f64>,
@@ -37,7 +36,7 @@ pub(crate) struct ArmFigures {
     pub(crate) handover_mm: f64,
     /// Force of a pushing hand without the inertia's share, `[N]`.
     pub(crate) push_force_n: f64,
-    /// Force of a hand that guides the arm at 0.1 m/s, `[N]`.
+    /// Force of a hand that guides the arm at up to 0.16 m/s, `[N]`.
     pub(crate) guide_force_n: f64,
     /// How far an arm that is let go swings beyond its target, `[mm]`.
     pub(crate) release_overshoot_mm: f64,
@@ -45,7 +44,11 @@ pub(crate) struct ArmFigures {
 
 impl ArmFigures {
     pub(crate) fn fell_short(&self) -> bool {
-        self.reflex.is_some() || self.arrived < self.goals
+        self.reflex.is_some() || self.short() > 0
+    }
+
+    fn short(&self) -> u32 {
+        self.goals - self.arrived
     }
 }
 
@@ -58,7 +61,7 @@ impl fmt::Display for ArmFigures {
             self.seed,
             self.arrived,
             self.goals,
-            self.short,
+            self.short(),
             quantile(&self.errors_mm, 1.0),
             quantile(&self.errors_mrad, 1.0),
             quantile(&self.arrive_s, 0.5),
@@ -88,17 +91,15 @@ impl Summary {
         let sum =
             |of: fn(&ArmFigures) -> u32| arms.iter().map(|arm| f64::from(of(arm))).sum::<f64>();
         let most = |of: fn(&ArmFigures) -> f64| arms.iter().map(of).fold(0.0, f64::max);
-        let all = |of: fn(&ArmFigures) -> &Vec<f64>| {
-            let mut all: Vec<f64> = arms.iter().flat_map(of).copied().collect();
-            all.sort_by(f64::total_cmp);
-            all
+        let all = |of: fn(&ArmFigures) -> &Vec<f64>| -> Vec<f64> {
+            arms.iter().flat_map(of).copied().collect()
         };
         put("count", arms.len() as f64);
         put(
             "arrived_share",
             sum(|arm| arm.arrived) / sum(|arm| arm.goals),
         );
-        put("wrong_short", sum(|arm| arm.short));
+        put("wrong_short", sum(ArmFigures::short));
         put("reflexes", sum(|arm| u32::from(arm.reflex.is_some())));
         let mm = all(|arm| &arm.errors_mm);
         let mrad = all(|arm| &arm.errors_mrad);

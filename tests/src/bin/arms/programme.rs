@@ -182,7 +182,6 @@ impl Programme {
         let figures = &mut self.figures;
         figures.goals += 1;
         figures.arrived += u32::from(arrived);
-        figures.short += u32::from(!arrived);
         figures.errors_mm.push(error.translation * 1e3);
         figures.errors_mrad.push(error.rotation * 1e3);
         if timed {

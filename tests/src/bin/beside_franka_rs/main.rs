@@ -66,21 +66,22 @@ async fn main() -> ExitCode {
 
 async fn run(arguments: Arguments) -> anyhow::Result<()> {
     let mut failed = 0;
-    let kinds: [(&str, Kind); 2] = [
+    let ideal: [(&str, Kind); 2] = [
         ("FR3", || Sim::fr3().ideal()),
         ("FER", || Sim::fer().ideal()),
     ];
-    let realistic: [(&str, Kind); 2] = [("realistic FR3", Sim::fr3), ("realistic FER", Sim::fer)];
-    for ((robot, kind), wanted) in kinds
-        .map(|one| (one, Wanted::IDEAL))
-        .into_iter()
-        .chain(realistic.map(|one| (one, Wanted::REALISTIC)))
-    {
+    let [fr3, fer] = ideal;
+    for ((robot, kind), wanted) in [
+        (fr3, Wanted::IDEAL),
+        (fer, Wanted::IDEAL),
+        (("realistic FR3", Sim::fr3), Wanted::REALISTIC),
+        (("realistic FER", Sim::fer), Wanted::REALISTIC),
+    ] {
         let start = Instant::now();
         let stepped = step(kind, wanted, &arguments).await;
         failed += u32::from(!told(&format!("{robot}: a step of 5 cm"), start, stepped));
     }
-    for (robot, kind) in kinds {
+    for (robot, kind) in ideal {
         for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
             let start = Instant::now();
             let pushed = push(kind, way, &arguments).await;
