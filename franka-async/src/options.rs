@@ -32,7 +32,7 @@ impl GoalOptions {
         Ok(Goal {
             gains: self.stiffness.map_or(goal.gains, softened),
             budget: self.at_speed(goal.budget, model)?,
-            tolerance: self.tolerance.unwrap_or(goal.tolerance),
+            tolerance: self.tolerance.or(goal.tolerance),
             ..goal
         })
     }
@@ -120,7 +120,10 @@ macro_rules! goal_options {
             self
         }
 
-        /// Sets how near to the target counts as arrived, of a stream: to its last one.
+        /// Sets how near to the target counts as arrived, of a stream: to its last one. By default
+        /// what the law or the robot's controller keeps on an arm that sticks:
+        /// [`Tolerance::of`](crate::goal::Tolerance::of) and
+        /// [`Tolerance::under`](crate::goal::Tolerance::under).
         pub fn tolerance(mut self, tolerance: crate::goal::Tolerance) -> Self {
             self.options.tolerance = Some(tolerance);
             self

@@ -37,6 +37,8 @@ fn a_report_and_the_words_around_it() {
     let report: MotionReport = serde_json::from_value(json!({
         "duration": Duration::from_millis(1234),
         "final_error": PoseError { translation: 1.0 / 3.0, rotation: 1e-300 },
+        "released_error": null,
+        "compensation": [0.8, -0.1, 0.0, 1.2, 0.0, 0.0, 1.0 / 3.0],
         "lost_states": u64::MAX,
         "skipped_states": 2,
         "success_rate_min": 0.97,

@@ -236,7 +236,7 @@ const SAG: Tolerance = Tolerance {
 /// Runs until the goal has arrived. Returns the number of milliseconds in which the cap bound.
 fn capped_until_it_arrives(lockstep: &mut Lockstep, engaged: GoalId, target: Target) -> u32 {
     let goal = Goal {
-        tolerance: SAG,
+        tolerance: Some(SAG),
         ..lockstep.goal(target, OnArrival::ReportAndHold)
     };
     let goal = Goal {

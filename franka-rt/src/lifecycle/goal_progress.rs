@@ -49,6 +49,7 @@ pub(super) struct Settled {
     pub(super) goal: GoalId,
     pub(super) settlement: Settlement,
     pub(super) duration_ms: u64,
+    pub(super) compensation: Option<[f64; 7]>,
     /// What the motion had come to by then.
     pub(super) counted: Counted,
 }
@@ -163,8 +164,17 @@ impl Goals {
             return Some(Err(GoalError::Tool.into()));
         }
         let settled = self.settled.as_ref()?;
-        (settled.goal == self.current.id)
-            .then(|| settled.result(&Counted::of(ended), self.cancelled))
+        let released = match &ended.program {
+            Program::Target(session) => session.released(),
+            _ => None,
+        };
+        (settled.goal == self.current.id).then(|| {
+            let result = settled.result(&Counted::of(ended), self.cancelled)?;
+            Ok(MotionReport {
+                released_error: released,
+                ..result
+            })
+        })
     }
 }
 
@@ -182,6 +192,9 @@ impl Settled {
             Settlement::Braked(lapse) => return Err(MotionError::Braked(lapse)),
             Settlement::Unstarted(fault) => return Err(fault.into()),
         };
-        Ok(MotionReport::new(counted, self.duration_ms, final_error))
+        Ok(MotionReport {
+            compensation: self.compensation,
+            ..MotionReport::new(counted, self.duration_ms, final_error)
+        })
     }
 }

@@ -27,6 +27,14 @@ pub struct MotionReport {
     pub duration: Duration,
     /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,
+    /// The same when the arm had been let go at the end of the motion, before the robot's own
+    /// controller took it, which knows nothing of what was compensated. `None` without a target,
+    /// and where the arm is held on.
+    pub released_error: Option<PoseError>,
+    /// What friction and bias of each joint were compensated by at the arrival, `[N m]`: what the
+    /// springs could not do. `None` without our law: under the robot's controller, and of a control
+    /// function.
+    pub compensation: Option<[f64; 7]>,
     /// States that never arrived while the motion ran.
     pub lost_states: u64,
     /// States that arrived meanwhile but were skipped, because a newer one had come before they
@@ -57,6 +65,8 @@ impl MotionReport {
         Self {
             duration: Duration::from_millis(duration_ms),
             final_error,
+            released_error: None,
+            compensation: None,
             lost_states: statistics.lost_states,
             skipped_states: statistics.skipped_states,
             success_rate_min: statistics.success_rate_min,

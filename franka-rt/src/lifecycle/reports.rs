@@ -112,11 +112,13 @@ impl Lifecycle {
                 goal,
                 settlement,
                 duration_ms,
+                compensation,
             } => {
                 let settled = Settled {
                     goal,
                     settlement,
                     duration_ms,
+                    compensation,
                     counted: Counted {
                         statistics,
                         times: current.times.clone(),

@@ -136,7 +136,8 @@ impl Goal {
         if projected && !guided && self.gains.cartesian_stiffness == [0.0; 6] {
             return Err(GoalError::Unheld);
         }
-        for got in [self.tolerance.translation, self.tolerance.rotation] {
+        let tolerance = self.tolerance.unwrap_or_default();
+        for got in [tolerance.translation, tolerance.rotation] {
             if got.is_nan() || got <= 0.0 {
                 return Err(GoalError::Tolerance { got });
             }

@@ -7,7 +7,7 @@ use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use crate::law::Gains;
-use crate::session::{Budget, ForceCap, Lead, OnTimeout, Watchdog};
+use crate::session::{Budget, ForceCap, Lead, OnTimeout, Tolerance, Watchdog};
 use crate::slot::Words;
 
 /// Identifies one goal for the life of a connection. Updates of a followed target keep the id of
@@ -83,25 +83,6 @@ pub enum OnArrival {
     ReportAndFinish,
 }
 
-/// How near counts as arrived, measured at the end effector.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerance {
-    /// Distance, `[m]`.
-    pub translation: f64,
-    /// Angle, `[rad]`.
-    pub rotation: f64,
-}
-
-impl Default for Tolerance {
-    /// 1 mm and 3 mrad.
-    fn default() -> Self {
-        Self {
-            translation: 1e-3,
-            rotation: 3e-3,
-        }
-    }
-}
-
 /// One goal, complete: a newer one replaces all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
@@ -115,8 +96,9 @@ pub struct Goal {
     pub budget: Budget,
     /// How stiff.
     pub gains: Gains,
-    /// How near counts as arrived.
-    pub tolerance: Tolerance,
+    /// How near counts as arrived; `None` for what the law keeps on an arm that sticks: see
+    /// [`Tolerance::of`] and [`Tolerance::under`].
+    pub tolerance: Option<Tolerance>,
     /// What happens if its updates stop coming; only for goals that are held.
     pub watchdog: Option<Watchdog>,
     /// With how much force springs and dampers may press at the end effector.
@@ -133,8 +115,7 @@ impl Goal {
     pub const SILENCE_MIN: Duration = Duration::from_millis(10);
 
     /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on
-    /// the way to joint positions and the end effector compliant otherwise, the default tolerance
-    /// and force cap.
+    /// the way to joint positions and the end effector compliant otherwise, the default force cap.
     pub fn new(id: GoalId, target: Target, on_arrival: OnArrival, limits: &JointLimits) -> Self {
         Self {
             id,
@@ -146,7 +127,7 @@ impl Goal {
                 Target::Pose(_) | Target::Rest => Gains::cartesian(),
                 Target::Guide(free) => Gains::guiding(free),
             },
-            tolerance: Tolerance::default(),
+            tolerance: None,
             watchdog: None,
             force_cap: ForceCap::Default,
             lead: None,
@@ -208,7 +189,9 @@ impl Words for Goal {
             .into_iter()
             .chain(axes.flat_map(|l| [l.velocity, l.acceleration, l.jerk]))
             .chain(self.gains.to_array())
-            .chain([self.tolerance.translation, self.tolerance.rotation])
+            .chain(self.tolerance.map_or([0.0; 2], |tolerance| {
+                [tolerance.translation, tolerance.rotation]
+            }))
             .chain([self.force_cap.to_number()])
             .chain(self.lead.map_or([0.0; 3], |lead| {
                 [lead.translation, lead.rotation, lead.joints]
@@ -263,10 +246,11 @@ impl Words for Goal {
             }),
             budget,
             gains: Gains::from_array(core::array::from_fn(|_| number())),
-            tolerance: Tolerance {
+            tolerance: Some(Tolerance {
                 translation: number(),
                 rotation: number(),
-            },
+            })
+            .filter(|tolerance| tolerance.translation > 0.0),
             force_cap: ForceCap::from_number(number()),
             lead: Some(Lead {
                 translation: number(),
@@ -357,10 +341,10 @@ mod tests {
                 on_arrival,
                 budget: Budget::of(Model::fr3().joint_limits()).scaled(0.37),
                 gains: Gains::MOST,
-                tolerance: Tolerance {
+                tolerance: lead.map(|_| Tolerance {
                     translation: 2e-3,
                     rotation: 3e-3,
-                },
+                }),
                 watchdog,
                 force_cap,
                 lead,

@@ -129,6 +129,10 @@ impl Landing {
         }
     }
 
+    pub(super) fn target(&self) -> Option<Isometry3<f64>> {
+        self.target
+    }
+
     /// Judges one cycle; `working` says that the law does something yet to move an arm at rest.
     pub(super) fn judge(
         &mut self,
@@ -166,15 +170,22 @@ impl Landing {
 /// does not fall.
 #[derive(Debug)]
 pub(super) struct Release {
+    target: Option<Isometry3<f64>>,
     arm: JointVector,
     length: JointVector,
     cycle: u32,
 }
 
 impl Release {
-    /// For a spring that reaches from the arm at `arm` to the reference, both `[rad]`.
-    pub(super) fn new(arm: JointVector, reference: &JointVector) -> Self {
+    /// For a spring that reaches from the arm at `arm` to the reference, both `[rad]`, and a goal
+    /// with this target.
+    pub(super) fn new(
+        target: Option<Isometry3<f64>>,
+        arm: JointVector,
+        reference: &JointVector,
+    ) -> Self {
         Self {
+            target,
             arm,
             length: reference - arm,
             cycle: 0,
@@ -186,6 +197,11 @@ impl Release {
         self.cycle += 1;
         let remaining = RELEASE.saturating_sub(self.cycle);
         self.arm + self.length * (f64::from(remaining) / f64::from(RELEASE))
+    }
+
+    /// How far `pose` is from the target, if there is one.
+    pub(super) fn error(&self, pose: &Isometry3<f64>) -> Option<PoseError> {
+        self.target.map(|target| PoseError::between(pose, &target))
     }
 
     pub(super) fn is_over(&self, at_rest: bool) -> bool {
@@ -263,7 +279,7 @@ mod tests {
     #[test]
     fn the_spring_is_let_go_evenly_and_only_at_rest() {
         let arm = JointVector::repeat(-0.5);
-        let mut release = Release::new(arm, &JointVector::repeat(-0.49));
+        let mut release = Release::new(None, arm, &JointVector::repeat(-0.49));
         let mut last = 0.01;
         for _ in 0..RELEASE {
             assert!(!release.is_over(true));

@@ -38,6 +38,7 @@ mod running;
 mod setpoint_stream;
 #[cfg(test)]
 mod tests;
+mod tolerance;
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -55,7 +56,7 @@ pub use backend::{Backend, Setpoints};
 pub use budget::Budget;
 pub use check::{GoalError, TooManyChunks};
 pub use chunk::{Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
-pub use goal::{Free, Goal, GoalId, OnArrival, Target, Tolerance};
+pub use goal::{Free, Goal, GoalId, OnArrival, Target};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub use guard::deadman::{Deadman, DeadmanMonitor};
 pub use guard::deviation::{JOINT_DEVIATION, ROTATION_DEVIATION, TRANSLATION_DEVIATION};
@@ -67,6 +68,7 @@ pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT, Shortfall};
+pub use tolerance::Tolerance;
 
 use reference::Reference;
 use running::RunningSession;
@@ -88,6 +90,9 @@ pub enum SessionEvent {
         settlement: Settlement,
         /// Time from the first cycle that saw the goal to the arrival, `[ms]` of the robot's clock.
         duration_ms: u64,
+        /// What friction and bias are compensated by there, `[N m]`; `None` where the robot's
+        /// controller turns setpoints into torques.
+        compensation: Option<[f64; 7]>,
     },
     /// The robot's state names an end effector that is not a rigid transformation, or a load that
     /// is not finite; the session ends without a torque.
@@ -292,6 +297,12 @@ impl TargetSession {
     pub fn last_goal(&self) -> Option<GoalId> {
         let active = self.active.as_ref().map(|active| active.goal.id);
         self.held.map(|held| held.id).or(active)
+    }
+
+    /// How far the arm was from its target when it had been let go, before the robot's controller
+    /// took it.
+    pub(crate) fn released(&self) -> Option<PoseError> {
+        self.active.as_ref()?.released
     }
 
     /// Whether everything that the session computes with beside measured joints and torques is

@@ -52,6 +52,10 @@ impl SetpointStream {
         }
     }
 
+    pub(super) fn setpoints(&self) -> Setpoints {
+        self.setpoints
+    }
+
     /// Returns the setpoint as the robot has it, if it differs from `reference`. Cartesian
     /// setpoints are compared as commanded, and the robot's own joints are taken over.
     pub(super) fn echo(

@@ -35,8 +35,11 @@ mod submission;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use franka_model::RobotKind;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::Lapse;
+use franka_sim::Config;
+use franka_sim::arm::{Arm, Family};
 use franka_tests::lockstep::{Lockstep, Outcome};
 
 use motions::Motions;
@@ -78,10 +81,23 @@ fn every_schedule_of_a_session_ends_with_all_goals_resolved_and_the_arm_at_rest(
     });
 }
 
+#[test]
+fn schedules_of_sessions_also_end_on_arms_that_stick() {
+    run(SESSIONS / 2, |seed, counts| {
+        let arm = |kind: RobotKind| {
+            Lockstep::new(Config {
+                arm: Some(Arm::sample(kind, seed, &Family::realistic())),
+                seed,
+                ..Lockstep::config_of(kind)
+            })
+        };
+        Sessions::play(seed, arm, counts);
+    });
+}
+
 #[cfg(feature = "mujoco")]
 #[test]
 fn schedules_of_sessions_also_end_with_the_mujoco_plant() {
-    use franka_model::RobotKind;
     use franka_sim::Robot;
     use franka_sim::plant::{MujocoArm, Scene};
 

@@ -56,6 +56,8 @@ pub(super) struct Submission {
     pub(super) finishing: bool,
     /// Its deadman timed out.
     pub(super) deadman: bool,
+    /// What counts as arrived, unless it is soft.
+    pub(super) tolerance: Tolerance,
     /// The springs may be too soft to reach the target.
     pub(super) soft: bool,
     /// A guard kept the arm from the target.
@@ -76,6 +78,7 @@ impl Submission {
             released: false,
             finishing: false,
             deadman: false,
+            tolerance: Tolerance::default(),
             soft: false,
             hindered: false,
         }
@@ -137,12 +140,12 @@ impl Submission {
             return false;
         };
         let off = PoseError::between(&lockstep.arm_pose(), &target);
-        let most = Tolerance::default();
+        let most = self.tolerance;
+        let within = reported.translation <= most.translation && reported.rotation <= most.rotation;
         // The arm swings on a little after the measurement.
-        reported.translation <= most.translation
-            && reported.rotation <= most.rotation
-            && off.translation <= most.translation + 1e-3
-            && off.rotation <= most.rotation + 2e-3
+        (self.soft || within)
+            && off.translation <= reported.translation.max(most.translation) + 1e-3
+            && off.rotation <= reported.rotation.max(most.rotation) + 2e-3
     }
 
     fn may_fail(&self, error: &MotionError, now: u64, causes: &Causes) -> bool {

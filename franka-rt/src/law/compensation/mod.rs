@@ -56,10 +56,26 @@ pub(crate) struct Compensation {
 /// How an arm stands to a reference that rests.
 #[derive(Debug)]
 enum Stand {
-    /// It has not come to rest there yet, for so many cycles; zero while the reference moves.
-    Arriving(u32),
+    /// It has not come to rest there yet.
+    Arriving {
+        /// Cycles of the resting reference, zero while it moves; after [`ARRIVES`] or a push, what
+        /// is not known of the arm counts no more.
+        cycles: u32,
+        /// The least distance of each joint since then, `[rad]`.
+        nearest: JointVector,
+    },
     /// It has come to rest, with this integral, `[N m]`.
     Settled(JointVector),
+}
+
+impl Stand {
+    /// To one that moves.
+    fn under_way() -> Self {
+        Self::Arriving {
+            cycles: 0,
+            nearest: JointVector::repeat(f64::INFINITY),
+        }
+    }
 }
 
 /// The arm against its reference in one cycle.
@@ -92,7 +108,7 @@ impl Compensation {
             acting: 0.0,
             free: 1.0,
             rested: [0; 7],
-            stand: Stand::Arriving(0),
+            stand: Stand::under_way(),
             is_working: false,
         }
     }
@@ -110,13 +126,17 @@ impl Compensation {
     fn settle(&mut self, demand: &Demand<'_>) {
         let rests = |i: usize| self.rested[i] > SETTLED && demand.error[i].abs() < DEAD_ZONE[i];
         if demand.dq_ref.amax() > MOVING {
-            self.stand = Stand::Arriving(0);
-        } else if let Stand::Arriving(cycles) = self.stand {
-            self.stand = if (0..7).all(rests) {
-                Stand::Settled(self.rest)
-            } else {
-                Stand::Arriving(cycles.saturating_add(1))
-            };
+            self.stand = Stand::under_way();
+        } else if let Stand::Arriving { cycles, nearest } = &mut self.stand {
+            if (0..7).all(rests) {
+                self.stand = Stand::Settled(self.rest);
+                return;
+            }
+            let distance = demand.error.abs();
+            // By itself an arm only comes nearer.
+            let is_pushed = (distance - *nearest).max() > PUSHED;
+            *nearest = nearest.inf(&distance);
+            *cycles = if is_pushed { ARRIVES } else { *cycles }.saturating_add(1);
         }
     }
 
@@ -155,18 +175,27 @@ impl Compensation {
         let (v, e) = (demand.dq_ref[i], demand.error[i]);
         let bound = demand.bounds[i];
         // Springs and integral together need no more than friction may take, what a bias may differ
-        // by from pose to pose, and for a while what is not known of the arm yet. What stands
-        // against more is something else.
+        // by from pose to pose, and for a while what is not known of the arm yet or has been
+        // gripped meanwhile. What stands against more is something else.
         let resists = FRICTION_SPREAD * friction + BIAS_SPREAD * bias.abs() + FELT;
         let (settled, resists) = match self.stand {
-            Stand::Arriving(cycles) if cycles > ARRIVES => (0.0, resists),
-            Stand::Arriving(_) => (0.0, resists + self.learned.unknown(i) * bound),
+            Stand::Arriving { cycles, .. } if cycles > ARRIVES => (0.0, resists),
+            Stand::Arriving { .. } => {
+                let unknown = self.learned.unknown(i) * bound;
+                (0.0, (resists + unknown).max(LOADED))
+            }
             Stand::Settled(settled) => (settled[i], resists),
         };
         let room = (resists - demand.springs[i].abs()).max(0.0);
         let within = |torque: f64| torque.clamp(-bound, bound);
         let (least, most) = (within(settled - room), within(settled + room));
-        let rests = !held && v.abs() < MOVING && demand.dq[i].abs() < REST_VELOCITY;
+        // One that settles may creep to its target, one that is pushed away does not.
+        let towards = demand.dq[i] * e.signum();
+        let creeps = matches!(self.stand, Stand::Arriving { .. })
+            && 0.0 < towards
+            && towards < CREEP * e.abs();
+        let slow = creeps || demand.dq[i].abs() < REST_VELOCITY;
+        let rests = !held && v.abs() < MOVING && slow;
         self.rested[i] = if rests { self.rested[i] + 1 } else { 0 };
         let sticks = friction > 0.0;
         let rest = &mut self.rest[i];
@@ -235,6 +264,10 @@ const BREAK_AWAY: f64 = 2.5;
 /// Velocity below which a joint of the arm rests, `[rad/s]`.
 const REST_VELOCITY: f64 = 0.01;
 
+/// Velocity up to which a joint counts as resting that has not settled yet, in parts of its error,
+/// `[1/s]`: one that creeps to its target would take longer than its springs do.
+const CREEP: f64 = 2.0;
+
 /// Cycles of rest after which the integral runs, of a joint that is not known to stick and of one
 /// that does: the springs alone have brought the former as near as they can.
 const RESTED: [u32; 2] = [150, 20];
@@ -248,6 +281,9 @@ const SETTLED: u32 = 300;
 /// Cycles of a resting reference within which what is not known of an arm is compensated.
 const ARRIVES: u32 = 2500;
 
+/// How far a joint goes back from its target only where something pushes it, `[rad]`.
+const PUSHED: f64 = 5e-3;
+
 /// Greatest ratio of the torque at which a joint breaks away to the friction that was learned.
 const FRICTION_SPREAD: f64 = 2.0;
 
@@ -257,6 +293,10 @@ const BIAS_SPREAD: f64 = 0.5;
 /// What the integral of a joint without friction may change by when the arm has come to rest,
 /// `[N m]`.
 const FELT: f64 = 0.3;
+
+/// What a load may change by at a joint from one motion to the next, `[N m]`: that of 0.3 kg,
+/// half a metre away.
+const LOADED: f64 = 1.6;
 
 /// Share by which the sum rises at the start and falls at the end, per cycle.
 const RAMP: f64 = 0.01;

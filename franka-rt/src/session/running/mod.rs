@@ -25,7 +25,7 @@ use super::guard::deviation::Deviation;
 use super::guard::leash::{self, Held};
 use super::guard::watchdog::OnTimeout;
 use super::guard::{Bindings, Guard};
-use super::landing;
+use super::landing::{self, PoseError};
 use super::route::Route;
 use super::setpoint_stream::SetpointStream;
 use super::{Lapse, SessionCommand, SessionStep, Trace, end_effector_of, load_of, rigid};
@@ -55,6 +55,8 @@ pub(super) struct RunningSession {
     /// What follows a goal that is held and has to be given up.
     afterwards: OnArrival,
     stage: GoalStage,
+    /// How far the arm was from its target when it had been let go.
+    pub(super) released: Option<PoseError>,
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
     standing: Standing,
@@ -139,6 +141,7 @@ impl RunningSession {
             deviation: Deviation::at(q),
             afterwards,
             stage: GoalStage::UnderWay,
+            released: None,
             held_back: 0,
             arm: Measured {
                 time: state.message_id,

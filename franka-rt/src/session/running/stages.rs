@@ -6,7 +6,7 @@ use super::{Drive, RunningSession, Standing};
 use crate::session::landing::{Landing, Release, Verdict};
 use crate::session::reference::Reference;
 use crate::session::{
-    Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, rigid,
+    Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, Tolerance, rigid,
 };
 
 /// Joint velocity, `[rad/s]`, below which the reference may be stopped in one cycle. Joints at
@@ -57,7 +57,11 @@ impl RunningSession {
                             Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
                         }
                     };
-                    self.stage = GoalStage::Landing(Landing::new(target, self.goal.tolerance));
+                    let tolerance = self.goal.tolerance.unwrap_or_else(|| match &self.drive {
+                        Drive::Torques(_) => Tolerance::of(&self.goal.gains),
+                        Drive::Setpoints(stream) => Tolerance::under(stream.setpoints()),
+                    });
+                    self.stage = GoalStage::Landing(Landing::new(target, tolerance));
                 }
                 None
             }
@@ -74,16 +78,22 @@ impl RunningSession {
                     }
                     return None;
                 }
-                if let (Settlement::TargetNotReached(short), Drive::Torques(effort)) =
-                    (&mut settlement, &self.drive)
+                let effort = match &self.drive {
+                    Drive::Torques(effort) => Some(effort),
+                    Drive::Setpoints(_) => None,
+                };
+                if let (Settlement::TargetNotReached(short), Some(effort)) =
+                    (&mut settlement, effort)
                 {
                     short.pull = Some(effort.pull(&self.arm.jacobian).into());
                 }
+                let compensation = effort.map(|effort| effort.compensated().into());
                 self.stage = match (self.goal.on_arrival, &self.drive) {
                     (OnArrival::Hold | OnArrival::ReportAndHold, _) => GoalStage::Staying,
                     (OnArrival::ReportAndFinish, Drive::Torques(_)) => {
                         self.route.rest();
-                        GoalStage::Releasing(Release::new(self.arm.q, &self.reference.q))
+                        let target = landing.target();
+                        GoalStage::Releasing(Release::new(target, self.arm.q, &self.reference.q))
                     }
                     // The robot holds the arm at its setpoint as it is.
                     (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => GoalStage::Finished,
@@ -101,12 +111,14 @@ impl RunningSession {
                         Standing::InForce | Standing::TakenBack => settlement,
                     },
                     duration_ms: (now - self.since).saturating_sub(held),
+                    compensation,
                 })
             }
             GoalStage::Releasing(release) => {
                 self.reference = Reference::at_rest(release.reference());
                 self.route.rest();
                 if release.is_over(at_rest) {
+                    self.released = release.error(&self.arm.pose);
                     self.stage = GoalStage::Finished;
                 }
                 None

@@ -1,7 +1,9 @@
 //! Goals that are submitted, changed and cancelled.
 
 use franka_rt::lifecycle::{MotionError, Tuning};
-use franka_rt::session::{Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target};
+use franka_rt::session::{
+    Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target, Tolerance,
+};
 use rand::Rng;
 
 use super::super::draw;
@@ -90,6 +92,9 @@ impl Sessions<'_> {
                 let mut submission = Submission::new(id, work, goal.on_arrival, now);
                 submission.watchdog = goal.watchdog;
                 submission.soft = soft;
+                if let Backend::RobotController(setpoints) = session.backend {
+                    submission.tolerance = Tolerance::under(setpoints);
+                }
                 self.add(submission);
                 true
             }

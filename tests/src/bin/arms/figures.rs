@@ -9,10 +9,11 @@ pub(crate) struct ArmFigures {
     pub(crate) seed: u64,
     /// What ended the programme early.
     pub(crate) reflex: Option<String>,
-    /// Goals that were to arrive, and those that did. The others were reported as held by
-    /// something, though nothing holds the arm while they are counted.
-    pub(crate) goals: u32,
-    pub(crate) arrived: u32,
+    /// Goals that were to arrive.
+    pub(crate) goals: usize,
+    /// Those of them that did not, each with its number and what was told. Nothing holds the arm
+    /// while they are counted.
+    pub(crate) short: Vec<String>,
     /// Distances from the target at rest, `[mm]` and `[mrad]`.
     pub(crate) errors_mm: Vec<f64>,
     pub(crate) errors_mrad: Vec<f64>,
@@ -34,6 +35,7 @@ pub(crate) struct ArmFigures {
     /// How much further from the target an arm is once the robot's own controller has it, after a
     /// motion that has ended, `[mm]`.
     pub(crate) handover_mm: f64,
+    pub(crate) released_mm: f64,
     /// Force of a pushing hand without the inertia's share, `[N]`.
     pub(crate) push_force_n: f64,
     /// Force of a hand that guides the arm at up to 0.16 m/s, `[N]`.
@@ -44,11 +46,7 @@ pub(crate) struct ArmFigures {
 
 impl ArmFigures {
     pub(crate) fn fell_short(&self) -> bool {
-        self.reflex.is_some() || self.short() > 0
-    }
-
-    fn short(&self) -> u32 {
-        self.goals - self.arrived
+        self.reflex.is_some() || !self.short.is_empty()
     }
 }
 
@@ -56,12 +54,11 @@ impl fmt::Display for ArmFigures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "seed {}: {} of {} arrived, {} short; {:.2} mm {:.2} mrad at most; 5 cm {:.2} s; lag p95 {:.1} mm; \
+            "seed {}: {} of {} goals short; {:.2} mm {:.2} mrad at most; 5 cm {:.2} s; lag p95 {:.1} mm; \
              hold {:.3} mm, {:.3} N m; moving {:.3} N m; push {:.1} N, overshoot {:.1} mm",
             self.seed,
-            self.arrived,
+            self.short.len(),
             self.goals,
-            self.short(),
             quantile(&self.errors_mm, 1.0),
             quantile(&self.errors_mrad, 1.0),
             quantile(&self.arrive_s, 0.5),
@@ -72,8 +69,11 @@ impl fmt::Display for ArmFigures {
             self.push_force_n,
             self.release_overshoot_mm,
         )?;
+        for short in &self.short {
+            write!(f, "\n  {short}")?;
+        }
         match &self.reflex {
-            Some(reflex) => write!(f, "; {reflex}"),
+            Some(reflex) => write!(f, "\n  {reflex}"),
             None => Ok(()),
         }
     }
@@ -88,19 +88,16 @@ impl Summary {
         let mut put = |name: &str, value: f64| {
             values.insert(format!("arms.{name}"), value);
         };
-        let sum =
-            |of: fn(&ArmFigures) -> u32| arms.iter().map(|arm| f64::from(of(arm))).sum::<f64>();
+        let sum = |of: fn(&ArmFigures) -> usize| arms.iter().map(|arm| of(arm) as f64).sum::<f64>();
         let most = |of: fn(&ArmFigures) -> f64| arms.iter().map(of).fold(0.0, f64::max);
         let all = |of: fn(&ArmFigures) -> &Vec<f64>| -> Vec<f64> {
             arms.iter().flat_map(of).copied().collect()
         };
         put("count", arms.len() as f64);
-        put(
-            "arrived_share",
-            sum(|arm| arm.arrived) / sum(|arm| arm.goals),
-        );
-        put("wrong_short", sum(ArmFigures::short));
-        put("reflexes", sum(|arm| u32::from(arm.reflex.is_some())));
+        let short = sum(|arm| arm.short.len());
+        put("arrived_share", 1.0 - short / sum(|arm| arm.goals));
+        put("wrong_short", short);
+        put("reflexes", sum(|arm| usize::from(arm.reflex.is_some())));
         let mm = all(|arm| &arm.errors_mm);
         let mrad = all(|arm| &arm.errors_mrad);
         for (name, share) in [("p50", 0.5), ("p99", 0.99), ("max", 1.0)] {
@@ -129,6 +126,7 @@ impl Summary {
             most(|arm| arm.moving_torque_hf_nm),
         );
         put("handover_mm_max", most(|arm| arm.handover_mm));
+        put("released_mm_max", most(|arm| arm.released_mm));
         put("push_force_n_max", most(|arm| arm.push_force_n));
         put(
             "release_overshoot_mm_max",

@@ -19,7 +19,7 @@ use anyhow::Context;
 use clap::{Parser, ValueEnum};
 use franka_model::RobotKind;
 use franka_rt::law::Gains;
-use franka_rt::session::{Goal, Target};
+use franka_rt::session::{Backend, Goal, Setpoints, Target};
 use franka_sim::arm::{Arm, Family};
 
 use figures::Summary;
@@ -38,9 +38,12 @@ struct Arguments {
     /// The model of the arms.
     #[arg(long, value_enum, default_value_t = Kind::Fr3)]
     robot: Kind,
-    /// Factor on all gains of the law, to find the margin to the first oscillation.
+    /// Factor on gains of the law, to find the margin to the first oscillation.
     #[arg(long, default_value_t = 1.0)]
     gain: f64,
+    /// The gains that it is on.
+    #[arg(long, value_enum, default_value_t = Scaled::All)]
+    scaled: Scaled,
     /// The law.
     #[arg(long, value_enum, default_value_t = LawChoice::Default)]
     law: LawChoice,
@@ -60,32 +63,61 @@ enum Kind {
     Fer,
 }
 
-fn scaled(gains: Gains, by: f64) -> Gains {
-    Gains {
-        cartesian_stiffness: gains.cartesian_stiffness.map(|k| k * by),
-        cartesian_damping: gains.cartesian_damping.map(|d| d * by),
-        joint_stiffness: gains.joint_stiffness.map(|k| k * by),
-        joint_damping: gains.joint_damping.map(|d| d * by),
-        ..gains
+/// Gains to scale.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Scaled {
+    All,
+    Stiffness,
+    RotationalStiffness,
+    Damping,
+    RotationalDamping,
+    JointStiffness,
+    JointDamping,
+}
+
+impl Scaled {
+    fn scale(self, mut gains: Gains, by: f64) -> Gains {
+        let (stiffness, rotational_stiffness) = gains.cartesian_stiffness.split_at_mut(3);
+        let (damping, rotational_damping) = gains.cartesian_damping.split_at_mut(3);
+        for (of, numbers) in [
+            (Self::Stiffness, stiffness),
+            (Self::RotationalStiffness, rotational_stiffness),
+            (Self::Damping, damping),
+            (Self::RotationalDamping, rotational_damping),
+            (Self::JointStiffness, &mut gains.joint_stiffness[..]),
+            (Self::JointDamping, &mut gains.joint_damping[..]),
+        ] {
+            if self == Self::All || self == of {
+                numbers.iter_mut().for_each(|number| *number *= by);
+            }
+        }
+        gains
     }
 }
 
-/// The law of the goals for poses, and a factor on all gains.
+/// The law of the goals for poses, and a factor on gains.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LawUnderTest {
     choice: LawChoice,
-    scale: f64,
+    scaled: Scaled,
+    by: f64,
 }
 
 impl LawUnderTest {
+    /// What turns setpoints into torques.
+    pub(crate) fn backend(self) -> Backend {
+        self.choice.backend()
+    }
+
     /// The gains of a goal: its own where it is not for a pose.
     pub(crate) fn gains(self, goal: &Goal) -> Gains {
-        match goal.target {
-            Target::Pose(_) => scaled(self.choice.gains(), self.scale),
-            Target::Joints(_) if self.choice.is_compensated() => scaled(goal.gains, self.scale),
-            Target::Joints(_) => scaled(goal.gains.without_compensation(), self.scale),
-            _ => goal.gains,
-        }
+        let gains = match goal.target {
+            Target::Pose(_) => self.choice.gains(),
+            Target::Joints(_) if self.choice.is_compensated() => goal.gains,
+            Target::Joints(_) => goal.gains.without_compensation(),
+            _ => return goal.gains,
+        };
+        self.scaled.scale(gains, self.by)
     }
 }
 
@@ -104,9 +136,21 @@ pub(crate) enum LawChoice {
     Joint,
     /// Its springs and dampers alone.
     JointSprings,
+    /// The robot's own controller of joint positions.
+    RobotJoints,
+    /// The robot's own controller of poses.
+    RobotPoses,
 }
 
 impl LawChoice {
+    fn backend(self) -> Backend {
+        match self {
+            Self::RobotJoints => Backend::RobotController(Setpoints::Joints),
+            Self::RobotPoses => Backend::RobotController(Setpoints::Poses),
+            _ => Backend::Torques,
+        }
+    }
+
     fn is_compensated(self) -> bool {
         matches!(self, Self::Default | Self::Stiff | Self::Joint)
     }
@@ -118,7 +162,7 @@ impl LawChoice {
             ..Gains::cartesian()
         };
         match self {
-            Self::Default => Gains::cartesian(),
+            Self::Default | Self::RobotJoints | Self::RobotPoses => Gains::cartesian(),
             Self::Springs => Gains::cartesian().without_compensation(),
             Self::Stiff => stiff,
             Self::StiffSprings => stiff.without_compensation(),
@@ -158,7 +202,8 @@ fn main() -> anyhow::Result<()> {
         };
         let law = LawUnderTest {
             choice: arguments.law,
-            scale: arguments.gain,
+            scaled: arguments.scaled,
+            by: arguments.gain,
         };
         let figures = programme::run(kind, arm, seed, law);
         if arguments.all || figures.fell_short() {

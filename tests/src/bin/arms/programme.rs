@@ -2,7 +2,8 @@
 
 use franka_model::{JointVector, Load, Model, RobotKind};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
-use franka_rt::session::{Free, Goal, GoalId, OnArrival, PoseError, Target};
+use franka_rt::lifecycle::Engagement;
+use franka_rt::session::{Backend, Free, Goal, GoalId, OnArrival, PoseError, Setpoints, Target};
 use franka_sim::arm::Arm;
 use franka_sim::{Config, Network, Touch};
 use franka_tests::lockstep::{Link, Lockstep};
@@ -41,7 +42,10 @@ pub(crate) fn run(kind: RobotKind, arm: Arm, seed: u64, law: LawUnderTest) -> Ar
         },
     };
     let ended = programme.alone().and_then(|()| {
-        programme.engaged = Some(programme.lockstep.engage());
+        programme.engaged = Some(programme.lockstep.engage_with(Engagement {
+            backend: law.backend(),
+            ..Engagement::default()
+        }));
         programme.all()
     });
     if let Err(reflex) = ended {
@@ -63,8 +67,11 @@ struct Programme {
 type Ended = String;
 
 impl Programme {
-    /// Steps that are motions of their own: the first know nothing of the arm.
+    /// Steps that are motions of their own, under our law: the first know nothing of the arm.
     fn alone(&mut self) -> Result<(), Ended> {
+        if self.law.backend() != Backend::Torques {
+            return Ok(());
+        }
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
             self.step(Translation3::from(axis * 0.05) * self.home, true)?;
             self.step(self.home, true)?;
@@ -101,12 +108,17 @@ impl Programme {
                 self.step(self.home, false)?;
             }
         }
-        self.joints()?;
+        if self.law.backend() != Backend::RobotController(Setpoints::Poses) {
+            self.joints()?;
+        }
         self.hold()?;
         self.stream()?;
         self.circle()?;
         self.push()?;
-        self.guide()?;
+        // Guiding takes torques.
+        if self.law.backend() == Backend::Torques {
+            self.guide()?;
+        }
         self.carry()
     }
 
@@ -169,19 +181,25 @@ impl Programme {
             let left = (error.translation - reported.translation) * 1e3;
             self.figures.handover_mm = self.figures.handover_mm.max(left);
             error = reported;
+            if let Some(released) = report.released_error {
+                self.figures.released_mm = self
+                    .figures
+                    .released_mm
+                    .max((released.translation - reported.translation) * 1e3);
+            }
         }
         let f = self.lockstep.client.state.O_F_ext_hat_K;
         self.figures
             .estimates_n
             .push((f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt());
-        let arrived = self
-            .lockstep
-            .client
-            .outcome(goal)
-            .is_some_and(Result::is_ok);
+        let outcome = self.lockstep.client.outcome(goal);
         let figures = &mut self.figures;
         figures.goals += 1;
-        figures.arrived += u32::from(arrived);
+        if let Some(Err(error)) = outcome {
+            figures
+                .short
+                .push(format!("goal {}: {error}", figures.goals));
+        }
         figures.errors_mm.push(error.translation * 1e3);
         figures.errors_mrad.push(error.rotation * 1e3);
         if timed {

@@ -1,0 +1,123 @@
+//! How near an arm comes to its target, and so what counts as arrived.
+
+use crate::law::Gains;
+use crate::session::Setpoints;
+
+/// How near counts as arrived, measured at the end effector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Distance, `[m]`.
+    pub translation: f64,
+    /// Angle, `[rad]`.
+    pub rotation: f64,
+}
+
+impl Default for Tolerance {
+    /// That of gains that compensate friction: 1 mm and 3 mrad.
+    fn default() -> Self {
+        Self {
+            translation: 1e-3,
+            rotation: 3e-3,
+        }
+    }
+}
+
+impl Tolerance {
+    /// What an arm keeps under `gains` whose joints stick like those of a realistic simulated arm
+    /// (`franka_sim::arm::Family::realistic`): the default, and the stretch of the springs against
+    /// that part of the friction which the gains do not compensate.
+    pub fn of(gains: &Gains) -> Self {
+        let left: [f64; 7] =
+            core::array::from_fn(|i| (STATIC_FRICTION[i] - gains.compensation[i]).max(0.0));
+        let share = (0..7).fold(0.0, |most, i| f64::max(most, left[i] / STATIC_FRICTION[i]));
+        if share == 0.0 {
+            return Self::default();
+        }
+        // Springs of joints and of the end effector act side by side.
+        let turned: [f64; 7] =
+            core::array::from_fn(|i| (left[i] / gains.joint_stiffness[i]).powi(2));
+        let of_arm = turned[..4].iter().sum::<f64>().sqrt();
+        let of_all = turned.iter().sum::<f64>().sqrt();
+        let softest = |axes: &[f64]| axes.iter().copied().fold(f64::INFINITY, f64::min);
+        let (linear, angular) = gains.cartesian_stiffness.split_at(3);
+        let beside = |one: f64, other: f64| 1.0 / (1.0 / one + 1.0 / other);
+        let Self {
+            translation,
+            rotation,
+        } = Self::default();
+        Self {
+            translation: translation + beside(of_arm * REACH, share * FORCE / softest(linear)),
+            rotation: rotation + beside(of_all, share * TORQUE / softest(angular)),
+        }
+    }
+
+    /// What an arm like that keeps under the robot's own controllers, with the impedance that they
+    /// have by default: 1 mm and 3 mrad for joint positions, 5 mm and 15 mrad for poses.
+    pub fn under(setpoints: Setpoints) -> Self {
+        match setpoints {
+            Setpoints::Joints => Self::default(),
+            Setpoints::Poses => Self {
+                translation: 5e-3,
+                rotation: 15e-3,
+            },
+        }
+    }
+}
+
+/// Torque at which the joints of a realistic arm break away at most, `[N m]`.
+const STATIC_FRICTION: [f64; 7] = [1.31, 1.59, 1.31, 1.79, 1.45, 0.83, 0.69];
+
+/// The force and the torque at the end effector that these come to, `[N]` and `[N m]`.
+const FORCE: f64 = 8.0;
+const TORQUE: f64 = 2.0;
+
+/// From the first joints to the end effector, `[m]`.
+const REACH: f64 = 0.8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(gains: Gains) -> (f64, f64) {
+        let Tolerance {
+            translation,
+            rotation,
+        } = Tolerance::of(&gains);
+        (translation * 1e3, rotation * 1e3)
+    }
+
+    /// Beside what `arms --law springs` and the like leave at the 99th percentile.
+    #[test]
+    fn what_springs_alone_leave_is_within_it() {
+        for (gains, [mm, mrad]) in [
+            (Gains::cartesian().without_compensation(), [7.7, 25.2]),
+            (Gains::joint().without_compensation(), [6.9, 32.4]),
+        ] {
+            let (translation, rotation) = of(gains);
+            assert!(mm < translation && translation < 1.5 * mm, "{translation}");
+            assert!(mrad < rotation && rotation < 1.5 * mrad, "{rotation}");
+        }
+    }
+
+    #[test]
+    fn compensation_brings_it_down_to_the_default() {
+        let full = Gains::cartesian();
+        assert_eq!(Tolerance::of(&full), Tolerance::default());
+        let half = Gains {
+            compensation: STATIC_FRICTION.map(|friction| 0.5 * friction),
+            ..full
+        };
+        let (none, half) = (of(full.without_compensation()), of(half));
+        assert!(1.0 < half.0 && half.0 < none.0, "{half:?} {none:?}");
+        assert!(3.0 < half.1 && half.1 < none.1, "{half:?} {none:?}");
+    }
+
+    #[test]
+    fn gains_without_some_springs_have_one_too() {
+        let mut soft = Gains::cartesian().without_compensation();
+        soft.joint_stiffness = [0.0; 7];
+        assert!(of(soft).0.is_finite() && of(soft).1.is_finite());
+        soft.cartesian_stiffness = [0.0; 6];
+        assert!(of(soft).0 > 1e6);
+    }
+}
