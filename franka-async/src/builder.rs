@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use franka_proto::Version;
 use franka_rt::driver::ControlLog;
+use franka_rt::identify::Identified;
 use franka_rt::sched::{Realtime, Scheduling};
 use tokio_util::sync::CancellationToken;
 
@@ -34,6 +35,7 @@ pub struct Builder {
     pub(crate) link_timeout: Duration,
     pub(crate) nominal_model: bool,
     pub(crate) log_size: usize,
+    pub(crate) known: Option<Box<Identified>>,
     pub(crate) cancellation: CancellationToken,
 }
 
@@ -54,6 +56,7 @@ impl Builder {
             link_timeout: franka_rt::driver::LINK_TIMEOUT,
             nominal_model: false,
             log_size: ControlLog::DEFAULT_CAPACITY,
+            known: None,
             cancellation: CancellationToken::new(),
         }
     }
@@ -146,6 +149,15 @@ impl Builder {
     /// [`Robot::records`](crate::Robot::records) has the cycles of whole motions.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
+        self
+    }
+
+    /// Begins with what [`Robot::identify`] has found of this arm before, so that the first motion
+    /// is compensated as later ones are. The load counts as far as it is not declared when that
+    /// motion begins. By default nothing is known. An arm of another kind and implausible numbers
+    /// are refused as [`ConnectError::Known`](crate::error::ConnectError::Known).
+    pub fn known(mut self, found: Identified) -> Self {
+        self.known = Some(Box::new(found));
         self
     }
 

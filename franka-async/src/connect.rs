@@ -64,6 +64,9 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         let got = builder.log_size;
         return Err(ConnectError::LogSize { got });
     }
+    if let Some(known) = &builder.known {
+        known.check(known.kind)?;
+    }
     // Refused before anything is sent, as the reference client does; the thread asks again for
     // itself.
     let scheduling = builder.scheduling.clone();
@@ -84,7 +87,12 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let granted = opened.handle.granted.clone();
     let lender = opened.handle.lender.clone();
     let model = Arc::new(connected_model::of(opened.version, &channel, &builder).await?);
-    let lifecycle = Lifecycle::new(model.clone(), opened.version).with_log_size(builder.log_size);
+    let mut lifecycle =
+        Lifecycle::new(model.clone(), opened.version).with_log_size(builder.log_size);
+    if let Some(known) = builder.known {
+        known.check(model.kind())?;
+        lifecycle = lifecycle.knowing(*known);
+    }
     let bridge = Bridge::new(
         lifecycle,
         opened.handle,

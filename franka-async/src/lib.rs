@@ -24,6 +24,7 @@
 //! * [`Robot::states`]: the newest state as it changes. [`Robot::read`], [`StateStream`]: every
 //!   state. Both whatever moves. [`Robot::stats`], [`stats`]: how punctual control is.
 //! * [`Robot::set_load`] and its siblings, [`settings`]; [`Robot::recover`].
+//! * [`Robot::identify`], [`Builder::known`], [`identify`]: friction, bias and load of an arm.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
 //! * [`Robot::model`], [`model`]: the model of the connected arm, from its own description (feature
 //!   `urdf`, on by default). `Robot::model_library` (feature `model-library`, off by default): the
@@ -75,6 +76,7 @@ pub mod error;
 mod follow;
 mod franka_hand;
 mod handshake;
+pub mod identify;
 mod input;
 mod motion;
 mod newest_state;
@@ -205,6 +207,7 @@ mod tests {
             sent(robot.engage(Engage::default()));
             sent(robot.read(|_| std::ops::ControlFlow::Break(())));
             sent(robot.recover());
+            sent(robot.identify().run());
             sent(robot.set_joint_impedance([0.0; 7]));
             sent(robot.urdf());
             sent(robot.load_model_library(model::Architecture::X64, model::System::Linux));

@@ -2,6 +2,7 @@
 
 /// The kinds of robot that the crate describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum RobotKind {
     /// Franka Research 3, FCI version 10.

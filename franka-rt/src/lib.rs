@@ -11,6 +11,7 @@
 //! * [`session`]: target control: goals in, one continuous joint-space reference out.
 //! * [`control`]: commands, and control at 1 kHz by the user's own functions.
 //! * [`law`]: joint torques from a reference and a state.
+//! * [`identify`]: friction, bias and load of an arm, from the records of some motions. Pure.
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
 //!   Pure.
@@ -26,6 +27,7 @@ pub mod control;
 pub mod driver;
 pub mod event_fd;
 pub mod exchange;
+pub mod identify;
 pub mod law;
 pub mod lifecycle;
 mod panic;

@@ -6,6 +6,7 @@ use std::time::Duration;
 use franka_model::model_library::LibraryError;
 use franka_proto::gripper::Failure;
 use franka_proto::{Command, Refusal, RequestError, ServiceCommand, Violation};
+use franka_rt::identify::FitError;
 use franka_rt::lifecycle::{CloseReason, MotionError, Party};
 use franka_rt::thread::{BorrowError, WriteFault};
 
@@ -137,6 +138,42 @@ impl ActiveError {
             Self::Motion(error) => error.party(),
             Self::Write(WriteFault::Link(_)) => Party::Link,
             Self::Finished | Self::Write(_) | Self::Borrow(_) => Party::Caller,
+        }
+    }
+}
+
+/// Why an arm was not identified.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum IdentifyError {
+    /// Caller: the arm has moved since its motions were planned. Nothing has moved it since.
+    #[error(
+        "joint {joint} is no longer where the motions were planned from: got {got:.3} rad, \
+         expected {expected:.3} rad"
+    )]
+    Moved {
+        /// The joint, 1 to 7.
+        joint: usize,
+        /// Where it is, `[rad]`.
+        got: f64,
+        /// Where it was, `[rad]`.
+        expected: f64,
+    },
+    /// A motion did not arrive. The arm stays where it is.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// Robot: something held or pushed the arm, so that its torques show nothing.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+}
+
+impl IdentifyError {
+    /// Returns the party that can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Moved { .. } => Party::Caller,
+            Self::Motion(error) => error.party(),
+            Self::Fit(_) => Party::Robot,
         }
     }
 }

@@ -8,6 +8,7 @@ use franka_model::urdf::UrdfError;
 use franka_proto::framing::FrameError;
 use franka_proto::{IncompatibleVersion, Protocol, Version, Violation};
 use franka_rt::driver::{ControlLog, LinkTimeoutError};
+use franka_rt::identify::KnownError;
 use franka_rt::lifecycle::{CloseReason, Party};
 use franka_rt::sched::SchedError;
 use franka_rt::thread::{LinkFault, StartError};
@@ -42,6 +43,10 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Cycles asked for.
         got: usize,
     },
+    /// Caller: what was given as known of the arm is of another kind of robot, or has numbers that
+    /// no arm has, see [`Builder::known`](crate::Builder::known).
+    #[error(transparent)]
+    Known(#[from] KnownError),
     /// Host: no thread, socket or descriptor.
     #[error("the connection cannot be set up: {0}")]
     System(#[from] io::Error),
@@ -106,7 +111,9 @@ impl<P: Protocol> ConnectError<P> {
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
-            Self::Endpoint(_) | Self::LinkTimeout(_) | Self::LogSize { .. } => Party::Caller,
+            Self::Endpoint(_) | Self::LinkTimeout(_) | Self::LogSize { .. } | Self::Known(_) => {
+                Party::Caller
+            }
             // One that refuses is there, the others need not be.
             Self::NoAddress { attempts } => attempts
                 .iter()

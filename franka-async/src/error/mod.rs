@@ -7,7 +7,7 @@ mod connecting;
 use franka_proto::{gripper, vacuum};
 
 pub use crate::endpoint::EndpointError;
-pub use calls::{ActionError, ActiveError, CommandError, ReadError};
+pub use calls::{ActionError, ActiveError, CommandError, IdentifyError, ReadError};
 #[cfg(feature = "urdf")]
 pub use connecting::ModelError;
 pub use connecting::{Attempt, ConnectError};
@@ -24,6 +24,7 @@ pub use franka_proto::{
     Status, SuccessRate, Violation,
 };
 pub use franka_rt::driver::LinkTimeoutError;
+pub use franka_rt::identify::{FitError, KnownError};
 pub use franka_rt::law::GainError;
 pub use franka_rt::lifecycle::{CloseReason, ControlError, MotionError, Party, Stage};
 pub use franka_rt::sched::SchedError;
@@ -60,6 +61,9 @@ pub enum Error {
     /// Active control could not go on.
     #[error(transparent)]
     Active(ActiveError),
+    /// An arm was not identified, for another reason than a motion.
+    #[error(transparent)]
+    Identify(IdentifyError),
     /// States could not be read any further.
     #[error(transparent)]
     Read(#[from] ReadError),
@@ -99,6 +103,15 @@ impl From<ActiveError> for Error {
     }
 }
 
+impl From<IdentifyError> for Error {
+    fn from(error: IdentifyError) -> Self {
+        match error {
+            IdentifyError::Motion(error) => error.into(),
+            other => Self::Identify(other),
+        }
+    }
+}
+
 impl Error {
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
@@ -108,6 +121,7 @@ impl Error {
             Self::Control(_) => Party::Robot,
             Self::Motion(error) => error.party(),
             Self::Active(error) => error.party(),
+            Self::Identify(error) => error.party(),
             Self::Read(error) => error.party(),
             Self::ConnectGripper(error) => error.party(),
             Self::Gripper(error) => error.party(),
@@ -145,6 +159,20 @@ mod tests {
         check(
             MotionError::Superseded,
             "superseded by a newer goal",
+            Party::Caller,
+        );
+        check(
+            IdentifyError::from(MotionError::Superseded),
+            "superseded by a newer goal",
+            Party::Caller,
+        );
+        check(
+            IdentifyError::Moved {
+                joint: 2,
+                got: 0.1,
+                expected: -0.5,
+            },
+            "joint 2 is no longer where the motions were planned from: got 0.100 rad, expected -0.500 rad",
             Party::Caller,
         );
         let reason = CloseReason::ClosedByPeer;

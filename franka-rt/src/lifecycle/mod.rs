@@ -46,6 +46,7 @@ use franka_model::Model;
 use franka_proto::{Request, Version};
 
 use crate::driver::{ControlLog, MotionId, Order};
+use crate::identify::Identified;
 use crate::law::compensation::Learned;
 use crate::session::{GoalId, KeepOut};
 
@@ -105,6 +106,8 @@ pub struct Lifecycle {
     log_size: usize,
     /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,
+    /// What was known of the arm before, until a session begins with it.
+    known: Option<Box<Identified>>,
     /// What sessions have learned of the arm.
     learned: Learned,
     outputs: VecDeque<Output>,
@@ -155,6 +158,7 @@ impl Lifecycle {
             motions: 0,
             log_size: ControlLog::DEFAULT_CAPACITY,
             keep_out: KeepOut::default(),
+            known: None,
             learned: Learned::default(),
             outputs: VecDeque::new(),
         }
@@ -165,6 +169,14 @@ impl Lifecycle {
     #[must_use]
     pub fn with_log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
+        self
+    }
+
+    /// Has the first session begin with what was identified of the arm before, which was
+    /// [checked](Identified::check). The load that is declared then counts.
+    #[must_use]
+    pub fn knowing(mut self, found: Identified) -> Self {
+        self.known = Some(Box::new(found));
         self
     }
 

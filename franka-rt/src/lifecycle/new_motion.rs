@@ -122,6 +122,11 @@ impl Lifecycle {
         self.check_open()?;
         self.check_turn(&motion)?;
         self.check_options(&motion, state)?;
+        if !matches!(motion, NewMotion::Program { .. })
+            && let Some(known) = self.known.take()
+        {
+            self.learned = known.learned(&self.model, state);
+        }
         match (&self.phase, motion) {
             (LifecyclePhase::Idle, motion) => self.start(motion, now),
             // A session that has the arm is about to let it go.

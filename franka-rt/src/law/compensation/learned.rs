@@ -33,6 +33,22 @@ impl Default for Joint {
 }
 
 impl Learned {
+    /// Begins with a friction and a bias of each joint, and their deviations, `[N m]`.
+    pub(crate) fn known(joints: [((f64, f64), (f64, f64)); 7]) -> Self {
+        Self(joints.map(|((friction, of_friction), (bias, of_bias))| {
+            let covariance = |deviation: f64, most: f64| (deviation * deviation / NOISE).min(most);
+            Joint {
+                friction,
+                bias,
+                covariance: [
+                    covariance(of_friction, UNKNOWN[0]),
+                    covariance(of_bias, UNKNOWN[1]),
+                    0.0,
+                ],
+            }
+        }))
+    }
+
     /// Friction and bias of a joint, `[N m]`.
     ///
     /// An arm without friction takes a little, too, by the lag of its torques; for it both are
@@ -79,6 +95,10 @@ pub(super) const UNBIASED: f64 = 0.1;
 
 /// Covariance of friction and bias of an arm that nothing is known of, `[1/s]`.
 const UNKNOWN: [f64; 2] = [5.0, 3.0];
+
+/// Noise density of what a joint takes, `[N^2 m^2 s]`: a friction that nothing is known of is some
+/// 1 N m.
+const NOISE: f64 = 0.2;
 
 /// Covariance of the friction of a joint that has moved both ways, `[1/s]`: in one direction it
 /// does not fall below twice as much.
@@ -127,6 +147,23 @@ mod tests {
         assert!((friction + bias - 0.9).abs() < 0.02, "{friction} {bias}");
         assert_eq!(this.unknown(0), 1.0, "{this:?}");
         assert_eq!(to_and_fro(0.8, |_| 0.0).unknown(0), 0.0);
+    }
+
+    #[test]
+    fn what_is_known_counts_as_far_as_it_is_sure() {
+        let begin = |deviation| {
+            let joint = ((0.8, deviation), (-0.3, deviation));
+            Learned::known([joint; 7])
+        };
+        let (mut sure, mut unsure) = (begin(0.05), begin(5.0));
+        assert_eq!(sure.of(0), (0.8, -0.3));
+        assert_eq!((sure.unknown(0), unsure.unknown(0)), (0.0, 1.0));
+        for _ in 0..100 {
+            sure.learn(0, 1.0, 1.5);
+            unsure.learn(0, 1.0, 1.5);
+        }
+        let change = |of: Learned| (of.of(0).0 - 0.8).abs();
+        assert!(change(sure) < 0.1 * change(unsure), "{sure:?} {unsure:?}");
     }
 
     #[test]

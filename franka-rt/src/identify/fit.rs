@@ -1,0 +1,312 @@
+//! From records to friction, bias and load: weighted least squares.
+
+use franka_model::{JointVector, Load, Model};
+use franka_proto::RobotState;
+use nalgebra::{SMatrix, SVector, Vector4};
+
+use super::{Estimate, Identified, IdentifiedJoint, IdentifiedLoad, Plan, declared, load_gravity};
+use crate::driver::Record;
+use crate::session::Guard;
+
+/// Takes the records of a [`Plan`]'s motions, and finds what the arm must be like.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    model: Model,
+    /// What the robot was told of load and end effector together.
+    total: Load,
+    /// What it was told of the load: mass and moment.
+    declared: Vector4<f64>,
+    steady: Steady,
+    windows: Vec<Window>,
+}
+
+/// Steady motion by now.
+#[derive(Clone, Copy, Debug, Default)]
+struct Steady {
+    /// The way of each joint; 0 for those that are too slow.
+    signs: JointVector,
+    /// Time of the last record, `[ms]`.
+    time: u64,
+    /// Cycles of it.
+    cycles: u32,
+    /// Of those, the ones that are summed up, and sums over them.
+    summed: u32,
+    q: JointVector,
+    dq: JointVector,
+    tau: JointVector,
+    /// Number of the stroke that it belongs to.
+    stroke: u32,
+}
+
+/// Means over a part of a steady motion.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    signs: JointVector,
+    /// What the joints take beside the model, `[N m]`.
+    takes: JointVector,
+    /// What they take per mass and moment of a load.
+    gravity: SMatrix<f64, 7, 4>,
+    stroke: u32,
+}
+
+/// Why the records do not tell what the arm is like.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// A joint has hardly moved as planned: something held the arm, or records were missed.
+    #[error(
+        "joint {joint} was in steady motion for {got} intervals one way, expected {expected}: \
+         something holds the arm, or the program fell behind"
+    )]
+    TooLittle {
+        /// The joint, 1 to 7.
+        joint: usize,
+        /// Intervals of a quarter of a second, one way.
+        got: usize,
+        /// The least number of them.
+        expected: usize,
+    },
+    /// The torques of a joint do not fit any friction, bias and load: something pushed the arm.
+    #[error(
+        "the torques of joint {joint} are {got:.2} N m (rms) off any friction, bias and load, \
+         expected {expected} N m at most: something pushed the arm"
+    )]
+    Disturbed {
+        /// The joint, 1 to 7.
+        joint: usize,
+        /// Root mean square of what is left, `[N m]`.
+        got: f64,
+        /// The most that is accepted, `[N m]`.
+        expected: f64,
+    },
+}
+
+/// Friction of each joint, bias of each joint, mass and moment of the load.
+type Unknowns = SVector<f64, 18>;
+
+impl Fit {
+    /// Begins for an arm of this model that is in this state: end effector and declared load are to
+    /// stay as they are.
+    pub fn new(model: &Model, state: &RobotState) -> Self {
+        let end_effector = Load::from_arrays(state.m_ee, &state.F_x_Cee, &state.I_ee);
+        let load = Load::from_arrays(state.m_load, &state.F_x_Cload, &state.I_load);
+        Self {
+            model: model.clone(),
+            total: end_effector.combine(&load),
+            declared: declared(state),
+            steady: Steady::default(),
+            windows: Vec::new(),
+        }
+    }
+
+    /// Takes the record of a cycle. Cycles of other motions, or in which a guard binds, and records
+    /// that are missed do no harm.
+    pub fn on_record(&mut self, record: &Record) {
+        let (v, a) = (JointVector::from(record.dq_ref), record.ddq_ref);
+        let signs = v.map(|v| if v.abs() > FAST { v.signum() } else { 0.0 });
+        let free = HOLDING
+            .iter()
+            .all(|guard| !record.bindings.contains(*guard));
+        let steady = free && a.iter().all(|a| a.abs() < STEADY) && signs.amax() > 0.0;
+        let follows = record.time.saturating_sub(self.steady.time) <= GAP;
+        let on = &mut self.steady;
+        if !steady || !follows || on.signs != signs {
+            let stroke = on.stroke + u32::from(on.cycles > 0);
+            *on = Steady {
+                stroke,
+                ..Steady::default()
+            };
+        }
+        on.time = record.time;
+        if !steady {
+            return;
+        }
+        on.signs = signs;
+        on.cycles += 1;
+        if on.cycles <= SETTLES {
+            return;
+        }
+        on.summed += 1;
+        on.q += JointVector::from(record.q);
+        on.dq += JointVector::from(record.dq);
+        on.tau += JointVector::from(record.tau_c);
+        if on.summed == WINDOW {
+            let share = 1.0 / f64::from(WINDOW);
+            let (q, dq, tau) = (on.q * share, on.dq * share, on.tau * share);
+            self.windows.push(Window {
+                signs,
+                takes: tau - self.model.coriolis(&q, &dq, &self.total),
+                gravity: load_gravity(&self.model, &q),
+                stroke: on.stroke,
+            });
+            (on.summed, on.q, on.dq, on.tau) = Default::default();
+        }
+    }
+
+    /// Returns what the arm is like.
+    ///
+    /// # Errors
+    /// [`FitError`].
+    pub fn finish(&self) -> Result<Identified, FitError> {
+        for joint in 0..7 {
+            for way in [1.0, -1.0] {
+                let of = self.windows.iter().filter(|one| one.signs[joint] == way);
+                let got = of.count();
+                if got < INTERVALS {
+                    return Err(FitError::TooLittle {
+                        joint: joint + 1,
+                        got,
+                        expected: INTERVALS,
+                    });
+                }
+            }
+        }
+        let mut noise = JointVector::repeat(1.0);
+        let mut fitted = self.solve(&noise);
+        for _ in 0..REWEIGHTED {
+            noise = self.residuals(&fitted.0);
+            fitted = self.solve(&noise);
+        }
+        let (joint, got) = noise.argmax();
+        if got > RESIDUAL_MAX {
+            return Err(FitError::Disturbed {
+                joint: joint + 1,
+                got,
+                expected: RESIDUAL_MAX,
+            });
+        }
+        Ok(self.identified(&fitted.0, &fitted.1))
+    }
+
+    /// The most likely unknowns if the windows of a stroke have these deviations, and the variances
+    /// of the unknowns.
+    fn solve(&self, noise: &JointVector) -> (Unknowns, Unknowns) {
+        let mut information = SMatrix::<f64, 18, 18>::from_diagonal(&prior());
+        let mut right = Unknowns::zeros();
+        // Windows of one stroke have the same errors: together they count as one.
+        let strokes = self.windows.chunk_by(|a, b| a.stroke == b.stroke).count();
+        let share = strokes as f64 / self.windows.len() as f64;
+        for window in &self.windows {
+            for (joint, deviation) in noise.iter().enumerate() {
+                if let Some(row) = window.row(joint) {
+                    let weight = share / deviation.powi(2);
+                    information += row * row.transpose() * weight;
+                    right += row * (window.takes[joint] * weight);
+                }
+            }
+        }
+        let inverse = information.try_inverse().unwrap_or_default();
+        (inverse * right, inverse.diagonal())
+    }
+
+    /// Deviation of each joint's windows from what the unknowns say, `[N m]`.
+    fn residuals(&self, unknowns: &Unknowns) -> JointVector {
+        JointVector::from_fn(|joint, _| {
+            let off = self.windows.iter().filter_map(|window| {
+                let row = window.row(joint)?;
+                Some((window.takes[joint] - row.dot(unknowns)).powi(2))
+            });
+            let (sum, count) = off.fold((0.0, 0.0), |(sum, count), off| (sum + off, count + 1.0));
+            f64::sqrt(sum / count).max(RESIDUAL_MIN)
+        })
+    }
+
+    fn identified(&self, unknowns: &Unknowns, variances: &Unknowns) -> Identified {
+        let estimate = |i: usize, own: f64| Estimate {
+            value: unknowns[i],
+            deviation: variances[i].sqrt().hypot(own),
+        };
+        let load = |i: usize, own| {
+            let found = estimate(14 + i, own);
+            Estimate {
+                value: found.value + self.declared[i],
+                ..found
+            }
+        };
+        Identified {
+            kind: self.model.kind(),
+            joints: core::array::from_fn(|i| {
+                let friction = estimate(i, 0.0);
+                IdentifiedJoint {
+                    friction: Estimate {
+                        value: friction.value.max(0.0),
+                        ..friction
+                    },
+                    bias: estimate(7 + i, 0.0),
+                }
+            }),
+            load: IdentifiedLoad {
+                mass: load(0, MODEL_MASS),
+                moment: [1, 2, 3].map(|i| load(i, MODEL_MOMENT)),
+            },
+        }
+    }
+}
+
+impl Window {
+    /// What a joint takes per unknown; `None` for one that was too slow.
+    fn row(&self, joint: usize) -> Option<Unknowns> {
+        let sign = self.signs[joint];
+        (sign != 0.0).then(|| {
+            let mut row = Unknowns::zeros();
+            (row[joint], row[7 + joint]) = (sign, 1.0);
+            let gravity = self.gravity.row(joint).transpose();
+            row.fixed_rows_mut::<4>(14).copy_from(&gravity);
+            row
+        })
+    }
+}
+
+/// What is known of any arm before: the inverse of the variances of the unknowns.
+fn prior() -> Unknowns {
+    Unknowns::from_fn(|i, _| {
+        let deviation: f64 = match i {
+            0..7 => 5.0,
+            7..14 => 0.5,
+            14 => 3.0,
+            _ => 0.3,
+        };
+        deviation.powi(-2)
+    })
+}
+
+/// Guards under which something else than the arm itself takes torques.
+const HOLDING: [Guard; 5] = [
+    Guard::Leash,
+    Guard::ForceCap,
+    Guard::TorqueClamp,
+    Guard::VelocityBarrier,
+    Guard::TorqueRate,
+];
+
+/// Velocity of the reference from which a joint counts, `[rad/s]`: slower ones have another
+/// friction.
+const FAST: f64 = 0.75 * Plan::SPEED;
+
+/// Acceleration of the reference below which its motion is steady, `[rad/s^2]`.
+const STEADY: f64 = 0.02;
+
+/// Cycles of steady motion after which the arm has swung in.
+const SETTLES: u32 = 150;
+
+/// Cycles of a window.
+const WINDOW: u32 = 250;
+
+/// Time without a record after which a steady motion counts as another one, `[ms]`.
+const GAP: u64 = 20;
+
+/// Windows that each joint needs, one way and the other.
+const INTERVALS: usize = 12;
+
+/// How often the weights of the joints are taken from the residuals.
+const REWEIGHTED: usize = 3;
+
+/// Least deviation of a joint's windows, `[N m]`: the resolution of its sensor.
+const RESIDUAL_MIN: f64 = 0.01;
+
+/// Greatest deviation of a joint's windows on an arm that nothing has pushed, `[N m]`.
+const RESIDUAL_MAX: f64 = 0.5;
+
+/// What an error of the robot's own masses looks like, `[kg]` and `[kg m]`.
+const MODEL_MASS: f64 = 0.05;
+const MODEL_MOMENT: f64 = 0.01;

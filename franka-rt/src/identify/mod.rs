@@ -1,0 +1,227 @@
+//! Friction and bias of the joints and the load at the flange, measured by a minute of small
+//! motions.
+//!
+//! ```text
+//! RobotState -> Plan -> a session runs its motions -> Record -> Fit -> Identified
+//!                                   later connections: Lifecycle::knowing <---'
+//! ```
+//!
+//! A [`Plan`] says what would move. While its motions run, a [`Fit`] takes the record of every
+//! cycle. In steady motion a joint takes `direction * friction + bias + G(q) load`: a bias that
+//! changes with the pose as the gravity of a load does is a load, the rest belongs to the joint.
+//! What the robot was told of a load counts as part of it. Nothing here is sent to a robot.
+
+mod fit;
+mod plan;
+
+use core::fmt;
+
+use franka_model::{GRAVITY_EARTH, JointVector, Load, Model, RobotKind};
+use franka_proto::RobotState;
+use nalgebra::{SMatrix, Vector3, Vector4};
+
+use crate::law::compensation::Learned;
+
+pub use fit::{Fit, FitError};
+pub use plan::{Plan, PlannedMotion, Reach};
+
+/// A measured quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Estimate {
+    /// Its most likely value, in the unit of the quantity.
+    pub value: f64,
+    /// Its standard deviation, in the same unit.
+    pub deviation: f64,
+}
+
+impl fmt::Display for Estimate {
+    /// `0.84 ± 0.03`; with a precision, to so many digits.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = f.precision().unwrap_or(2);
+        write!(f, "{:.digits$} ± {:.digits$}", self.value, self.deviation)
+    }
+}
+
+/// What one joint takes beside the robot's model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct IdentifiedJoint {
+    /// Friction at [`Plan::SPEED`], viscous part included, beyond what the robot compensates
+    /// itself, `[N m]`.
+    pub friction: Estimate,
+    /// Torque that it takes in either direction and in every pose, such as the zero error of its
+    /// torque sensor, `[N m]`.
+    pub bias: Estimate,
+}
+
+/// What the flange carries beside the end effector that the robot is configured with (`m_ee`): a
+/// declared load counts, and so does a mass that the end effector has too much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct IdentifiedLoad {
+    /// `[kg]`; slightly negative at times where there is no load.
+    pub mass: Estimate,
+    /// Mass times centre of mass, in the flange frame, `[kg m]`.
+    pub moment: [Estimate; 3],
+}
+
+impl IdentifiedLoad {
+    /// The centre of mass in the flange frame, `[m]`; `None` where the mass is less than three of
+    /// its deviations, and the centre therefore unknown. Mass and centre are arguments of
+    /// `set_load`.
+    pub fn center(&self) -> Option<[Estimate; 3]> {
+        let Estimate { value, deviation } = self.mass;
+        (value > 3.0 * deviation).then(|| {
+            self.moment.map(|moment| {
+                let center = moment.value / value;
+                Estimate {
+                    value: center,
+                    deviation: (moment.deviation / value).hypot(center * deviation / value),
+                }
+            })
+        })
+    }
+}
+
+/// What the motions of a [`Plan`] have shown of an arm.
+///
+/// `Display` is a table to read. With the feature `serde` it can be stored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Identified {
+    /// The kind of the robot.
+    pub kind: RobotKind,
+    /// Its joints, base to flange.
+    pub joints: [IdentifiedJoint; 7],
+    /// What its flange carries.
+    pub load: IdentifiedLoad,
+}
+
+/// Why an [`Identified`] is not used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum KnownError {
+    /// It is of another kind of robot.
+    #[error("what is known is of another robot: got {got:?}, expected {expected:?}")]
+    Kind {
+        /// The kind that it is of.
+        got: RobotKind,
+        /// The kind that is connected.
+        expected: RobotKind,
+    },
+    /// A number that no arm has.
+    #[error("what is known has an implausible {name}: got {got}, expected {least} to {most}")]
+    Number {
+        /// Which one, with its unit.
+        name: &'static str,
+        /// The number.
+        got: f64,
+        /// The least that is accepted.
+        least: f64,
+        /// The most that is accepted.
+        most: f64,
+    },
+}
+
+impl Identified {
+    /// Checks that a robot of this kind may be controlled with it.
+    ///
+    /// # Errors
+    /// [`KnownError`] for another kind, non-finite or implausible numbers.
+    pub fn check(&self, expected: RobotKind) -> Result<(), KnownError> {
+        let got = self.kind;
+        if got != expected {
+            return Err(KnownError::Kind { got, expected });
+        }
+        let number = |name, got: f64, least, most| match (least..=most).contains(&got) {
+            true => Ok(()),
+            false => Err(KnownError::Number {
+                name,
+                got,
+                least,
+                most,
+            }),
+        };
+        let estimate = |[name, deviation]: [&'static str; 2], of: &Estimate, least, most| {
+            number(name, of.value, least, most)?;
+            number(deviation, of.deviation, 0.0, f64::MAX)
+        };
+        for joint in &self.joints {
+            let names = ["friction [N m]", "deviation of a friction [N m]"];
+            estimate(names, &joint.friction, 0.0, TORQUE_MAX)?;
+            let names = ["bias [N m]", "deviation of a bias [N m]"];
+            estimate(names, &joint.bias, -TORQUE_MAX, TORQUE_MAX)?;
+        }
+        let names = ["mass of a load [kg]", "deviation of a mass [kg]"];
+        estimate(names, &self.load.mass, -1.0, MASS_MAX)?;
+        for moment in &self.load.moment {
+            let names = ["moment of a load [kg m]", "deviation of a moment [kg m]"];
+            estimate(names, moment, -MASS_MAX, MASS_MAX)?;
+        }
+        Ok(())
+    }
+
+    /// What the law begins with where the robot is: the part of the load that is not declared there
+    /// is bias.
+    pub(crate) fn learned(&self, model: &Model, state: &RobotState) -> Learned {
+        let IdentifiedLoad { mass, moment } = self.load;
+        let [x, y, z] = moment.map(|of| of.value);
+        let load = Vector4::new(mass.value, x, y, z) - declared(state);
+        let gravity = load_gravity(model, &state.q.into());
+        let [x, y, z] = moment.map(|of| of.deviation);
+        let unsure = Vector4::new(mass.deviation, x, y, z);
+        Learned::known(core::array::from_fn(|i| {
+            let IdentifiedJoint { friction, bias } = self.joints[i];
+            let row = gravity.row(i).transpose();
+            let off = row.component_mul(&unsure).norm();
+            let friction = (friction.value, friction.deviation);
+            let at = bias.value + row.dot(&load);
+            (friction, (at, bias.deviation.hypot(off)))
+        }))
+    }
+}
+
+impl fmt::Display for Identified {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "joint  friction, N m   bias, N m")?;
+        for (i, IdentifiedJoint { friction, bias }) in self.joints.iter().enumerate() {
+            let (friction, bias) = (friction.to_string(), bias.to_string());
+            writeln!(f, "{}      {friction:<13}   {bias}", i + 1)?;
+        }
+        write!(f, "load   {} kg", self.load.mass)?;
+        match self.load.center() {
+            Some([x, y, z]) => write!(f, ", centre at {x:.3}, {y:.3}, {z:.3} m of the flange"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Torques that hold a load per mass and per mass times centre of mass, flange frame, `[N m/kg]`
+/// and `[N m/(kg m)]`: they are linear in both.
+fn load_gravity(model: &Model, q: &JointVector) -> SMatrix<f64, 7, 4> {
+    let at = |com: Vector3<f64>| {
+        let load = Load {
+            mass: 1.0,
+            com,
+            ..Load::NONE
+        };
+        model.gravity(q, &load, &GRAVITY_EARTH)
+    };
+    let flange = at(Vector3::zeros());
+    let mass = flange - model.gravity(q, &Load::NONE, &GRAVITY_EARTH);
+    let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| at(axis) - flange);
+    SMatrix::from_columns(&[mass, x, y, z])
+}
+
+/// Mass and moment of the load that the robot was told of, `[kg]` and `[kg m]`.
+fn declared(state: &RobotState) -> Vector4<f64> {
+    let (mass, [x, y, z]) = (state.m_load, state.F_x_Cload);
+    Vector4::new(1.0, x, y, z) * mass
+}
+
+/// Greatest friction and bias of a joint that is plausible, `[N m]`.
+const TORQUE_MAX: f64 = 20.0;
+
+/// Greatest mass `[kg]` and moment `[kg m]` of a load that is plausible.
+const MASS_MAX: f64 = 20.0;

@@ -1,0 +1,204 @@
+//! The motions by which an arm is identified.
+
+use core::fmt;
+use core::time::Duration;
+
+use franka_model::{EndEffector, Frame, JointVector, Model, transform};
+use franka_otg::{Generator, Limits, State};
+use franka_proto::RobotState;
+use nalgebra::Vector3;
+
+use crate::session::{Budget, Tolerance};
+
+/// Motions around the joint positions at which the arm is: in each of a few poses all joints go to
+/// and fro twice, then back to the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    start: [f64; 7],
+    motions: Vec<PlannedMotion>,
+    budget: Budget,
+    reach: Reach,
+}
+
+/// One motion of a [`Plan`], from rest to rest. `Display` is a line that announces it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedMotion {
+    /// Joint positions before it, `[rad]`.
+    pub from: [f64; 7],
+    /// Joint positions after it, `[rad]`.
+    pub to: [f64; 7],
+    /// How long it takes, arrival included.
+    pub duration: Duration,
+}
+
+impl fmt::Display for PlannedMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "joints 1 to 7 by")?;
+        for (from, to) in self.from.iter().zip(self.to) {
+            write!(f, " {:+.2}", to - from)?;
+        }
+        write!(f, " rad in {:.1} s", self.duration.as_secs_f64())
+    }
+}
+
+/// How far the arm goes from where it is, as its references do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reach {
+    /// Farthest that each joint goes, either way, `[rad]`.
+    pub joints: [f64; 7],
+    /// Farthest that the end effector goes, `[m]`.
+    pub end_effector: f64,
+    /// Farthest that it goes down, base frame, `[m]`.
+    pub down: f64,
+}
+
+impl Plan {
+    /// Velocity of the joints in steady motion, `[rad/s]`.
+    pub const SPEED: f64 = 0.2;
+
+    /// How near to a target counts as arrived: an arm of which nothing is known need not be
+    /// accurate.
+    pub const TOLERANCE: Tolerance = Tolerance {
+        translation: 0.02,
+        rotation: 0.05,
+    };
+
+    /// Plans for an arm of this model in this state. Joints near a limit are led away from it
+    /// first.
+    pub fn new(model: &Model, state: &RobotState) -> Self {
+        let limits = model.joint_limits();
+        let mut budget = Budget::of(limits);
+        for joint in &mut budget.joints {
+            joint.velocity = Self::SPEED;
+        }
+        let start = JointVector::from(state.q);
+        let center = JointVector::from_fn(|i, _| {
+            let away = SHIFT[i] + STROKE / 2.0 + MARGIN;
+            start[i].clamp(limits.lower[i] + away, limits.upper[i] - away)
+        });
+        let strokes = POSES.iter().flat_map(|signs| {
+            let shift = JointVector::from(SHIFT).component_mul(&JointVector::from(*signs));
+            let half = JointVector::from(WAY) * (STROKE / 2.0);
+            [-half, half, -half, half, -half].map(|stroke| center + shift + stroke)
+        });
+        let mut from = state.q;
+        let motions: Vec<_> = strokes
+            .chain([start])
+            .map(|to| {
+                let motion = PlannedMotion::new(from, to.into(), &budget);
+                from = motion.to;
+                motion
+            })
+            .collect();
+        Self {
+            start: state.q,
+            reach: Reach::of(&motions, model, state),
+            motions,
+            budget,
+        }
+    }
+
+    /// Joint positions at which it begins and ends, `[rad]`.
+    pub fn start(&self) -> &[f64; 7] {
+        &self.start
+    }
+
+    /// Its motions, in their order.
+    pub fn motions(&self) -> &[PlannedMotion] {
+        &self.motions
+    }
+
+    /// How fast they are.
+    pub fn budget(&self) -> Budget {
+        self.budget
+    }
+
+    /// How far they go.
+    pub fn reach(&self) -> Reach {
+        self.reach
+    }
+
+    /// About how long they take together.
+    pub fn duration(&self) -> Duration {
+        self.motions.iter().map(|motion| motion.duration).sum()
+    }
+}
+
+impl PlannedMotion {
+    fn new(from: [f64; 7], to: [f64; 7], budget: &Budget) -> Self {
+        let limits = Limits::per_axis(budget.joints);
+        let planned = limits.and_then(|limits| {
+            let generator = Generator::towards(State::at_rest(from), limits, Some(&to))?;
+            Ok(generator.duration())
+        });
+        // Not planned if the state is not finite; the session refuses such a goal.
+        let duration = planned.unwrap_or_default() + ARRIVAL;
+        Self {
+            from,
+            to,
+            duration: Duration::from_secs_f64(duration),
+        }
+    }
+}
+
+impl Reach {
+    fn of(motions: &[PlannedMotion], model: &Model, state: &RobotState) -> Self {
+        let ee = transform::isometry_from_array(&state.F_T_EE).unwrap_or_default();
+        let ee = EndEffector {
+            f_t_ee: transform::matrix(&ee),
+            ..EndEffector::default()
+        };
+        let at = |q: &JointVector| {
+            let pose = model.pose(Frame::EndEffector, q, &ee);
+            Vector3::new(pose[(0, 3)], pose[(1, 3)], pose[(2, 3)])
+        };
+        let start = JointVector::from(state.q);
+        let home = at(&start);
+        let mut reach = Self::default();
+        for PlannedMotion { from, to, .. } in motions {
+            let (from, to) = (JointVector::from(*from), JointVector::from(*to));
+            for step in 1..=STEPS {
+                let q = from.lerp(&to, f64::from(step) / f64::from(STEPS));
+                let off = at(&q) - home;
+                reach.end_effector = reach.end_effector.max(off.norm());
+                reach.down = reach.down.max(-off.z);
+                for (most, joint) in reach.joints.iter_mut().zip((q - start).iter()) {
+                    *most = most.max(joint.abs());
+                }
+            }
+        }
+        reach
+    }
+}
+
+/// How far a joint goes to and fro, `[rad]`: a second of steady motion, and whole periods of a
+/// torque ripple.
+const STROKE: f64 = 0.2;
+
+/// The ways of the joints on a stroke. Each is measured by itself; the end effector goes less far
+/// than if all went the same way.
+const WAY: [f64; 7] = [1.0, 1.0, -1.0, 1.0, 1.0, 1.0, 1.0];
+
+/// How far the middle of the strokes is from the start in a pose, `[rad]`. A load is seen by how
+/// its gravity changes between poses, which joint 1 does not change.
+const SHIFT: [f64; 7] = [0.0, 0.12, 0.1, 0.15, 0.25, 0.25, 0.25];
+
+/// The poses.
+const POSES: [[f64; 7]; 6] = [
+    [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+    [0.0, 1.0, -1.0, 1.0, -1.0, -1.0, -1.0],
+    [0.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0],
+    [0.0, -1.0, -1.0, -1.0, -1.0, -1.0, 1.0],
+    [0.0, -1.0, 1.0, -1.0, 1.0, 1.0, 1.0],
+    [0.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0],
+];
+
+/// Least distance from the joint limits, `[rad]`.
+const MARGIN: f64 = 0.1;
+
+/// Time of an arrival beyond that of the reference, `[s]`: rest for a quarter of a second, after
+/// the arm has swung in.
+const ARRIVAL: f64 = 0.45;
+
+/// Points of a motion at which its reach is evaluated.
+const STEPS: u32 = 8;
