@@ -84,8 +84,9 @@ impl Identify {
         let Self { robot, plan } = self;
         let state = robot.state();
         for (i, (&got, &expected)) in state.q.iter().zip(plan.start()).enumerate() {
-            // Negated, so that a non-finite position counts as moved.
-            if !((got - expected).abs() < MOVED) {
+            // A non-finite position counts as moved.
+            let stayed = (got - expected).abs() < MOVED;
+            if !stayed {
                 let joint = i + 1;
                 return Err(IdentifyError::Moved {
                     joint,

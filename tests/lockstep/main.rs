@@ -11,6 +11,7 @@ mod force;
 mod goals;
 mod guards;
 mod holds;
+mod identify;
 mod laws;
 mod mishaps;
 mod random_targets;

@@ -46,6 +46,9 @@ mod programs {
     #[doc = include_str!("../../docs/src/model.md")]
     struct Model;
 
+    #[doc = include_str!("../../docs/src/identify.md")]
+    struct Identify;
+
     #[doc = include_str!("../../docs/src/sessions.md")]
     struct Sessions;
 

@@ -1,11 +1,12 @@
 //! The motion of the arm under each example of control at 1 kHz, as recorded by the simulator in
 //! the test.
 
+use franka_async::identify::Identified;
 use franka_async::{RobotError, RobotMode};
 use franka_model::READY;
 
 use crate::arm::{Arm, Event, MeasuredPath, SAMPLE, Scene};
-use crate::program::{Said, on_both, run};
+use crate::program::{ROBOTS, Said, on_both, run};
 
 /// Asserts that a program has succeeded, and that the robot has not stopped itself meanwhile.
 fn succeeded(robot: &str, said: &Said, path: &MeasuredPath) {
@@ -37,6 +38,41 @@ fn move_to_ready_arrives_from_elsewhere() {
             assert!(error.abs() < 2e-3, "{robot}: joint {joint} is {error} off");
         }
     });
+}
+
+#[test]
+fn identify_goes_as_far_as_it_says_and_saves_what_it_found() {
+    let path = std::env::temp_dir().join(format!("franka-identify-{}", std::process::id()));
+    for robot in ROBOTS {
+        let arm = Arm::start(robot, Scene::default());
+        let file = path.with_extension(robot);
+        let save = file.to_str().expect("a path of text");
+        let arguments = [
+            "--save",
+            save,
+            &arm.address,
+            "--realtime",
+            "ignore",
+            "--yes",
+        ];
+        let said = run("identify", &arguments, "");
+        let moved = arm.stop();
+        succeeded(robot, &said, &moved);
+        assert!(said.stdout.contains("\nload   "), "{robot}: {said:?}");
+        // As the plan's unit tests have it, and as far as an arm swings beyond.
+        for joint in 0..7 {
+            let (least, most, last) = moved.joint(joint);
+            assert!(least > -0.37 && most < 0.37, "{robot}: {least} {most}");
+            assert!(last.abs() < 0.2, "{robot}: back, then 5 cm up: {last}");
+        }
+        let text = std::fs::read_to_string(&file).expect("it was saved");
+        std::fs::remove_file(&file).expect("it is ours");
+        let found: Identified = serde_json::from_str(&text).expect("as it was written");
+        for joint in found.joints {
+            assert!(joint.friction.value < 0.2, "{robot}: {found}");
+        }
+        assert!(found.load.mass.value.abs() < 0.1, "{robot}: {found}");
+    }
 }
 
 #[test]

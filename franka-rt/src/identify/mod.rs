@@ -55,8 +55,8 @@ pub struct IdentifiedJoint {
     pub bias: Estimate,
 }
 
-/// What the flange carries beside the end effector that the robot is configured with (`m_ee`): a
-/// declared load counts, and so does a mass that the end effector has too much.
+/// What the flange carries beside the end effector that the robot is configured with (`m_ee`). A
+/// declared load is part of it, and so is what a real end effector weighs more than configured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedLoad {
@@ -225,3 +225,104 @@ const TORQUE_MAX: f64 = 20.0;
 
 /// Greatest mass `[kg]` and moment `[kg m]` of a load that is plausible.
 const MASS_MAX: f64 = 20.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found() -> Identified {
+        let of = |value| Estimate {
+            value,
+            deviation: 0.05,
+        };
+        let joint = IdentifiedJoint {
+            friction: of(0.8),
+            bias: of(-0.3),
+        };
+        Identified {
+            kind: RobotKind::Fr3,
+            joints: [joint; 7],
+            load: IdentifiedLoad {
+                mass: of(0.5),
+                moment: [of(0.0), of(0.01), of(0.05)],
+            },
+        }
+    }
+
+    #[test]
+    #[cfg(feature = "serde")]
+    fn it_can_be_stored() {
+        let text = serde_json::to_string(&found()).unwrap();
+        assert!(text.starts_with(r#"{"kind":"Fr3","joints":[{"friction":{"value":0.8,"#));
+        assert_eq!(serde_json::from_str::<Identified>(&text).unwrap(), found());
+    }
+
+    #[test]
+    fn another_kind_and_implausible_numbers_are_refused() {
+        assert_eq!(found().check(RobotKind::Fr3), Ok(()));
+        let error = found().check(RobotKind::Fer).unwrap_err();
+        let text = "what is known is of another robot: got Fr3, expected Fer";
+        assert_eq!(error.to_string(), text);
+        type Number = fn(&mut Identified) -> &mut f64;
+        let numbers: [(Number, f64); 6] = [
+            (|of| &mut of.joints[3].friction.value, -0.1),
+            (|of| &mut of.joints[6].bias.value, f64::NAN),
+            (|of| &mut of.joints[0].bias.deviation, f64::INFINITY),
+            (|of| &mut of.load.mass.value, 21.0),
+            (|of| &mut of.load.mass.deviation, -1.0),
+            (|of| &mut of.load.moment[2].value, f64::NEG_INFINITY),
+        ];
+        for (number, wrong) in numbers {
+            let mut wrong_one = found();
+            *number(&mut wrong_one) = wrong;
+            let error = wrong_one.check(RobotKind::Fr3).unwrap_err();
+            assert!(matches!(error, KnownError::Number { .. }), "{error}");
+            assert!(error.to_string().contains(&format!("got {wrong}, ")));
+        }
+    }
+
+    #[test]
+    fn an_undeclared_load_is_bias_and_a_declared_one_is_not() {
+        let model = Model::fr3();
+        let mut state = RobotState {
+            q: franka_model::READY.into(),
+            ..RobotState::default()
+        };
+        let joint = |state: &RobotState| {
+            let (friction, bias) = found().learned(model, state).of(3);
+            assert_eq!(friction, 0.8);
+            bias
+        };
+        // Half a kilogram some 0.5 m from joint 4.
+        assert!((2.0..3.0).contains(&(joint(&state) + 0.3)));
+        state.m_load = 0.5;
+        state.F_x_Cload = [0.0, 0.02, 0.1];
+        assert!((joint(&state) + 0.3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_center_is_told_of_what_surely_has_a_mass() {
+        let mut load = found().load;
+        let [x, _, z] = load.center().expect("ten deviations");
+        assert_eq!((x.value, z.value), (0.0, 0.1));
+        load.mass.value = 0.14;
+        assert_eq!(load.center(), None);
+        let text = found().to_string();
+        assert!(
+            text.contains("\n7      0.80 ± 0.05     -0.30 ± 0.05\nload   0.50 ± 0.05 kg, centre")
+        );
+    }
+
+    #[test]
+    fn without_motion_nothing_is_found() {
+        let error = Fit::new(Model::fr3(), &RobotState::default()).finish();
+        assert!(matches!(
+            error,
+            Err(FitError::TooLittle {
+                joint: 1,
+                got: 0,
+                ..
+            })
+        ));
+    }
+}

@@ -74,7 +74,9 @@ impl Plan {
         let start = JointVector::from(state.q);
         let center = JointVector::from_fn(|i, _| {
             let away = SHIFT[i] + STROKE / 2.0 + MARGIN;
-            start[i].clamp(limits.lower[i] + away, limits.upper[i] - away)
+            start[i]
+                .max(limits.lower[i] + away)
+                .min(limits.upper[i] - away)
         });
         let strokes = POSES.iter().flat_map(|signs| {
             let shift = JointVector::from(SHIFT).component_mul(&JointVector::from(*signs));
@@ -171,8 +173,8 @@ impl Reach {
     }
 }
 
-/// How far a joint goes to and fro, `[rad]`: a second of steady motion, and whole periods of a
-/// torque ripple.
+/// How far a joint goes to and fro, `[rad]`: almost a second of steady motion, in which a torque
+/// ripple passes through several periods.
 const STROKE: f64 = 0.2;
 
 /// The ways of the joints on a stroke. Each is measured by itself; the end effector goes less far
@@ -202,3 +204,63 @@ const ARRIVAL: f64 = 0.45;
 
 /// Points of a motion at which its reach is evaluated.
 const STEPS: u32 = 8;
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::SmallRng;
+    use rand::{Rng, SeedableRng};
+
+    use super::*;
+    use franka_model::READY;
+
+    fn plan(model: &Model, q: [f64; 7]) -> Plan {
+        let state = RobotState {
+            q,
+            ..RobotState::default()
+        };
+        Plan::new(model, &state)
+    }
+
+    #[test]
+    fn it_takes_a_minute_and_is_small() {
+        for model in [Model::fr3(), Model::fer()] {
+            let plan = plan(model, READY.into());
+            assert_eq!(plan.motions().len(), 31);
+            assert!((50.0..65.0).contains(&plan.duration().as_secs_f64()));
+            let reach = plan.reach();
+            assert!(reach.end_effector < 0.2 && reach.down < 0.12, "{reach:?}");
+            assert!(reach.joints.iter().all(|joint| *joint < 0.36), "{reach:?}");
+        }
+    }
+
+    #[test]
+    fn wherever_it_begins_it_keeps_off_the_limits_and_all_joints_go_both_ways() {
+        let mut random = SmallRng::seed_from_u64(7);
+        for model in [Model::fr3(), Model::fer()] {
+            let limits = model.joint_limits();
+            let inside = |q: f64, i: usize, margin: f64| {
+                (limits.lower[i] + margin..=limits.upper[i] - margin).contains(&q)
+            };
+            for _ in 0..100 {
+                let q = limits
+                    .lower
+                    .zip_map(&limits.upper, |low, high| random.random_range(low..high));
+                let plan = plan(model, q.into());
+                let (last, motions) = plan.motions().split_last().expect("31 motions");
+                assert_eq!(last.to, plan.start().clone());
+                for motion in motions {
+                    assert!((0..7).all(|i| inside(motion.to[i], i, MARGIN - 1e-9)));
+                }
+                for pose in motions.chunks(5) {
+                    for (i, way) in [(1, 1.0), (2, -1.0), (3, 1.0), (4, -1.0)] {
+                        let PlannedMotion { from, to, .. } = pose[i];
+                        for joint in 0..7 {
+                            let goes = (to[joint] - from[joint]) * way * WAY[joint];
+                            assert!((goes - STROKE).abs() < 1e-9);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

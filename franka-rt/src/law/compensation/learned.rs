@@ -53,7 +53,7 @@ impl Learned {
     ///
     /// An arm without friction takes a little, too, by the lag of its torques; for it both are
     /// zero.
-    pub(super) fn of(&self, joint: usize) -> (f64, f64) {
+    pub(crate) fn of(&self, joint: usize) -> (f64, f64) {
         let Joint { friction, bias, .. } = self.0[joint];
         let sticks = (friction / SMOOTH - 1.0).clamp(0.0, 1.0);
         let unsure = bias.clamp(-UNBIASED, UNBIASED) * (1.0 - sticks);
