@@ -6,6 +6,7 @@
 //! | [`mod@bench`] | what the work of one control cycle costs |
 //! | [`broken_socket`] | receives that fail on a socket of another thread |
 //! | [`cycle_counts`] | cycles, calls and success rates that a control function counts |
+//! | [`figures`] | figures of what was measured |
 //! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
 //! | [`mishaps`] | networks with one kind of fault each |
 //! | [`push`] | a hand that pushes an arm, and the inertia that it meets |
@@ -16,6 +17,7 @@ use std::time::Duration;
 pub mod bench;
 pub mod broken_socket;
 pub mod cycle_counts;
+pub mod figures;
 pub mod golden;
 pub mod lockstep;
 pub mod mishaps;

@@ -30,8 +30,8 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<()> {
 /// Runs our client beside another one, and the scripts of `tests/peers` that check something
 /// against a simulator of their own: as many at once as there are processors.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    let beside = beside_franka_rs(workspace)?;
     let interpreter = interpreter(workspace)?;
+    let beside = beside_franka_rs(workspace, interpreter.as_deref().ok())?;
     let scripts = interpreter.iter().flat_map(|interpreter| {
         SCRIPTS
             .iter()
@@ -75,8 +75,8 @@ fn script(
 }
 
 /// Builds our programs and franka-rs. The program returned holds our target control against that of
-/// franka-rs on the same robots.
-fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Program> {
+/// franka-rs on the same robots, and with an interpreter against the vendor's client, too.
+fn beside_franka_rs(workspace: &Workspace, interpreter: Option<&Path>) -> anyhow::Result<Program> {
     // With one test of each package come its programs, built as for the tests, so that what those
     // have built is used again.
     let mut programs = workspace.cargo();
@@ -88,6 +88,12 @@ fn beside_franka_rs(workspace: &Workspace) -> anyhow::Result<Program> {
 
     let mut command = workspace.program(workspace.target().join("debug").join(BESIDE));
     command.arg(workspace.target().join("debug").join("franka-rs-peer"));
+    if let Some(interpreter) = interpreter {
+        let script = directory(workspace).join(POSITIONS);
+        let address = loopback_address(std::process::id(), SCRIPTS.len());
+        command.arg("--pylibfranka").arg(interpreter).arg(script);
+        command.arg(address);
+    }
     Ok(Program {
         name: BESIDE,
         command,
@@ -330,6 +336,9 @@ fn kill(child: &mut Child) {
 /// The binary of the tests package that runs our client beside franka-rs.
 const BESIDE: &str = "beside_franka_rs";
 
+/// The script that it gives orders to.
+const POSITIONS: &str = "pylibfranka_positions.py";
+
 /// The scripts, and the options of their simulators: in virtual time, in which no answer is late,
 /// unless the pace of the robot is part of what is shown.
 const SCRIPTS: [(&str, &[&str]); 12] = [
@@ -379,7 +388,7 @@ mod tests {
     #[test]
     fn neighbours_get_addresses_of_their_own() {
         for process in [1, 253, 254, 255, 65_535, u32::MAX] {
-            for n in 0..SCRIPTS.len() {
+            for n in 0..=SCRIPTS.len() {
                 let address: Ipv4Addr = loopback_address(process, n).parse().unwrap();
                 assert!(address.is_loopback());
                 assert!((1..255).contains(&address.octets()[3]), "{address}");

@@ -1,27 +1,29 @@
-//! franka-rs with its default options. It reads orders from the standard input, one line each, and
-//! answers each with one line on the standard output.
+//! franka-rs with its default options, or with the feedforward of velocities that it had by default
+//! when its figures on real arms were measured. It reads orders from the standard input, one line
+//! each, and answers each on the standard output.
 //!
 //! | order | what it does | answer |
 //! |---|---|---|
-//! | | connects to the argument, `HOST:PORT`, and holds the arm where it is | `ready` |
-//! | `step X Y Z SECONDS` | moves the target by X Y Z, `[m]`, base frame, and records the arm for that long of the robot's time | `within SECONDS off METRES lag METRES` |
+//! | | connects to the first argument, `HOST:PORT`, and holds the arm where it is; `feedforward` may follow | `ready` |
+//! | `step X Y Z SECONDS` | moves the target by X Y Z, `[m]`, base frame, for that long of the robot's time | `target X Y Z`, then a line `MILLISECOND X Y Z` per cycle, what was commanded on this state, and `done` |
 //! | `end` | comes to rest and ends | `ended` |
 
 use std::error::Error;
-use std::io::BufRead as _;
+use std::io::{BufRead as _, Write as _};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use franka::robot::target_control::{CartesianSent, CartesianTargetControl, TargetControlOptions};
+use franka::robot::target_control::{
+    Backend, CartesianSent, CartesianTargetControl, ImpedanceOptions, TargetControlOptions,
+};
 use franka::{RealtimeConfig, Robot, RobotState};
 
 /// The record of one cycle.
 #[derive(Clone, Copy)]
 struct Cycle {
-    /// The robot's time, `[s]`.
-    time: f64,
-    measured: [f64; 3],
+    /// The robot's time, `[ms]`.
+    time: u64,
     commanded: [f64; 3],
     target: [f64; 3],
 }
@@ -30,9 +32,16 @@ struct Cycle {
 const CYCLES: usize = 60_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let address = std::env::args()
-        .nth(1)
-        .ok_or("usage: franka-rs-peer HOST:PORT")?;
+    let mut arguments = std::env::args().skip(1);
+    let address = arguments
+        .next()
+        .ok_or("usage: franka-rs-peer HOST:PORT [feedforward]")?;
+    let law = ImpedanceOptions::cartesian();
+    let law = match arguments.next().as_deref() {
+        None => law,
+        Some("feedforward") => law.with_velocity_feedforward(true),
+        Some(other) => return Err(format!("not an option: {other:?}").into()),
+    };
     let robot = Arc::new(Robot::new(&address, RealtimeConfig::Ignore)?);
     // Pushes must not trigger a reflex.
     let (joints, forces) = ([100.0; 7], [500.0; 6]);
@@ -45,14 +54,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut cycles = recorded.lock().unwrap_or_else(PoisonError::into_inner);
         if cycles.len() < CYCLES {
             cycles.push(Cycle {
-                time: state.time.as_secs_f64(),
-                measured: translation(&state.O_T_EE),
-                commanded: translation(&sent.pose),
+                time: state.time.as_millis(),
+                commanded: [sent.pose[12], sent.pose[13], sent.pose[14]],
                 target: sent.target,
             });
         }
     };
-    let options = TargetControlOptions::default().with_observer(observer);
+    let options = TargetControlOptions::default()
+        .with_backend(Backend::Impedance(law))
+        .with_observer(observer);
     let control = robot.start_cartesian_target_control(options)?;
     println!("ready");
     for line in std::io::stdin().lock().lines() {
@@ -60,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         match line.split_whitespace().collect::<Vec<_>>()[..] {
             ["step", x, y, z, seconds] => {
                 let by = [x.parse()?, y.parse()?, z.parse()?];
-                println!("{}", step(&control, &cycles, by, seconds.parse()?)?);
+                step(&control, &cycles, by, seconds.parse()?)?;
             }
             ["end"] => break,
             _ => return Err(format!("not an order: {line:?}").into()),
@@ -71,13 +81,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Steps the target, and returns the answer with the result of the step.
+/// Steps the target, and prints the answer.
 fn step(
     control: &CartesianTargetControl,
     cycles: &Mutex<Vec<Cycle>>,
     by: [f64; 3],
     seconds: f64,
-) -> Result<String, Box<dyn Error>> {
+) -> Result<(), Box<dyn Error>> {
     let start = control.target();
     let target: [f64; 3] = std::array::from_fn(|i| start[i] + by[i]);
     cycles.lock().map_err(|_| "the observer panicked")?.clear();
@@ -89,32 +99,15 @@ fn step(
         }
         thread::sleep(Duration::from_millis(1));
     }
-    let cycles = cycles.lock().map_err(|_| "the observer panicked")?;
-    let mut under_way = cycles
-        .iter()
-        .skip_while(|cycle| cycle.target != target)
-        .peekable();
-    let begin = under_way.peek().ok_or("no cycle saw the target")?.time;
-    let (mut within, mut off, mut lag) = (0.0, 0.0, 0.0_f64);
-    for cycle in under_way {
-        off = distance(&cycle.measured, &target);
-        lag = lag.max(distance(&cycle.measured, &cycle.commanded));
-        if off > 1e-3 {
-            within = cycle.time - begin;
-        }
+    let cycles = cycles.lock().map_err(|_| "the observer panicked")?.clone();
+    let mut answer = std::io::stdout().lock();
+    let [x, y, z] = target;
+    writeln!(answer, "target {x} {y} {z}")?;
+    let held = |cycle: &&Cycle| cycle.target != target;
+    for Cycle { time, commanded, .. } in cycles.iter().skip_while(held) {
+        let [x, y, z] = commanded;
+        writeln!(answer, "{time} {x} {y} {z}")?;
     }
-    Ok(format!("within {within} off {off} lag {lag}"))
-}
-
-/// The translation of a column-major pose.
-fn translation(pose: &[f64; 16]) -> [f64; 3] {
-    [pose[12], pose[13], pose[14]]
-}
-
-fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b).powi(2))
-        .sum::<f64>()
-        .sqrt()
+    writeln!(answer, "done")?;
+    Ok(())
 }

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use franka_tests::figures::quantile;
+
 /// The figures of one arm's programme.
 #[derive(Debug, Default)]
 pub(crate) struct ArmFigures {
@@ -147,15 +149,4 @@ impl fmt::Display for Summary {
         }
         Ok(())
     }
-}
-
-/// The value that this share of all is not above; infinite without values.
-pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let at = (share * sorted.len() as f64).ceil() as usize;
-    sorted
-        .get(at.saturating_sub(1))
-        .copied()
-        .unwrap_or(f64::INFINITY)
 }

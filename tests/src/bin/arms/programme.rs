@@ -6,6 +6,7 @@ use franka_rt::lifecycle::Engagement;
 use franka_rt::session::{Backend, Free, Goal, GoalId, OnArrival, PoseError, Setpoints, Target};
 use franka_sim::arm::Arm;
 use franka_sim::{Config, Network, Touch};
+use franka_tests::figures::HighPass;
 use franka_tests::lockstep::{Link, Lockstep};
 use franka_tests::push::{ArmInertia, PUSH, STIFFNESS, hand};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
@@ -365,32 +366,3 @@ impl Programme {
 
 /// Mass of the load that is gripped and not declared, `[kg]`.
 const GRIPPED: f64 = 0.3;
-
-/// What torques have above 30 Hz: two first-order high-passes in a row.
-#[derive(Default)]
-struct HighPass {
-    last: Option<[f64; 7]>,
-    stages: [[f64; 7]; 2],
-    squares: [f64; 7],
-    count: f64,
-}
-
-impl HighPass {
-    fn add(&mut self, torques: &[f64; 7]) {
-        let keep = 1.0 / (1.0 + core::f64::consts::TAU * 30.0 * 1e-3);
-        let last = self.last.replace(*torques).unwrap_or(*torques);
-        for i in 0..7 {
-            let before = self.stages[0][i];
-            self.stages[0][i] = keep * (before + torques[i] - last[i]);
-            self.stages[1][i] = keep * (self.stages[1][i] + self.stages[0][i] - before);
-            self.squares[i] += self.stages[1][i].powi(2);
-        }
-        self.count += 1.0;
-    }
-
-    /// Of the joint that has most.
-    fn rms(&self) -> f64 {
-        let most = self.squares.iter().copied().fold(0.0, f64::max);
-        (most / self.count.max(1.0)).sqrt()
-    }
-}

@@ -3,6 +3,7 @@
 use std::sync::mpsc;
 
 use anyhow::Context as _;
+use franka_proto::RobotMode;
 use franka_sim::{Robot, Sim, Touch, TouchId};
 use franka_tests::push::{PUSH, START, STIFFNESS, hand};
 use nalgebra::Vector3;
@@ -10,6 +11,7 @@ use tokio::sync::oneshot;
 use tokio::time::timeout;
 
 use crate::PATIENCE;
+use crate::witness::Witness;
 
 /// The time at constant velocity that is left out of the mean force, `[ms]`: contact and arm still
 /// oscillate then.
@@ -21,10 +23,20 @@ const LEFT_OUT: u64 = (START * 1e3) as u64 + SWING;
 /// Orders pushes of a robot that is being simulated.
 pub(crate) struct Hand {
     orders: mpsc::Sender<Order>,
+    witness: Witness,
 }
 
-/// The direction of a push, and where the mean force goes.
-type Order = (Vector3<f64>, oneshot::Sender<f64>);
+/// The direction of a push, and where its result goes.
+type Order = (Vector3<f64>, oneshot::Sender<Felt>);
+
+/// What a hand feels that pushes an arm.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Felt {
+    /// The mean force at constant velocity, `[N]`: no part of it accelerates the arm.
+    Mean(f64),
+    /// The greatest force before the robot stopped itself, `[N]`.
+    Reflex(f64),
+}
 
 /// A push under way.
 struct Push {
@@ -33,16 +45,20 @@ struct Push {
     begun: u64,
     /// The forces felt so far, `[N]`.
     sum: f64,
-    mean: oneshot::Sender<f64>,
+    most: f64,
+    result: oneshot::Sender<Felt>,
 }
 
 impl Hand {
-    /// A hand beside this robot. It moves and feels in every millisecond of the robot, however late
-    /// this program is.
+    /// A hand beside this robot. It moves, feels and sees in every millisecond of the robot,
+    /// however late this program is.
     pub(crate) fn beside(sim: Sim) -> (Self, Sim) {
         let (orders, ordered) = mpsc::channel::<Order>();
+        let witness = Witness::default();
+        let seen = witness.clone();
         let mut push = None;
         let sim = sim.every_millisecond(move |robot| {
+            seen.note(robot);
             push = match push.take() {
                 Some(push) => Push::feel(push, robot),
                 None => ordered
@@ -51,44 +67,71 @@ impl Hand {
                     .map(|order| Push::begin(order, robot)),
             };
         });
-        (Self { orders }, sim)
+        (Self { orders, witness }, sim)
     }
 
-    /// The mean force on a hand that moves at constant velocity along `way`, `[N]`: no part of it
-    /// accelerates the arm.
-    pub(crate) async fn push(&self, way: Vector3<f64>) -> anyhow::Result<f64> {
-        let (mean, felt) = oneshot::channel();
-        self.orders.send((way, mean)).context("no robot")?;
+    /// What it sees.
+    pub(crate) fn witness(&self) -> &Witness {
+        &self.witness
+    }
+
+    /// Pushes along `way`.
+    pub(crate) async fn push(&self, way: Vector3<f64>) -> anyhow::Result<Felt> {
+        let (result, felt) = oneshot::channel();
+        self.orders.send((way, result)).context("no robot")?;
         let felt = timeout(PATIENCE, felt).await;
         felt.context("nothing answers")?.context("no robot")
     }
 }
 
+impl Felt {
+    pub(crate) fn newtons(self) -> f64 {
+        match self {
+            Self::Mean(newtons) | Self::Reflex(newtons) => newtons,
+        }
+    }
+
+    /// The one of more force.
+    pub(crate) fn max(self, other: Self) -> Self {
+        if other.newtons() > self.newtons() {
+            other
+        } else {
+            self
+        }
+    }
+}
+
 impl Push {
-    fn begin((way, mean): Order, robot: &mut Robot) -> Self {
+    fn begin((way, result): Order, robot: &mut Robot) -> Self {
         let pose = robot.state().O_T_EE;
         let from = Vector3::new(pose[12], pose[13], pose[14]);
         Self {
             touch: robot.touch(Touch::carry(move |t| from + way * hand(t), STIFFNESS)),
             begun: robot.state().message_id,
             sum: 0.0,
-            mean,
+            most: 0.0,
+            result,
         }
     }
 
     /// Takes in the force of the last millisecond. Returns the push unless it is over.
     fn feel(mut self, robot: &mut Robot) -> Option<Self> {
-        let time = robot.state().message_id - self.begun;
+        let state = robot.state();
+        let (mode, time) = (state.robot_mode, state.message_id - self.begun);
+        let force = robot.felt(self.touch).expect("it lasts until released");
+        let force = force.fixed_rows::<3>(0).norm();
+        self.most = self.most.max(force);
         if time > LEFT_OUT {
-            let force = robot.felt(self.touch).expect("it lasts until released");
-            self.sum += force.fixed_rows::<3>(0).norm();
+            self.sum += force;
         }
-        if time < PUSH {
-            return Some(self);
-        }
+        let felt = match mode {
+            RobotMode::Reflex => Felt::Reflex(self.most),
+            _ if time < PUSH => return Some(self),
+            _ => Felt::Mean(self.sum / (PUSH - LEFT_OUT) as f64),
+        };
         robot.release(self.touch);
         // The order may have been given up.
-        let _ = self.mean.send(self.sum / (PUSH - LEFT_OUT) as f64);
+        let _ = self.result.send(felt);
         None
     }
 }

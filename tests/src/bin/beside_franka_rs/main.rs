@@ -1,51 +1,93 @@
-//! Our target control beside that of franka-rs, each with its defaults, on the same simulated
-//! robots: `beside_franka_rs PROGRAM`, where `PROGRAM` is that of `tests/peers/franka_rs`. A step
-//! of 5 cm, and a hand that pushes an arm that holds its pose. Prints the result of each in one
-//! line.
+//! Our target control beside other clients, each with its defaults, on the same simulated robots:
+//! `beside_franka_rs FRANKA_RS [--pylibfranka PYTHON SCRIPT ADDRESS]`, programs of `tests/peers`. A
+//! step of 5 cm, and a hand that pushes an arm that holds its pose; a line for each robot and
+//! client.
+//!
+//! ```text
+//!                      ┌─ Witness, Hand: what any client makes of the robot
+//! Robot (simulated) ───┤
+//!                      └─ socket ── Ours (this process), or Peer (a program that reads orders)
+//! ```
 
 mod hand;
 mod ours;
-mod theirs;
+mod peer;
+mod witness;
 
+use std::fmt;
+use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
 use clap::Parser;
+use franka_proto::Version;
 use franka_rt::session::ForceCap;
 use franka_sim::{Sim, Tool};
-use franka_tests::push::PACE;
 use nalgebra::Vector3;
 
-use hand::Hand;
+use hand::{Felt, Hand};
 use ours::Ours;
-use theirs::Theirs;
+use peer::Peer;
+use witness::Followed;
 
-/// Compares two clients on simulated robots.
+/// Compares clients on simulated robots.
 #[derive(Debug, Parser)]
 struct Arguments {
     /// The program of `tests/peers/franka_rs`.
-    program: PathBuf,
+    franka_rs: PathBuf,
+    /// Also compares joint positions by the vendor's client, whose robot has this address.
+    #[arg(long, num_args = 3, value_names = ["PYTHON", "SCRIPT", "ADDRESS"])]
+    pylibfranka: Option<Vec<String>>,
 }
 
 /// Makes a simulated robot of a kind.
 type Kind = fn() -> Sim;
 
-/// The result of a step.
-#[derive(Clone, Copy, Debug)]
-struct Stepped {
-    /// The time from which the arm stayed within 1 mm of the target, `[s]` from the first cycle
-    /// with that target.
-    within: f64,
-    /// The distance from the target in the end, `[m]`.
-    off: f64,
-    /// The greatest distance from the commanded position, `[m]`.
-    lag: f64,
+/// The vendor's client: its interpreter, our script for it, and the address of the robot, since it
+/// knows one port only.
+struct Pylibfranka<'a> {
+    python: &'a str,
+    script: &'a str,
+    robot: IpAddr,
 }
 
-/// How long a step is watched, `[s]`.
-const WATCHED: f64 = 2.5;
+impl Pylibfranka<'_> {
+    fn command(&self) -> Command {
+        let mut command = Command::new(self.python);
+        command.arg(self.script).arg(self.robot.to_string());
+        command
+    }
+}
+
+impl Arguments {
+    fn pylibfranka(&self) -> anyhow::Result<Option<Pylibfranka<'_>>> {
+        let Some([python, script, robot]) = self.pylibfranka.as_deref() else {
+            return Ok(None);
+        };
+        Ok(Some(Pylibfranka {
+            python,
+            script,
+            robot: robot.parse()?,
+        }))
+    }
+
+    fn franka_rs(&self, robot: SocketAddr) -> Command {
+        let mut command = Command::new(&self.franka_rs);
+        command.arg(robot.to_string());
+        command
+    }
+}
+
+/// How long a step is watched, `[ms]`.
+const WATCHED: u64 = 2500;
+
+/// The end of that time, in which the arm rests and its torques are noise, `[ms]`.
+const RESTING: u64 = 1000;
+
+/// How long an arm is left alone before it is pushed, `[ms]`.
+const BEFORE_PUSH: u64 = 1500;
 
 /// The step, `[m]`, base frame.
 const STEP: [f64; 3] = [0.0, 0.0, 0.05];
@@ -66,56 +108,44 @@ async fn main() -> ExitCode {
 
 async fn run(arguments: Arguments) -> anyhow::Result<()> {
     let mut failed = 0;
-    let ideal: [(&str, Kind); 2] = [
-        ("FR3", || Sim::fr3().ideal()),
-        ("FER", || Sim::fer().ideal()),
+    // The vendor's client speaks the protocol of the FR3 only.
+    let vendor = arguments.pylibfranka()?;
+    let vendor = vendor.as_ref();
+    let robots: [(&str, Kind, Wanted, _); 4] = [
+        ("ideal FR3", || Sim::fr3().ideal(), Wanted::IDEAL, None),
+        ("ideal FER", || Sim::fer().ideal(), Wanted::IDEAL, None),
+        ("realistic FR3", Sim::fr3, Wanted::REALISTIC, vendor),
+        ("realistic FER", Sim::fer, Wanted::REALISTIC, None),
     ];
-    let [fr3, fer] = ideal;
-    for ((robot, kind), wanted) in [
-        (fr3, Wanted::IDEAL),
-        (fer, Wanted::IDEAL),
-        (("realistic FR3", Sim::fr3), Wanted::REALISTIC),
-        (("realistic FER", Sim::fer), Wanted::REALISTIC),
-    ] {
-        let start = Instant::now();
-        let stepped = step(kind, wanted, &arguments).await;
-        failed += u32::from(!told(&format!("{robot}: a step of 5 cm"), start, stepped));
-    }
-    for (robot, kind) in ideal {
-        for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
-            let start = Instant::now();
-            let pushed = push(kind, way, &arguments).await;
-            let name = format!("{robot}: a push along {:?}", way.as_slice());
-            failed += u32::from(!told(&name, start, pushed));
-        }
+    for (robot, kind, wanted, vendor) in robots {
+        failed += compare(robot, kind, &wanted, &arguments, vendor).await;
     }
     ensure!(failed == 0, "{failed} steps failed");
     Ok(())
 }
 
-/// Prints the result of a step, and returns whether it passed.
-fn told(name: &str, start: Instant, outcome: anyhow::Result<String>) -> bool {
+/// Prints the result of a step, and returns whether it failed.
+fn told(name: &str, start: Instant, outcome: anyhow::Result<impl fmt::Display>) -> u32 {
     match outcome {
         Ok(summary) => {
             let seconds = start.elapsed().as_secs_f64();
             println!("ok    {name} ({seconds:.1} s): {summary}");
-            true
+            0
         }
         Err(error) => {
             println!("FAIL  {name}: {error:#}");
-            false
+            1
         }
     }
 }
 
 /// A robot in virtual time, which advances as its client answers: no command is late on a busy
 /// machine.
-fn simulated(kind: Kind) -> Sim {
-    kind().tool(Tool::hand()).virtual_time(PATIENCE)
+fn simulated(sim: Sim) -> Sim {
+    sim.tool(Tool::hand()).virtual_time(PATIENCE)
 }
 
-/// The most that a step of ours may show.
-#[derive(Clone, Copy)]
+/// The most that this driver may show.
 struct Wanted {
     /// `[m]`.
     off: f64,
@@ -123,6 +153,10 @@ struct Wanted {
     within: f64,
     /// `[m]`.
     lag: f64,
+    /// `[N]`.
+    push: f64,
+    /// `[N·m]`.
+    noise: f64,
 }
 
 impl Wanted {
@@ -130,61 +164,182 @@ impl Wanted {
         off: 0.3e-3,
         within: 0.90,
         lag: 2.5e-3,
+        push: 1.1 * ForceCap::DEFAULT_NEWTONS,
+        noise: 0.01,
     };
 
-    /// Of an arm of which nothing is known yet.
+    /// Of an arm of which nothing is known yet. Its friction is felt on top of the cap.
     const REALISTIC: Self = Self {
         off: 1e-3,
         within: 2.0,
         lag: 8e-3,
+        push: ForceCap::DEFAULT_NEWTONS + 10.0,
+        noise: 0.1,
     };
 }
 
-async fn step(kind: Kind, wanted: Wanted, arguments: &Arguments) -> anyhow::Result<String> {
-    let sim = simulated(kind).start().await?;
-    let mut theirs = Theirs::hold(&arguments.program, sim.addr())?;
-    let peer = theirs.step(STEP, WATCHED)?;
-    theirs.end()?;
-    sim.stop().await;
-
-    let sim = simulated(kind).start().await?;
-    let ours = Ours::hold(sim.addr()).await?;
-    let own = ours.step(STEP, WATCHED).await?;
-    ours.end().await?;
-    sim.stop().await;
-
-    let summary = |name, stepped: Stepped| {
-        let (off, lag) = (stepped.off * 1e3, stepped.lag * 1e3);
-        format!(
-            "{name} within 1 mm after {:.3} s, {off:.3} mm off, lag {lag:.2} mm",
-            stepped.within
-        )
-    };
-    let summary = format!("{}; {}", summary("own", own), summary("franka-rs", peer));
-    let good = own.off <= wanted.off && own.within <= wanted.within && own.lag <= wanted.lag;
-    let better = own.off < peer.off && own.within < peer.within && own.lag < peer.lag;
-    ensure!(good && better, "{summary}");
-    Ok(summary)
+/// What a client does with an arm.
+#[derive(Clone, Copy)]
+struct Measured {
+    /// The time from which the arm stayed within 1 mm of the target, `[s]` from the first cycle
+    /// with that target.
+    within: Option<f64>,
+    /// The distance from the target in the end, `[m]`.
+    off: f64,
+    /// The greatest distance from the commanded position, `[m]`.
+    lag: f64,
+    /// Of a hand that pushes, in the direction that takes most.
+    push: Felt,
+    /// The commanded torque above 30 Hz at rest, rms of the worst joint, `[N·m]`.
+    noise: f64,
 }
 
-async fn push(kind: Kind, way: Vector3<f64>, arguments: &Arguments) -> anyhow::Result<String> {
-    let (hand, sim) = Hand::beside(simulated(kind));
-    let sim = sim.start().await?;
-    let theirs = Theirs::hold(&arguments.program, sim.addr())?;
-    let peer = hand.push(way).await?;
-    theirs.end()?;
-    sim.stop().await;
+impl Wanted {
+    fn allow(&self, own: &Measured) -> bool {
+        own.off <= self.off
+            && own.within.is_some_and(|within| within <= self.within)
+            && own.lag <= self.lag
+            && matches!(own.push, Felt::Mean(newtons) if newtons <= self.push)
+            && own.noise <= self.noise
+    }
+}
 
-    let (hand, sim) = Hand::beside(simulated(kind));
-    let sim = sim.start().await?;
-    let ours = Ours::hold(sim.addr()).await?;
-    let own = hand.push(way).await?;
-    ours.end().await?;
-    sim.stop().await;
+impl Measured {
+    /// Whether it is more accurate, sooner at its target and softer.
+    fn is_better_than(&self, peer: &Self) -> bool {
+        let sooner = match (self.within, peer.within) {
+            (Some(own), Some(peer)) => own < peer,
+            (own, _) => own.is_some(),
+        };
+        sooner && self.off < peer.off && self.lag < peer.lag && self.is_softer_than(peer)
+    }
 
-    const CAP: f64 = ForceCap::DEFAULT_NEWTONS;
-    let most = 1.1 * CAP;
-    let summary = format!("own {own:.1} N, franka-rs {peer:.1} N, cap {CAP} N, at {PACE} m/s");
-    ensure!(own <= most && peer > most, "{summary}");
-    Ok(summary)
+    fn is_softer_than(&self, peer: &Self) -> bool {
+        self.push.newtons() < peer.push.newtons()
+    }
+
+    fn checked(self, good: bool) -> anyhow::Result<Self> {
+        ensure!(good, "{self}");
+        Ok(self)
+    }
+}
+
+impl fmt::Display for Measured {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.within {
+            Some(seconds) => write!(f, "within 1 mm after {seconds:.3} s")?,
+            None => write!(f, "never within 1 mm")?,
+        }
+        let (off, lag) = (self.off * 1e3, self.lag * 1e3);
+        write!(f, ", {off:.3} mm off, lag {lag:.2} mm, ")?;
+        match self.push {
+            Felt::Mean(newtons) => write!(f, "push {newtons:.1} N")?,
+            Felt::Reflex(newtons) => write!(f, "stopped itself at a push of {newtons:.0} N")?,
+        }
+        write!(f, ", torque above 30 Hz {:.4} N m", self.noise)
+    }
+}
+
+/// Who controls the arm.
+enum Client<'a> {
+    Own,
+    FrankaRs,
+    /// Joint positions along this path, by the vendor's client.
+    Pylibfranka(&'a Pylibfranka<'a>, &'a [[f64; 7]]),
+}
+
+/// Prints a line for each client of this robot, and returns how many failed.
+async fn compare(
+    robot: &str,
+    kind: Kind,
+    wanted: &Wanted,
+    arguments: &Arguments,
+    vendor: Option<&Pylibfranka<'_>>,
+) -> u32 {
+    let start = Instant::now();
+    let name = format!("{robot}, own");
+    let (own, path) = match measure(kind(), Client::Own, arguments).await {
+        Ok(measured) => measured,
+        Err(error) => return told(&name, start, Err::<Measured, _>(error)),
+    };
+    let mut failed = told(&name, start, own.checked(wanted.allow(&own)));
+
+    let start = Instant::now();
+    let peer = measure(kind(), Client::FrankaRs, arguments).await;
+    let peer = peer.and_then(|(peer, _)| peer.checked(own.is_better_than(&peer)));
+    failed += told(&format!("{robot}, franka-rs"), start, peer);
+
+    if let Some(vendor) = vendor {
+        let start = Instant::now();
+        let peer = measure(kind(), Client::Pylibfranka(vendor, &path), arguments).await;
+        let peer = peer.and_then(|(peer, _)| peer.checked(own.is_softer_than(&peer)));
+        failed += told(
+            &format!("{robot}, pylibfranka's joint positions"),
+            start,
+            peer,
+        );
+    }
+    failed
+}
+
+/// Has a client do everything. Returns the joint positions of its reference, too, if it is ours.
+async fn measure(
+    sim: Sim,
+    client: Client<'_>,
+    arguments: &Arguments,
+) -> anyhow::Result<(Measured, Vec<[f64; 7]>)> {
+    let sim = match &client {
+        Client::Pylibfranka(vendor, _) => sim.bind((vendor.robot, Version::TCP_PORT).into()),
+        _ => sim,
+    };
+    let (hand, sim) = Hand::beside(simulated(sim));
+    let sim = sim.start().await?;
+    let seconds = (WATCHED + 100) as f64 * 1e-3;
+    let measured = match client {
+        Client::Own => {
+            let ours = Ours::hold(sim.addr()).await?;
+            let (followed, path) = ours.step(STEP, seconds).await?;
+            let measured = look(&hand, &followed).await?;
+            ours.end().await?;
+            (measured, path)
+        }
+        Client::FrankaRs => {
+            let mut peer = Peer::hold(&mut arguments.franka_rs(sim.addr()))?;
+            let followed = peer.step(STEP, seconds)?;
+            let measured = look(&hand, &followed).await?;
+            peer.end()?;
+            (measured, Vec::new())
+        }
+        Client::Pylibfranka(vendor, path) => {
+            let mut peer = Peer::hold(&mut vendor.command())?;
+            let followed = peer.follow(path, seconds)?;
+            let measured = look(&hand, &followed).await?;
+            peer.end()?;
+            (measured, Vec::new())
+        }
+    };
+    sim.stop().await;
+    Ok(measured)
+}
+
+/// Measures the step that has been made, and pushes the arm.
+async fn look(hand: &Hand, followed: &Followed) -> anyhow::Result<Measured> {
+    let witness = hand.witness();
+    let end = followed.begin()? + WATCHED;
+    let lags = witness.lags(followed)?;
+    let mut push = Felt::Mean(0.0);
+    for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
+        witness.wait(witness.now() + BEFORE_PUSH).await?;
+        push = push.max(hand.push(way).await?);
+        if let Felt::Reflex(_) = push {
+            break;
+        }
+    }
+    Ok(Measured {
+        within: witness.within(followed, 1e-3, WATCHED)?,
+        off: witness.distance(end, &followed.target)?,
+        lag: lags.into_iter().fold(0.0, |most, (lag, _)| most.max(lag)),
+        push,
+        noise: witness.torque_noise(end - RESTING, end)?,
+    })
 }

@@ -9,7 +9,7 @@ use franka_async::settings::CollisionBehavior;
 use franka_async::{Arm, Engage, Pose, Realtime, Robot};
 use nalgebra::Translation3;
 
-use crate::Stepped;
+use crate::witness::Followed;
 
 /// The record of one cycle.
 #[derive(Clone, Copy)]
@@ -17,7 +17,6 @@ struct Cycle {
     /// The robot's time, `[ms]`.
     time: u64,
     goal: u64,
-    q: [f64; 7],
     q_ref: [f64; 7],
 }
 
@@ -49,7 +48,6 @@ impl Ours {
                 cycles.push(Cycle {
                     time: record.time,
                     goal: record.goal,
-                    q: record.q,
                     q_ref: record.q_ref,
                 });
             }
@@ -58,8 +56,13 @@ impl Ours {
         Ok(Self { robot, arm, cycles })
     }
 
-    /// Steps the target, `[m]`, and records the arm for `seconds`.
-    pub(crate) async fn step(&self, by: [f64; 3], seconds: f64) -> anyhow::Result<Stepped> {
+    /// Steps the target, `[m]`, and waits for `seconds`. Returns the joint positions of the
+    /// reference, too.
+    pub(crate) async fn step(
+        &self,
+        by: [f64; 3],
+        seconds: f64,
+    ) -> anyhow::Result<(Followed, Vec<[f64; 7]>)> {
         let target: Pose = Translation3::from(by) * self.robot.pose();
         let recorded = || self.cycles.lock().unwrap_or_else(PoisonError::into_inner);
         let held = recorded().last().context("no cycle was seen")?.goal;
@@ -70,27 +73,14 @@ impl Ours {
             tokio::time::sleep(Duration::from_millis(1)).await;
         }
         let cycles = recorded().clone();
-        let mut under_way = cycles
-            .iter()
-            .skip_while(|cycle| cycle.goal == held)
-            .peekable();
-        let begin = under_way.peek().context("no cycle saw the target")?.time;
+        let under_way = || cycles.iter().skip_while(|cycle| cycle.goal == held);
         let position = |q: &[f64; 7]| self.robot.pose_at(*q).translation.vector;
-        let mut stepped = Stepped {
-            within: 0.0,
-            off: 0.0,
-            lag: 0.0,
+        let reference = under_way().map(|cycle| (cycle.time, position(&cycle.q_ref)));
+        let followed = Followed {
+            target: target.translation.vector,
+            reference: reference.collect(),
         };
-        for cycle in under_way {
-            let measured = position(&cycle.q);
-            stepped.off = (measured - target.translation.vector).norm();
-            let lag = (measured - position(&cycle.q_ref)).norm();
-            stepped.lag = stepped.lag.max(lag);
-            if stepped.off > 1e-3 {
-                stepped.within = (cycle.time - begin) as f64 * 1e-3;
-            }
-        }
-        Ok(stepped)
+        Ok((followed, under_way().map(|cycle| cycle.q_ref).collect()))
     }
 
     /// Ends the session and disconnects.
