@@ -1,7 +1,7 @@
 //! Our target control beside other clients, each with its defaults, on the same simulated robots:
 //! `beside_franka_rs FRANKA_RS [--pylibfranka PYTHON SCRIPT ADDRESS]`, programs of `tests/peers`. A
 //! step of 5 cm, and a hand that pushes an arm that holds its pose; a line for each robot and
-//! client.
+//! client. And franka-rs on sampled arms beside what it did on real ones.
 //!
 //! ```text
 //!                      ┌─ Witness, Hand: what any client makes of the robot
@@ -9,6 +9,7 @@
 //!                      └─ socket ── Ours (this process), or Peer (a program that reads orders)
 //! ```
 
+mod calibration;
 mod hand;
 mod ours;
 mod peer;
@@ -120,6 +121,7 @@ async fn run(arguments: Arguments) -> anyhow::Result<()> {
     for (robot, kind, wanted, vendor) in robots {
         failed += compare(robot, kind, &wanted, &arguments, vendor).await;
     }
+    failed += calibration::run(&arguments).await;
     ensure!(failed == 0, "{failed} steps failed");
     Ok(())
 }
