@@ -294,9 +294,9 @@ const BIAS_SPREAD: f64 = 0.5;
 /// `[N m]`.
 const FELT: f64 = 0.3;
 
-/// What a load may change by at a joint from one motion to the next, `[N m]`: that of 0.3 kg,
+/// What a load may change by at a joint from one motion to the next, `[N m]`: that of 0.4 kg,
 /// half a metre away.
-const LOADED: f64 = 1.6;
+const LOADED: f64 = 2.0;
 
 /// Share by which the sum rises at the start and falls at the end, per cycle.
 const RAMP: f64 = 0.01;
