@@ -11,9 +11,10 @@ use std::time::Duration;
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order};
 use franka_rt::event_fd::EventFd;
+use franka_rt::law::Gains;
 use franka_rt::lifecycle::{CloseReason, Lifecycle, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
-use franka_rt::session::GoalId;
+use franka_rt::session::{GoalId, Margin};
 use franka_rt::thread::{Handle, Notice, Thread};
 use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
@@ -284,6 +285,20 @@ impl Bridge {
         self.lost = true;
     }
 
+    /// Says so if an arm may oscillate under these gains.
+    fn warn_of_margin(&self, goal: GoalId, gains: Option<&Gains>, state: &RobotState) {
+        let margin = gains.and_then(|gains| self.lifecycle.margin(gains, state));
+        if let Some(Margin { damping, stiffness }) = margin.filter(|margin| !margin.is_wanted()) {
+            tracing::warn!(
+                goal = goal.0,
+                damping,
+                stiffness,
+                wanted = Margin::WANTED,
+                "gains are near an oscillation: dampers and springs may grow by these factors"
+            );
+        }
+    }
+
     fn on_input(&mut self, input: Input) {
         let now = self.now();
         // If no wake-up per state is requested, the state that was published last is old.
@@ -296,6 +311,7 @@ impl Bridge {
             Input::Begin { motion, replies } => {
                 let id = motion.id();
                 let state = &self.publisher.state();
+                self.warn_of_margin(id, motion.gains(), state);
                 let begun = self.lifecycle.begin(motion, state, now);
                 match begun {
                     Ok(()) => {
@@ -331,6 +347,7 @@ impl Bridge {
             }
             Input::Tune { id, tuning, taken } => {
                 let state = &self.publisher.state();
+                self.warn_of_margin(id, tuning.gains.as_ref(), state);
                 let _ = taken.send(self.lifecycle.tune(id, *tuning, state));
             }
             Input::Disengage { id } => self.lifecycle.disengage(id),

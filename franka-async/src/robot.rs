@@ -8,9 +8,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::Record;
+use franka_rt::law::Gains;
 use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome};
 use franka_rt::sched::Granted;
-use franka_rt::session::GoalId;
+use franka_rt::session::{GoalId, Margin};
 use franka_rt::stats::Stats;
 use franka_rt::thread::Lender;
 use tokio::sync::{broadcast, oneshot};
@@ -113,6 +114,13 @@ impl Robot {
     /// compute with, [`Model::fer`].
     pub fn model(&self) -> &Model {
         &self.shared.model
+    }
+
+    /// How far gains are from the first oscillation of an arm like this where it is. A motion whose
+    /// gains have less than [`Margin::WANTED`] begins with a warning (`tracing`). `None` if the
+    /// robot's tool is no rigid body.
+    pub fn margin(&self, gains: &Gains) -> Option<Margin> {
+        Margin::of(gains, self.model(), &self.state(), self.version())
     }
 
     /// The protocol version that the robot speaks.

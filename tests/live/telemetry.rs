@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::time::{Duration, Instant};
 
 use franka_async::control::{Finish, Torques};
+use franka_async::goal::Gains;
 use franka_async::stats::Phase;
 use franka_async::{MotionReport, Pose, Robot};
 use franka_sim::{Sim, Tool};
@@ -209,4 +210,25 @@ async fn how_a_detached_motion_ends_is_told_even_if_it_does_not_begin() {
         panic!("{errors:?}")
     };
     assert!(refused.contains("no joint positions"), "{refused}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn gains_near_an_oscillation_are_warned_of() {
+    let _alone = alone();
+    listen();
+    let (robot, _sim) = ahead_of_the_client(Sim::fr3().ideal().tool(Tool::hand())).await;
+    let stiff = Gains::joint();
+    let wild = Gains {
+        joint_damping: stiff.joint_damping.map(|damping| 2.0 * damping),
+        ..stiff
+    };
+    assert!(robot.margin(&stiff).expect("a tool").is_wanted());
+    for (gains, warned) in [(stiff, false), (wild, true)] {
+        let there = robot.state().q;
+        let moved = robot.move_joints(there).gains(gains).await;
+        moved.expect("it is there");
+        let told = told("damping");
+        assert_eq!(told.len(), usize::from(warned));
+        assert!(told.iter().all(|told| told.level == Level::WARN));
+    }
 }

@@ -43,12 +43,13 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use franka_model::Model;
-use franka_proto::{Request, Version};
+use franka_proto::{Request, RobotState, Version};
 
 use crate::driver::{ControlLog, MotionId, Order};
 use crate::identify::Identified;
+use crate::law::Gains;
 use crate::law::compensation::Learned;
-use crate::session::{GoalId, KeepOut};
+use crate::session::{GoalId, KeepOut, Margin};
 
 use current_motion::CurrentMotion;
 use ending::STILL_SHOWN;
@@ -170,6 +171,11 @@ impl Lifecycle {
     pub fn with_log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self
+    }
+
+    /// How far these gains are from the first oscillation of an arm in `state`: see [`Margin::of`].
+    pub fn margin(&self, gains: &Gains, state: &RobotState) -> Option<Margin> {
+        Margin::of(gains, &self.model, state, self.version)
     }
 
     /// Has the first session begin with what was identified of the arm before, which was

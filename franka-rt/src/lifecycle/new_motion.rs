@@ -11,6 +11,7 @@ use super::programs::UserProgram;
 use super::{Engagement, Lifecycle, LifecyclePhase, MotionError, Output, START_TIMEOUT};
 use crate::control::Modes;
 use crate::driver::{ControlLog, MotionId, Observer, Order, Program};
+use crate::law::Gains;
 use crate::session::check::check_keep_out;
 use crate::session::{self, Goal, GoalId, OnArrival, Target, TargetSession};
 use crate::slot;
@@ -68,6 +69,14 @@ impl NewMotion {
         match self {
             Self::Goal { goal, .. } | Self::Session { goal, .. } => goal.id,
             Self::Program { id, .. } => *id,
+        }
+    }
+
+    /// Returns the gains that it begins with; `None` for a program.
+    pub fn gains(&self) -> Option<&Gains> {
+        match self {
+            Self::Goal { goal, .. } | Self::Session { goal, .. } => Some(&goal.gains),
+            Self::Program { .. } => None,
         }
     }
 

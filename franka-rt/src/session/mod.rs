@@ -31,6 +31,7 @@ mod guard;
 mod guide;
 mod kinematics;
 mod landing;
+mod margin;
 mod pose;
 mod reference;
 mod route;
@@ -68,6 +69,7 @@ pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT, Shortfall};
+pub use margin::Margin;
 pub use tolerance::Tolerance;
 
 use reference::Reference;

@@ -1,0 +1,161 @@
+//! How far gains are from the first oscillation.
+//!
+//! Between a torque that is wanted and one that acts lie the cycle of the client, the robot's delay,
+//! the lag of its torque loop and the low-pass of the commands. With inertia `M`, dampers `D` and
+//! springs `K` in joint space, every mode of the arm obeys
+//!
+//! ```text
+//! m s^2 + (d s + k) exp(-s DELAY) / ((1 + s LAG) (1 + s FILTER)) = 0
+//! ```
+//!
+//! to first order. A damper alone drives a mode once `d / m` exceeds [`DAMPED`], where the phases of
+//! delay and lags add up to a quarter of a turn. A slow spring needs `d > k (DELAY + LAG + FILTER)`.
+//! Friction, which helps, and the elasticity of the joints, which does not, are left out; the
+//! margins below were compared with what simulated arms do (`cargo xtask arms --gain`).
+
+use franka_model::{GRAVITY_EARTH, JointVector, MassMatrix, Model};
+use franka_proto::{RobotState, Version};
+
+use super::{ForceCap, end_effector_of, load_of};
+use crate::law::Gains;
+use crate::law::gain_fade::BlendedGains;
+use crate::law::interaction::Interaction;
+use crate::law::task_space::{ROTORS, TaskSpace};
+
+/// How far gains are from the first oscillation of an arm that delays and lags like the slowest
+/// realistic one that is simulated (`franka_sim::arm::Family::realistic`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// The factor by which all dampers may grow.
+    pub damping: f64,
+    /// The factor by which all springs may grow while the dampers stay.
+    pub stiffness: f64,
+}
+
+impl Margin {
+    /// The least that gains should have, on either side.
+    pub const WANTED: f64 = 2.0;
+
+    /// Whether both are as wanted.
+    pub fn is_wanted(&self) -> bool {
+        self.damping >= Self::WANTED && self.stiffness >= Self::WANTED
+    }
+}
+
+impl Margin {
+    /// That of these gains on an arm of this model where it is in `state`, with the end effector
+    /// and the load that the robot knows of. `None` if that is not a rigid body.
+    pub fn of(gains: &Gains, model: &Model, state: &RobotState, version: Version) -> Option<Self> {
+        let (ee, load) = (end_effector_of(state)?, load_of(state, version)?);
+        let (q, rest) = (JointVector::from(state.q), JointVector::zeros());
+        let dynamics = model.dynamics(&q, &rest, &ee, &load, &GRAVITY_EARTH);
+        let gains = BlendedGains::new(gains, ForceCap::Off.newtons());
+        let space = gains.needs_task_space().then(|| TaskSpace::of(&dynamics));
+        let matrix = |of: Interaction<'_>| {
+            let columns: [JointVector; 7] = core::array::from_fn(|i| {
+                let mut unit = JointVector::zeros();
+                unit[i] = 1.0;
+                of.torques(&unit)
+            });
+            let matrix = MassMatrix::from_columns(&columns);
+            (matrix + matrix.transpose()) * 0.5
+        };
+        let jacobian = &dynamics.jacobian;
+        let springs = matrix(Interaction::springs(&gains, jacobian, space.as_ref()));
+        let dampers = matrix(Interaction::dampers(&gains, jacobian, space.as_ref()));
+        let inertia = dynamics.mass + MassMatrix::from_diagonal(&ROTORS.into());
+        Some(Self {
+            damping: DAMPED / greatest_ratio(dampers, inertia),
+            stiffness: 1.0 / (LATE * greatest_ratio(springs, dampers)),
+        })
+    }
+}
+
+/// The greatest eigenvalue of `over^-1 of`, both symmetric; infinite where `over` has none that is
+/// positive, and `of` has.
+fn greatest_ratio(of: MassMatrix, over: MassMatrix) -> f64 {
+    let floor = MassMatrix::identity() * 1e-9;
+    let Some(factor) = (over + floor).cholesky() else {
+        return f64::INFINITY;
+    };
+    let inverse = factor.inverse();
+    let half = inverse.cholesky().map(|root| root.l());
+    half.map_or(f64::INFINITY, |half| {
+        (half.transpose() * of * half).symmetric_eigenvalues().max()
+    })
+}
+
+/// Ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`: at 182 rad/s the phases
+/// of 3 ms of delay (the client's cycle and two of the robot), of 5 ms of lag and of a low-pass of
+/// 100 Hz add up to a quarter of a turn, and the two lags let pass `182 / 257` there.
+const DAMPED: f64 = 257.0;
+
+/// Delay and lags together, `[s]`.
+const LATE: f64 = 9.6e-3;
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::SmallRng;
+    use rand::{Rng, SeedableRng};
+
+    use super::*;
+
+    fn at(q: JointVector, gains: Gains) -> Margin {
+        let transform = nalgebra::Matrix4::identity();
+        let state = RobotState {
+            q: q.into(),
+            F_T_EE: transform.as_slice().try_into().expect("sixteen"),
+            EE_T_K: transform.as_slice().try_into().expect("sixteen"),
+            ..RobotState::default()
+        };
+        Margin::of(&gains, Model::fr3(), &state, Version::V10).expect("a rigid tool")
+    }
+
+    fn of(gains: Gains) -> Margin {
+        at(franka_model::READY, gains)
+    }
+
+    #[test]
+    fn the_presets_have_a_margin_wherever_the_arm_is() {
+        let mut random = SmallRng::seed_from_u64(1);
+        let limits = Model::fr3().joint_limits();
+        for _ in 0..500 {
+            let q = limits
+                .lower
+                .zip_map(&limits.upper, |low, high| random.random_range(low..high));
+            for gains in [Gains::cartesian(), Gains::joint(), Gains::droid()] {
+                let margin = at(q, gains);
+                assert!(margin.is_wanted(), "{margin:?} at {q}");
+            }
+        }
+    }
+
+    /// What simulated arms did under dampers times a factor: `arms --law joint --scaled
+    /// joint-damping --gain F` with 2.4 was quiet, with 3 it was not; `--gain 4` of all gains of
+    /// the default moved quietly, and its goals fell short.
+    #[test]
+    fn it_is_what_simulated_arms_have() {
+        let margin = of(Gains::joint()).damping;
+        assert!((2.4..3.0).contains(&margin), "{margin}");
+        let margin = of(Gains::cartesian()).damping;
+        assert!((4.0..5.0).contains(&margin), "{margin}");
+    }
+
+    #[test]
+    fn it_is_a_factor_on_the_gains() {
+        let gains = Gains::cartesian();
+        let margin = of(gains);
+        let damped = Gains {
+            cartesian_damping: gains.cartesian_damping.map(|d| 1.5 * d),
+            joint_damping: gains.joint_damping.map(|d| 1.5 * d),
+            ..gains
+        };
+        let near = |got: f64, want: f64| assert!((got / want - 1.0).abs() < 1e-3, "{got} {want}");
+        near(of(damped).damping, margin.damping / 1.5);
+        near(of(damped).stiffness, margin.stiffness * 1.5);
+        let mut undamped = gains;
+        (undamped.cartesian_damping, undamped.joint_damping) = ([0.0; 6], [0.0; 7]);
+        assert!(of(undamped).stiffness < 1e-3);
+        assert!(!of(undamped).is_wanted());
+    }
+}
