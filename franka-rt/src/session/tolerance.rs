@@ -52,10 +52,13 @@ impl Tolerance {
     }
 
     /// What an arm like that keeps under the robot's own controllers, with the impedance that they
-    /// have by default: 1 mm and 3 mrad for joint positions, 5 mm and 15 mrad for poses.
+    /// have by default: 2 mm and 5 mrad for joint positions, 5 mm and 15 mrad for poses.
     pub fn under(setpoints: Setpoints) -> Self {
         match setpoints {
-            Setpoints::Joints => Self::default(),
+            Setpoints::Joints => Self {
+                translation: 2e-3,
+                rotation: 5e-3,
+            },
             Setpoints::Poses => Self {
                 translation: 5e-3,
                 rotation: 15e-3,
