@@ -286,8 +286,8 @@ impl Bridge {
     }
 
     /// Says so if an arm may oscillate under these gains.
-    fn warn_of_margin(&self, goal: GoalId, gains: Option<&Gains>, state: &RobotState) {
-        let margin = gains.and_then(|gains| self.lifecycle.margin(gains, state));
+    fn warn_of_margin(&self, goal: GoalId, gains: Option<Gains>, state: &RobotState) {
+        let margin = gains.and_then(|gains| self.lifecycle.margin(&gains, state));
         if let Some(Margin { damping, stiffness }) = margin.filter(|margin| !margin.is_wanted()) {
             tracing::warn!(
                 goal = goal.0,
@@ -311,10 +311,11 @@ impl Bridge {
             Input::Begin { motion, replies } => {
                 let id = motion.id();
                 let state = &self.publisher.state();
-                self.warn_of_margin(id, motion.gains(), state);
+                let gains = motion.gains().copied();
                 let begun = self.lifecycle.begin(motion, state, now);
                 match begun {
                     Ok(()) => {
+                        self.warn_of_margin(id, gains, state);
                         self.replies.insert(id, replies);
                     }
                     Err(error) => {
@@ -347,8 +348,11 @@ impl Bridge {
             }
             Input::Tune { id, tuning, taken } => {
                 let state = &self.publisher.state();
-                self.warn_of_margin(id, tuning.gains.as_ref(), state);
-                let _ = taken.send(self.lifecycle.tune(id, *tuning, state));
+                let tuned = self.lifecycle.tune(id, *tuning, state);
+                if tuned.is_ok() {
+                    self.warn_of_margin(id, tuning.gains, state);
+                }
+                let _ = taken.send(tuned);
             }
             Input::Disengage { id } => self.lifecycle.disengage(id),
             Input::Close { goal } => self.lifecycle.close(goal),

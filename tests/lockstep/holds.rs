@@ -289,8 +289,9 @@ fn a_load_that_is_gripped_and_dropped_is_compensated() {
         com: Vector3::new(0.0, 0.0, 0.12),
         inertia: Matrix3::identity() * 3e-4,
     };
-    for seed in 0..3 {
-        let mut lockstep = sticking(seed);
+    let sticking = (0..2).map(|seed| Arm::sample(RobotKind::Fer, seed, &Family::realistic()));
+    for arm in sticking.chain([Arm::ideal(RobotKind::Fer), Arm::nominal(RobotKind::Fer)]) {
+        let mut lockstep = of(arm, 1);
         let engaged = lockstep.engage();
         let home = lockstep.arm_pose();
         for load in [Load::NONE, gripped, Load::NONE] {

@@ -99,8 +99,8 @@ impl Fit {
         }
     }
 
-    /// Takes the record of a cycle. Cycles of other motions, or in which a guard binds, and records
-    /// that are missed do no harm.
+    /// Takes the record of a cycle. Slower motions, cycles in which a guard binds, and records that
+    /// are missed do no harm; motions under the robot's own controller do.
     pub fn on_record(&mut self, record: &Record) {
         let (v, a) = (JointVector::from(record.dq_ref), record.ddq_ref);
         let signs = v.map(|v| if v.abs() > FAST { v.signum() } else { 0.0 });
@@ -133,12 +133,16 @@ impl Fit {
         if on.summed == WINDOW {
             let share = 1.0 / f64::from(WINDOW);
             let (q, dq, tau) = (on.q * share, on.dq * share, on.tau * share);
-            self.windows.push(Window {
+            let window = Window {
                 signs,
                 takes: tau - self.model.coriolis(&q, &dq, &self.total),
                 gravity: load_gravity(&self.model, &q),
                 stroke: on.stroke,
-            });
+            };
+            let mut numbers = window.takes.iter().chain(&window.gravity);
+            if numbers.all(|number| number.abs() < ABSURD) {
+                self.windows.push(window);
+            }
             (on.summed, on.q, on.dq, on.tau) = Default::default();
         }
     }
@@ -195,7 +199,8 @@ impl Fit {
                 }
             }
         }
-        let inverse = information.try_inverse().unwrap_or_default();
+        let factor = information.cholesky();
+        let inverse = factor.expect("positive definite by the prior").inverse();
         (inverse * right, inverse.diagonal())
     }
 
@@ -303,6 +308,9 @@ const REWEIGHTED: usize = 3;
 
 /// Least deviation of a joint's windows, `[N m]`: the resolution of its sensor.
 const RESIDUAL_MIN: f64 = 0.01;
+
+/// More than any joint takes, `[N m]`: numbers beyond, and what is no number, are not counted.
+const ABSURD: f64 = 1e3;
 
 /// Greatest deviation of a joint's windows on an arm that nothing has pushed, `[N m]`.
 const RESIDUAL_MAX: f64 = 0.5;

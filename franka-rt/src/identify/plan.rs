@@ -122,7 +122,8 @@ impl Plan {
 
     /// About how long they take together.
     pub fn duration(&self) -> Duration {
-        self.motions.iter().map(|motion| motion.duration).sum()
+        let durations = self.motions.iter().map(|motion| motion.duration);
+        durations.fold(Duration::ZERO, Duration::saturating_add)
     }
 }
 
@@ -138,7 +139,7 @@ impl PlannedMotion {
         Self {
             from,
             to,
-            duration: Duration::from_secs_f64(duration),
+            duration: Duration::try_from_secs_f64(duration).unwrap_or(Duration::MAX),
         }
     }
 }

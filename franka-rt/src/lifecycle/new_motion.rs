@@ -13,7 +13,7 @@ use crate::control::Modes;
 use crate::driver::{ControlLog, MotionId, Observer, Order, Program};
 use crate::law::Gains;
 use crate::session::check::check_keep_out;
-use crate::session::{self, Goal, GoalId, OnArrival, Target, TargetSession};
+use crate::session::{self, Backend, Goal, GoalId, OnArrival, Target, TargetSession};
 use crate::slot;
 use crate::stats::MotionTimes;
 use crate::together::StartTicket;
@@ -72,9 +72,11 @@ impl NewMotion {
         }
     }
 
-    /// Returns the gains that it begins with; `None` for a program.
+    /// Returns the gains that it begins with; `None` for a program, and under the robot's
+    /// controller.
     pub fn gains(&self) -> Option<&Gains> {
         match self {
+            Self::Session { engagement, .. } if engagement.backend != Backend::Torques => None,
             Self::Goal { goal, .. } | Self::Session { goal, .. } => Some(&goal.gains),
             Self::Program { .. } => None,
         }
@@ -131,7 +133,7 @@ impl Lifecycle {
         self.check_open()?;
         self.check_turn(&motion)?;
         self.check_options(&motion, state)?;
-        if !matches!(motion, NewMotion::Program { .. })
+        if motion.gains().is_some()
             && let Some(known) = self.known.take()
         {
             self.learned = known.learned(&self.model, state);

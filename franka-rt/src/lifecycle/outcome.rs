@@ -29,7 +29,7 @@ pub struct MotionReport {
     pub final_error: Option<PoseError>,
     /// The same when the arm had been let go at the end of the motion, before the robot's own
     /// controller took it, which knows nothing of what was compensated. `None` without a target,
-    /// and where the arm is held on.
+    /// where the arm is held on, and where the robot's controller had it all the time.
     pub released_error: Option<PoseError>,
     /// What friction and bias of each joint were compensated by at the arrival, `[N m]`: what the
     /// springs could not do. `None` without our law: under the robot's controller, and of a control

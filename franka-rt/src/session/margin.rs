@@ -1,17 +1,17 @@
 //! How far gains are from the first oscillation.
 //!
-//! Between a torque that is wanted and one that acts lie the cycle of the client, the robot's delay,
-//! the lag of its torque loop and the low-pass of the commands. With inertia `M`, dampers `D` and
-//! springs `K` in joint space, every mode of the arm obeys
+//! Between a torque that is wanted and one that acts lie the cycle of the client, the robot's
+//! delay, the lag of its torque loop and the low-pass of the commands. With inertia `M`, dampers
+//! `D` and springs `K` in joint space, every mode of the arm obeys
 //!
 //! ```text
 //! m s^2 + (d s + k) exp(-s DELAY) / ((1 + s LAG) (1 + s FILTER)) = 0
 //! ```
 //!
-//! to first order. A damper alone drives a mode once `d / m` exceeds [`DAMPED`], where the phases of
-//! delay and lags add up to a quarter of a turn. A slow spring needs `d > k (DELAY + LAG + FILTER)`.
-//! Friction, which helps, and the elasticity of the joints, which does not, are left out; the
-//! margins below were compared with what simulated arms do (`cargo xtask arms --gain`).
+//! to first order. A damper alone drives a mode once `d / m` exceeds [`DAMPED`], where the phases
+//! of delay and lags add up to a quarter of a turn. A slow spring needs `d > k (DELAY + LAG +
+//! FILTER)`. Friction, which helps, and the elasticity of the joints, which does not, are left out;
+//! the margins were compared with what simulated arms do (`cargo xtask arms --gain`).
 
 use franka_model::{GRAVITY_EARTH, JointVector, MassMatrix, Model};
 use franka_proto::{RobotState, Version};
@@ -23,7 +23,8 @@ use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
 
 /// How far gains are from the first oscillation of an arm that delays and lags like the slowest
-/// realistic one that is simulated (`franka_sim::arm::Family::realistic`).
+/// realistic one that is simulated (`franka_sim::arm::Family::realistic`). Bad arms have less: they
+/// lag twice as long, and their joints are softer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
     /// The factor by which all dampers may grow.
@@ -40,12 +41,12 @@ impl Margin {
     pub fn is_wanted(&self) -> bool {
         self.damping >= Self::WANTED && self.stiffness >= Self::WANTED
     }
-}
 
-impl Margin {
     /// That of these gains on an arm of this model where it is in `state`, with the end effector
-    /// and the load that the robot knows of. `None` if that is not a rigid body.
+    /// and the load that the robot knows of. `None` for gains that are out of their bounds, and if
+    /// the tool is no rigid body.
     pub fn of(gains: &Gains, model: &Model, state: &RobotState, version: Version) -> Option<Self> {
+        gains.check().ok()?;
         let (ee, load) = (end_effector_of(state)?, load_of(state, version)?);
         let (q, rest) = (JointVector::from(state.q), JointVector::zeros());
         let dynamics = model.dynamics(&q, &rest, &ee, &load, &GRAVITY_EARTH);
@@ -71,18 +72,14 @@ impl Margin {
     }
 }
 
-/// The greatest eigenvalue of `over^-1 of`, both symmetric; infinite where `over` has none that is
-/// positive, and `of` has.
+/// The greatest eigenvalue of `over^-1 of`, both symmetric; infinite where `over` is not positive.
 fn greatest_ratio(of: MassMatrix, over: MassMatrix) -> f64 {
     let floor = MassMatrix::identity() * 1e-9;
-    let Some(factor) = (over + floor).cholesky() else {
-        return f64::INFINITY;
-    };
-    let inverse = factor.inverse();
-    let half = inverse.cholesky().map(|root| root.l());
-    half.map_or(f64::INFINITY, |half| {
-        (half.transpose() * of * half).symmetric_eigenvalues().max()
-    })
+    let ratio = (over + floor).cholesky().and_then(|factor| {
+        let half = factor.l().solve_lower_triangular(&of)?;
+        factor.l().solve_lower_triangular(&half.transpose())
+    });
+    ratio.map_or(f64::INFINITY, |ratio| ratio.symmetric_eigenvalues().max())
 }
 
 /// Ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`: at 182 rad/s the phases

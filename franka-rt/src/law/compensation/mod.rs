@@ -14,10 +14,11 @@
 //!
 //! - `c` and `b` are [`learned`] in motion, from what the springs take there beside them. On an arm
 //!   without friction and bias both are zero.
-//! - `i` is an integral that runs where the arm rests outside its [`DEAD_ZONE`]. It decays in
-//!   motion. Inside the dead zone it stands still, so that nothing hunts. Springs and integral
-//!   together take no more than friction may, counted from where the arm came to rest: what moves
-//!   the arm away meets little more than the springs.
+//! - `i` is an integral that runs where the arm rests outside its [`DEAD_ZONE`], or creeps to its
+//!   target. It decays in motion. Inside the dead zone it stands still, so that nothing hunts.
+//!   Springs and integral together take no more than friction may, counted from where the arm came
+//!   to rest: what moves the arm away meets little more than the springs. Until it has come to
+//!   rest, what is not known of it or may have been gripped counts, too, for a while.
 //! - The second line is a spring that ends at 0.6 of the friction. So it takes less energy into a
 //!   swing than friction takes out, whatever the delay of the torque loop, and it makes the slip
 //!   of a joint that breaks away short, also where the springs are soft.
@@ -48,27 +49,27 @@ pub(crate) struct Compensation {
     free: f64,
     /// Cycles for which each joint has rested, and its reference.
     rested: [u32; 7],
-    stand: Stand,
+    approach: Approach,
     /// Whether the integral of a joint runs.
     is_working: bool,
 }
 
-/// How an arm stands to a reference that rests.
+/// Whether the arm has come to rest at its target.
 #[derive(Debug)]
-enum Stand {
+enum Approach {
     /// It has not come to rest there yet.
     Arriving {
-        /// Cycles of the resting reference, zero while it moves; after [`ARRIVES`] or a push, what
-        /// is not known of the arm counts no more.
+        /// Cycles for which the reference has rested. Beyond [`ARRIVES`], where a push takes them,
+        /// too, what is not known of the arm counts no more.
         cycles: u32,
-        /// The least distance of each joint since then, `[rad]`.
+        /// The least distance at which each joint has rested meanwhile, `[rad]`.
         nearest: JointVector,
     },
     /// It has come to rest, with this integral, `[N m]`.
     Settled(JointVector),
 }
 
-impl Stand {
+impl Approach {
     /// To one that moves.
     fn under_way() -> Self {
         Self::Arriving {
@@ -108,7 +109,7 @@ impl Compensation {
             acting: 0.0,
             free: 1.0,
             rested: [0; 7],
-            stand: Stand::under_way(),
+            approach: Approach::under_way(),
             is_working: false,
         }
     }
@@ -126,17 +127,23 @@ impl Compensation {
     fn settle(&mut self, demand: &Demand<'_>) {
         let rests = |i: usize| self.rested[i] > SETTLED && demand.error[i].abs() < DEAD_ZONE[i];
         if demand.dq_ref.amax() > MOVING {
-            self.stand = Stand::under_way();
-        } else if let Stand::Arriving { cycles, nearest } = &mut self.stand {
+            self.approach = Approach::under_way();
+        } else if let Approach::Arriving { cycles, nearest } = &mut self.approach {
             if (0..7).all(rests) {
-                self.stand = Stand::Settled(self.rest);
+                self.approach = Approach::Settled(self.rest);
                 return;
             }
             let distance = demand.error.abs();
-            // By itself an arm only comes nearer.
+            // Once it has rested, an arm by itself only comes nearer.
             let is_pushed = (distance - *nearest).max() > PUSHED;
-            *nearest = nearest.inf(&distance);
-            *cycles = if is_pushed { ARRIVES } else { *cycles }.saturating_add(1);
+            for i in (0..7).filter(|&i| self.rested[i] > RESTED[1]) {
+                nearest[i] = nearest[i].min(distance[i]);
+            }
+            let rests = demand.dq_ref.amax() < REFERENCE_RESTS;
+            *cycles = match is_pushed {
+                true => ARRIVES + 1,
+                false => cycles.saturating_add(u32::from(rests)),
+            };
         }
     }
 
@@ -178,20 +185,20 @@ impl Compensation {
         // by from pose to pose, and for a while what is not known of the arm yet or has been
         // gripped meanwhile. What stands against more is something else.
         let resists = FRICTION_SPREAD * friction + BIAS_SPREAD * bias.abs() + FELT;
-        let (settled, resists) = match self.stand {
-            Stand::Arriving { cycles, .. } if cycles > ARRIVES => (0.0, resists),
-            Stand::Arriving { .. } => {
+        let (settled, resists) = match self.approach {
+            Approach::Arriving { cycles, .. } if cycles > ARRIVES => (0.0, resists),
+            Approach::Arriving { .. } => {
                 let unknown = self.learned.unknown(i) * bound;
                 (0.0, (resists + unknown).max(LOADED))
             }
-            Stand::Settled(settled) => (settled[i], resists),
+            Approach::Settled(settled) => (settled[i], resists),
         };
         let room = (resists - demand.springs[i].abs()).max(0.0);
         let within = |torque: f64| torque.clamp(-bound, bound);
         let (least, most) = (within(settled - room), within(settled + room));
         // One that settles may creep to its target, one that is pushed away does not.
         let towards = demand.dq[i] * e.signum();
-        let creeps = matches!(self.stand, Stand::Arriving { .. })
+        let creeps = matches!(self.approach, Approach::Arriving { .. })
             && 0.0 < towards
             && towards < CREEP * e.abs();
         let slow = creeps || demand.dq[i].abs() < REST_VELOCITY;
@@ -236,6 +243,9 @@ pub(crate) const DEAD_ZONE: [f64; 7] = [3e-4, 3e-4, 3e-4, 3e-4, 5e-4, 5e-4, 5e-4
 
 /// Velocity of the reference above which a joint counts as moving, `[rad/s]`.
 const MOVING: f64 = 0.02;
+
+/// Velocity of the reference below which it rests, `[rad/s]`.
+const REFERENCE_RESTS: f64 = 1e-3;
 
 /// Acceleration of the reference above which nothing is learned, `[rad/s^2]`: the springs then take
 /// what is missing in the inertia, too.
@@ -294,9 +304,9 @@ const BIAS_SPREAD: f64 = 0.5;
 /// `[N m]`.
 const FELT: f64 = 0.3;
 
-/// What a load may change by at a joint from one motion to the next, `[N m]`: that of 0.4 kg,
+/// What a load may change by at a joint from one motion to the next, `[N m]`: that of 0.3 kg,
 /// half a metre away.
-const LOADED: f64 = 2.0;
+const LOADED: f64 = 1.6;
 
 /// Share by which the sum rises at the start and falls at the end, per cycle.
 const RAMP: f64 = 0.01;

@@ -86,8 +86,10 @@ impl Sessions<'_> {
                         // All goals of a session that is ending get its outcome.
                         assert!(told || causes, "{submission:?} is superseded");
                     }
-                    submission.finishing |=
-                        submission.id == current && goal.on_arrival == OnArrival::ReportAndFinish;
+                    if submission.id == current && goal.on_arrival == OnArrival::ReportAndFinish {
+                        submission.finishing = true;
+                        submission.soft |= soft;
+                    }
                 }
                 let mut submission = Submission::new(id, work, goal.on_arrival, now);
                 submission.watchdog = goal.watchdog;

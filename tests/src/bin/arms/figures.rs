@@ -37,6 +37,7 @@ pub(crate) struct ArmFigures {
     /// How much further from the target an arm is once the robot's own controller has it, after a
     /// motion that has ended, `[mm]`.
     pub(crate) handover_mm: f64,
+    /// The part of it until the torques have ended, `[mm]`.
     pub(crate) released_mm: f64,
     /// Force of a pushing hand without the inertia's share, `[N]`.
     pub(crate) push_force_n: f64,

@@ -91,9 +91,10 @@ impl Felt {
         }
     }
 
-    /// The one of more force.
+    /// The worse one: a reflex is worse than any force, and more force than less.
     pub(crate) fn max(self, other: Self) -> Self {
-        if other.newtons() > self.newtons() {
+        let rank = |felt: Self| (matches!(felt, Self::Reflex(_)), felt.newtons());
+        if rank(other) > rank(self) {
             other
         } else {
             self
