@@ -321,20 +321,7 @@ fn what_one_motion_learns_of_an_arm_is_there_for_the_next() {
     for step in 0..8 {
         let away = [0.05, 0.0][step % 2];
         let target = Translation3::new(0.0, away, 0.0) * home;
-        let goal = lockstep.goal(target.into(), OnArrival::ReportAndFinish);
-        let goal = lockstep.submit(goal).expect("within reach");
-        let mut lag = 0.0_f64;
-        while lockstep.client.outcome(goal).is_none() {
-            lockstep.tick();
-            if lockstep.client.record.goal == goal.0 {
-                let off = lockstep.arm_pose().translation.vector
-                    - lockstep.reference_pose().translation.vector;
-                lag = lag.max(off.norm());
-            }
-        }
-        lockstep.until_resolved(goal, 1).expect("it arrives");
-        lockstep.until_idle(1000);
-        lags.push(lag);
+        lags.push(lockstep.lag_to(target));
     }
     println!("{lags:?}");
     assert!(lags[7] < 0.6 * lags[0], "{lags:?}");

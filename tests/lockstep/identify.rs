@@ -102,19 +102,7 @@ fn lags(lockstep: &mut Lockstep, known: Option<Identified>, declared: bool) -> [
     let low = lockstep.arm_pose();
     let lags = [0.05, 0.0, 0.05].map(|height| {
         let target = Translation3::new(0.0, 0.0, height) * low;
-        let goal = lockstep.begin(target.into());
-        let mut lag = 0.0_f64;
-        while lockstep.client.outcome(goal).is_none() {
-            lockstep.tick();
-            if lockstep.client.record.goal == goal.0 {
-                let off = lockstep.arm_pose().translation.vector
-                    - lockstep.reference_pose().translation.vector;
-                lag = lag.max(off.norm());
-            }
-        }
-        lockstep.until_resolved(goal, 1).expect("it arrives");
-        lockstep.until_idle(1000);
-        lag
+        lockstep.lag_to(target)
     });
     println!("lag {:.2?} mm", lags.map(|lag| lag * 1e3));
     lags

@@ -405,6 +405,27 @@ impl Lockstep {
         );
     }
 
+    /// Moves to `target` in a motion of its own. Returns the greatest distance on the way between
+    /// the end effector and its reference, `[m]`.
+    ///
+    /// # Panics
+    /// If the goal is refused or not reached.
+    pub fn lag_to(&mut self, target: Isometry3<f64>) -> f64 {
+        let goal = self.goal(target.into(), OnArrival::ReportAndFinish);
+        let goal = self.submit(goal).expect("within reach");
+        let mut lag = 0.0_f64;
+        while self.client.outcome(goal).is_none() {
+            self.tick();
+            if self.client.record.goal == goal.0 {
+                let arm = self.arm_pose().translation.vector;
+                lag = lag.max((arm - self.reference_pose().translation.vector).norm());
+            }
+        }
+        self.until_resolved(goal, 1).expect("it arrives");
+        self.until_idle(1000);
+        lag
+    }
+
     /// Runs until no motion is active.
     ///
     /// # Panics
