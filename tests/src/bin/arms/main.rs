@@ -188,6 +188,13 @@ fn main() -> anyhow::Result<()> {
             Some(Family::from_json(&text).with_context(|| file.to_owned())?)
         }
     };
+    let law = LawUnderTest {
+        choice: arguments.law,
+        scaled: arguments.scaled,
+        by: arguments.gain,
+    };
+    let gains = law.scaled.scale(law.choice.gains(), law.by);
+    gains.check().context("--gain")?;
     let (next, start) = (AtomicU64::new(0), Instant::now());
     let all = Mutex::new(Vec::new());
     let work = || loop {
@@ -199,11 +206,6 @@ fn main() -> anyhow::Result<()> {
         let arm = match &family {
             Some(family) => Arm::sample(kind, seed, family),
             None => Arm::ideal(kind),
-        };
-        let law = LawUnderTest {
-            choice: arguments.law,
-            scaled: arguments.scaled,
-            by: arguments.gain,
         };
         let figures = programme::run(kind, arm, seed, law);
         if arguments.all || figures.fell_short() {
