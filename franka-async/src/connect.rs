@@ -64,9 +64,6 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         let got = builder.log_size;
         return Err(ConnectError::LogSize { got });
     }
-    if let Some(known) = &builder.known {
-        known.check(known.kind)?;
-    }
     // Refused before anything is sent, as the reference client does; the thread asks again for
     // itself.
     let scheduling = builder.scheduling.clone();

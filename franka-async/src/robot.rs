@@ -117,8 +117,8 @@ impl Robot {
     }
 
     /// How far gains are from the first oscillation of an arm like this where it is. A motion whose
-    /// gains have less than [`Margin::WANTED`] begins with a warning (`tracing`). `None` if the
-    /// robot's tool is no rigid body.
+    /// gains have less than [`Margin::WANTED`] begins with a warning (`tracing`). `None` for
+    /// gains that are out of their bounds, and if the robot's tool is no rigid body.
     pub fn margin(&self, gains: &Gains) -> Option<Margin> {
         Margin::of(gains, self.model(), &self.state(), self.version())
     }

@@ -1,10 +1,13 @@
 //! Arms that stick: how far from its target an arm rests after steps of 5 cm, how it holds, and
 //! what a person feels who pushes it.
 
-use franka_model::{Load, RobotKind};
+use std::time::Duration;
+
+use franka_model::{JointVector, Load, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::law::Gains;
-use franka_rt::session::{Goal, OnArrival};
+use franka_rt::lifecycle::Engagement;
+use franka_rt::session::{Backend, Goal, OnArrival, Setpoints, Tolerance};
 use franka_sim::arm::{Arm, Family};
 use franka_sim::{Config, Touch};
 use franka_tests::lockstep::Lockstep;
@@ -325,4 +328,72 @@ fn what_one_motion_learns_of_an_arm_is_there_for_the_next() {
     }
     println!("{lags:?}");
     assert!(lags[7] < 0.6 * lags[0], "{lags:?}");
+}
+
+/// The first motions of an arm of which nothing is known, and whose first joint creeps to its
+/// target in the third.
+#[test]
+fn a_joint_that_creeps_to_its_target_gets_there() {
+    let arm = Arm::sample(RobotKind::Fr3, 1046, &Family::realistic());
+    let mut lockstep = Lockstep::new(Config {
+        arm: Some(arm),
+        seed: 1046,
+        ..Lockstep::config_of(RobotKind::Fr3)
+    });
+    let home = lockstep.arm_pose();
+    for away in [Vector3::x(), Vector3::zeros(), Vector3::y()] {
+        let target = Translation3::from(away * 0.05) * home;
+        let goal = lockstep.goal(target.into(), OnArrival::ReportAndFinish);
+        let goal = lockstep.submit(goal).expect("within reach");
+        let report = lockstep.until_resolved(goal, 6000).expect("it arrives");
+        assert!(report.duration < Duration::from_secs(3), "{report:?}");
+        lockstep.until_idle(1000);
+    }
+}
+
+/// Springs alone and the robot's own controllers leave an arm that sticks further from its target
+/// than the compensated law does.
+#[test]
+fn an_arm_arrives_as_near_as_what_moves_it_can() {
+    let mut lockstep = sticking(1);
+    let home = lockstep.arm_pose();
+    let up = Translation3::new(0.0, 0.0, 0.05) * home;
+    let springs = Gains::cartesian().without_compensation();
+    for gains in [Gains::cartesian(), springs] {
+        for target in [up, home] {
+            let goal = Goal {
+                gains,
+                ..lockstep.goal(target.into(), OnArrival::ReportAndFinish)
+            };
+            let goal = lockstep.submit(goal).expect("within reach");
+            let report = lockstep.until_resolved(goal, 6000).expect("it arrives");
+            lockstep.until_idle(1000);
+            let (error, released) = (report.final_error, report.released_error);
+            let (error, released) = (error.expect("a target"), released.expect("let go"));
+            let most = Tolerance::of(&gains);
+            assert!(error.translation <= most.translation, "{report:?}");
+            assert!((released.translation - error.translation).abs() < 1e-3);
+            let compensation = JointVector::from(report.compensation.expect("by our law"));
+            let is_compensated = gains.compensation != [0.0; 7];
+            assert_eq!(compensation.amax() > 0.3, is_compensated, "{compensation}");
+        }
+    }
+    for setpoints in [Setpoints::Joints, Setpoints::Poses] {
+        let session = lockstep.engage_with(Engagement {
+            backend: Backend::RobotController(setpoints),
+            ..Engagement::default()
+        });
+        for target in [up, home] {
+            let goal = lockstep.within(session, target.into(), OnArrival::ReportAndHold);
+            let goal = goal.expect("within reach");
+            let report = lockstep.until_resolved(goal, 6000).expect("it arrives");
+            let error = report.final_error.expect("a target").translation;
+            assert!(error <= Tolerance::under(setpoints).translation, "{error}");
+            // The robot's controller of poses leaves more than our law.
+            assert_eq!(error > 1e-3, setpoints == Setpoints::Poses, "{error}");
+            assert_eq!((report.released_error, report.compensation), (None, None));
+        }
+        lockstep.client.lifecycle.disengage(session);
+        lockstep.until_idle(2000);
+    }
 }

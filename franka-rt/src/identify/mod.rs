@@ -36,9 +36,9 @@ pub struct Estimate {
 }
 
 impl fmt::Display for Estimate {
-    /// `0.84 ± 0.03`; with a precision, to so many digits.
+    /// `0.842 ± 0.031`; with a precision, to so many digits.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let digits = f.precision().unwrap_or(2);
+        let digits = f.precision().unwrap_or(3);
         write!(f, "{:.digits$} ± {:.digits$}", self.value, self.deviation)
     }
 }
@@ -309,7 +309,9 @@ mod tests {
         assert_eq!(load.center(), None);
         let text = found().to_string();
         assert!(
-            text.contains("\n7      0.80 ± 0.05     -0.30 ± 0.05\nload   0.50 ± 0.05 kg, centre")
+            text.contains(
+                "\n7      0.800 ± 0.050   -0.300 ± 0.050\nload   0.500 ± 0.050 kg, centre"
+            )
         );
     }
 

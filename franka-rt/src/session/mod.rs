@@ -304,7 +304,7 @@ impl TargetSession {
     /// How far the arm was from its target when it had been let go, before the robot's controller
     /// took it.
     pub(crate) fn released(&self) -> Option<PoseError> {
-        self.active.as_ref()?.released
+        self.active.as_ref()?.released()
     }
 
     /// Whether everything that the session computes with beside measured joints and torques is

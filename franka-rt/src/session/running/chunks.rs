@@ -14,7 +14,7 @@ impl RunningSession {
         if let Some(retired) = self.route.retired_chunk.take() {
             retired.end(chunks, now);
         }
-        let gone = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished);
+        let gone = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
         let taken_back = matches!(self.standing, Standing::TakenBack);
         if gone || taken_back || self.is_given_up_for_good() {
             chunks.discard(self.goal.id);

@@ -55,8 +55,6 @@ pub(super) struct RunningSession {
     /// What follows a goal that is held and has to be given up.
     afterwards: OnArrival,
     stage: GoalStage,
-    /// How far the arm was from its target when it had been let go.
-    pub(super) released: Option<PoseError>,
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
     standing: Standing,
@@ -141,7 +139,6 @@ impl RunningSession {
             deviation: Deviation::at(q),
             afterwards,
             stage: GoalStage::UnderWay,
-            released: None,
             held_back: 0,
             arm: Measured {
                 time: state.message_id,
@@ -197,7 +194,7 @@ impl RunningSession {
     /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
     /// anew.
     fn take_up(&mut self, goal: Goal, now: u64) {
-        if matches!(self.stage, GoalStage::Finished) {
+        if matches!(self.stage, GoalStage::Finished(_)) {
             return;
         }
         let named = goal.id == self.goal.id;
@@ -340,6 +337,14 @@ impl RunningSession {
         step
     }
 
+    /// How far the arm was from its target when it had been let go.
+    pub(super) fn released(&self) -> Option<PoseError> {
+        match self.stage {
+            GoalStage::Finished(released) => released,
+            _ => None,
+        }
+    }
+
     /// The goal with what the reference heads for as its target.
     fn aim(&self) -> Goal {
         Goal {
@@ -382,7 +387,7 @@ impl RunningSession {
         let answer = match &mut self.drive {
             Drive::Torques(effort) => {
                 let limits = model.joint_limits();
-                let ending = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished);
+                let ending = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
                 let reference = &self.reference;
                 let tau = effort.step(reference, state, &dynamics, limits, ending, &mut bindings);
                 SessionCommand::Torques(Torques(tau.into()))
@@ -404,7 +409,7 @@ impl RunningSession {
                 },
                 bindings,
             },
-            finished: matches!(self.stage, GoalStage::Finished),
+            finished: matches!(self.stage, GoalStage::Finished(_)),
             event,
         }
     }
@@ -424,7 +429,7 @@ impl RunningSession {
             GoalStage::Landing(_)
             | GoalStage::Staying
             | GoalStage::Releasing(_)
-            | GoalStage::Finished => Target::Rest,
+            | GoalStage::Finished(_) => Target::Rest,
         };
         let aim = Goal {
             target,

@@ -3,7 +3,7 @@
 use franka_model::{Frame, Model};
 
 use super::{Drive, RunningSession, Standing};
-use crate::session::landing::{Landing, Release, Verdict};
+use crate::session::landing::{Landing, PoseError, Release, Verdict};
 use crate::session::reference::Reference;
 use crate::session::{
     Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, Tolerance, rigid,
@@ -24,8 +24,9 @@ pub(super) enum GoalStage {
     Staying,
     /// The spring is being released, so that the torques end at zero.
     Releasing(Release),
-    /// The last command is out.
-    Finished,
+    /// The last command is out. How far the arm was from its target when it had been let go, if it
+    /// was.
+    Finished(Option<PoseError>),
 }
 
 impl RunningSession {
@@ -96,7 +97,7 @@ impl RunningSession {
                         GoalStage::Releasing(Release::new(target, self.arm.q, &self.reference.q))
                     }
                     // The robot holds the arm at its setpoint as it is.
-                    (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => GoalStage::Finished,
+                    (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => GoalStage::Finished(None),
                 };
                 Some(SessionEvent::Settled {
                     goal: self.goal.id,
@@ -118,12 +119,11 @@ impl RunningSession {
                 self.reference = Reference::at_rest(release.reference());
                 self.route.rest();
                 if release.is_over(at_rest) {
-                    self.released = release.error(&self.arm.pose);
-                    self.stage = GoalStage::Finished;
+                    self.stage = GoalStage::Finished(release.error(&self.arm.pose));
                 }
                 None
             }
-            GoalStage::Staying | GoalStage::Finished => None,
+            GoalStage::Staying | GoalStage::Finished(_) => None,
         }
     }
 }

@@ -104,7 +104,7 @@ impl RunningSession {
             self.heading() == Target::Rest && self.goal.on_arrival != OnArrival::Hold;
         if braked
             || comes_to_rest
-            || matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished)
+            || matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_))
         {
             return;
         }

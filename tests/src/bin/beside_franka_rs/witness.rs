@@ -1,4 +1,4 @@
-//! What a simulated robot does in each of its milliseconds, whoever controls it.
+//! Records a simulated robot, one sample per millisecond, and measures what its client does.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
