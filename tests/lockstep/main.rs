@@ -14,6 +14,7 @@ mod holds;
 mod identify;
 mod laws;
 mod mishaps;
+mod moving_targets;
 mod random_targets;
 mod reflex_log;
 mod schedules;

@@ -36,6 +36,7 @@ mod event;
 mod link_timeout;
 mod log;
 mod motion;
+mod newest_reference;
 mod observer;
 mod order;
 mod program;
@@ -48,6 +49,7 @@ use core::time::Duration;
 use franka_proto::{RobotCommand, RobotState, Version};
 
 use crate::control::{Command, Failure, WriteError};
+use crate::slot::{SlotWriter, slot};
 use crate::stats::MotionStatistics;
 use crate::together::Gate;
 
@@ -55,6 +57,7 @@ pub use commander::Commander;
 pub use event::{Ended, Ending, Event};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
 pub use log::{ControlLog, LogEntry};
+pub use newest_reference::{ReferenceReader, ReferenceState};
 pub use observer::Observer;
 pub use order::{MotionId, Order};
 pub use program::Program;
@@ -79,12 +82,15 @@ pub struct Driver {
     /// Counts of the present motion, from arming on.
     statistics: MotionStatistics,
     record: Record,
+    references: SlotWriter<ReferenceState>,
+    reference_reader: ReferenceReader,
     events: EventQueue,
 }
 
 impl Driver {
     /// A driver that watches the states of a robot speaking `version`.
     pub fn new(version: Version) -> Self {
+        let (references, reader) = slot();
         Self {
             version,
             phase: DriverPhase::Watching,
@@ -94,6 +100,8 @@ impl Driver {
             skipped: 0,
             statistics: MotionStatistics::default(),
             record: Record::default(),
+            references,
+            reference_reader: ReferenceReader(reader),
             events: EventQueue::default(),
         }
     }
@@ -118,6 +126,11 @@ impl Driver {
     /// What the last cycle saw and did.
     pub fn record(&self) -> &Record {
         &self.record
+    }
+
+    /// A reader of the newest reference, for another thread.
+    pub fn references(&self) -> ReferenceReader {
+        self.reference_reader.clone()
     }
 
     /// The oldest event that has not been taken.

@@ -82,6 +82,8 @@ impl Program {
                 let Trace {
                     goal,
                     reference,
+                    elapsed,
+                    remaining,
                     compensation,
                     bindings,
                 } = step.trace;
@@ -89,6 +91,8 @@ impl Program {
                 record.q_ref = reference.q.into();
                 record.dq_ref = reference.dq.into();
                 record.ddq_ref = reference.ddq.into();
+                record.elapsed = elapsed;
+                record.remaining = remaining;
                 record.compensation = compensation.into();
                 record.bindings = bindings;
                 let command = match step.answer {

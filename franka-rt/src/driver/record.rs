@@ -38,6 +38,11 @@ pub struct Record {
     pub dq_ref: [f64; 7],
     /// Reference joint accelerations, `[rad/s^2]`.
     pub ddq_ref: [f64; 7],
+    /// Time since the goal was first seen.
+    pub elapsed: Duration,
+    /// Time until the reference meets the goal's target or the last point of its chunk, or rests
+    /// where it brakes or is paused; zero at the target and under a guiding hand.
+    pub remaining: Duration,
     /// Commanded joint torques without gravity and friction, `[N m]`.
     pub tau_c: [f64; 7],
     /// Part of it that compensates friction and bias, before the guards, `[N m]`; zero outside

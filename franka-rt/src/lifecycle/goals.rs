@@ -33,13 +33,31 @@ impl Lifecycle {
         let end = |goal: &Goal| Goal {
             target: match goal.target {
                 Target::Guide(_) => Target::Rest, // Guiding has no target to hold.
-                target => target,
+                target => target.place(),
             },
+            paused: false,
             on_arrival,
             ..*goal
         };
         let amended = self.amend(id, end, None);
         debug_assert!(amended.is_ok(), "only targets are checked");
+    }
+
+    /// Halts a motion on its way, within its budget, or lets it go on. Without effect on a goal that
+    /// is no longer the newest, and on chunks, whose points have their times.
+    pub fn pause(&mut self, id: GoalId, paused: bool) {
+        let goal = match &mut self.next {
+            Some(NewMotion::Goal { goal, .. }) if goal.id == id => &mut **goal,
+            _ => match self.goals_mut() {
+                Some(goals) if goals.current.id == id && !goals.cancelled => {
+                    goals.current.paused = paused;
+                    goals.slot.write(&goals.current);
+                    return;
+                }
+                _ => return,
+            },
+        };
+        goal.paused = paused;
     }
 
     /// Takes back a goal: an arm on its way to it is braked as by a stop, and the goal resolves as
@@ -87,6 +105,16 @@ impl Lifecycle {
         };
         self.replace(goal, MotionError::Stopped);
         true
+    }
+
+    /// What target control heads for, and the name of that goal: what was taken last, whether or not
+    /// the thread has it by now. `None` if target control moves nothing.
+    pub fn heading(&self) -> Option<(GoalId, Target)> {
+        let goal = match &self.next {
+            Some(NewMotion::Goal { goal, .. }) => goal,
+            _ => &self.goals()?.current,
+        };
+        Some((goal.id, goal.target))
     }
 
     /// The goals of the motion under way, if target control runs it.

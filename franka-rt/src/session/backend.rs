@@ -105,7 +105,7 @@ impl Backend {
     /// # Errors
     /// [`GoalError::Backend`].
     pub(crate) fn check(self, goal: &Goal) -> Result<(), GoalError> {
-        let why = match (self, goal.target) {
+        let why = match (self, goal.target.place()) {
             (Self::Torques, _) => return Ok(()),
             (_, Target::Guide(_)) => "takes no guiding hand",
             (Self::RobotController(Setpoints::Poses), Target::Joints(_)) => "takes poses only",

@@ -183,6 +183,16 @@ pub(crate) fn able_to_stop(
     }
 }
 
+/// Share of a velocity limit that is kept for catching up with a target that moves.
+const RESERVE: f64 = 0.1;
+
+/// The speed of a frame that moves with a target at `speed`, and what it leaves of the limit `most`
+/// for motions within the frame, whatever their direction.
+pub(crate) fn beside(speed: f64, most: f64) -> (f64, f64) {
+    let kept = speed.min((1.0 - RESERVE) * most);
+    (kept, most - kept)
+}
+
 /// Whether a motion at `velocity` and `acceleration` keeps `limits`, to one per cent.
 pub(crate) fn keeps(limits: &AxisLimits, velocity: f64, acceleration: f64) -> bool {
     velocity.abs() <= 1.01 * limits.velocity && acceleration.abs() <= 1.01 * limits.acceleration

@@ -9,7 +9,9 @@ use franka_otg::AxisLimits;
 use franka_proto::{RobotState, Version};
 
 use crate::law::{GainError, Law};
-use crate::session::{Budget, Chunk, ForceCap, Goal, KeepOut, Target, Watchdog, approach};
+use crate::session::{
+    Budget, Chunk, ForceCap, Goal, KeepOut, OnArrival, Target, Watchdog, approach,
+};
 
 /// Why a goal is not accepted. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -18,6 +20,9 @@ pub enum GoalError {
     /// The target has a non-finite number.
     #[error("the target has a non-finite number")]
     NotFinite,
+    /// The target moves: there is no arrival to wait for.
+    #[error("the target moves, so that the arm cannot come to rest at it")]
+    Moves,
     /// A joint position lies outside the joint's range.
     #[error("joint {joint}: {got} rad, expected between {lower:.4} and {upper:.4}")]
     OutOfRange {
@@ -157,6 +162,9 @@ impl Goal {
         {
             return Err(GoalError::ForceCap { got });
         }
+        if self.target.moves() && self.on_arrival != OnArrival::Hold {
+            return Err(GoalError::Moves);
+        }
         // What is finite with masses in single precision is finite in every version.
         super::load_of(state, Version::V10).ok_or(GoalError::Tool)?;
         target(&self.target, model, state)
@@ -168,8 +176,14 @@ pub(super) fn target(target: &Target, model: &Model, state: &RobotState) -> Resu
     let ee = super::end_effector_of(state).ok_or(GoalError::Tool)?;
     match target {
         Target::Rest | Target::Guide(_) => Ok(()),
-        Target::Joints(q) => check_joints(q, model, state),
-        Target::Pose(pose) => {
+        Target::MovingJoints { dq, .. } if !dq.iter().all(|x| x.is_finite()) => {
+            Err(GoalError::NotFinite)
+        }
+        Target::MovingPose { twist, .. } if !twist.iter().all(|x| x.is_finite()) => {
+            Err(GoalError::NotFinite)
+        }
+        Target::Joints(q) | Target::MovingJoints { q, .. } => check_joints(q, model, state),
+        Target::Pose(pose) | Target::MovingPose { pose, .. } => {
             let p = pose.translation.vector;
             if !(p
                 .iter()

@@ -2,17 +2,18 @@
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
-use franka_otg::{AxisLimits, AxisState, Generator, Limits, PlanError, State};
+use franka_otg::{AxisLimits, AxisState, PlanError};
 
 use crate::session::chunk::ChunkCourse;
 use crate::session::guard::joint_bounds::BoundsReached;
 use crate::session::guard::leash;
 use crate::session::guide::Guide;
+use crate::session::joints::{JointGenerator, MovingJoints};
 use crate::session::kinematics::{self, Drift};
-use crate::session::pose::{PoseGenerator, PoseState};
+use crate::session::pose::{MovingPose, PoseGenerator, PoseState};
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
-use crate::session::{Budget, Goal, Target, approach, budget, rigid};
+use crate::session::{Budget, Goal, Target, budget, rigid};
 
 const _: () = assert!(
     franka_otg::CYCLE == franka_model::CYCLE,
@@ -24,7 +25,7 @@ const _: () = assert!(
 pub(super) enum Course {
     /// The reference rests where it is.
     Rest,
-    Joints(Generator<7>),
+    Joints(JointGenerator),
     Pose(PoseGenerator, Drift),
     Guide(Guide),
     Chunk(ChunkCourse),
@@ -72,45 +73,88 @@ impl Course {
         reference: &Reference,
         goal: &Goal,
     ) -> Result<(), PlanError> {
-        let over_joints = |target| joints(model, reference, target, &goal.budget);
-        match (goal.target, &mut *self) {
-            (Target::Pose(pose), Self::Pose(generator, _)) => {
-                generator.retarget(pose, goal.budget)?;
+        let robot = model.joint_limits();
+        match goal.target {
+            Target::Rest => self.over_joints(robot, reference, None, goal)?,
+            Target::Joints(q) => {
+                let target = MovingJoints { q, dq: [0.0; 7] };
+                self.over_joints(robot, reference, Some(target), goal)?;
             }
-            (
-                Target::Pose(pose),
-                Self::Rest | Self::Joints(_) | Self::Guide(_) | Self::Chunk(_),
-            ) => {
-                let start = end_effector(model, ee, reference);
-                let most = model.cartesian_limits();
-                *self = Self::Pose(
-                    PoseGenerator::new(&start, pose, goal.budget, most)?,
-                    Drift::of(reference.dq),
-                );
+            Target::MovingJoints { q, dq } => {
+                self.over_joints(robot, reference, Some(MovingJoints { q, dq }), goal)?;
             }
-            (Target::Joints(_) | Target::Rest, course) => {
-                let target = match goal.target {
-                    Target::Joints(target) => Some(target),
-                    _ => None,
-                };
-                let (state, limits) = over_joints(target)?;
-                match course {
-                    Self::Joints(generator) => generator.restart(state, limits, target.as_ref())?,
-                    Self::Rest | Self::Pose(..) | Self::Guide(_) | Self::Chunk(_) => {
-                        *self = Self::Joints(Generator::towards(state, limits, target.as_ref())?);
-                    }
+            Target::Pose(target) => {
+                self.over_pose(model, ee, reference, target.into(), goal)?;
+            }
+            Target::MovingPose { pose, twist } => {
+                self.over_pose(model, ee, reference, MovingPose { pose, twist }, goal)?;
+            }
+            Target::Guide(free) => match self {
+                Self::Guide(guide) => guide.free(free),
+                Self::Rest | Self::Joints(_) | Self::Pose(..) | Self::Chunk(_) => {
+                    let brake = JointGenerator::new(robot, reference, None, &goal.budget)?;
+                    *self = Self::Guide(Guide::new(free, brake));
                 }
-            }
-            (Target::Guide(free), Self::Guide(guide)) => guide.free(free),
-            (
-                Target::Guide(free),
-                Self::Rest | Self::Joints(_) | Self::Pose(..) | Self::Chunk(_),
-            ) => {
-                let (state, limits) = over_joints(None)?;
-                *self = Self::Guide(Guide::new(free, Generator::new(state, limits)?));
+            },
+        }
+        if goal.paused { self.halt() } else { Ok(()) }
+    }
+
+    fn over_joints(
+        &mut self,
+        robot: &JointLimits,
+        reference: &Reference,
+        target: Option<MovingJoints>,
+        goal: &Goal,
+    ) -> Result<(), PlanError> {
+        match self {
+            Self::Joints(generator) => generator.head_for(robot, reference, target, &goal.budget),
+            Self::Rest | Self::Pose(..) | Self::Guide(_) | Self::Chunk(_) => {
+                let budget = &goal.budget;
+                *self = Self::Joints(JointGenerator::new(robot, reference, target, budget)?);
+                Ok(())
             }
         }
-        Ok(())
+    }
+
+    fn over_pose(
+        &mut self,
+        model: &Model,
+        ee: &EndEffector,
+        reference: &Reference,
+        target: MovingPose,
+        goal: &Goal,
+    ) -> Result<(), PlanError> {
+        match self {
+            Self::Pose(generator, _) => generator.retarget(target, goal.budget),
+            Self::Rest | Self::Joints(_) | Self::Guide(_) | Self::Chunk(_) => {
+                let start = end_effector(model, ee, reference);
+                let most = model.cartesian_limits();
+                let generator = PoseGenerator::new(&start, target, goal.budget, most)?;
+                *self = Self::Pose(generator, Drift::of(reference.dq));
+                Ok(())
+            }
+        }
+    }
+
+    /// Comes to rest on the way to its target.
+    fn halt(&mut self) -> Result<(), PlanError> {
+        match self {
+            Self::Joints(generator) => generator.halt(),
+            Self::Pose(generator, _) => generator.halt(),
+            Self::Rest | Self::Guide(_) | Self::Chunk(_) => Ok(()),
+        }
+    }
+
+    /// Time from `now` until the target is met, or until rest if there is none, `[s]`; zero where
+    /// neither is planned.
+    pub(super) fn remaining(&self, now: u64) -> f64 {
+        match self {
+            Self::Joints(generator) => generator.remaining(),
+            Self::Pose(generator, _) => generator.remaining(),
+            Self::Chunk(chunk) => chunk.remaining(now),
+            Self::Rest | Self::Guide(_) => 0.0,
+        }
     }
 
     /// Returns the moving pose, and the drift of earlier motions, that a course over poses starts
@@ -141,18 +185,7 @@ impl Course {
     ) -> CourseStep {
         match self {
             Self::Rest => CourseStep::free(Reference::at_rest(reference.q)),
-            Self::Joints(generator) => {
-                let State {
-                    position,
-                    velocity,
-                    acceleration,
-                } = *generator.step();
-                CourseStep::free(Reference {
-                    q: position.into(),
-                    dq: velocity.into(),
-                    ddq: acceleration.into(),
-                })
-            }
+            Self::Joints(generator) => CourseStep::free(generator.step()),
             Self::Guide(guide) => {
                 let (reference, leashed) = guide.step(reference, arm);
                 CourseStep {
@@ -206,30 +239,6 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
         let limits = limits_of_joint(i, robot, reference, budget.joints[i], true);
         franka_otg::rest_of(state, limits)
     })
-}
-
-/// Returns the start and the limits of a plan for the joints from the reference to `target`, or to
-/// rest in the least time.
-fn joints(
-    model: &Model,
-    reference: &Reference,
-    target: Option<[f64; 7]>,
-    budget: &Budget,
-) -> Result<(State<7>, Limits<7>), PlanError> {
-    let state = State {
-        position: reference.q.into(),
-        velocity: reference.dq.into(),
-        acceleration: reference.ddq.into(),
-    };
-    let robot = model.joint_limits();
-    let limits = core::array::from_fn(|i| {
-        let limits = limits_of_joint(i, robot, reference, budget.joints[i], target.is_none());
-        match target {
-            Some(target) => approach::limits(i, robot, reference.q[i], target[i], limits),
-            None => limits,
-        }
-    });
-    Ok((state, Limits::per_axis(limits)?))
 }
 
 /// The limits of one joint's plan: those of the budget (and of `robot`, if they are narrower: a
@@ -306,10 +315,9 @@ mod tests {
                     ddq: robot.acceleration.component_mul(&share(1.2)) * f64::from(case % 2),
                 };
                 let budget = Budget::of(robot).scaled(random.random_range(0.05..2.0));
-                let (state, limits) = joints(model, &reference, None, &budget).unwrap();
-                let plan = Generator::new(state, limits).unwrap();
+                let plan = JointGenerator::new(robot, &reference, None, &budget).unwrap();
                 let end = end_of_brake(model, &reference, &budget);
-                assert_eq!(end, JointVector::from(*plan.end()), "{reference:?}");
+                assert_eq!(end, JointVector::from(plan.end()), "{reference:?}");
             }
         }
     }

@@ -3,8 +3,9 @@
 use core::time::Duration;
 
 use franka_model::limits::JointLimits;
+use franka_model::{Twist, rotation};
 use franka_otg::AxisLimits;
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use crate::law::Gains;
 use crate::session::{Budget, ForceCap, Lead, OnTimeout, Tolerance, Watchdog};
@@ -27,6 +28,22 @@ pub enum Target {
     Joints([f64; 7]),
     /// To a pose of the end effector in the base frame, `O_T_EE`, metres.
     Pose(Isometry3<f64>),
+    /// To joint positions that move: the arm gets there and goes on with them. Only for goals that
+    /// are held. The motion counts for [`Self::MOVES_ON_MS`] after the newest target, then the arm
+    /// brakes on its path.
+    MovingJoints {
+        /// Positions when the target is taken up, `[rad]`.
+        q: [f64; 7],
+        /// Their velocities, `[rad/s]`.
+        dq: [f64; 7],
+    },
+    /// To a pose that moves; otherwise as [`Self::MovingJoints`].
+    MovingPose {
+        /// `O_T_EE` when the target is taken up, metres.
+        pose: Isometry3<f64>,
+        /// Velocity of the frame's origin, `[m/s]`, and angular velocity, `[rad/s]`, base axes.
+        twist: Twist,
+    },
     /// Hand guiding: the reference goes with the arm along the free axes, and stays on the others.
     Guide(Free),
 }
@@ -41,6 +58,67 @@ impl From<[f64; 7]> for Target {
     fn from(q: [f64; 7]) -> Self {
         Self::Joints(q)
     }
+}
+
+impl From<([f64; 7], [f64; 7])> for Target {
+    /// Joint positions, `[rad]`, and their velocities, `[rad/s]`.
+    fn from((q, dq): ([f64; 7], [f64; 7])) -> Self {
+        Self::MovingJoints { q, dq }
+    }
+}
+
+impl From<(Isometry3<f64>, Twist)> for Target {
+    /// A pose in the base frame, and its velocity in base axes: m/s, rad/s.
+    fn from((pose, twist): (Isometry3<f64>, Twist)) -> Self {
+        Self::MovingPose { pose, twist }
+    }
+}
+
+impl Target {
+    /// How long a target that moves goes on by itself, `[ms]` of the robot's clock. A stream of
+    /// 5 Hz is followed without a pause.
+    pub const MOVES_ON_MS: u64 = 200;
+
+    /// Whether it moves.
+    pub fn moves(&self) -> bool {
+        matches!(self, Self::MovingJoints { .. } | Self::MovingPose { .. })
+    }
+
+    /// The place where it is, without its motion.
+    #[must_use]
+    pub fn place(self) -> Self {
+        match self {
+            Self::MovingJoints { q, .. } => Self::Joints(q),
+            Self::MovingPose { pose, .. } => Self::Pose(pose),
+            Self::Rest | Self::Joints(_) | Self::Pose(_) | Self::Guide(_) => self,
+        }
+    }
+
+    /// Where it is, and moves on from, `ms` milliseconds later.
+    #[must_use]
+    pub(crate) fn after(self, ms: u64) -> Self {
+        let t = ms as f64 * 1e-3;
+        match self {
+            Self::MovingJoints { q, dq } => Self::MovingJoints {
+                q: core::array::from_fn(|i| q[i] + dq[i] * t),
+                dq,
+            },
+            Self::MovingPose { pose, twist } => Self::MovingPose {
+                pose: moved(&pose, &twist, t),
+                twist,
+            },
+            Self::Rest | Self::Joints(_) | Self::Pose(_) | Self::Guide(_) => self,
+        }
+    }
+}
+
+/// The pose after `t` seconds of the motion `twist`.
+pub(crate) fn moved(pose: &Isometry3<f64>, twist: &Twist, t: f64) -> Isometry3<f64> {
+    let part = |from: usize| Vector3::new(twist[from], twist[from + 1], twist[from + 2]);
+    Isometry3::from_parts(
+        Translation3::from(pose.translation.vector + part(0) * t),
+        rotation::exp(&(part(3) * t)) * pose.rotation,
+    )
 }
 
 /// What is free under hand guiding.
@@ -105,6 +183,9 @@ pub struct Goal {
     pub force_cap: ForceCap,
     /// How far ahead of the arm its target may be.
     pub lead: Option<Lead>,
+    /// Whether the arm is to stop on its way, within the budget, and to stay there until this is
+    /// taken back.
+    pub paused: bool,
     /// Incremented by each new target and each new end, not by tuning. Only a new revision feeds
     /// the watchdog.
     pub revision: u64,
@@ -123,14 +204,15 @@ impl Goal {
             on_arrival,
             budget: Budget::of(limits),
             gains: match target {
-                Target::Joints(_) => Gains::joint(),
-                Target::Pose(_) | Target::Rest => Gains::cartesian(),
+                Target::Joints(_) | Target::MovingJoints { .. } => Gains::joint(),
+                Target::Pose(_) | Target::MovingPose { .. } | Target::Rest => Gains::cartesian(),
                 Target::Guide(free) => Gains::guiding(free),
             },
             tolerance: None,
             watchdog: None,
             force_cap: ForceCap::Default,
             lead: None,
+            paused: false,
             revision: 0,
         }
     }
@@ -139,35 +221,44 @@ impl Goal {
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),
-            Target::Rest | Target::Joints(_) | Target::Pose(_) => self.gains,
+            _ => self.gains,
         };
         Self {
             target: Target::Rest,
             on_arrival,
             gains,
+            paused: false,
             ..*self
         }
     }
 }
 
-/// Name, revision, kind of target, what follows, 2 of the watchdog; then 7 numbers of target, 27 of
-/// budget, the gains, 2 of tolerance, the force cap, 3 of the lead, which are zero without one.
+/// Name, revision, kind of target and whether it is paused, what follows, 2 of the watchdog; then 7
+/// numbers of target, 7 of its velocity, 27 of budget, the gains, 2 of tolerance, the force cap, 3
+/// of the lead, which are zero without one.
 ///
 /// Written by hand: generated code needs an implementation for the type of each field, which comes
 /// to as many lines. The test below fails if a field is left out.
 impl Words for Goal {
-    const WORDS: usize = 6 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
+    const WORDS: usize = 6 + 7 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
 
     fn store(&self, words: &mut [u64]) {
-        let (kind, target) = match self.target {
-            Target::Rest => (0, [0.0; 7]),
-            Target::Joints(q) => (1, q),
-            Target::Pose(pose) => {
-                let (p, r) = (pose.translation.vector, pose.rotation.coords);
-                (2, [p.x, p.y, p.z, r.x, r.y, r.z, r.w])
-            }
-            Target::Guide(free) => (3 | free.to_word() << 2, [0.0; 7]),
+        let numbers_of = |pose: &Isometry3<f64>| {
+            let (p, r) = (pose.translation.vector, pose.rotation.coords);
+            [p.x, p.y, p.z, r.x, r.y, r.z, r.w]
         };
+        let (kind, target, velocity) = match &self.target {
+            Target::Rest => (0, [0.0; 7], [0.0; 7]),
+            Target::Joints(q) => (1, *q, [0.0; 7]),
+            Target::Pose(pose) => (2, numbers_of(pose), [0.0; 7]),
+            Target::Guide(free) => (3 | free.to_word() << 4, [0.0; 7], [0.0; 7]),
+            Target::MovingJoints { q, dq } => (4, *q, *dq),
+            Target::MovingPose { pose, twist } => {
+                let velocity = core::array::from_fn(|i| if i < 6 { twist[i] } else { 0.0 });
+                (5, numbers_of(pose), velocity)
+            }
+        };
+        let kind = kind | u64::from(self.paused) << 3;
         let (watched, silence) = match self.watchdog {
             None => (0, 0),
             Some(Watchdog {
@@ -187,6 +278,7 @@ impl Words for Goal {
         let axes = joints.into_iter().chain([translation, rotation]);
         let numbers = target
             .into_iter()
+            .chain(velocity)
             .chain(axes.flat_map(|l| [l.velocity, l.acceleration, l.jerk]))
             .chain(self.gains.to_array())
             .chain(self.tolerance.map_or([0.0; 2], |tolerance| {
@@ -210,7 +302,15 @@ impl Words for Goal {
         let mut next = || words.next().unwrap_or_default();
         let [id, revision, kind, on_arrival, watched, silence] = core::array::from_fn(|_| next());
         let mut number = || f64::from_bits(next());
-        let target = core::array::from_fn(|_| number());
+        let [target, velocity]: [[f64; 7]; 2] =
+            core::array::from_fn(|_| core::array::from_fn(|_| number()));
+        let pose = || {
+            let [x, y, z, i, j, k, w] = target;
+            Isometry3::from_parts(
+                Translation3::new(x, y, z),
+                UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
+            )
+        };
         let mut axis = || AxisLimits {
             velocity: number(),
             acceleration: number(),
@@ -223,18 +323,21 @@ impl Words for Goal {
         };
         Self {
             id: GoalId(id),
-            target: match kind & 3 {
+            target: match kind & 7 {
                 1 => Target::Joints(target),
-                2 => {
-                    let [x, y, z, i, j, k, w] = target;
-                    Target::Pose(Isometry3::from_parts(
-                        Translation3::new(x, y, z),
-                        UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
-                    ))
-                }
-                3 => Target::Guide(Free::from_word(kind >> 2)),
+                2 => Target::Pose(pose()),
+                3 => Target::Guide(Free::from_word(kind >> 4)),
+                4 => Target::MovingJoints {
+                    q: target,
+                    dq: velocity,
+                },
+                5 => Target::MovingPose {
+                    pose: pose(),
+                    twist: Twist::from_column_slice(&velocity[..6]),
+                },
                 _ => Target::Rest,
             },
+            paused: kind >> 3 & 1 == 1,
             on_arrival: OnArrival::from_word(on_arrival),
             watchdog: (watched & 1 == 1).then(|| Watchdog {
                 silence: Duration::from_millis(silence),
@@ -334,6 +437,26 @@ mod tests {
                 ForceCap::Default,
                 None,
             ),
+            (
+                Target::MovingJoints {
+                    q: [0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7],
+                    dq: [0.1, 0.2, -0.3, 0.4, -0.5, 0.6, 0.7],
+                },
+                OnArrival::Hold,
+                None,
+                ForceCap::Default,
+                Some(lead),
+            ),
+            (
+                Target::MovingPose {
+                    pose,
+                    twist: Twist::new(0.1, -0.2, 0.3, 0.4, 0.5, -0.6),
+                },
+                OnArrival::Hold,
+                Some(watchdog),
+                ForceCap::Off,
+                None,
+            ),
         ] {
             let goal = Goal {
                 id: GoalId(77),
@@ -348,6 +471,7 @@ mod tests {
                 watchdog,
                 force_cap,
                 lead,
+                paused: lead.is_some(),
                 revision: 5,
             };
             let mut words = [u64::MAX; Goal::WORDS];

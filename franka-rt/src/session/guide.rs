@@ -1,13 +1,13 @@
 //! Hand guiding: the reference goes with the arm, except along the axes that are to stay.
 
 use franka_model::{JointVector, Twist, rotation};
-use franka_otg::{Generator, State};
 use nalgebra::{Isometry3, Matrix6, Vector3};
 
 use super::goal::Free;
 use super::guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
 use super::running::Measured;
 use crate::law::Gains;
+use crate::session::joints::JointGenerator;
 use crate::session::reference::Reference;
 
 /// Cycles over which the spring of the goal before is let go.
@@ -47,7 +47,7 @@ pub(super) struct Guide {
     reason = "one per session, inside its box; a box in here would allocate"
 )]
 enum GuideStage {
-    Braking(Generator<7>),
+    Braking(JointGenerator),
     Floating(Floating),
 }
 
@@ -66,7 +66,7 @@ struct Floating {
 
 impl Guide {
     /// Begins by braking over `brake`.
-    pub(super) fn new(free: Free, brake: Generator<7>) -> Self {
+    pub(super) fn new(free: Free, brake: JointGenerator) -> Self {
         Self {
             free,
             stage: GuideStage::Braking(brake),
@@ -88,17 +88,7 @@ impl Guide {
     pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> (Reference, bool) {
         let (away, leashed) = match &mut self.stage {
             GuideStage::Braking(generator) if !generator.is_done() => {
-                let State {
-                    position,
-                    velocity,
-                    acceleration,
-                } = *generator.step();
-                let braking = Reference {
-                    q: position.into(),
-                    dq: velocity.into(),
-                    ddq: acceleration.into(),
-                };
-                return (braking, false);
+                return (generator.step(), false);
             }
             GuideStage::Floating(floating) if floating.cycle < u32::MAX => {
                 floating.step(self.free, arm)

@@ -29,6 +29,7 @@ mod effort;
 mod goal;
 mod guard;
 mod guide;
+mod joints;
 mod kinematics;
 mod landing;
 mod margin;
@@ -176,6 +177,10 @@ pub(crate) struct SessionStep {
 pub(crate) struct Trace {
     pub(crate) goal: GoalId,
     pub(crate) reference: Reference,
+    /// Since the goal was first seen.
+    pub(crate) elapsed: Duration,
+    /// Until the reference meets the goal's target.
+    pub(crate) remaining: Duration,
     /// `[N m]`
     pub(crate) compensation: JointVector,
     pub(crate) bindings: Bindings,

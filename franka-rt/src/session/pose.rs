@@ -7,15 +7,20 @@
 //! `omega = J(phi) phi'`; at `phi = 0` it is the identity and has no influence on the acceleration
 //! either. So a plan that begins in motion is seeded exactly by re-anchoring the chart where it
 //! begins.
+//!
+//! A target that moves is at rest in a frame that moves with it, and the plan is made there: what
+//! has arrived in that frame moves with the target.
 
 use franka_model::Twist;
 use franka_model::limits::CartesianLimits;
 use franka_model::rotation;
-use franka_otg::{Generator, Limits, PlanError, State};
+use franka_otg::{AxisLimits, Generator, Limits, PlanError, State};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
-use crate::session::Budget;
 use crate::session::budget::Leg;
+use crate::session::goal::moved;
+use crate::session::{Budget, budget};
+use crate::shaping::CYCLE;
 
 /// A moving pose of the end effector in the base frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +42,39 @@ pub(crate) struct MovingPose {
     pub(crate) twist: Twist,
 }
 
+impl From<Isometry3<f64>> for MovingPose {
+    /// At rest.
+    fn from(pose: Isometry3<f64>) -> Self {
+        let twist = Twist::zeros();
+        Self { pose, twist }
+    }
+}
+
+impl MovingPose {
+    /// Where it is `t` seconds later.
+    fn after(self, t: f64) -> Self {
+        if self.twist == Twist::zeros() {
+            return self;
+        }
+        let pose = moved(&self.pose, &self.twist, t);
+        Self { pose, ..self }
+    }
+
+    /// Whether `other` is the same: exactly, or but for rounding if it moves.
+    fn is(&self, other: &Self) -> bool {
+        let apart = || {
+            let way = self.pose.translation.vector - other.pose.translation.vector;
+            let turn = rotation::error(&self.pose.rotation, &other.pose.rotation);
+            way.norm().max(turn.norm())
+        };
+        let moves = self.twist != Twist::zeros();
+        self.twist == other.twist && (self.pose == other.pose || moves && apart() < ROUNDING)
+    }
+}
+
+/// Distance of two places of the same motion, in metres and radians, that rounding explains.
+const ROUNDING: f64 = 1e-9;
+
 impl PoseState {
     /// All but the acceleration.
     pub(crate) fn moving(&self) -> MovingPose {
@@ -50,9 +88,14 @@ impl PoseState {
 /// Moves the pose to its target, one nominal millisecond per step.
 #[derive(Debug)]
 pub(crate) struct PoseGenerator {
+    /// In a frame that moves at `twist` and was the base frame when the plan was made.
     axes: Generator<6>,
     anchor: UnitQuaternion<f64>,
-    target: Isometry3<f64>,
+    twist: Twist,
+    /// Cycles since the plan was made.
+    cycles: u32,
+    /// Where the plan leads; `None` once it leads to rest.
+    target: Option<MovingPose>,
     budget: Budget,
     /// What the robot allows at most.
     most: &'static CartesianLimits,
@@ -61,21 +104,25 @@ pub(crate) struct PoseGenerator {
 impl PoseGenerator {
     /// Begins at `start` and heads for `target` within `budget`. A start that moves faster than the
     /// budget allows is braked with more than the budget's acceleration, up to the robot's `most`.
+    /// A target that moves as fast as the budget allows, or faster, is followed with what the
+    /// budget has less a reserve.
     ///
     /// # Errors
     /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause
     /// one.
     pub(crate) fn new(
         start: &PoseState,
-        target: Isometry3<f64>,
+        target: MovingPose,
         budget: Budget,
         most: &'static CartesianLimits,
     ) -> Result<Self, PlanError> {
-        let (state, limits, to) = plan(start, &target, &budget, most)?;
+        let plan = Plan::new(start, &target, &budget, most)?;
         Ok(Self {
-            axes: Generator::towards(state, limits, Some(&to))?,
+            axes: Generator::towards(plan.state, plan.limits, Some(&plan.to))?,
             anchor: start.pose.rotation,
-            target,
+            twist: plan.twist,
+            cycles: 0,
+            target: Some(target),
             budget,
             most,
         })
@@ -85,12 +132,11 @@ impl PoseGenerator {
     ///
     /// # Errors
     /// See [`Self::new`]; the motion in progress goes on.
-    pub(crate) fn retarget(
-        &mut self,
-        target: Isometry3<f64>,
-        budget: Budget,
-    ) -> Result<(), PlanError> {
-        if target != self.target || budget != self.budget {
+    pub(crate) fn retarget(&mut self, target: MovingPose, budget: Budget) -> Result<(), PlanError> {
+        let before = self.target.map(|before| before.after(self.time()));
+        let same = before.is_some_and(|before| before.is(&target));
+        // A frame that is slower than the target falls behind it.
+        if budget != self.budget || !same || self.twist != target.twist {
             self.begin_again(&self.state(), target, budget)?;
         }
         Ok(())
@@ -105,47 +151,104 @@ impl PoseGenerator {
             pose,
             ..self.state()
         };
-        self.begin_again(&start, self.target, self.budget)
+        let Some(target) = self.target else {
+            return self.stop_from(&start);
+        };
+        self.begin_again(&start, target.after(self.time()), self.budget)
+    }
+
+    /// Comes to rest within the budget, on its line if it moves on one.
+    ///
+    /// # Errors
+    /// See [`Self::new`]; the motion in progress goes on.
+    pub(crate) fn halt(&mut self) -> Result<(), PlanError> {
+        if self.twist == Twist::zeros() {
+            self.axes.brake();
+            self.target = None;
+            return Ok(());
+        }
+        self.stop_from(&self.state())
+    }
+
+    fn stop_from(&mut self, start: &PoseState) -> Result<(), PlanError> {
+        // Towards a place straight ahead: the stop then stays on the line to it.
+        let ahead = moved(&start.pose, &start.twist, 1.0);
+        self.begin_again(start, ahead.into(), self.budget)?;
+        self.axes.brake();
+        self.target = None;
+        Ok(())
     }
 
     fn begin_again(
         &mut self,
         start: &PoseState,
-        target: Isometry3<f64>,
+        target: MovingPose,
         budget: Budget,
     ) -> Result<(), PlanError> {
-        let (state, limits, to) = plan(start, &target, &budget, self.most)?;
-        self.axes.restart(state, limits, Some(&to))?;
+        let plan = Plan::new(start, &target, &budget, self.most)?;
+        self.axes.restart(plan.state, plan.limits, Some(&plan.to))?;
         self.anchor = start.pose.rotation;
-        self.target = target;
+        self.twist = plan.twist;
+        self.cycles = 0;
+        self.target = Some(target);
         self.budget = budget;
         Ok(())
     }
 
     /// Advances by one nominal millisecond.
     pub(crate) fn step(&mut self) -> MovingPose {
-        let state = self.axes.step();
-        let v = translational(&state.velocity);
-        let [phi, phi_dot] = [state.position, state.velocity].map(|axes| rotational(&axes));
-        let omega = rotation::angular_velocity(&phi, &phi_dot);
+        self.cycles = self.cycles.saturating_add(1);
+        self.axes.step();
         MovingPose {
             pose: self.pose(),
-            twist: Twist::new(v.x, v.y, v.z, omega.x, omega.y, omega.z),
+            twist: self.velocity(),
         }
+    }
+
+    fn velocity(&self) -> Twist {
+        let State {
+            position, velocity, ..
+        } = self.axes.state();
+        let v = translational(velocity);
+        let omega = rotation::angular_velocity(&rotational(position), &rotational(velocity));
+        let within = |omega: Vector3<f64>| Twist::new(v.x, v.y, v.z, omega.x, omega.y, omega.z);
+        if self.twist == Twist::zeros() {
+            return within(omega);
+        }
+        within(self.turn() * omega) + self.twist
+    }
+
+    /// How far the frame has turned since the plan was made.
+    fn turn(&self) -> UnitQuaternion<f64> {
+        rotation::exp(&(parts(&self.twist).1 * self.time()))
+    }
+
+    /// Seconds since the plan was made.
+    fn time(&self) -> f64 {
+        f64::from(self.cycles) * CYCLE
     }
 
     /// The pose now.
     pub(crate) fn pose(&self) -> Isometry3<f64> {
         let position = &self.axes.state().position;
-        Isometry3::from_parts(
+        let in_frame = Isometry3::from_parts(
             Translation3::from(translational(position)),
             rotation::exp(&rotational(position)) * self.anchor,
-        )
+        );
+        if self.twist == Twist::zeros() {
+            return in_frame;
+        }
+        moved(&in_frame, &self.twist, self.time())
     }
 
     /// How fast the target may be approached.
     pub(crate) fn budget(&self) -> &Budget {
         &self.budget
+    }
+
+    /// Time until the target is met, or until rest if there is none, `[s]`.
+    pub(crate) fn remaining(&self) -> f64 {
+        self.axes.time_to_target()
     }
 
     /// Whether the pose rests at the target.
@@ -162,49 +265,88 @@ impl PoseGenerator {
         } = *self.axes.state();
         let [phi, phi_dot, phi_ddot] =
             [position, velocity, acceleration].map(|axes| rotational(&axes));
-        let omega = rotation::angular_velocity(&phi, &phi_dot);
-        let alpha = rotation::angular_acceleration(&phi, &phi_dot, &phi_ddot);
-        let (v, a) = (translational(&velocity), translational(&acceleration));
+        let mut alpha = rotation::angular_acceleration(&phi, &phi_dot, &phi_ddot);
+        let a = translational(&acceleration);
+        let twist = self.velocity();
+        if self.twist != Twist::zeros() {
+            let (_, omega) = parts(&twist);
+            let (_, frame) = parts(&self.twist);
+            // That of the frame itself drops out of the second factor.
+            alpha = self.turn() * alpha + frame.cross(&omega);
+        }
         PoseState {
             pose: self.pose(),
-            twist: Twist::new(v.x, v.y, v.z, omega.x, omega.y, omega.z),
+            twist,
             acceleration: Twist::new(a.x, a.y, a.z, alpha.x, alpha.y, alpha.z),
         }
     }
 }
 
-/// What a plan for the six axes begins with, its limits and its target, with the chart anchored at
-/// the orientation of `start`.
-fn plan(
-    start: &PoseState,
-    target: &Isometry3<f64>,
-    budget: &Budget,
-    most: &CartesianLimits,
-) -> Result<(State<6>, Limits<6>, [f64; 6]), PlanError> {
-    let budget = budget.able_to_stop(&start.twist, &start.acceleration, most);
-    let from = start.pose.translation.vector;
-    let way = target.translation.vector - from;
-    let turn = rotation::error(&target.rotation, &start.pose.rotation);
-    let state = State {
-        position: [from.x, from.y, from.z, 0.0, 0.0, 0.0],
-        velocity: start.twist.into(),
-        acceleration: start.acceleration.into(),
-    };
-    let limits = budget.axes(
-        &Leg {
+/// What the generator of the six axes begins with, in the frame that moves with the target.
+struct Plan {
+    state: State<6>,
+    limits: Limits<6>,
+    to: [f64; 6],
+    /// Of the frame.
+    twist: Twist,
+}
+
+impl Plan {
+    /// With the chart anchored at the orientation of `start`.
+    fn new(
+        start: &PoseState,
+        target: &MovingPose,
+        budget: &Budget,
+        most: &CartesianLimits,
+    ) -> Result<Self, PlanError> {
+        let mut budget = budget.able_to_stop(&start.twist, &start.acceleration, most);
+        let (linear, angular) = parts(&target.twist);
+        let frame = |velocity: Vector3<f64>, limits: &mut AxisLimits| {
+            let speed = velocity.norm();
+            let (kept, left) = budget::beside(speed, limits.velocity);
+            limits.velocity = left;
+            velocity * if kept < speed { kept / speed } else { 1.0 }
+        };
+        let linear = frame(linear, &mut budget.translation);
+        let angular = frame(angular, &mut budget.rotation);
+
+        let from = start.pose.translation.vector;
+        let way = target.pose.translation.vector - from;
+        let turn = rotation::error(&target.pose.rotation, &start.pose.rotation);
+        let (v, omega) = parts(&start.twist);
+        let (a, alpha) = parts(&start.acceleration);
+        // The chart is at its origin, where it has no influence on the acceleration.
+        let translation = Leg {
             way,
-            velocity: translational(&state.velocity),
-            acceleration: translational(&state.acceleration),
-        },
-        &Leg {
+            velocity: v - linear,
+            acceleration: a,
+        };
+        let rotation = Leg {
             way: turn,
-            velocity: rotational(&state.velocity),
-            acceleration: rotational(&state.acceleration),
-        },
-    );
-    let to = target.translation.vector;
-    let to = [to.x, to.y, to.z, turn.x, turn.y, turn.z];
-    Ok((state, Limits::per_axis(limits)?, to))
+            velocity: omega - angular,
+            acceleration: alpha - angular.cross(&omega),
+        };
+        let axes = |t: &Vector3<f64>, r: &Vector3<f64>| [t.x, t.y, t.z, r.x, r.y, r.z];
+        let state = State {
+            position: axes(&from, &Vector3::zeros()),
+            velocity: axes(&translation.velocity, &rotation.velocity),
+            acceleration: axes(&translation.acceleration, &rotation.acceleration),
+        };
+        Ok(Self {
+            state,
+            limits: Limits::per_axis(budget.axes(&translation, &rotation))?,
+            to: axes(&target.pose.translation.vector, &turn),
+            twist: Twist::new(
+                linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
+            ),
+        })
+    }
+}
+
+/// The linear and the angular part.
+fn parts(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
+    let axes = &(*twist).into();
+    (translational(axes), rotational(axes))
 }
 
 fn translational(axes: &[f64; 6]) -> Vector3<f64> {

@@ -302,7 +302,7 @@ fn slowed(goal: &Goal) -> Goal {
         rotation,
     } = goal.budget;
     let joints = match goal.target {
-        Target::Joints(_) => joints.map(slow),
+        Target::Joints(_) | Target::MovingJoints { .. } => joints.map(slow),
         _ => joints,
     };
     Goal {

@@ -22,7 +22,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-use super::{Lockstep, Part};
+use super::{Lockstep, Part, set_in_motion};
 
 /// The kind of goals that a session gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -278,6 +278,13 @@ impl Guarded {
             }),
             ..Goal::new(id, target, OnArrival::Hold, limits())
         };
+        let goal = match self.random.random_bool(0.3) {
+            true => Goal {
+                target: set_in_motion(target, &mut self.random),
+                ..goal
+            },
+            false => goal,
+        };
         self.goal = match (self.turns % 3, target) {
             (0, _) | (_, Target::Guide(_)) => goal,
             (1, _) => Goal {
@@ -294,6 +301,8 @@ impl Guarded {
                     ..Gains::cartesian()
                 },
                 on_arrival: OnArrival::ReportAndHold,
+                target,
+                paused: self.random.random_bool(0.2),
                 ..goal
             },
         };

@@ -26,7 +26,7 @@ mod wander;
 use std::time::Duration;
 
 use franka_model::collision::Shape;
-use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
+use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, Twist, transform};
 use franka_proto::{MoveRequest, Request, RobotCommand};
 use franka_rt::control::{Callback, Command, WriteError};
 use franka_rt::driver::Program;
@@ -36,6 +36,7 @@ use franka_rt::session::{Goal, GoalError, GoalId, Guard, OnArrival, Target};
 use franka_rt::together::StartTicket;
 use franka_sim::{Config, Robot};
 use nalgebra::Isometry3;
+use rand::Rng;
 
 pub use driver_stack::DriverStack;
 pub use guarded::{Guarded, Workload};
@@ -468,6 +469,19 @@ impl Lockstep {
             ..EndEffector::default()
         };
         pose_of(q, &ee)
+    }
+}
+
+/// Gives a target a random motion, some of them faster than any budget; others stay as they are.
+pub fn set_in_motion(target: Target, random: &mut impl Rng) -> Target {
+    let mut number = |most: f64| most * random.random_range(-1.0..1.0_f64).powi(3);
+    match target {
+        Target::Joints(q) => (q, core::array::from_fn(|_| number(2.0))).into(),
+        Target::Pose(pose) => {
+            let twist = Twist::from_fn(|i, _| number(if i < 3 { 0.6 } else { 1.0 }));
+            (pose, twist).into()
+        }
+        other => other,
     }
 }
 

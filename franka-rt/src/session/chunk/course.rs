@@ -206,6 +206,14 @@ impl ChunkCourse {
         }
     }
 
+    /// Time from `now` to the last point, `[s]`.
+    pub(in crate::session) fn remaining(&self, now: u64) -> f64 {
+        match &self.play {
+            Play::Joints { player, .. } => player.remaining(now),
+            Play::Poses { player, .. } => player.remaining(now),
+        }
+    }
+
     /// Where the chunk comes to rest.
     pub(in crate::session) fn target(&self) -> Target {
         match &self.play {

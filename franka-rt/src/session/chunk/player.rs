@@ -102,6 +102,11 @@ impl<M: CurveState> Player<M> {
         entered && t >= self.curve.end()
     }
 
+    /// Time from `now` to the last point, `[s]`.
+    pub(super) fn remaining(&self, now: u64) -> f64 {
+        (self.curve.end() - milliseconds(now, self.origin)).max(0.0)
+    }
+
     pub(super) fn curve(&self) -> &Curve<M> {
         &self.curve
     }

@@ -53,12 +53,12 @@ impl Deviation {
                 let (a, b) = (self.anchor[i], target[i]);
                 q[i].clamp(a.min(b), a.max(b))
             }),
-            Target::Pose(_) | Target::Guide(_) | Target::Rest => self.anchor,
+            _ => self.anchor,
         };
         let anchor = pose_at(&way);
         let end = match target {
             Target::Pose(pose) => pose,
-            Target::Joints(_) | Target::Guide(_) | Target::Rest => &anchor,
+            _ => &anchor,
         };
         let from = anchor.translation.vector;
         let aside = beside(

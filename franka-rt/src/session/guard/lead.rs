@@ -36,7 +36,6 @@ impl Lead {
         measured: &Isometry3<f64>,
     ) -> Option<Target> {
         match target {
-            Target::Guide(_) | Target::Rest => None,
             Target::Joints(target) => {
                 let ahead = JointVector::from(*target) - q;
                 let most = ahead.amax();
@@ -46,6 +45,7 @@ impl Lead {
             Target::Pose(pose) => {
                 leash::within(pose, measured, self.translation, self.rotation).map(Target::Pose)
             }
+            _ => None,
         }
     }
 }

@@ -2,7 +2,7 @@
 //! that is held back is pulled by a bounded spring and does not leap when it is let go.
 
 use franka_model::{JointVector, rotation};
-use franka_otg::{PlanError, State};
+use franka_otg::PlanError;
 use nalgebra::{Isometry3, Translation3};
 
 use crate::session::course::Course;
@@ -61,10 +61,7 @@ impl Held {
     /// [`PlanError`], by a defect only; the course goes on as planned.
     pub(crate) fn move_course(self, course: &mut Course) -> Result<(), PlanError> {
         match (course, self.pose) {
-            (Course::Joints(generator), _) => generator.set_state(State {
-                position: self.q.into(),
-                ..*generator.state()
-            }),
+            (Course::Joints(generator), _) => generator.set_positions(self.q.into()),
             (Course::Pose(generator, _), Some(pose)) => generator.reanchor(pose),
             (Course::Chunk(chunk), Some(pose)) => {
                 chunk.reanchor(pose);

@@ -7,6 +7,8 @@ mod chunks;
 mod stages;
 mod watch;
 
+use core::time::Duration;
+
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, Jacobian, JointVector, Load, Model};
 use franka_proto::{RobotState, Version};
 use nalgebra::Isometry3;
@@ -48,6 +50,8 @@ pub(super) struct RunningSession {
     since: u64,
     /// What the reference heads for: the goal's target, or one nearer, or rest.
     aim: Target,
+    /// Whether the target moved on and no news of it came for too long.
+    halted: bool,
     route: Route,
     reference: Reference,
     drive: Drive,
@@ -131,6 +135,7 @@ impl RunningSession {
         let mut this = Self {
             drive,
             aim: goal.target,
+            halted: false,
             // The state shows that a tool is mounted, but not which one: the Hand is assumed.
             route: Route::new(
                 Clearance::new(model.kind(), state.m_ee > 0.0, keep_out),
@@ -210,6 +215,7 @@ impl RunningSession {
         let same = named
             && !self.is_given_up()
             && goal.target == self.goal.target
+            && !goal.target.moves()
             && goal.on_arrival == self.goal.on_arrival;
         if same && !matches!(self.stage, GoalStage::Releasing(_)) {
             return self.tune(goal);
@@ -235,7 +241,7 @@ impl RunningSession {
         } = self.goal;
         let gains = match target {
             Target::Guide(_) => goal.gains,
-            Target::Rest | Target::Joints(_) | Target::Pose(_) => goal.at_rest(on_arrival).gains,
+            _ => goal.at_rest(on_arrival).gains,
         };
         let before = core::mem::replace(
             &mut self.goal,
@@ -247,7 +253,8 @@ impl RunningSession {
             },
         );
         self.fade_gains();
-        if goal.budget != before.budget && !matches!(self.stage, GoalStage::Releasing(_)) {
+        let changed = goal.budget != before.budget || goal.paused != before.paused;
+        if changed && !matches!(self.stage, GoalStage::Releasing(_)) {
             self.route.outdate();
         }
     }
@@ -271,6 +278,7 @@ impl RunningSession {
     fn turn_to(&mut self, target: Target) {
         self.route.retire_chunk();
         self.aim = target;
+        self.halted = false;
         self.route.outdate();
     }
 
@@ -308,7 +316,8 @@ impl RunningSession {
         );
         bindings.set(Guard::Watchdog, silent);
         bindings.set(Guard::Lead, self.draw_nearer(now));
-        let aim = self.aim();
+        self.halt_without_news(now);
+        let aim = self.aim(now);
         self.route.renew(model, &self.ee, &self.reference, &aim);
         let guided = matches!(self.route.course, Course::Guide(_));
         let step = (!guided).then(|| self.advance(model, now, &mut bindings));
@@ -317,7 +326,7 @@ impl RunningSession {
 
     /// Moves the course by one step, for the answer to the state `now`.
     fn advance(&mut self, model: &Model, now: u64, bindings: &mut Bindings) -> CourseStep {
-        let aim = self.aim();
+        let aim = self.aim(now);
         let step = self.route.step(
             model,
             &self.ee,
@@ -345,10 +354,12 @@ impl RunningSession {
         }
     }
 
-    /// The goal with what the reference heads for as its target.
-    fn aim(&self) -> Goal {
+    /// The goal with what the reference heads for at `now` as its target.
+    fn aim(&self, now: u64) -> Goal {
+        let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
         Goal {
-            target: self.aim,
+            target: self.aim.after(since),
+            paused: self.goal.paused || self.halted,
             ..self.goal
         }
     }
@@ -403,6 +414,8 @@ impl RunningSession {
             trace: Trace {
                 goal: self.goal.id,
                 reference: self.reference,
+                elapsed: Duration::from_millis(state.message_id - self.since),
+                remaining: Duration::from_secs_f64(self.route.course.remaining(state.message_id)),
                 compensation: match &self.drive {
                     Drive::Torques(effort) => effort.compensated(),
                     Drive::Setpoints(_) => JointVector::zeros(),
@@ -425,7 +438,7 @@ impl RunningSession {
         };
         self.reference = echo;
         let target = match self.stage {
-            GoalStage::UnderWay => self.aim,
+            GoalStage::UnderWay => self.aim(state.message_id).target,
             GoalStage::Landing(_)
             | GoalStage::Staying
             | GoalStage::Releasing(_)
@@ -433,7 +446,7 @@ impl RunningSession {
         };
         let aim = Goal {
             target,
-            ..self.goal
+            ..self.aim(state.message_id)
         };
         self.route
             .begin_again(model, &self.ee, &self.reference, &aim);

@@ -43,7 +43,9 @@ impl RunningSession {
         match &mut self.stage {
             GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                if self.goal.on_arrival != OnArrival::Hold && (self.route.is_done() || stalled) {
+                let waits = self.goal.paused && !self.is_given_up();
+                let ends = self.goal.on_arrival != OnArrival::Hold && !waits;
+                if ends && (self.route.is_done() || stalled) {
                     if stalled && self.route.is_hindered() {
                         self.give_up(Lapse::Blocked);
                     } else if stalled && heading != Target::Rest {
@@ -53,8 +55,8 @@ impl RunningSession {
                         // It counts as held at any place.
                         _ if self.is_given_up() => None,
                         Target::Rest | Target::Guide(_) => None,
-                        Target::Pose(pose) => Some(pose),
-                        Target::Joints(q) => {
+                        Target::Pose(pose) | Target::MovingPose { pose, .. } => Some(pose),
+                        Target::Joints(q) | Target::MovingJoints { q, .. } => {
                             Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
                         }
                     };

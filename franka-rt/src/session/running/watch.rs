@@ -22,13 +22,25 @@ impl RunningSession {
             return false;
         }
         if now.saturating_sub(self.heard) <= Lead::FRESH_MS {
-            let drawn = lead.drawn(&self.goal.target, &self.arm.q, &self.arm.pose);
+            let since = now.saturating_sub(self.heard);
+            let place = self.goal.target.after(since).place();
+            let drawn = lead.drawn(&place, &self.arm.q, &self.arm.pose);
             let target = drawn.unwrap_or(self.goal.target);
             if target != self.aim {
                 self.turn_to(target);
             }
         }
         self.aim != self.goal.target
+    }
+
+    /// Halts on the way of a target that moves and of which no news have come for so long, or which
+    /// was given up, that it no longer counts as moving.
+    pub(super) fn halt_without_news(&mut self, now: u64) {
+        let silent = now.saturating_sub(self.heard) >= Target::MOVES_ON_MS;
+        if self.aim.moves() && !self.halted && (silent || self.is_given_up()) {
+            self.halted = true;
+            self.route.outdate();
+        }
     }
 
     /// Gives the goal up, and brakes.
@@ -77,9 +89,10 @@ impl RunningSession {
             );
         }
         let arm = &self.arm;
+        let aim = self.aim(arm.time).target.place();
         let exceeded = self
             .deviation
-            .is_exceeded(model, &self.ee, &arm.q, &arm.pose, &self.aim);
+            .is_exceeded(model, &self.ee, &arm.q, &arm.pose, &aim);
         let follows = matches!(
             self.stage,
             GoalStage::UnderWay | GoalStage::Landing(_) | GoalStage::Staying

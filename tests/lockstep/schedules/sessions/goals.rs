@@ -4,6 +4,7 @@ use franka_rt::lifecycle::{MotionError, Tuning};
 use franka_rt::session::{
     Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target, Tolerance,
 };
+use franka_tests::lockstep::set_in_motion;
 use rand::Rng;
 
 use super::super::draw;
@@ -52,6 +53,10 @@ impl Sessions<'_> {
         let streams = on_arrival == OnArrival::Hold && !matches!(target, Target::Guide(_));
         if streams && self.random.random_bool(0.5) {
             goal.watchdog = Some(self.watchdog());
+        }
+        if on_arrival == OnArrival::Hold && self.random.random_bool(0.3) {
+            goal.target = set_in_motion(target, &mut self.random);
+            goal.paused = self.random.random_bool(0.1);
         }
         let Some(session) = &self.session else {
             return false;

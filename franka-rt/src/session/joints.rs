@@ -1,0 +1,238 @@
+//! The generator of joint positions. A target that moves is at rest in a frame that moves with it;
+//! the plan is made there.
+
+use franka_model::limits::JointLimits;
+use franka_otg::{AxisLimits, Generator, Limits, PlanError, State};
+
+use crate::session::course::limits_of_joint;
+use crate::session::reference::Reference;
+use crate::session::{Budget, Target, approach, budget};
+use crate::shaping::CYCLE;
+
+/// Time for which the motion of a joint's target has to stay inside its range, `[s]`: what it may
+/// move on by itself, and as long for the stop that follows.
+const ROOM: f64 = 2e-3 * Target::MOVES_ON_MS as f64;
+
+/// Where the joints are to go: positions `[rad]`, and the velocities of these `[rad/s]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MovingJoints {
+    pub(super) q: [f64; 7],
+    pub(super) dq: [f64; 7],
+}
+
+/// Moves the joints to their target, one nominal millisecond per step.
+#[derive(Debug)]
+pub(super) struct JointGenerator {
+    /// In a frame that moves at `drift` and was at rest at zero when the plan was made.
+    axes: Generator<7>,
+    /// `[rad/s]`
+    drift: [f64; 7],
+    /// Cycles since the plan was made.
+    cycles: u32,
+    /// What the plan was made for, if it leads to a target that moves.
+    planned: Option<(MovingJoints, Budget)>,
+}
+
+impl JointGenerator {
+    /// Begins at `reference`, and heads for `target`, or for rest in the least time.
+    ///
+    /// # Errors
+    /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause
+    /// one.
+    pub(super) fn new(
+        robot: &JointLimits,
+        reference: &Reference,
+        target: Option<MovingJoints>,
+        budget: &Budget,
+    ) -> Result<Self, PlanError> {
+        let plan = Plan::new(robot, reference, target, budget)?;
+        Ok(Self {
+            axes: Generator::towards(plan.state, plan.limits, plan.to.as_ref())?,
+            drift: plan.drift,
+            cycles: 0,
+            planned: plan.planned,
+        })
+    }
+
+    /// Heads for another target from `reference` on, or for rest. A motion of the target that goes
+    /// on as before leaves the plan as it is.
+    ///
+    /// # Errors
+    /// See [`Self::new`]; the motion in progress goes on.
+    pub(super) fn head_for(
+        &mut self,
+        robot: &JointLimits,
+        reference: &Reference,
+        target: Option<MovingJoints>,
+        budget: &Budget,
+    ) -> Result<(), PlanError> {
+        if let (Some(target), Some(before)) = (target, &self.planned)
+            && self.is_followed(&target, before, budget)
+        {
+            return Ok(());
+        }
+        let plan = Plan::new(robot, reference, target, budget)?;
+        self.axes
+            .restart(plan.state, plan.limits, plan.to.as_ref())?;
+        self.drift = plan.drift;
+        self.cycles = 0;
+        self.planned = plan.planned;
+        Ok(())
+    }
+
+    /// Whether the plan leads to the very motion of `target` already, but for rounding.
+    fn is_followed(
+        &self,
+        target: &MovingJoints,
+        (before, budget_before): &(MovingJoints, Budget),
+        budget: &Budget,
+    ) -> bool {
+        let t = self.time();
+        let near = |i: usize| (before.q[i] + before.dq[i] * t - target.q[i]).abs() < ROUNDING;
+        // A frame that is slower than the target falls behind it.
+        before.dq == target.dq
+            && self.drift == target.dq
+            && budget_before == budget
+            && (0..7).all(near)
+    }
+
+    /// Comes to rest within the limits of the plan, on its line if it moves on one.
+    ///
+    /// # Errors
+    /// See [`Self::new`]; the motion in progress goes on.
+    pub(super) fn halt(&mut self) -> Result<(), PlanError> {
+        self.planned = None;
+        if self.drift == [0.0; 7] {
+            self.axes.brake();
+            return Ok(());
+        }
+        let Reference { q, dq, ddq } = self.reference();
+        let state = State {
+            position: q.into(),
+            velocity: dq.into(),
+            acceleration: ddq.into(),
+        };
+        let limits = *self.axes.limits();
+        self.axes.restart(state, limits, None)?;
+        self.drift = [0.0; 7];
+        self.cycles = 0;
+        Ok(())
+    }
+
+    /// Moves the joints to `q`, `[rad]`, with their velocities kept, and plans anew from there.
+    ///
+    /// # Errors
+    /// See [`Self::new`]; the motion in progress goes on.
+    pub(super) fn set_positions(&mut self, q: [f64; 7]) -> Result<(), PlanError> {
+        let t = self.time();
+        self.axes.set_state(State {
+            position: core::array::from_fn(|i| q[i] - self.drift[i] * t),
+            ..*self.axes.state()
+        })
+    }
+
+    /// Advances by one nominal millisecond.
+    pub(super) fn step(&mut self) -> Reference {
+        self.cycles = self.cycles.saturating_add(1);
+        self.axes.step();
+        self.reference()
+    }
+
+    fn reference(&self) -> Reference {
+        let State {
+            position,
+            velocity,
+            acceleration,
+        } = *self.axes.state();
+        let (drift, t) = (&self.drift, self.time());
+        Reference {
+            q: core::array::from_fn(|i| position[i] + drift[i] * t).into(),
+            dq: core::array::from_fn(|i| velocity[i] + drift[i]).into(),
+            ddq: acceleration.into(),
+        }
+    }
+
+    /// Seconds since the plan was made.
+    fn time(&self) -> f64 {
+        f64::from(self.cycles) * CYCLE
+    }
+
+    /// Whether the joints rest at the end of the plan.
+    pub(super) fn is_done(&self) -> bool {
+        self.axes.is_done()
+    }
+
+    /// Where a plan that leads to rest ends, `[rad]`.
+    #[cfg(test)]
+    pub(super) fn end(&self) -> [f64; 7] {
+        *self.axes.end()
+    }
+
+    /// Time until the target is met, or until rest if there is none, `[s]`.
+    pub(super) fn remaining(&self) -> f64 {
+        self.axes.time_to_target()
+    }
+}
+
+/// Distance of two places of the same motion, `[rad]`, that rounding explains.
+const ROUNDING: f64 = 1e-9;
+
+/// What the generator begins with, in the frame that moves with the target.
+struct Plan {
+    state: State<7>,
+    limits: Limits<7>,
+    to: Option<[f64; 7]>,
+    /// Velocity of the frame, `[rad/s]`.
+    drift: [f64; 7],
+    planned: Option<(MovingJoints, Budget)>,
+}
+
+impl Plan {
+    fn new(
+        robot: &JointLimits,
+        reference: &Reference,
+        target: Option<MovingJoints>,
+        budget: &Budget,
+    ) -> Result<Self, PlanError> {
+        let mut to = target.map(|target| target.q);
+        let mut drift = [0.0; 7];
+        let limits = core::array::from_fn(|i| {
+            let own = budget.joints[i];
+            let limits = limits_of_joint(i, robot, reference, own, target.is_none());
+            let (Some(target), Some(to)) = (&target, &mut to) else {
+                return limits;
+            };
+            if target.dq[i] != 0.0 {
+                let (lower, upper) = approach::range(i, robot);
+                to[i] = to[i].clamp(lower, upper);
+                let room = if target.dq[i] > 0.0 {
+                    upper - to[i]
+                } else {
+                    to[i] - lower
+                };
+                drift[i] = target.dq[i].clamp(-room / ROOM, room / ROOM);
+            }
+            let limits = approach::limits(i, robot, reference.q[i], to[i], limits);
+            let (velocity, left) = budget::beside(drift[i].abs(), limits.velocity);
+            drift[i] = velocity.copysign(drift[i]);
+            AxisLimits {
+                velocity: left,
+                ..limits
+            }
+        });
+        let state = State {
+            position: reference.q.into(),
+            velocity: core::array::from_fn(|i| reference.dq[i] - drift[i]),
+            acceleration: reference.ddq.into(),
+        };
+        Ok(Self {
+            state,
+            limits: Limits::per_axis(limits)?,
+            to,
+            drift,
+            planned: target
+                .filter(|target| target.dq != [0.0; 7])
+                .map(|target| (target, *budget)),
+        })
+    }
+}
