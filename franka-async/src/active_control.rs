@@ -12,11 +12,12 @@ use franka_rt::control::{
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{MotionError, MotionReport, Outcome};
 use franka_rt::session::GoalId;
-use franka_rt::thread::{BorrowError, Lease};
+use franka_rt::thread::{BorrowError, Lease, Lender};
 use futures::FutureExt;
 use tokio::sync::oneshot;
 
 use crate::error::ActiveError;
+use crate::input::unserved;
 use crate::robot::Robot;
 
 impl Robot {
@@ -125,6 +126,7 @@ impl Robot {
 pub struct Active<C> {
     robot: Robot,
     id: GoalId,
+    lender: Lender,
     /// `None` before the first read, and once the cycle went back.
     lease: Option<Lease>,
     /// `None` once the end is known.
@@ -142,6 +144,7 @@ impl<C> Active<C> {
         Ok(Self {
             robot: robot.clone(),
             id,
+            lender: robot.link().lender.clone(),
             lease: None,
             outcome: Some(outcome),
             previous: None,
@@ -206,7 +209,7 @@ impl<C> Active<C> {
     fn lease(&mut self) -> Result<&mut Lease, BorrowError> {
         match &mut self.lease {
             Some(lease) => Ok(lease),
-            none => Ok(none.insert(self.robot.lender().borrow()?)),
+            none => Ok(none.insert(self.lender.borrow()?)),
         }
     }
 
@@ -214,9 +217,7 @@ impl<C> Active<C> {
     fn end(&mut self) -> Outcome {
         self.lease = None;
         match self.outcome.take() {
-            Some(outcome) => outcome
-                .blocking_recv()
-                .unwrap_or_else(|_| self.robot.closed_outcome()),
+            Some(outcome) => outcome.blocking_recv().unwrap_or_else(unserved),
             None => Err(MotionError::Stopped),
         }
     }

@@ -12,6 +12,7 @@ use franka_rt::slot::SlotWriter;
 use futures::FutureExt;
 use futures::future::{BoxFuture, Shared};
 
+use crate::input::unserved;
 use crate::robot::Robot;
 
 /// Options of [`Robot::asynchronous_joint_positions`].
@@ -60,8 +61,7 @@ impl Robot {
         let id = self.next_goal();
         let program = Program::Asynchronous(program);
         let outcome = self.begin_program(id, program, request).await?;
-        let robot = self.clone();
-        let end = outcome.map(move |outcome| outcome.unwrap_or_else(|_| robot.closed_outcome()));
+        let end = outcome.map(|outcome| outcome.unwrap_or_else(unserved));
         Ok(AsynchronousControl {
             robot: self.clone(),
             id,

@@ -395,12 +395,13 @@ impl Bridge {
     ) {
         let reason = self.channel.closing().note(CloseReason::ClosedByUs);
         inbox.close();
-        self.lifecycle.on_connection_closed(reason);
+        self.lifecycle.on_connection_closed(reason.clone());
         self.carry_out();
         while let Some(input) = inbox.recv().await {
-            // The others see the end by their reply channels being closed.
-            if let Input::Shutdown { ended: reply } = input {
-                done.push(reply);
+            match input {
+                Input::Shutdown { ended: reply } => done.push(reply),
+                // Who waits for another answer sees the end by its channel being closed.
+                other => other.refuse(reason.clone()),
             }
         }
         self.rest().await;

@@ -3,7 +3,6 @@
 
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
 
 use franka_proto::client::Session;
 use franka_proto::{RobotState, Version};
@@ -27,8 +26,9 @@ use crate::dial::{dial, dial_one, resolve};
 use crate::endpoint::Endpoint;
 use crate::error::ConnectError;
 use crate::handshake::shake_hands;
+use crate::link::Link;
 use crate::newest_state::Newest;
-use crate::robot::{Robot, Shared};
+use crate::robot::Robot;
 
 impl Robot {
     /// Connects with the options that [`Robot::builder`] begins with.
@@ -81,7 +81,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let (channel, connection, reports) =
         Channel::start(opened.stream, opened.session, newest.clone());
     let stats = opened.handle.stats.clone();
-    let granted = opened.handle.granted.clone();
+    let granted = Arc::new(opened.handle.granted.clone());
     let lender = opened.handle.lender.clone();
     let model = Arc::new(connected_model::of(opened.version, &channel, &builder).await?);
     let mut lifecycle =
@@ -98,9 +98,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         states,
     );
     let bridge = bridge.start(reports, builder.cancellation);
-    Ok(Robot::new(Shared {
-        model,
-        version: opened.version,
+    let link = Link {
         address,
         bridge,
         channel,
@@ -108,8 +106,8 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         stats,
         granted,
         lender,
-        goals: AtomicU64::new(0),
-    }))
+    };
+    Ok(Robot::new(model, opened.version, link))
 }
 
 struct Opened {

@@ -1,6 +1,6 @@
 //! What handles and motions ask of the bridge, and how it answers.
 
-use franka_rt::lifecycle::{MotionError, NewMotion, Outcome, Tuning};
+use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome, Tuning};
 use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target};
 use tokio::sync::{mpsc, oneshot, watch};
 
@@ -54,6 +54,24 @@ pub(crate) enum Input {
     Shutdown {
         ended: oneshot::Sender<()>,
     },
+}
+
+impl Input {
+    /// Answers what would begin something, on a connection that has ended for `reason`. What other
+    /// inputs ask for has been answered by the end itself.
+    pub(crate) fn refuse(self, reason: CloseReason) {
+        if let Self::Begin { replies, .. } = self {
+            let closed = MotionError::ConnectionClosed { reason };
+            replies.ended.send(Err(closed));
+        }
+    }
+}
+
+/// The outcome of what was begun and never answered: bridges answer everything unless their runtime
+/// drops them.
+pub(crate) fn unserved<E>(_: E) -> Outcome {
+    let reason = CloseReason::RuntimeEnded;
+    Err(MotionError::ConnectionClosed { reason })
 }
 
 /// Where to report on something that was begun.

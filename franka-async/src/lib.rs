@@ -78,6 +78,7 @@ mod franka_hand;
 mod handshake;
 pub mod identify;
 mod input;
+mod link;
 mod motion;
 mod newest_state;
 mod options;

@@ -12,6 +12,7 @@ use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
 use crate::cancel::Canceller;
+use crate::input::unserved;
 use crate::options::{GoalOptions, goal_options};
 use crate::robot::{Pose, Robot};
 use crate::session::Session;
@@ -193,7 +194,7 @@ impl Future for Moving {
             self.progress = Progress::Begun(outcome);
             return Poll::Pending;
         };
-        let outcome = outcome.unwrap_or_else(|_| self.canceller.robot().closed_outcome());
+        let outcome = outcome.unwrap_or_else(unserved);
         Poll::Ready(match &self.session {
             Some(session) => outcome.map_err(|error| session.explain(error)),
             None => outcome,

@@ -130,7 +130,7 @@ impl Robot {
     /// # Cancel safety
     /// Nothing is lost but the answer.
     pub async fn urdf(&self) -> Result<String, CommandError> {
-        urdf(self.channel(), ANSWER).await
+        urdf(&self.channel(), ANSWER).await
     }
 
     /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz; 1000

@@ -7,7 +7,7 @@ use franka_rt::session::GoalId;
 use tokio::sync::oneshot;
 
 use crate::cancel::CancelOnDrop;
-use crate::input::{EndReply, Input, Replies};
+use crate::input::{EndReply, Input, Replies, unserved};
 use crate::robot::Robot;
 
 impl Robot {
@@ -42,7 +42,7 @@ impl Robot {
             return Ok(outcome);
         }
         // It never will run: the outcome has the reason.
-        let outcome = outcome.await.unwrap_or_else(|_| self.closed_outcome());
+        let outcome = outcome.await.unwrap_or_else(unserved);
         stop.defuse();
         Err(outcome.err().unwrap_or(MotionError::Stopped))
     }

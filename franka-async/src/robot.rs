@@ -2,8 +2,8 @@
 
 use std::fmt;
 use std::net::SocketAddr;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, PoisonError, RwLock};
 
 use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{RobotState, Version};
@@ -13,13 +13,11 @@ use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome};
 use franka_rt::sched::Granted;
 use franka_rt::session::{GoalId, Margin};
 use franka_rt::stats::Stats;
-use franka_rt::thread::Lender;
 use tokio::sync::{broadcast, oneshot};
 
 use crate::command_channel::Channel;
-use crate::input::{BridgeHandle, EndReply, Input, Replies};
-use crate::newest_state::Newest;
-use crate::publish::Subscriptions;
+use crate::input::{EndReply, Input, Replies};
+use crate::link::Link;
 use crate::states::States;
 
 /// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame,
@@ -44,31 +42,32 @@ pub struct Robot {
     shared: Arc<Shared>,
 }
 
-/// What all handles of a connection share.
-pub(crate) struct Shared {
-    pub(crate) model: Arc<Model>,
-    pub(crate) version: Version,
-    pub(crate) address: SocketAddr,
-    pub(crate) bridge: BridgeHandle,
-    pub(crate) channel: Channel,
-    pub(crate) newest: Newest,
-    pub(crate) stats: Arc<Stats>,
-    pub(crate) granted: Granted,
-    pub(crate) lender: Lender,
-    /// How many goals were named so far.
-    pub(crate) goals: AtomicU64,
+/// What all handles of a robot share.
+struct Shared {
+    model: Arc<Model>,
+    version: Version,
+    /// The newest connection.
+    link: RwLock<Arc<Link>>,
+    /// How many goals were named so far, whatever the connection.
+    goals: AtomicU64,
 }
 
 impl Robot {
-    pub(crate) fn new(shared: Shared) -> Self {
+    /// Returns the robot of this model and version that `link` connects to.
+    pub(crate) fn new(model: Arc<Model>, version: Version, link: Link) -> Self {
         Self {
-            shared: Arc::new(shared),
+            shared: Arc::new(Shared {
+                model,
+                version,
+                link: RwLock::new(Arc::new(link)),
+                goals: AtomicU64::new(0),
+            }),
         }
     }
 
     /// The newest state.
     pub fn state(&self) -> RobotState {
-        self.shared.newest.state()
+        self.link().newest.state()
     }
 
     /// The newest state as it changes, in motion or not. Ends when the connection does. For every
@@ -77,15 +76,15 @@ impl Robot {
     /// It begins with the newest state at the call. As long as one of these exists, a task is woken
     /// for every state; drop it when it is no longer needed.
     pub fn states(&self) -> States {
-        let closing = self.shared.channel.closing().clone();
-        States::new(self.shared.newest.changes(), closing)
+        let link = self.link();
+        States::new(link.newest.changes(), link.channel.closing().clone())
     }
 
     /// What every cycle of the control thread saw and did, one record per state; the first ones may
     /// be of cycles up to 50 ms ago. A listener that lags more than two seconds behind is told how
     /// many it missed. Closes when the connection does.
     pub fn records(&self) -> broadcast::Receiver<Record> {
-        self.subscriptions().records()
+        self.link().subscriptions().records()
     }
 
     /// The measured pose of the end effector, `O_T_EE` of the newest state.
@@ -130,19 +129,20 @@ impl Robot {
 
     /// Where the robot is.
     pub fn address(&self) -> SocketAddr {
-        self.shared.address
+        self.link().address
     }
 
     /// Counters and histograms of the control thread, its worst cycle and the motion that runs,
-    /// live: written by the thread itself, and to be read whatever the runtime is busy with.
-    pub fn stats(&self) -> &Stats {
-        &self.shared.stats
+    /// live: written by the thread itself, and to be read whatever the runtime is busy with. Each
+    /// connection has a thread and counters of its own.
+    pub fn stats(&self) -> Arc<Stats> {
+        self.link().stats.clone()
     }
 
     /// What the operating system granted the control thread, and what it refused under
     /// [`Realtime::Ignore`](crate::Realtime).
-    pub fn granted(&self) -> &Granted {
-        &self.shared.granted
+    pub fn granted(&self) -> Arc<Granted> {
+        self.link().granted.clone()
     }
 
     /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if
@@ -158,11 +158,11 @@ impl Robot {
     /// Once polled, the arm is braked even if the future is dropped.
     pub async fn stop(&self) -> Result<(), MotionError> {
         let (ended, outcome) = oneshot::channel();
-        let goal = self.next_goal();
-        self.send(Input::Stop { goal, ended });
+        let (goal, link) = (self.next_goal(), self.link());
+        link.send(Input::Stop { goal, ended });
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
-            Err(_) if self.shared.bridge.inbox.is_closed() => self.closed_outcome().map(|_| ()),
+            Err(_) if link.has_ended() => Err(link.closed()),
             // Nothing moved.
             Err(_) => Ok(()),
         }
@@ -186,20 +186,18 @@ impl Robot {
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
     pub async fn closed(&self) -> CloseReason {
-        self.shared.bridge.inbox.closed().await;
-        self.shared.channel.closing().reason()
+        self.link().ended().await
     }
 
-    pub(crate) fn subscriptions(&self) -> &Subscriptions {
-        &self.shared.bridge.subscriptions
+    /// The newest connection. Whoever needs several things of the same one, asks once.
+    pub(crate) fn link(&self) -> Arc<Link> {
+        let link = self.shared.link.read();
+        // Nothing can panic while it is held.
+        link.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    pub(crate) fn channel(&self) -> &Channel {
-        &self.shared.channel
-    }
-
-    pub(crate) fn lender(&self) -> &Lender {
-        &self.shared.lender
+    pub(crate) fn channel(&self) -> Channel {
+        self.link().channel.clone()
     }
 
     /// A name for a goal that was never used before.
@@ -207,8 +205,7 @@ impl Robot {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
     }
 
-    /// Has the bridge begin a motion. Returns the receiver of its outcome, which is closed if the
-    /// bridge has ended.
+    /// Has the bridge begin a motion. Returns the receiver of its outcome; see [`unserved`](crate::input::unserved).
     pub(crate) fn begin(&self, motion: NewMotion) -> oneshot::Receiver<Outcome> {
         let (ended, outcome) = oneshot::channel();
         let replies = Replies {
@@ -224,24 +221,16 @@ impl Robot {
         self.send(Input::Cancel { goal });
     }
 
-    /// Sends to the bridge. One that has ended drops the input, and with it the sender of its
-    /// reply: the receiver sees that.
+    /// Sends to the bridge of the newest connection.
     pub(crate) fn send(&self, input: Input) {
-        let _ = self.shared.bridge.inbox.send(input);
-    }
-
-    /// The outcome of a motion that the bridge did not take, or whose end it did not report.
-    pub(crate) fn closed_outcome(&self) -> Outcome {
-        Err(MotionError::ConnectionClosed {
-            reason: self.shared.channel.closing().reason(),
-        })
+        self.link().send(input);
     }
 }
 
 impl fmt::Debug for Robot {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Robot")
-            .field("address", &self.shared.address)
+            .field("address", &self.address())
             .field("version", &self.shared.version)
             .finish_non_exhaustive()
     }

@@ -7,7 +7,7 @@ use franka_rt::lifecycle::{MotionError, Outcome, Tuning};
 use franka_rt::session::GoalId;
 use tokio::sync::{oneshot, watch};
 
-use crate::input::Input;
+use crate::input::{Input, unserved};
 use crate::robot::Robot;
 
 /// A session of target control. Dropping it brakes the arm and ends the session.
@@ -53,9 +53,11 @@ impl Session {
     pub(crate) fn ended(&self) -> impl Future<Output = Outcome> + Send + 'static {
         let (mut ended, robot) = (self.ended.clone(), self.robot.clone());
         async move {
+            // Whoever waits keeps the connection.
+            let _robot = robot;
             match ended.wait_for(Option::is_some).await {
-                Ok(outcome) => outcome.clone().unwrap_or_else(|| robot.closed_outcome()),
-                Err(_) => robot.closed_outcome(),
+                Ok(outcome) => outcome.clone().expect("it was waited for"),
+                Err(error) => unserved(error),
             }
         }
     }
@@ -66,17 +68,20 @@ impl Session {
         input: impl FnOnce(oneshot::Sender<Result<(), MotionError>>) -> Input,
     ) -> Result<(), MotionError> {
         let (taken, reply) = oneshot::channel();
-        self.robot.send(input(taken));
-        let closed = || self.robot.closed_outcome().map(drop);
-        let reply = reply.await.unwrap_or_else(|_| closed());
+        let link = self.robot.link();
+        link.send(input(taken));
+        let reply = reply.await.unwrap_or_else(|_| Err(link.closed()));
         reply.map_err(|error| self.explain(error))
     }
 
     /// Replaces [`MotionError::Disengaged`] by what ended the session: the lifecycle knows that of
-    /// the last session only.
+    /// the last session of its connection only. What comes after the session and its connection
+    /// have ended is answered with the end of the session, too.
     pub(crate) fn explain(&self, error: MotionError) -> MotionError {
         match (&*self.ended.borrow(), error) {
-            (Some(Err(ended)), MotionError::Disengaged) => ended.clone(),
+            (Some(Err(ended)), MotionError::Disengaged | MotionError::ConnectionClosed { .. }) => {
+                ended.clone()
+            }
             (_, error) => error,
         }
     }

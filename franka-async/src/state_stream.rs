@@ -66,9 +66,10 @@ impl Robot {
         &self,
         mut each: impl FnMut(&RobotState) -> ControlFlow<T>,
     ) -> Result<T, ReadError> {
-        let mut updates = self.subscriptions().updates();
-        let begun = self.state().message_id;
-        if let Some(silence) = self.subscriptions().silence(begun)
+        let link = self.link();
+        let mut updates = link.subscriptions().updates();
+        let begun = link.newest.state().message_id;
+        if let Some(silence) = link.subscriptions().silence(begun)
             && !updates.is_closed()
         {
             return Err(ReadError::LinkLost { silence });
@@ -84,7 +85,7 @@ impl Robot {
                 Ok(Update::Silence(silence)) => return Err(ReadError::LinkLost { silence }),
                 Err(RecvError::Lagged(_)) => {}
                 Err(RecvError::Closed) => {
-                    let reason = self.channel().closing().reason();
+                    let reason = link.channel.closing().reason();
                     return Err(ReadError::ConnectionClosed { reason });
                 }
             }
@@ -99,8 +100,9 @@ impl Robot {
     /// For the newest state whenever one looks, see [`Self::states`]; for what control made of
     /// each, [`Self::records`].
     pub fn state_stream(&self) -> StateStream {
-        let updates = BroadcastStream::new(self.subscriptions().updates());
-        let newest = self.state().message_id;
+        let link = self.link();
+        let updates = BroadcastStream::new(link.subscriptions().updates());
+        let newest = link.newest.state().message_id;
         StateStream { updates, newest }
     }
 }

@@ -1,0 +1,60 @@
+//! One connection to a robot: what ends with it.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+
+use franka_rt::lifecycle::{CloseReason, MotionError};
+use franka_rt::sched::Granted;
+use franka_rt::stats::Stats;
+use franka_rt::thread::Lender;
+
+use crate::command_channel::Channel;
+use crate::input::{BridgeHandle, Input};
+use crate::newest_state::Newest;
+use crate::publish::Subscriptions;
+
+/// One connection to a robot. Dropping it brakes the arm, ends the motion and closes the
+/// connection, in the background.
+pub(crate) struct Link {
+    pub(crate) address: SocketAddr,
+    pub(crate) bridge: BridgeHandle,
+    pub(crate) channel: Channel,
+    pub(crate) newest: Newest,
+    pub(crate) stats: Arc<Stats>,
+    pub(crate) granted: Arc<Granted>,
+    pub(crate) lender: Lender,
+}
+
+impl Link {
+    /// Sends to the bridge. One that has ended answers what would begin with the reason, and drops
+    /// every other input, and with it the sender of its reply: the receiver sees that.
+    pub(crate) fn send(&self, input: Input) {
+        if let Err(unsent) = self.bridge.inbox.send(input) {
+            unsent.0.refuse(self.channel.closing().reason());
+        }
+    }
+
+    pub(crate) fn subscriptions(&self) -> &Subscriptions {
+        &self.bridge.subscriptions
+    }
+
+    /// Whether the bridge takes nothing any more.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.bridge.inbox.is_closed()
+    }
+
+    /// Waits until the connection has ended, and returns why.
+    ///
+    /// # Cancel safety
+    /// Nothing happens if the future is dropped.
+    pub(crate) async fn ended(&self) -> CloseReason {
+        self.bridge.inbox.closed().await;
+        self.channel.closing().reason()
+    }
+
+    /// What is asked of a connection that has ended fails with this.
+    pub(crate) fn closed(&self) -> MotionError {
+        let reason = self.channel.closing().reason();
+        MotionError::ConnectionClosed { reason }
+    }
+}
