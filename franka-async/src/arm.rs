@@ -6,17 +6,19 @@ use std::sync::Arc;
 
 use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
-use franka_rt::driver::{Observer, Record};
+use franka_rt::driver::{Observer, Record, ReferenceState};
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, NewMotion, Tuning};
 use franka_rt::session::{Backend, Chunk, DeadmanMonitor, Free, Goal, OnArrival, Target};
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
+use crate::destination::{Destination, Offset};
 use crate::follow::{Follow, Targets, watched};
-use crate::input::{EndReply, Input, Replies};
+use crate::input::{Beginning, EndReply, Input, Replies};
 use crate::motion::Motion;
 use crate::options::{GoalOptions, goal_options};
-use crate::robot::{Pose, Robot};
+use crate::progress::Reference;
+use crate::robot::Robot;
 use crate::session::Session;
 
 /// Options of a session of target control; see [`Robot::engage`]. The default holds with the gains
@@ -112,7 +114,8 @@ impl Robot {
             motion: NewMotion::Session {
                 goal: Box::new(goal),
                 engagement,
-            },
+            }
+            .into(),
             replies: Replies {
                 began: Some(begin),
                 ended: EndReply::All(end),
@@ -131,44 +134,95 @@ impl Arm {
         self.session.robot()
     }
 
-    /// A motion of the end effector to `pose`; see [`Robot::move_to`]. It resolves when the arm has
-    /// arrived and rests, which is then held. Dropping it brakes the arm and holds it.
-    pub fn move_to(&self, pose: Pose) -> Motion {
-        Motion::within(&self.session, Target::Pose(pose))
+    /// A motion to a pose or to joint positions; see [`Robot::move_to`]. It resolves when the arm
+    /// has arrived and rests, which is then held. Dropping it brakes the arm and holds it.
+    pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
+        Motion::within(&self.session, destination.into())
     }
 
     /// A motion of the joints to `q`, `[rad]`; otherwise like [`Self::move_to`].
     pub fn move_joints(&self, q: [f64; 7]) -> Motion {
-        Motion::within(&self.session, Target::Joints(q))
+        self.move_to(q)
+    }
+
+    /// A motion of the end effector away from the present target, or from the arm; otherwise like
+    /// [`Self::move_to`].
+    pub fn move_by(&self, offset: Offset) -> Motion {
+        self.move_to(offset)
     }
 
     /// Brakes, whatever the arm is doing, and resolves when it rests; it is then held there.
     pub fn hold(&self) -> Motion {
-        Motion::within(&self.session, Target::Rest)
+        self.move_to(Target::Rest)
     }
 
-    /// Heads for `pose` from now on, in the place of whatever came before, and holds it. Returns as
-    /// soon as the goal is taken: for programs that set goals at a rate of their own and look at
-    /// the state for the rest.
+    /// Heads for a pose or joint positions from now on, in the place of whatever came before, and
+    /// holds them. Returns as soon as the goal is taken: for programs that set goals at a rate of
+    /// their own and look at the state for the rest.
+    ///
+    /// A target that comes with its velocity is followed without a lag; for how long it goes on by
+    /// itself is [`Target::MOVES_ON_MS`].
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for a pose that is not accepted, and what ended the session.
+    /// [`MotionError::Goal`] for a goal that is not accepted, and what ended the session.
     ///
     /// # Cancel safety
     /// Once polled the goal is taken all the same.
-    pub async fn set(&self, pose: Pose) -> Result<(), MotionError> {
-        self.take(Target::Pose(pose)).await
+    pub async fn set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
+        self.take(destination.into()).await
     }
 
-    /// Heads for the joint positions `q`, `[rad]`, and holds them; otherwise like [`Self::set`].
+    /// What the arm is held at or heads for: what was taken last. [`Target::Rest`] along a chunk,
+    /// at the begin of a session and where a goal was given up; `None` once the session has ended.
+    pub fn target(&self) -> Option<Target> {
+        let ended = self.session.has_ended();
+        self.session.link().course.target().filter(|_| !ended)
+    }
+
+    /// Where the arm is to be in this very millisecond; `None` once the session has ended.
+    pub fn reference(&self) -> Option<Reference> {
+        let ended = self.session.has_ended();
+        self.robot().reference().filter(|_| !ended)
+    }
+
+    /// Waits until the arm rests at the target that was taken last, or where that has been given
+    /// up: the reference has not moved for 250 ms, and no joint by more than half a milliradian, so
+    /// that friction has been made up for. For goals that are [set](Self::set); a motion that is
+    /// awaited rests when it resolves.
     ///
     /// # Errors
-    /// As [`Self::set`].
+    /// What ended the session.
     ///
     /// # Cancel safety
-    /// As [`Self::set`].
-    pub async fn set_joints(&self, q: [f64; 7]) -> Result<(), MotionError> {
-        self.take(Target::Joints(q)).await
+    /// Nothing happens if the future is dropped.
+    pub async fn at_rest(&self) -> Result<(), MotionError> {
+        let link = self.session.link();
+        let mut states = self.robot().states();
+        let mut begin = states.newest();
+        begin.message_id += TAKEN_UP;
+        let at_rest = async {
+            while let Ok(state) = states.changed().await {
+                let reference = link.course.reference().filter(|it| it.remaining.is_zero());
+                let still = |it: ReferenceState| it.dq.iter().all(|dq| dq.abs() < REFERENCE_REST);
+                let moved = |i: usize| (state.q[i] - begin.q[i]).abs() > MOVED;
+                if !reference.is_some_and(still) || (0..7).any(moved) {
+                    let message_id = begin.message_id.max(state.message_id);
+                    begin = RobotState {
+                        message_id,
+                        ..state
+                    };
+                } else if state.message_id >= begin.message_id + SETTLED {
+                    return;
+                }
+            }
+            // The connection has ended, and with it the session.
+            std::future::pending().await
+        };
+        tokio::select! {
+            biased;
+            ended = self.ended() => Err(ended.err().unwrap_or(MotionError::Disengaged)),
+            () = at_rest => Ok(()),
+        }
     }
 
     /// Follows a chunk of points with times, as a policy predicts them, from now on; returns as
@@ -209,7 +263,7 @@ impl Arm {
     /// # Cancel safety
     /// As [`Self::set`].
     pub async fn guide(&self, free: Free) -> Result<(), MotionError> {
-        self.take(Target::Guide(free)).await
+        self.take(Target::Guide(free).into()).await
     }
 
     /// Follows the newest of the targets that `targets` shows, poses or joint positions, until the
@@ -297,15 +351,30 @@ impl Arm {
         self.session.tuning().apply(goal)
     }
 
-    async fn take(&self, target: Target) -> Result<(), MotionError> {
-        let motion = NewMotion::Goal {
-            goal: Box::new(self.goal(target)),
-            ticket: None,
-            session: Some(self.session.id()),
+    async fn take(&self, destination: Destination) -> Result<(), MotionError> {
+        let motion = Beginning {
+            motion: NewMotion::Goal {
+                goal: Box::new(self.goal(destination.kind())),
+                ticket: None,
+                session: Some(self.session.id()),
+            },
+            destination: Some(Box::new(destination)),
         };
         self.session.ask(|taken| Input::Set { motion, taken }).await
     }
 }
+
+/// Cycles after which a goal that was taken moves the reference, with one to spare.
+const TAKEN_UP: u64 = 3;
+
+/// Time without a motion after which an arm rests, `[ms]`: as for the arrival of a motion.
+const SETTLED: u64 = 250;
+
+/// Joint velocity of the reference below which it rests, `[rad/s]`.
+const REFERENCE_REST: f64 = 1e-3;
+
+/// Distance of a joint from where it was when the wait began, `[rad]`, from which on it has moved.
+const MOVED: f64 = 5e-4;
 
 impl fmt::Debug for Arm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

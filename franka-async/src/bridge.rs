@@ -12,9 +12,9 @@ use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order};
 use franka_rt::event_fd::EventFd;
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{CloseReason, Lifecycle, Outcome, Output};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, NewMotion, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
-use franka_rt::session::{GoalId, Margin};
+use franka_rt::session::{GoalId, Margin, Target};
 use franka_rt::thread::{Handle, Notice, Thread};
 use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
@@ -23,8 +23,11 @@ use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use crate::command_channel::{Channel, Connection, Report};
-use crate::input::{BridgeHandle, EndReply, Input, Replies};
+use crate::destination::Now;
+use crate::input::{Beginning, BridgeHandle, EndReply, Input, Replies};
+use crate::progress::Course;
 use crate::publish::Publisher;
+use crate::robot::{pose_at, pose_of};
 use crate::telemetry::{self, Telemetry};
 
 /// Time that a motion gets to brake and finish when the last handle is dropped.
@@ -64,6 +67,7 @@ pub(crate) struct Bridge {
     notices: Receiver<Notice<Event>>,
     publisher: Publisher,
     telemetry: Telemetry,
+    course: Course,
     thread: Option<Thread<Driver>>,
     channel: Channel,
     connection: Option<Connection>,
@@ -83,6 +87,7 @@ impl Bridge {
         wake: AsyncFd<EventFd>,
         (channel, connection): (Channel, Connection),
         states: Arc<watch::Sender<RobotState>>,
+        course: Course,
     ) -> Self {
         Self {
             lifecycle,
@@ -97,6 +102,7 @@ impl Bridge {
                 states,
             ),
             telemetry: Telemetry::new(handle.stats),
+            course,
             thread: Some(handle.thread),
             channel,
             connection: Some(connection),
@@ -183,6 +189,7 @@ impl Bridge {
 
     /// Carries out what the lifecycle has decided, in its order.
     fn carry_out(&mut self) {
+        self.course.head_for(self.lifecycle.heading());
         while let Some(output) = self.lifecycle.poll() {
             match output {
                 Output::Order(order) => {
@@ -309,8 +316,9 @@ impl Bridge {
         self.take_notices();
         match input {
             Input::Begin { motion, replies } => {
-                let id = motion.id();
                 let state = &self.publisher.state();
+                let motion = self.with_target(motion, state);
+                let id = motion.id();
                 let gains = motion.gains().copied();
                 let begun = self.lifecycle.begin(motion, state, now);
                 match begun {
@@ -331,11 +339,15 @@ impl Bridge {
                 taken,
             } => {
                 let updated = self.lifecycle.update(goal, target, &self.publisher.state());
+                self.course.head_for(self.lifecycle.heading());
                 let _ = taken.send(updated);
             }
             Input::Set { motion, taken } => {
                 let state = &self.publisher.state();
-                let _ = taken.send(self.lifecycle.begin(motion, state, now));
+                let motion = self.with_target(motion, state);
+                let begun = self.lifecycle.begin(motion, state, now);
+                self.course.head_for(self.lifecycle.heading());
+                let _ = taken.send(begun);
             }
             Input::Chunk {
                 id,
@@ -344,7 +356,9 @@ impl Bridge {
                 taken,
             } => {
                 let state = &self.publisher.state();
-                let _ = taken.send(self.lifecycle.chunk(id, *goal, *chunk, state));
+                let sent = self.lifecycle.chunk(id, *goal, *chunk, state);
+                self.course.head_for(self.lifecycle.heading());
+                let _ = taken.send(sent);
             }
             Input::Tune { id, tuning, taken } => {
                 let state = &self.publisher.state();
@@ -356,6 +370,7 @@ impl Bridge {
             }
             Input::Disengage { id } => self.lifecycle.disengage(id),
             Input::Close { goal } => self.lifecycle.close(goal),
+            Input::Pause { goal, paused } => self.lifecycle.pause(goal, paused),
             Input::Cancel { goal } => self.lifecycle.cancel(goal, now),
             Input::Stop { goal, ended } => {
                 if self.lifecycle.stop(goal, now) {
@@ -366,6 +381,33 @@ impl Bridge {
             }
             Input::Shutdown { .. } => unreachable!("taken where the loop decides to close"),
         }
+    }
+
+    /// The motion with its target, for a robot in `state`.
+    fn with_target(&self, beginning: Beginning, state: &RobotState) -> NewMotion {
+        let Beginning {
+            mut motion,
+            destination,
+        } = beginning;
+        if let (Some(destination), NewMotion::Goal { goal, .. }) = (destination, &mut motion) {
+            goal.target = destination.seen_from(&self.poses(state));
+        }
+        motion
+    }
+
+    /// The poses that a destination may be relative to.
+    fn poses(&self, state: &RobotState) -> Now {
+        let pose_at = |q| pose_at(self.lifecycle.model(), state, q);
+        let arm = pose_of(state).unwrap_or_else(|| pose_at(state.q));
+        // What is held or followed has no pose of its own.
+        let reference = || self.course.reference().map(|newest| pose_at(newest.q));
+        let target = match self.lifecycle.heading() {
+            Some((_, Target::Pose(pose))) => pose,
+            Some((_, Target::Joints(q))) => pose_at(q),
+            Some(_) => reference().unwrap_or(arm),
+            None => arm,
+        };
+        Now { target, arm }
     }
 
     fn on_report(&mut self, report: Report) {

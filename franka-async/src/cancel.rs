@@ -7,11 +7,12 @@
 //! `active_control` and `asynchronous_control`; what happens is decided by `Lifecycle::cancel`, in
 //! `franka_rt::lifecycle::goals`.
 
-use franka_rt::lifecycle::{NewMotion, Outcome};
+use franka_rt::lifecycle::Outcome;
 use franka_rt::session::GoalId;
 use tokio::sync::oneshot;
 use tokio_util::sync::CancellationToken;
 
+use crate::input::Beginning;
 use crate::robot::Robot;
 
 /// Takes a motion back: an arm on its way to a goal brakes, and a control function or program has
@@ -49,7 +50,7 @@ impl Canceller {
     }
 
     /// Begins `motion`, unless it is cancelled already. Returns the receiver of its outcome.
-    pub(crate) fn begin(&self, motion: NewMotion) -> Option<oneshot::Receiver<Outcome>> {
+    pub(crate) fn begin(&self, motion: Beginning) -> Option<oneshot::Receiver<Outcome>> {
         if self.cancelled.is_cancelled() {
             return None;
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use franka_proto::client::Session;
 use franka_proto::{RobotState, Version};
-use franka_rt::driver::{ControlLog, Driver, LinkTimeout};
+use franka_rt::driver::{ControlLog, Driver, LinkTimeout, ReferenceReader};
 use franka_rt::event_fd::EventFd;
 use franka_rt::exchange;
 use franka_rt::lifecycle::Lifecycle;
@@ -28,6 +28,7 @@ use crate::error::ConnectError;
 use crate::handshake::shake_hands;
 use crate::link::Link;
 use crate::newest_state::Newest;
+use crate::progress::Course;
 use crate::robot::Robot;
 
 impl Robot {
@@ -80,6 +81,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let newest = Newest::new(reader.clone(), &states, state_wakeups.clone());
     let (channel, connection, reports) =
         Channel::start(opened.stream, opened.session, newest.clone());
+    let course = Course::new(opened.references);
     let stats = opened.handle.stats.clone();
     let granted = Arc::new(opened.handle.granted.clone());
     let lender = opened.handle.lender.clone();
@@ -96,6 +98,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         opened.wake,
         (channel.clone(), connection),
         states,
+        course.clone(),
     );
     let bridge = bridge.start(reports, builder.cancellation);
     let link = Link {
@@ -103,6 +106,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         bridge,
         channel,
         newest,
+        course,
         stats,
         granted,
         lender,
@@ -115,6 +119,7 @@ struct Opened {
     stream: Framed<TcpStream, MessageCodec>,
     session: Session,
     handle: Handle,
+    references: ReferenceReader,
     wake: AsyncFd<EventFd>,
     first: RobotState,
 }
@@ -169,6 +174,7 @@ async fn open_with(
     };
     let link_timeout = LinkTimeout::new(builder.link_timeout)?;
     let driver = Driver::new(version).with_link_timeout(link_timeout);
+    let references = driver.references();
     let start = move || thread::spawn(config, driver, udp, address.ip(), version);
     let mut handle = off_worker(start).await??;
     let wake = bridge::attach(handle.event_fd.clone())?;
@@ -180,6 +186,7 @@ async fn open_with(
         stream,
         session,
         handle,
+        references,
         wake,
         first,
     })

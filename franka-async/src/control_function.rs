@@ -153,7 +153,7 @@ impl Control {
     /// Begins the motion without a future: it runs on, and its outcome is only logged.
     pub fn detach(self) {
         let canceller = self.canceller.clone();
-        canceller.begin(self.begin());
+        canceller.begin(self.begin().into());
     }
 
     /// Returns a handle that stops the motion from elsewhere.
@@ -181,6 +181,6 @@ impl IntoFuture for Control {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        Moving::new(self.canceller.clone(), None, Ok(self.begin()))
+        Moving::new(self.canceller.clone(), None, Ok(self.begin().into()))
     }
 }

@@ -136,7 +136,11 @@ impl Follow {
             ticket,
             session: session.as_deref().map(Session::id),
         };
-        let mut moving = Moving::new(Canceller::new(robot.clone(), id), session, Ok(motion));
+        let mut moving = Moving::new(
+            Canceller::new(robot.clone(), id),
+            session,
+            Ok(motion.into()),
+        );
         loop {
             let next = tokio::select! {
                 biased;

@@ -4,13 +4,14 @@ use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome, Tuning}
 use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target};
 use tokio::sync::{mpsc, oneshot, watch};
 
+use crate::destination::Destination;
 use crate::publish::Subscriptions;
 
 /// What handles and motions ask of the bridge.
 #[derive(Debug)]
 pub(crate) enum Input {
     Begin {
-        motion: NewMotion,
+        motion: Beginning,
         replies: Replies,
     },
     /// Moves the target of a goal. The reply is whether the goal is still the newest.
@@ -22,7 +23,7 @@ pub(crate) enum Input {
     /// Begins a motion whose outcome is not awaited. The reply, as of the next two, is whether it
     /// is accepted.
     Set {
-        motion: NewMotion,
+        motion: Beginning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
     /// Sends a chunk to the session `id`.
@@ -42,6 +43,10 @@ pub(crate) enum Input {
     },
     Close {
         goal: GoalId,
+    },
+    Pause {
+        goal: GoalId,
+        paused: bool,
     },
     Cancel {
         goal: GoalId,
@@ -63,6 +68,24 @@ impl Input {
         if let Self::Begin { replies, .. } = self {
             let closed = MotionError::ConnectionClosed { reason };
             replies.ended.send(Err(closed));
+        }
+    }
+}
+
+/// A motion that is to begin.
+#[derive(Debug)]
+pub(crate) struct Beginning {
+    pub(crate) motion: NewMotion,
+    /// Where its goal leads, if that takes the poses of now.
+    pub(crate) destination: Option<Box<Destination>>,
+}
+
+impl From<NewMotion> for Beginning {
+    fn from(motion: NewMotion) -> Self {
+        let destination = None;
+        Self {
+            motion,
+            destination,
         }
     }
 }

@@ -69,6 +69,7 @@ mod command_channel;
 mod connect;
 mod connected_model;
 mod control_function;
+mod destination;
 mod device_connection;
 mod dial;
 mod endpoint;
@@ -84,6 +85,7 @@ mod newest_state;
 mod options;
 mod parameters;
 mod program;
+mod progress;
 mod publish;
 mod robot;
 mod session;
@@ -102,7 +104,8 @@ pub use endpoint::Endpoint;
 pub use error::{Error, MotionError};
 pub use follow::Follow;
 pub use franka_hand::Gripper;
-pub use motion::{Motion, Moving};
+pub use motion::{Motion, MotionHandle, Moving};
+pub use progress::{Progress, Reference};
 pub use robot::{Pose, Robot};
 pub use state_stream::{Reading, StateStream};
 pub use states::States;
@@ -119,6 +122,7 @@ pub use tokio_util::sync::CancellationToken;
 
 /// Goals of target control: targets, limits, gains, guards.
 pub mod goal {
+    pub use crate::destination::{Destination, Offset};
     pub use franka_model::collision::Obstacle;
     pub use franka_otg::AxisLimits;
     pub use franka_rt::law::{Gains, Law};

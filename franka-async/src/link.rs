@@ -11,6 +11,7 @@ use franka_rt::thread::Lender;
 use crate::command_channel::Channel;
 use crate::input::{BridgeHandle, Input};
 use crate::newest_state::Newest;
+use crate::progress::Course;
 use crate::publish::Subscriptions;
 
 /// One connection to a robot. Dropping it brakes the arm, ends the motion and closes the
@@ -20,6 +21,7 @@ pub(crate) struct Link {
     pub(crate) bridge: BridgeHandle,
     pub(crate) channel: Channel,
     pub(crate) newest: Newest,
+    pub(crate) course: Course,
     pub(crate) stats: Arc<Stats>,
     pub(crate) granted: Arc<Granted>,
     pub(crate) lender: Lender,

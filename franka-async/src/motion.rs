@@ -7,14 +7,17 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
-use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Target};
+use franka_rt::session::{Goal, GoalError, GoalId, OnArrival};
 use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
 use crate::cancel::Canceller;
+use crate::destination::{Destination, Offset};
 use crate::input::unserved;
+use crate::input::{Beginning, Input};
 use crate::options::{GoalOptions, goal_options};
-use crate::robot::{Pose, Robot};
+use crate::progress::Progress;
+use crate::robot::Robot;
 use crate::session::Session;
 
 /// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a
@@ -25,32 +28,39 @@ use crate::session::Session;
 pub struct Motion {
     canceller: Canceller,
     session: Option<Arc<Session>>,
-    target: Target,
+    destination: Destination,
     on_arrival: OnArrival,
     options: GoalOptions,
     ticket: Option<StartTicket>,
 }
 
 impl Robot {
-    /// A motion of the end effector to `pose` in the base frame: a straight line and a rotation
-    /// about one axis if it begins at rest. The arm is compliant on the way, see
-    /// [`Motion::stiffness`].
-    pub fn move_to(&self, pose: Pose) -> Motion {
-        Motion::of_robot(self, Target::Pose(pose))
+    /// A motion to a pose of the end effector in the base frame, or to joint positions, `[rad]`. To
+    /// a pose it is a straight line and a rotation about one axis if it begins at rest, and the arm
+    /// is compliant on the way, see [`Motion::stiffness`]; of joints all arrive together.
+    pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
+        Motion::of_robot(self, destination.into())
     }
 
     /// A motion of the joints to `q`, `[rad]`; all joints arrive together.
     pub fn move_joints(&self, q: [f64; 7]) -> Motion {
-        Motion::of_robot(self, Target::Joints(q))
+        self.move_to(q)
+    }
+
+    /// A motion of the end effector away from where it is, or from the target if a motion is under
+    /// way; otherwise like [`Self::move_to`]. Where several follow each other,
+    /// [engage](Self::engage) the arm: it moves a little when it is let go in between.
+    pub fn move_by(&self, offset: Offset) -> Motion {
+        self.move_to(offset)
     }
 }
 
 impl Motion {
-    fn of_robot(robot: &Robot, target: Target) -> Self {
+    fn of_robot(robot: &Robot, destination: Destination) -> Self {
         Self {
             canceller: Canceller::new(robot.clone(), robot.next_goal()),
             session: None,
-            target,
+            destination,
             on_arrival: OnArrival::ReportAndFinish,
             options: GoalOptions::default(),
             ticket: None,
@@ -58,12 +68,12 @@ impl Motion {
     }
 
     /// A motion within a session, which holds the arm at the target.
-    pub(crate) fn within(session: &Arc<Session>, target: Target) -> Self {
+    pub(crate) fn within(session: &Arc<Session>, destination: Destination) -> Self {
         Self {
             session: Some(session.clone()),
             on_arrival: OnArrival::ReportAndHold,
             options: GoalOptions::of_session(*session.tuning()),
-            ..Self::of_robot(session.robot(), target)
+            ..Self::of_robot(session.robot(), destination)
         }
     }
 
@@ -92,18 +102,24 @@ impl Motion {
         }
     }
 
-    /// Returns a handle that brakes the motion from elsewhere.
-    pub fn canceller(&self) -> Canceller {
-        self.canceller.clone()
+    /// Returns a handle that says from elsewhere how far the motion is, and pauses or brakes it.
+    pub fn handle(&self) -> MotionHandle {
+        MotionHandle(self.canceller.clone())
     }
 
-    fn begin(&mut self) -> Result<NewMotion, GoalError> {
+    fn begin(&mut self) -> Result<Beginning, GoalError> {
         let (id, model) = (self.canceller.id(), self.canceller.robot().model());
-        let goal = Goal::new(id, self.target, self.on_arrival, model.joint_limits());
-        Ok(NewMotion::Goal {
+        let kind = self.destination.kind();
+        let goal = Goal::new(id, kind, self.on_arrival, model.joint_limits());
+        let motion = NewMotion::Goal {
             goal: Box::new(self.options.apply(goal, model)?),
             ticket: self.ticket.take(),
             session: self.session.as_deref().map(Session::id),
+        };
+        let destination = Some(Box::new(self.destination));
+        Ok(Beginning {
+            motion,
+            destination,
         })
     }
 }
@@ -115,7 +131,7 @@ impl Clone for Motion {
             session: self.session.clone(),
             on_arrival: self.on_arrival,
             options: self.options,
-            ..Self::of_robot(robot, self.target)
+            ..Self::of_robot(robot, self.destination)
         }
     }
 }
@@ -127,6 +143,40 @@ impl IntoFuture for Motion {
     fn into_future(mut self) -> Moving {
         let motion = self.begin();
         Moving::new(self.canceller, self.session, motion)
+    }
+}
+
+/// A motion from elsewhere: how far it is, and pausing or braking it. Clones are about the same
+/// motion; none of them counts as a handle of the robot's session or keeps the motion going.
+#[derive(Clone, Debug)]
+pub struct MotionHandle(Canceller);
+
+impl MotionHandle {
+    /// Brakes the motion for good: see [`Canceller::cancel`].
+    pub fn cancel(&self) {
+        self.0.cancel();
+    }
+
+    /// Stops the motion on its way, within its limits and on its line if it goes along one, until
+    /// [`Self::resume`]. The arm is held there meanwhile. Without effect before the motion has
+    /// begun, after its end and once a newer goal has come.
+    pub fn pause(&self) {
+        self.set_paused(true);
+    }
+
+    /// Lets the motion go on.
+    pub fn resume(&self) {
+        self.set_paused(false);
+    }
+
+    fn set_paused(&self, paused: bool) {
+        let goal = self.0.id();
+        self.0.robot().send(Input::Pause { goal, paused });
+    }
+
+    /// How far the motion has come; `None` before it has begun and after its end.
+    pub fn progress(&self) -> Option<Progress> {
+        self.0.robot().link().course.progress(self.0.id())
     }
 }
 
@@ -145,13 +195,13 @@ pub struct Moving {
     canceller: Canceller,
     /// Keeps the session of the goal.
     session: Option<Arc<Session>>,
-    progress: Progress,
+    stage: Stage,
 }
 
 #[derive(Debug)]
-enum Progress {
+enum Stage {
     /// Or options that are not accepted.
-    Ready(Result<NewMotion, GoalError>),
+    Ready(Result<Beginning, GoalError>),
     Begun(oneshot::Receiver<Outcome>),
     Over,
 }
@@ -161,14 +211,14 @@ impl Moving {
     pub(crate) fn new(
         canceller: Canceller,
         session: Option<Arc<Session>>,
-        motion: Result<NewMotion, GoalError>,
+        motion: Result<Beginning, GoalError>,
     ) -> Self {
-        let named = |motion: &NewMotion| motion.id() == canceller.id();
+        let named = |motion: &Beginning| motion.motion.id() == canceller.id();
         debug_assert!(motion.as_ref().ok().is_none_or(named));
         Self {
             canceller,
             session,
-            progress: Progress::Ready(motion),
+            stage: Stage::Ready(motion),
         }
     }
 
@@ -181,17 +231,17 @@ impl Future for Moving {
     type Output = Outcome;
 
     fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Outcome> {
-        let mut outcome = match std::mem::replace(&mut self.progress, Progress::Over) {
-            Progress::Ready(Err(error)) => return Poll::Ready(Err(error.into())),
-            Progress::Ready(Ok(motion)) => match self.canceller.begin(motion) {
+        let mut outcome = match std::mem::replace(&mut self.stage, Stage::Over) {
+            Stage::Ready(Err(error)) => return Poll::Ready(Err(error.into())),
+            Stage::Ready(Ok(motion)) => match self.canceller.begin(motion) {
                 Some(outcome) => outcome,
                 None => return Poll::Ready(Err(MotionError::Stopped)),
             },
-            Progress::Begun(outcome) => outcome,
-            Progress::Over => panic!("a motion is not polled after it has resolved"),
+            Stage::Begun(outcome) => outcome,
+            Stage::Over => panic!("a motion is not polled after it has resolved"),
         };
         let Poll::Ready(outcome) = Pin::new(&mut outcome).poll(context) else {
-            self.progress = Progress::Begun(outcome);
+            self.stage = Stage::Begun(outcome);
             return Poll::Pending;
         };
         let outcome = outcome.unwrap_or_else(unserved);
@@ -204,7 +254,7 @@ impl Future for Moving {
 
 impl Drop for Moving {
     fn drop(&mut self) {
-        if matches!(self.progress, Progress::Begun(_)) {
+        if matches!(self.stage, Stage::Begun(_)) {
             self.canceller.cancel();
         }
     }

@@ -30,7 +30,8 @@ impl Robot {
                 program,
                 request: Box::new(request),
                 ticket: None,
-            },
+            }
+            .into(),
             replies: Replies {
                 began: Some(began),
                 ended: EndReply::One(ended),

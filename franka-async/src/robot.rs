@@ -9,15 +9,16 @@ use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::Record;
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome};
+use franka_rt::lifecycle::{CloseReason, MotionError, Outcome};
 use franka_rt::sched::Granted;
 use franka_rt::session::{GoalId, Margin};
 use franka_rt::stats::Stats;
 use tokio::sync::{broadcast, oneshot};
 
 use crate::command_channel::Channel;
-use crate::input::{EndReply, Input, Replies};
+use crate::input::{Beginning, EndReply, Input, Replies};
 use crate::link::Link;
+use crate::progress::Reference;
 use crate::states::States;
 
 /// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame,
@@ -91,19 +92,25 @@ impl Robot {
     pub fn pose(&self) -> Pose {
         let state = self.state();
         // An invalid pose is replaced by that of the joint positions.
-        transform::isometry_from_array(&state.O_T_EE).unwrap_or_else(|| self.pose_at(state.q))
+        pose_of(&state).unwrap_or_else(|| pose_at(self.model(), &state, state.q))
     }
 
     /// The pose that the end effector has at the joint positions `q`, `[rad]`, with the end
     /// effector of the newest state. One that is not a rigid transformation counts as the flange.
     pub fn pose_at(&self, q: [f64; 7]) -> Pose {
-        let ee = transform::isometry_from_array(&self.state().F_T_EE).unwrap_or_default();
-        let ee = EndEffector {
-            f_t_ee: transform::matrix(&ee),
-            ..EndEffector::default()
-        };
-        let pose = self.model().pose(Frame::EndEffector, &q.into(), &ee);
-        transform::isometry(&pose).unwrap_or_default()
+        pose_at(self.model(), &self.state(), q)
+    }
+
+    /// Where target control has the arm go; `None` while it moves nothing.
+    pub fn reference(&self) -> Option<Reference> {
+        let newest = self.link().course.reference()?;
+        Some(Reference {
+            time: newest.time,
+            q: newest.q,
+            dq: newest.dq,
+            ddq: newest.ddq,
+            pose: self.pose_at(newest.q),
+        })
     }
 
     /// The model of the connected arm, which control computes with. A Franka Research 3 describes
@@ -205,8 +212,9 @@ impl Robot {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
     }
 
-    /// Has the bridge begin a motion. Returns the receiver of its outcome; see [`unserved`](crate::input::unserved).
-    pub(crate) fn begin(&self, motion: NewMotion) -> oneshot::Receiver<Outcome> {
+    /// Has the bridge begin a motion. Returns the receiver of its outcome; see
+    /// [`unserved`](crate::input::unserved).
+    pub(crate) fn begin(&self, motion: Beginning) -> oneshot::Receiver<Outcome> {
         let (ended, outcome) = oneshot::channel();
         let replies = Replies {
             began: None,
@@ -225,6 +233,22 @@ impl Robot {
     pub(crate) fn send(&self, input: Input) {
         self.link().send(input);
     }
+}
+
+/// `O_T_EE` of a state, if it is a rigid transformation.
+pub(crate) fn pose_of(state: &RobotState) -> Option<Pose> {
+    transform::isometry_from_array(&state.O_T_EE)
+}
+
+/// See [`Robot::pose_at`].
+pub(crate) fn pose_at(model: &Model, state: &RobotState, q: [f64; 7]) -> Pose {
+    let ee = transform::isometry_from_array(&state.F_T_EE).unwrap_or_default();
+    let ee = EndEffector {
+        f_t_ee: transform::matrix(&ee),
+        ..EndEffector::default()
+    };
+    let pose = model.pose(Frame::EndEffector, &q.into(), &ee);
+    transform::isometry(&pose).unwrap_or_default()
 }
 
 impl fmt::Debug for Robot {

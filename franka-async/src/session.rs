@@ -1,13 +1,14 @@
 //! What all handles of a session share.
 
 use std::future::Future;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use franka_rt::lifecycle::{MotionError, Outcome, Tuning};
 use franka_rt::session::GoalId;
 use tokio::sync::{oneshot, watch};
 
 use crate::input::{Input, unserved};
+use crate::link::Link;
 use crate::robot::Robot;
 
 /// A session of target control. Dropping it brakes the arm and ends the session.
@@ -39,6 +40,11 @@ impl Session {
         &self.robot
     }
 
+    /// The newest connection of its robot: its own, or one after its end.
+    pub(crate) fn link(&self) -> Arc<Link> {
+        self.robot.link()
+    }
+
     pub(crate) fn id(&self) -> GoalId {
         self.id
     }
@@ -47,6 +53,10 @@ impl Session {
     pub(crate) fn tuning(&self) -> MutexGuard<'_, Tuning> {
         // Nothing can panic while it is held.
         self.tuning.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn has_ended(&self) -> bool {
+        self.ended.borrow().is_some()
     }
 
     /// Waits for the end of the session and returns its outcome.

@@ -130,8 +130,11 @@ async fn goals_of_an_engaged_arm_may_be_dropped_at_every_poll() {
         ("set", |arm, start, _| {
             Box::pin(async move { arm.set(start).await })
         }),
-        ("set_joints", |arm, _, q| {
-            Box::pin(async move { arm.set_joints(q).await })
+        ("at_rest", |arm, _, q| {
+            Box::pin(async move {
+                arm.set(q).await?;
+                arm.at_rest().await
+            })
         }),
         ("guide", |arm, _, _| {
             Box::pin(async move { arm.guide(Free::ALL).await })

@@ -104,12 +104,12 @@ async fn clones_of_a_motion_are_motions_of_their_own() {
     let (robot, _sim) = simulated().await;
     let motion = long_way(&robot);
     let other = motion.clone();
-    let canceller = motion.canceller();
+    let handle = motion.handle();
     let first = tokio::spawn(motion.into_future());
     under_way(&robot).await;
     let second = tokio::spawn(other.speed(0.5).into_future());
     assert_eq!(first.await.unwrap(), Err(MotionError::Superseded));
-    canceller.cancel();
+    handle.cancel();
     second.await.unwrap().unwrap();
     robot.shutdown().await;
 }

@@ -38,7 +38,7 @@ async fn a_robot_that_dies_in_any_phase_of_a_motion_resolves_it() {
     ] {
         let (robot, sim) = simulated().await;
         let motion = long_way(&robot);
-        let canceller = motion.canceller();
+        let handle = motion.handle();
         let moving = tokio::spawn(motion.into_future());
         match delay {
             WAY => under_way(&robot).await,
@@ -46,7 +46,7 @@ async fn a_robot_that_dies_in_any_phase_of_a_motion_resolves_it() {
             _ => sleep(Duration::from_millis(delay)).await,
         }
         if braking {
-            canceller.cancel();
+            handle.cancel();
         }
         sim.stop().await;
         let outcome = timeout(SOON, moving).await.expect("no hang").unwrap();

@@ -19,6 +19,7 @@ mod failing;
 mod fer;
 mod garbling;
 mod hands;
+mod heading;
 mod identifying;
 mod misbehaving;
 mod mishaps;

@@ -89,16 +89,16 @@ async fn a_speed_that_no_motion_can_have_is_refused_as_a_speed() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn nothing_moves_before_the_first_poll_and_a_canceller_brakes() {
+async fn nothing_moves_before_the_first_poll_and_its_handle_brakes() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let motion = crate::long_way(&robot);
-    let canceller = motion.canceller();
+    let handle = motion.handle();
     robot_time(&robot, 200).await;
     assert!(!robot.state().motion_running());
     let moving = tokio::spawn(motion.into_future());
     under_way(&robot).await;
-    canceller.cancel();
+    handle.cancel();
     assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
     // Stopping an arm at rest is not an error.
     robot.stop().await.unwrap();
@@ -110,7 +110,7 @@ async fn what_is_cancelled_before_the_first_poll_never_begins() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let motion = robot.move_to(Pose::translation(0.0, 0.0, 0.02) * robot.pose());
-    motion.canceller().cancel();
+    motion.handle().cancel();
     assert_eq!(motion.await, Err(MotionError::Stopped));
     let control = robot.control_torques(|_, _| Torques([0.0; 7]).finish());
     control.canceller().cancel();

@@ -179,7 +179,8 @@ fn a_target_that_moves_has_no_arrival() {
 }
 
 /// Goes to `target`, and pauses for two seconds after 400 ms. Returns the outcome, how far beside
-/// the straight line the reference was, and how far it moved in the last second of the pause, `[m]`.
+/// the straight line the reference was, and how far it moved in the last second of the pause,
+/// `[m]`.
 fn paused(target: Isometry3<f64>) -> (Outcome, f64, f64) {
     let mut lockstep = realistic();
     let start = lockstep.arm_pose().translation.vector;

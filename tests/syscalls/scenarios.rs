@@ -171,7 +171,7 @@ fn kept_alive() -> (Engage, Arc<AtomicBool>) {
 async fn every_kind_of_goal(robot: &Robot, arm: &Arm) {
     let mut q = robot.state().q_d;
     q[0] += 0.05;
-    arm.set_joints(q).await.expect("the session takes it");
+    arm.set(q).await.expect("the session takes it");
     states(robot, 500).await;
     let q = robot.state().q_d;
     let points = (0..6).map(|k| {

@@ -43,8 +43,8 @@ impl Lifecycle {
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
 
-    /// Halts a motion on its way, within its budget, or lets it go on. Without effect on a goal that
-    /// is no longer the newest, and on chunks, whose points have their times.
+    /// Halts a motion on its way, within its budget, or lets it go on. Without effect on a goal
+    /// that is no longer the newest, and on chunks, whose points have their times.
     pub fn pause(&mut self, id: GoalId, paused: bool) {
         let goal = match &mut self.next {
             Some(NewMotion::Goal { goal, .. }) if goal.id == id => &mut **goal,
@@ -107,8 +107,8 @@ impl Lifecycle {
         true
     }
 
-    /// What target control heads for, and the name of that goal: what was taken last, whether or not
-    /// the thread has it by now. `None` if target control moves nothing.
+    /// What target control heads for, and the name of that goal: what was taken last, whether or
+    /// not the thread has it by now. `None` if target control moves nothing.
     pub fn heading(&self) -> Option<(GoalId, Target)> {
         let goal = match &self.next {
             Some(NewMotion::Goal { goal, .. }) => goal,

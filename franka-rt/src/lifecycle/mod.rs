@@ -173,6 +173,11 @@ impl Lifecycle {
         self
     }
 
+    /// The model of the robot.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
     /// How far these gains are from the first oscillation of an arm in `state`: see [`Margin::of`].
     pub fn margin(&self, gains: &Gains, state: &RobotState) -> Option<Margin> {
         Margin::of(gains, &self.model, state, self.version)

@@ -1,0 +1,109 @@
+//! What target control heads for, where it has the arm go, and how far a motion has come.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use franka_rt::driver::{ReferenceReader, ReferenceState};
+use franka_rt::session::{GoalId, Target};
+use nalgebra::Isometry3;
+
+/// Where target control has the arm go, in the newest cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Reference {
+    /// `message_id` of the state that it answered, `[ms]` of the robot's clock.
+    pub time: u64,
+    /// Joint positions, `[rad]`.
+    pub q: [f64; 7],
+    /// Joint velocities, `[rad/s]`.
+    pub dq: [f64; 7],
+    /// Joint accelerations, `[rad/s^2]`.
+    pub ddq: [f64; 7],
+    /// The end effector at those positions, base frame.
+    pub pose: Isometry3<f64>,
+}
+
+/// How far a motion has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// Since it began, by the robot's clock.
+    pub elapsed: Duration,
+    /// Until the reference is at the target, if nothing holds it up. The arm settles after that, a
+    /// quarter of a second at the least.
+    pub remaining: Duration,
+}
+
+impl Progress {
+    /// The share of its time that has passed, from 0 to 1. A pause takes the share back a little:
+    /// it has the way braked and begun again.
+    pub fn fraction(&self) -> f64 {
+        let all = self.elapsed + self.remaining;
+        if all.is_zero() {
+            return 1.0;
+        }
+        self.elapsed.as_secs_f64() / all.as_secs_f64()
+    }
+}
+
+/// What a connection's target control heads for, and where it is.
+#[derive(Clone, Debug)]
+pub(crate) struct Course {
+    references: ReferenceReader,
+    /// What was taken last, and its name. Held for a copy only.
+    heading: Arc<Mutex<Option<(GoalId, Target)>>>,
+}
+
+impl Course {
+    pub(crate) fn new(references: ReferenceReader) -> Self {
+        Self {
+            references,
+            heading: Arc::default(),
+        }
+    }
+
+    /// Notes what target control heads for.
+    pub(crate) fn head_for(&self, heading: Option<(GoalId, Target)>) {
+        let mut noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
+        *noted = heading;
+    }
+
+    /// What target control heads for; `None` if it moves nothing.
+    pub(crate) fn target(&self) -> Option<Target> {
+        let noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
+        noted.map(|(_, target)| target)
+    }
+
+    /// The newest reference; `None` if target control has not answered the newest state.
+    pub(crate) fn reference(&self) -> Option<ReferenceState> {
+        self.references.newest()
+    }
+
+    /// How far the motion `goal` has come; `None` before it has begun and after its end.
+    pub(crate) fn progress(&self, goal: GoalId) -> Option<Progress> {
+        let newest = self.reference().filter(|newest| newest.goal == goal)?;
+        Some(Progress {
+            elapsed: newest.elapsed,
+            remaining: newest.remaining,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_share_of_the_time_is_between_nothing_and_all() {
+        let ms = Duration::from_millis;
+        for (elapsed, remaining, share) in
+            [(0, 800, 0.0), (200, 600, 0.25), (900, 0, 1.0), (0, 0, 1.0)]
+        {
+            let progress = Progress {
+                elapsed: ms(elapsed),
+                remaining: ms(remaining),
+            };
+            assert_eq!(progress.fraction(), share);
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What a program is told of a motion under way, and goals relative to it.
+
+use std::time::Duration;
+
+use franka_async::error::PoseError;
+use franka_async::goal::{Destination, Offset, Target};
+use franka_async::nalgebra::{Translation3, UnitQuaternion};
+use franka_async::{Engage, MotionError, Pose};
+use franka_sim::{Sim, Tool};
+
+use crate::{alone, at_the_clients_pace, robot_time, simulated, under_way};
+
+/// Half of what a wire of single precision rounds a position to, and some.
+const NEAR: f64 = 1e-6;
+
+fn close(pose: &Pose, expected: &Pose) -> bool {
+    let error = PoseError::between(pose, expected);
+    error.translation < NEAR && error.rotation < NEAR
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn offsets_add_up_from_target_to_target() {
+    let _alone = alone();
+    let sim = Sim::fr3().tool(Tool::hand());
+    let (robot, _sim) = at_the_clients_pace(sim).await;
+    let start = robot.pose();
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    arm.set(start).await.unwrap();
+    assert_eq!(arm.target(), Some(Target::Pose(start)));
+    // Each of them at once, while the arm has not followed the one before.
+    let step = Translation3::new(0.0, 0.01, 0.0);
+    for _ in 0..5 {
+        arm.set(Offset::base(step)).await.unwrap();
+    }
+    let expected = Pose::translation(0.0, 0.05, 0.0) * start;
+    let Some(Target::Pose(target)) = arm.target() else {
+        panic!("{:?}", arm.target());
+    };
+    assert!(close(&target, &expected), "{target:?}");
+    arm.at_rest().await.unwrap();
+    let reference = arm.reference().expect("a session under way");
+    assert!(close(&reference.pose, &expected), "{reference:?}");
+    assert!(
+        reference.dq.iter().all(|dq| dq.abs() < 1e-9),
+        "{reference:?}"
+    );
+    // A real arm is not quite there.
+    let off = PoseError::between(&robot.pose(), &expected);
+    assert!(off.translation < 1e-3, "{off:?}");
+
+    let report = arm
+        .move_by(Offset::tool(Translation3::new(0.0, 0.0, 0.03)))
+        .await;
+    report.unwrap();
+    let lower = expected * Translation3::new(0.0, 0.0, 0.03);
+    arm.move_to(Destination::position(start.translation.vector))
+        .await
+        .unwrap();
+    let turned = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.2) * start.rotation;
+    arm.move_to(Destination::orientation(turned)).await.unwrap();
+    let expected = Pose::from_parts(start.translation, turned);
+    let Some(Target::Pose(target)) = arm.target() else {
+        panic!("{:?}", arm.target());
+    };
+    assert!(close(&target, &expected), "{target:?}, by way of {lower:?}");
+
+    // Counted from the arm, an offset of nothing leads to where that is.
+    arm.set(Offset::base(Translation3::identity()).from_arm())
+        .await
+        .unwrap();
+    arm.disengage().await.unwrap();
+    assert_eq!(robot.reference(), None);
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_arm_that_is_disengaged_has_no_target_and_does_not_rest() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    let other = arm.clone();
+    let resting = tokio::spawn({
+        let arm = arm.clone();
+        async move {
+            arm.set(Offset::base(Translation3::new(0.0, 0.2, 0.0)))
+                .await?;
+            arm.at_rest().await
+        }
+    });
+    under_way(&robot).await;
+    arm.disengage().await.unwrap();
+    assert_eq!(resting.await.unwrap(), Err(MotionError::Disengaged));
+    assert_eq!((other.target(), other.reference()), (None, None));
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_handle_tells_how_far_a_motion_is_and_pauses_it() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let motion = robot.move_by(Offset::base(Translation3::new(0.0, 0.2, 0.0)));
+    let handle = motion.handle();
+    assert_eq!(handle.progress(), None, "not begun");
+    handle.pause();
+    let moving = tokio::spawn(motion.into_future());
+    under_way(&robot).await;
+    let begun = handle.progress().expect("under way");
+    assert!(begun.remaining > Duration::from_millis(500), "{begun:?}");
+    robot_time(&robot, 200).await;
+    let later = handle.progress().expect("under way");
+    assert!(later.fraction() > begun.fraction(), "{begun:?}, {later:?}");
+
+    handle.pause();
+    robot_time(&robot, 900).await;
+    let stands = robot.reference().expect("held").pose;
+    assert_eq!(handle.progress().expect("paused").remaining, Duration::ZERO);
+    robot_time(&robot, 200).await;
+    assert_eq!(robot.reference().expect("held").pose, stands);
+    handle.resume();
+    moving.await.unwrap().unwrap();
+    assert_eq!(handle.progress(), None, "over");
+    robot.shutdown().await;
+}
