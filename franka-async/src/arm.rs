@@ -172,6 +172,28 @@ impl Arm {
         self.take(destination.into()).await
     }
 
+    /// As [`Self::set`], without waiting for an answer: for plain threads, callbacks and loops at a
+    /// rate of their own. The newest of goals that come faster than they are taken is the one that
+    /// counts. A target is checked here; what only the session can tell (an offset that leads out of
+    /// reach, [`Backend`]) is logged.
+    ///
+    /// # Errors
+    /// [`MotionError::Goal`] for a goal that is not accepted, and what ended the session.
+    pub fn try_set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
+        let destination = destination.into();
+        self.session.check()?;
+        let goal = self.goal(destination.kind());
+        if let Destination::Target(_) = destination {
+            goal.check(self.robot().model(), &self.robot().state())?;
+        }
+        let waiting = &self.session.waiting;
+        if waiting.put(self.beginning(goal, destination)) {
+            let waiting = waiting.clone();
+            self.robot().send(Input::SetNewest { waiting });
+        }
+        Ok(())
+    }
+
     /// What the arm is held at or heads for: what was taken last. [`Target::Rest`] along a chunk,
     /// at the begin of a session and where a goal was given up; `None` once the session has ended.
     pub fn target(&self) -> Option<Target> {
@@ -351,15 +373,19 @@ impl Arm {
         self.session.tuning().apply(goal)
     }
 
-    async fn take(&self, destination: Destination) -> Result<(), MotionError> {
-        let motion = Beginning {
+    fn beginning(&self, goal: Goal, destination: Destination) -> Beginning {
+        Beginning {
             motion: NewMotion::Goal {
-                goal: Box::new(self.goal(destination.kind())),
+                goal: Box::new(goal),
                 ticket: None,
                 session: Some(self.session.id()),
             },
             destination: Some(Box::new(destination)),
-        };
+        }
+    }
+
+    async fn take(&self, destination: Destination) -> Result<(), MotionError> {
+        let motion = self.beginning(self.goal(destination.kind()), destination);
         self.session.ask(|taken| Input::Set { motion, taken }).await
     }
 }

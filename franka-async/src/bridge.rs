@@ -349,6 +349,17 @@ impl Bridge {
                 self.course.head_for(self.lifecycle.heading());
                 let _ = taken.send(begun);
             }
+            Input::SetNewest { waiting } => {
+                let Some(motion) = waiting.take() else {
+                    return;
+                };
+                let state = &self.publisher.state();
+                let motion = self.with_target(motion, state);
+                let id = motion.id();
+                if let Err(error) = self.lifecycle.begin(motion, state, now) {
+                    log(id, &Err(error));
+                }
+            }
             Input::Chunk {
                 id,
                 goal,

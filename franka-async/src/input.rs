@@ -1,5 +1,7 @@
 //! What handles and motions ask of the bridge, and how it answers.
 
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
 use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome, Tuning};
 use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target};
 use tokio::sync::{mpsc, oneshot, watch};
@@ -25,6 +27,10 @@ pub(crate) enum Input {
     Set {
         motion: Beginning,
         taken: oneshot::Sender<Result<(), MotionError>>,
+    },
+    /// Begins the newest motion that waits in there, if one does, as `Set`; nobody waits for it.
+    SetNewest {
+        waiting: Waiting,
     },
     /// Sends a chunk to the session `id`.
     Chunk {
@@ -87,6 +93,27 @@ impl From<NewMotion> for Beginning {
             motion,
             destination,
         }
+    }
+}
+
+/// The newest motion that nobody waits for and the bridge has not taken yet. However often one is
+/// put there, one input at a time is under way for it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Waiting(Arc<Mutex<Option<Box<Beginning>>>>);
+
+impl Waiting {
+    /// Puts a motion in the place of one that still waits. Returns whether none did.
+    pub(crate) fn put(&self, motion: Beginning) -> bool {
+        self.lock().replace(Box::new(motion)).is_none()
+    }
+
+    pub(crate) fn take(&self) -> Option<Beginning> {
+        self.lock().take().map(|motion| *motion)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<Box<Beginning>>> {
+        // Nothing can panic while it is held.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

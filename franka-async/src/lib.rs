@@ -60,6 +60,8 @@
 mod active_control;
 mod arm;
 mod asynchronous_control;
+#[cfg(feature = "blocking")]
+pub mod blocking;
 mod bridge;
 mod builder;
 mod cancel;

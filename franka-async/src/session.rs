@@ -7,7 +7,7 @@ use franka_rt::lifecycle::{MotionError, Outcome, Tuning};
 use franka_rt::session::GoalId;
 use tokio::sync::{oneshot, watch};
 
-use crate::input::{Input, unserved};
+use crate::input::{Input, Waiting, unserved};
 use crate::link::Link;
 use crate::robot::Robot;
 
@@ -17,6 +17,8 @@ pub(crate) struct Session {
     robot: Robot,
     id: GoalId,
     tuning: Mutex<Tuning>,
+    /// What was set without waiting.
+    pub(crate) waiting: Waiting,
     ended: watch::Receiver<Option<Outcome>>,
 }
 
@@ -32,6 +34,7 @@ impl Session {
             robot,
             id,
             tuning: Mutex::new(tuning),
+            waiting: Waiting::default(),
             ended,
         }
     }
@@ -57,6 +60,15 @@ impl Session {
 
     pub(crate) fn has_ended(&self) -> bool {
         self.ended.borrow().is_some()
+    }
+
+    /// What a call is answered with once the session has ended.
+    pub(crate) fn check(&self) -> Result<(), MotionError> {
+        match &*self.ended.borrow() {
+            None => Ok(()),
+            Some(Ok(_)) => Err(MotionError::Disengaged),
+            Some(Err(error)) => Err(error.clone()),
+        }
     }
 
     /// Waits for the end of the session and returns its outcome.

@@ -27,6 +27,7 @@ mod moving;
 mod peer;
 mod raising;
 mod reading;
+mod scripts;
 mod stalls;
 mod starving;
 mod telemetry;

@@ -1,70 +1,16 @@
 //! Targets that move, and motions that pause on their way.
 
-use franka_model::{READY, RobotKind, Twist, rotation};
+use franka_model::{READY, Twist};
 use franka_rt::session::{OnArrival, PoseError, Target};
-use franka_sim::Arm;
+use franka_tests::bench::follow::{self, Lag, moved, realistic, twist};
 use franka_tests::lockstep::{Lockstep, Outcome};
-use nalgebra::{Isometry3, Translation3, Vector3};
-
-/// 0.1 m/s sideways and down, with a turn.
-fn twist() -> Twist {
-    Twist::new(0.02, 0.08, -0.05, 0.1, -0.05, 0.15)
-}
-
-/// Where a pose is after `t` seconds of this motion.
-fn moved(from: &Isometry3<f64>, twist: &Twist, t: f64) -> Isometry3<f64> {
-    let (linear, angular) = (twist.fixed_rows::<3>(0), twist.fixed_rows::<3>(3));
-    Isometry3::from_parts(
-        Translation3::from(from.translation.vector + linear * t),
-        rotation::exp(&Vector3::from(angular * t)) * from.rotation,
-    )
-}
-
-fn realistic() -> Lockstep {
-    Lockstep::new(franka_sim::Config {
-        arm: Some(Arm::realistic(RobotKind::Fr3)),
-        ..Lockstep::config_of(RobotKind::Fr3)
-    })
-}
-
-/// How far reference and arm are behind a target that moves evenly, once they follow it, `[ms]` of
-/// its motion; a new target comes every `period` milliseconds, with its velocity or without.
-fn lag_ms(period: u64, says_velocity: bool) -> (f64, f64) {
-    let mut lockstep = realistic();
-    let session = lockstep.engage();
-    let (start, twist) = (lockstep.reference_pose(), twist());
-    let speed = twist.fixed_rows::<3>(0).norm();
-    let at = |ms: u64| moved(&start, &twist, ms as f64 * 1e-3);
-    let target = |ms: u64| match says_velocity {
-        true => (at(ms), twist).into(),
-        false => Target::Pose(at(ms)),
-    };
-    let goal = lockstep
-        .within(session, target(0), OnArrival::Hold)
-        .expect("within reach");
-    let (mut reference, mut arm) = (0.0_f64, 0.0_f64);
-    for ms in 1..2000 {
-        lockstep.tick();
-        if ms > 1000 {
-            // The command of this cycle is for the next.
-            let behind = |pose: Isometry3<f64>| {
-                (at(ms).translation.vector - pose.translation.vector).norm() / speed * 1e3
-            };
-            reference = reference.max(behind(lockstep.reference_pose()));
-            arm = arm.max(behind(lockstep.arm_pose()));
-        }
-        if ms % period == 0 {
-            assert_eq!(lockstep.update(goal, target(ms)), Ok(true));
-        }
-    }
-    (reference, arm)
-}
+use nalgebra::{Isometry3, Translation3};
 
 #[test]
 fn a_target_that_moves_evenly_is_followed_with_a_lag_of_two_milliseconds_at_most() {
     for period in [1, 10, 100] {
-        let (reference, arm) = lag_ms(period, true);
-        let (unsaid, _) = lag_ms(period, false);
+        let Lag { reference, arm } = follow::lag(period, true);
+        let unsaid = follow::lag(period, false).reference;
         println!(
             "every {period} ms: reference {reference:.2} ms behind, arm {arm:.1}; {unsaid:.0} without a velocity"
         );

@@ -43,6 +43,15 @@ fn engage_goes_from_goal_to_goal_and_back() {
 }
 
 #[test]
+fn script_draws_its_circle_and_comes_back() {
+    for robot in ROBOTS {
+        let said = program::run("script", &["--sim", robot, "--turns", "1"], "");
+        assert_eq!(said.code, Some(0), "{robot}: {said:?}");
+        assert!(said.stdout.contains("\nback, 0."), "{robot}: {said:?}");
+    }
+}
+
+#[test]
 fn pick_holds_the_block_and_puts_it_down() {
     for robot in ROBOTS {
         let said = run("pick", robot);

@@ -15,6 +15,7 @@
 //! | [`codec`] | a state read, a command written |
 //! | [`collision`] | distances of the arm to itself, with gradients |
 //! | [`cycle`] | target control, datagram in to datagram out |
+//! | [`follow`] | the lag behind a target that moves, in virtual time |
 //! | [`guarded`] | the same with every guard on, for each kind of goal |
 //! | [`inverse`] | all postures of a pose, joint velocities in a box |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
@@ -28,6 +29,7 @@ use std::time::Instant;
 pub mod codec;
 pub mod collision;
 pub mod cycle;
+pub mod follow;
 pub mod guarded;
 pub mod inverse;
 pub mod model;

@@ -22,7 +22,12 @@ fn main() -> ExitCode {
     for (key, value) in &values {
         println!("{key:<28} {value:>9}");
     }
-    let json = serde_json::json!(values);
+    let mut json = serde_json::json!(values);
+    if FOLLOW.starts_with(&prefix) {
+        let lag = bench::follow::lag(10, true).reference;
+        println!("{FOLLOW} {lag:.2}");
+        json[FOLLOW] = lag.into();
+    }
     if let Err(error) = fs::write(&output, format!("{json:#}\n")) {
         eprintln!("cannot write {output}: {error}");
         return ExitCode::FAILURE;
@@ -30,6 +35,9 @@ fn main() -> ExitCode {
     println!("medians over {rounds} rounds, written to {output}");
     ExitCode::SUCCESS
 }
+
+/// Key of the lag behind a target that moves, `[ms]`: the same in every round.
+const FOLLOW: &str = "follow.lag_ms_constant_velocity";
 
 /// Enough for a median that two disturbed rounds do not change.
 const ROUNDS: usize = 15;
