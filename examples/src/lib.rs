@@ -172,8 +172,9 @@ impl Connection {
 /// # Errors
 /// Those of the motion.
 pub async fn make_ready(robot: &Robot) -> anyhow::Result<()> {
-    let behavior = CollisionBehavior::uniform([20.0; 7], [60.0; 7], [20.0; 6], [60.0; 6]);
-    robot.set_collision_behavior(behavior).await?;
+    robot
+        .set_collision_behavior(CollisionBehavior::compliant())
+        .await?;
     let moving = robot.move_joints(READY.into()).speed(0.5);
     moving.await.context("moving to the ready pose")?;
     Ok(())

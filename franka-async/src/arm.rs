@@ -174,8 +174,8 @@ impl Arm {
 
     /// As [`Self::set`], without waiting for an answer: for plain threads, callbacks and loops at a
     /// rate of their own. The newest of goals that come faster than they are taken is the one that
-    /// counts. A target is checked here; what only the session can tell (an offset that leads out of
-    /// reach, [`Backend`]) is logged.
+    /// counts. A target is checked here; what only the session can tell (an offset that leads out
+    /// of reach, [`Backend`]) is logged.
     ///
     /// # Errors
     /// [`MotionError::Goal`] for a goal that is not accepted, and what ended the session.

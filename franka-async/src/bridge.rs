@@ -14,7 +14,7 @@ use franka_rt::event_fd::EventFd;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{CloseReason, Lifecycle, NewMotion, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
-use franka_rt::session::{GoalId, Margin, Target};
+use franka_rt::session::{ForceCap, GoalId, Margin, Target};
 use franka_rt::thread::{Handle, Notice, Thread};
 use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
@@ -29,6 +29,7 @@ use crate::progress::Course;
 use crate::publish::Publisher;
 use crate::robot::{pose_at, pose_of};
 use crate::telemetry::{self, Telemetry};
+use crate::thresholds::Thresholds;
 
 /// Time that a motion gets to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
@@ -68,6 +69,7 @@ pub(crate) struct Bridge {
     publisher: Publisher,
     telemetry: Telemetry,
     course: Course,
+    thresholds: Thresholds,
     thread: Option<Thread<Driver>>,
     channel: Channel,
     connection: Option<Connection>,
@@ -87,7 +89,7 @@ impl Bridge {
         wake: AsyncFd<EventFd>,
         (channel, connection): (Channel, Connection),
         states: Arc<watch::Sender<RobotState>>,
-        course: Course,
+        (course, thresholds): (Course, Thresholds),
     ) -> Self {
         Self {
             lifecycle,
@@ -103,6 +105,7 @@ impl Bridge {
             ),
             telemetry: Telemetry::new(handle.stats),
             course,
+            thresholds,
             thread: Some(handle.thread),
             channel,
             connection: Some(connection),
@@ -306,6 +309,18 @@ impl Bridge {
         }
     }
 
+    /// Says so if the robot stops itself at less than what the arm may be pushed with.
+    fn warn_of_thresholds(&self, goal: GoalId, force_cap: Option<ForceCap>) {
+        if let Some((least, most)) = force_cap.and_then(|cap| self.thresholds.within(cap)) {
+            tracing::warn!(
+                goal = goal.0,
+                threshold_newtons = least,
+                push_newtons = most,
+                "the robot stops itself by a reflex before the arm gives way to a push"
+            );
+        }
+    }
+
     fn on_input(&mut self, input: Input) {
         let now = self.now();
         // If no wake-up per state is requested, the state that was published last is old.
@@ -319,11 +334,14 @@ impl Bridge {
                 let state = &self.publisher.state();
                 let motion = self.with_target(motion, state);
                 let id = motion.id();
-                let gains = motion.gains().copied();
+                let compliant = motion.compliant_goal();
+                let gains = compliant.map(|goal| goal.gains);
+                let force_cap = compliant.map(|goal| goal.force_cap);
                 let begun = self.lifecycle.begin(motion, state, now);
                 match begun {
                     Ok(()) => {
                         self.warn_of_margin(id, gains, state);
+                        self.warn_of_thresholds(id, force_cap);
                         self.replies.insert(id, replies);
                     }
                     Err(error) => {

@@ -30,6 +30,7 @@ use crate::link::Link;
 use crate::newest_state::Newest;
 use crate::progress::Course;
 use crate::robot::Robot;
+use crate::thresholds::Thresholds;
 
 impl Robot {
     /// Connects with the options that [`Robot::builder`] begins with.
@@ -82,6 +83,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
     let (channel, connection, reports) =
         Channel::start(opened.stream, opened.session, newest.clone());
     let course = Course::new(opened.references);
+    let thresholds = Thresholds::default();
     let stats = opened.handle.stats.clone();
     let granted = Arc::new(opened.handle.granted.clone());
     let lender = opened.handle.lender.clone();
@@ -98,7 +100,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         opened.wake,
         (channel.clone(), connection),
         states,
-        course.clone(),
+        (course.clone(), thresholds.clone()),
     );
     let bridge = bridge.start(reports, builder.cancellation);
     let link = Link {
@@ -107,6 +109,7 @@ async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
         channel,
         newest,
         course,
+        thresholds,
         stats,
         granted,
         lender,

@@ -94,6 +94,7 @@ mod session;
 mod state_stream;
 mod states;
 mod telemetry;
+mod thresholds;
 mod vacuum_gripper;
 
 pub use active_control::Active;

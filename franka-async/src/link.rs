@@ -13,6 +13,7 @@ use crate::input::{BridgeHandle, Input};
 use crate::newest_state::Newest;
 use crate::progress::Course;
 use crate::publish::Subscriptions;
+use crate::thresholds::Thresholds;
 
 /// One connection to a robot. Dropping it brakes the arm, ends the motion and closes the
 /// connection, in the background.
@@ -22,6 +23,7 @@ pub(crate) struct Link {
     pub(crate) channel: Channel,
     pub(crate) newest: Newest,
     pub(crate) course: Course,
+    pub(crate) thresholds: Thresholds,
     pub(crate) stats: Arc<Stats>,
     pub(crate) granted: Arc<Granted>,
     pub(crate) lender: Lender,

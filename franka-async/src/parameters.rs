@@ -19,7 +19,9 @@ const RECOVERY: Duration = Duration::from_secs(30);
 
 impl Robot {
     /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
-    /// (upper).
+    /// (upper): [`CollisionBehavior::careful`], [`compliant`](CollisionBehavior::compliant),
+    /// [`insensitive`](CollisionBehavior::insensitive), or values of your own. A goal whose force
+    /// cap is above them begins with a warning (`tracing`).
     ///
     /// # Errors
     /// [`CommandError`].
@@ -30,7 +32,10 @@ impl Robot {
         &self,
         behavior: CollisionBehavior,
     ) -> Result<(), CommandError> {
-        self.set(Request::SetCollisionBehavior(behavior)).await
+        let link = self.link();
+        self.set(Request::SetCollisionBehavior(behavior)).await?;
+        link.thresholds.note(behavior);
+        Ok(())
     }
 
     /// Sets the stiffness of the robot's own joint impedance controller, `[N m/rad]`, each in [0,

@@ -62,6 +62,45 @@ impl CollisionBehavior {
         }
     }
 
+    /// Stops at a light push: contact and collision at 10 N and 10 N m, at 20 while the arm
+    /// accelerates. For motions of the robot's own controllers; compliant control presses harder
+    /// than that. The values of the vendor's examples.
+    #[must_use]
+    pub fn careful() -> Self {
+        Self {
+            lower_torque_thresholds_acceleration: [20.0; 7],
+            upper_torque_thresholds_acceleration: [20.0; 7],
+            lower_force_thresholds_acceleration: [20.0; 6],
+            upper_force_thresholds_acceleration: [20.0; 6],
+            ..Self::uniform([10.0; 7], [10.0; 7], [10.0; 6], [10.0; 6])
+        }
+    }
+
+    /// Lets a hand push an arm under compliant control: contact at 20 N and 20 N m, collision at
+    /// 60, which is above the default force cap together with what friction shows.
+    #[must_use]
+    pub fn compliant() -> Self {
+        Self::uniform([20.0; 7], [60.0; 7], [20.0; 6], [60.0; 6])
+    }
+
+    /// Stops at 100 N and 100 N m only: for work that presses. The values of the vendor's examples
+    /// of impedance control.
+    #[must_use]
+    pub fn insensitive() -> Self {
+        Self::uniform([100.0; 7], [100.0; 7], [100.0; 6], [100.0; 6])
+    }
+
+    /// The least force at which the robot stops itself, `[N]`, along an axis.
+    #[must_use]
+    pub fn least_force(&self) -> f64 {
+        let [moving, even] = [
+            &self.upper_force_thresholds_acceleration,
+            &self.upper_force_thresholds_nominal,
+        ];
+        let forces = moving[..3].iter().chain(&even[..3]);
+        forces.copied().fold(f64::INFINITY, f64::min)
+    }
+
     pub(super) fn to_wire(self) -> wire::service::SetCollisionBehavior {
         macro_rules! convert {
             ($($field:ident),*) => {

@@ -11,7 +11,6 @@ use super::programs::UserProgram;
 use super::{Engagement, Lifecycle, LifecyclePhase, MotionError, Output, START_TIMEOUT};
 use crate::control::Modes;
 use crate::driver::{ControlLog, MotionId, Observer, Order, Program};
-use crate::law::Gains;
 use crate::session::check::check_keep_out;
 use crate::session::{self, Backend, Goal, GoalId, OnArrival, Target, TargetSession};
 use crate::slot;
@@ -72,12 +71,12 @@ impl NewMotion {
         }
     }
 
-    /// Returns the gains that it begins with; `None` for a program, and under the robot's
+    /// Returns the goal that its own law begins with; `None` for a program, and under the robot's
     /// controller.
-    pub fn gains(&self) -> Option<&Gains> {
+    pub fn compliant_goal(&self) -> Option<&Goal> {
         match self {
             Self::Session { engagement, .. } if engagement.backend != Backend::Torques => None,
-            Self::Goal { goal, .. } | Self::Session { goal, .. } => Some(&goal.gains),
+            Self::Goal { goal, .. } | Self::Session { goal, .. } => Some(goal),
             Self::Program { .. } => None,
         }
     }
@@ -133,7 +132,7 @@ impl Lifecycle {
         self.check_open()?;
         self.check_turn(&motion)?;
         self.check_options(&motion, state)?;
-        if motion.gains().is_some()
+        if motion.compliant_goal().is_some()
             && let Some(known) = self.known.take()
         {
             self.learned = known.learned(&self.model, state);
