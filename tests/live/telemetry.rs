@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use franka_async::control::{Finish, Torques};
 use franka_async::goal::Gains;
+use franka_async::settings::CollisionBehavior;
 use franka_async::stats::Phase;
 use franka_async::{MotionReport, Pose, Robot};
 use franka_sim::{Sim, Tool};
@@ -229,6 +230,26 @@ async fn gains_near_an_oscillation_are_warned_of() {
         moved.expect("it is there");
         let told = told("damping");
         assert_eq!(told.len(), usize::from(warned));
+        assert!(told.iter().all(|told| told.level == Level::WARN));
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn thresholds_below_the_force_cap_are_warned_of() {
+    let _alone = alone();
+    listen();
+    let (robot, _sim) = ahead_of_the_client(Sim::fr3().ideal().tool(Tool::hand())).await;
+    let there = robot.state().q;
+    for (behavior, force_cap, warned) in [
+        (CollisionBehavior::compliant(), 30.0, 0),
+        (CollisionBehavior::careful(), 30.0, 1),
+        (CollisionBehavior::insensitive(), 95.0, 1),
+    ] {
+        robot.set_collision_behavior(behavior).await.expect("set");
+        let moved = robot.move_joints(there).force_cap(force_cap).await;
+        moved.expect("it is there");
+        let told = told("threshold_newtons");
+        assert_eq!(told.len(), warned, "{behavior:?}");
         assert!(told.iter().all(|told| told.level == Level::WARN));
     }
 }
