@@ -23,6 +23,7 @@
 //! * [`StartBarrier`]: motions of several robots that begin within the same millisecond.
 //! * [`Robot::states`]: the newest state as it changes. [`Robot::read`], [`StateStream`]: every
 //!   state. Both whatever moves. [`Robot::stats`], [`stats`]: how punctual control is.
+//! * `Robot::metrics`, `metrics` (feature `metrics`, off by default): the same as OpenMetrics text.
 //! * [`Robot::set_load`] and its siblings, [`settings`]; [`Robot::recover`].
 //! * [`Robot::identify`], [`Builder::known`], [`identify`]: friction, bias and load of an arm.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
@@ -82,6 +83,8 @@ mod handshake;
 pub mod identify;
 mod input;
 mod link;
+#[cfg(feature = "metrics")]
+pub mod metrics;
 mod motion;
 mod newest_state;
 mod options;

@@ -21,6 +21,7 @@ mod garbling;
 mod hands;
 mod heading;
 mod identifying;
+mod metrics;
 mod misbehaving;
 mod mishaps;
 mod moving;

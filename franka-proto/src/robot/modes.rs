@@ -27,7 +27,8 @@ pub enum RobotMode {
 }
 
 impl RobotMode {
-    const ALL: [Self; 7] = [
+    /// All modes, by their bytes.
+    pub const ALL: [Self; 7] = [
         Self::Other,
         Self::Idle,
         Self::Move,

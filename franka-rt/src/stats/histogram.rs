@@ -94,6 +94,17 @@ impl Histogram {
         }
         Some(max)
     }
+
+    /// Each bucket that is not empty: its longest duration and how many durations it counts, the
+    /// shortest first. The longest duration is at most 1/16 above the shortest of the bucket. Not
+    /// for the real-time thread.
+    pub fn buckets(&self) -> impl Iterator<Item = (Duration, u64)> + '_ {
+        let counts = self.buckets.iter().enumerate();
+        counts.filter_map(|(index, bucket)| {
+            let count = bucket.load(Ordering::Relaxed);
+            (count > 0).then(|| (Duration::from_nanos(last_of(index)), count))
+        })
+    }
 }
 
 /// Three numbers of a histogram.
@@ -198,6 +209,13 @@ mod tests {
         let quantiles = histogram.quantiles().expect("not empty");
         assert_eq!(Some(quantiles.p99), histogram.quantile(0.99));
         assert_eq!(Some(quantiles.max), histogram.max());
+        let mut seen = 0;
+        for (longest, count) in histogram.buckets() {
+            seen += count;
+            let up_to = values.partition_point(|&value| u128::from(value) <= longest.as_nanos());
+            assert_eq!(seen, up_to as u64, "up to {longest:?}");
+        }
+        assert_eq!(seen, 5000);
     }
 
     #[test]
