@@ -1,77 +1,171 @@
-//! A web service that holds a robot: POST /move_to, POST /stop, GET /state, GET /events
-//! (server-sent events).
+//! A web service in which motions are jobs: they outlive the request that began them, tell how far
+//! they are, and can be cancelled.
 //!
-//! `cargo run --release --example axum_service -- [ADDRESS] [--listen 127.0.0.1:8080]`, then
-//! `curl -X POST -H 'content-type: application/json' -d '[0, 0, 0.05]' localhost:8080/move_to`
+//! ```text
+//! cargo run --release --example axum_service -- [ADDRESS] [--listen 127.0.0.1:8080]
+//! curl -i localhost:8080/jobs -H 'content-type: application/json' -d '{"by": [0, 0, 0.05]}'
+//! curl -N localhost:8080/jobs/1/events
+//! curl -X DELETE localhost:8080/jobs/1
+//! ```
 
-use std::convert::Infallible;
-use std::time::Duration;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
 
-use axum::extract::State;
-use axum::http::StatusCode;
-use axum::response::sse::{Event, Sse};
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use clap::Parser;
-use franka_async::{MotionError, Pose, Robot, RobotState};
-use franka_examples::Connection;
+use franka_async::{CancellationToken, MotionError, Pose, Robot, metrics};
+use franka_examples::{Job, Serving, serve_until_told};
+use serde::Deserialize;
 use serde_json::{Value, json};
-use tokio_stream::{Stream, StreamExt};
+use tokio_stream::StreamExt;
 
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    connection: Connection,
-    #[arg(long, default_value = "127.0.0.1:8080")]
-    listen: String,
+#[derive(Clone)]
+struct Service {
+    robot: Robot,
+    jobs: Arc<Mutex<BTreeMap<u64, Job>>>,
+    closing: CancellationToken,
+}
+
+#[derive(Deserialize)]
+struct Order {
+    /// By how much to move the hand along the axes of the base, `[m]`.
+    by: [f64; 3],
+    /// Times the default speed.
+    speed: Option<f64>,
 }
 
 type Refused = (StatusCode, String);
 
 #[tokio::main]
 async fn main() -> anyhow::Result<()> {
-    let arguments = Arguments::parse();
+    let arguments = Serving::parse();
     let (robot, _sim) = arguments.connection.open().await?;
-    let state = |robot: State<Robot>| async move { Json(view(robot.state())) };
-    let stop = |robot: State<Robot>| async move { robot.stop().await.map_err(refuse) };
-    let app = Router::new()
-        .route("/move_to", post(move_to))
-        .route("/stop", post(stop))
-        .route("/state", get(state))
-        .route("/events", get(events))
-        .with_state(robot.clone());
-    let listener = tokio::net::TcpListener::bind(&arguments.listen).await?;
-    println!("listening on {}", listener.local_addr()?);
-    let quit = async move {
-        tokio::signal::ctrl_c().await.expect("Ctrl-C can be heard");
-        robot.shutdown().await; // brakes whatever moves; requests and streams under way end with it
+    let closing = CancellationToken::new();
+    let service = Service {
+        robot: robot.clone(),
+        jobs: Arc::default(),
+        closing: closing.clone(),
     };
-    let serving = axum::serve(listener, app).with_graceful_shutdown(quit);
-    Ok(serving.await?)
+    let app = Router::new()
+        .route("/jobs", post(begin))
+        .route("/jobs/{id}", get(newest).delete(cancel))
+        .route("/jobs/{id}/events", get(events))
+        .route("/state", get(state))
+        .route("/recover", post(recover))
+        .route("/metrics", get(scrape))
+        .with_state(service);
+    let listener = arguments.listen().await?;
+    serve_until_told(&robot, closing, arguments.deadline(), |quit| {
+        let serving = axum::serve(listener, app).with_graceful_shutdown(quit);
+        serving.into_future()
+    })
+    .await
 }
 
-/// Moves the hand by this much along the axes of the base, `[m]`, and answers when the arm has
-/// arrived. A client that disconnects drops the motion, which brakes the arm.
-async fn move_to(robot: State<Robot>, Json([x, y, z]): Json<[f64; 3]>) -> Result<String, Refused> {
-    let moving = robot.move_to(Pose::translation(x, y, z) * robot.pose());
-    let report = moving.await.map_err(refuse)?;
-    Ok(format!("arrived after {:.2?}\n", report.duration))
+/// Answers once the robot moves, with the address of the job, or with the reason why it does not.
+async fn begin(service: State<Service>, Json(order): Json<Order>) -> Result<Response, Refused> {
+    let (id, job) = service.start(&order)?;
+    job.begun().await.map_err(refuse)?;
+    let location = [(header::LOCATION, format!("/jobs/{id}"))];
+    Ok((StatusCode::ACCEPTED, location, Json(json!({ "id": id }))).into_response())
 }
 
-async fn events(robot: State<Robot>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
-    let newest = robot.states().throttle(Duration::from_millis(50));
-    Sse::new(newest.map(|state| Ok(Event::default().data(view(state).to_string()))))
+async fn newest(service: State<Service>, id: Path<u64>) -> Result<Json<Value>, Refused> {
+    Ok(Json(service.job(*id)?.newest().stage.to_json()))
 }
 
-fn view(state: RobotState) -> Value {
-    json!({ "time": state.message_id, "mode": state.robot_mode.to_string(), "q": state.q })
+async fn cancel(service: State<Service>, id: Path<u64>) -> Result<StatusCode, Refused> {
+    service.job(*id)?.cancel();
+    Ok(StatusCode::ACCEPTED) // the events tell when the arm rests
+}
+
+/// Server-sent events. A browser that lost its connection asks again, and says what it has seen.
+async fn events(
+    service: State<Service>,
+    id: Path<u64>,
+    headers: HeaderMap,
+) -> Result<Response, Refused> {
+    let job = service.job(*id)?;
+    let seen = headers.get("last-event-id").and_then(|id| id.to_str().ok());
+    let seen = seen.and_then(|id| id.parse().ok());
+    let newest = job.newest();
+    if newest.stage.is_last() && seen == Some(newest.number) {
+        return Ok(StatusCode::NO_CONTENT.into_response()); // so it asks no more
+    }
+    let events = job.events(seen).map(|progress| {
+        let event = Event::default().id(progress.number.to_string());
+        let event = event.event(progress.stage.name());
+        event.json_data(progress.stage.to_json())
+    });
+    let events = Sse::new(events).keep_alive(KeepAlive::default());
+    Ok(events.into_response())
+}
+
+async fn state(service: State<Service>) -> Json<Value> {
+    let state = service.robot.state();
+    Json(json!({ "time": state.message_id, "mode": state.robot_mode.to_string(), "q": state.q }))
+}
+
+async fn recover(service: State<Service>) -> Result<(), Refused> {
+    let recovered = service.robot.recover().await;
+    recovered.map_err(|error| (StatusCode::CONFLICT, error.to_string()))
+}
+
+async fn scrape(service: State<Service>) -> impl IntoResponse {
+    let content = [(header::CONTENT_TYPE, metrics::CONTENT_TYPE)];
+    (content, service.robot.metrics())
+}
+
+impl Service {
+    /// Begins a job, unless another one has the arm: on its own, a newer motion would supersede the
+    /// older one.
+    fn start(&self, order: &Order) -> Result<(u64, Job), Refused> {
+        let mut jobs = self.jobs.lock().expect("no panic while it is held");
+        if self.closing.is_cancelled() {
+            let text = "the service is ending".to_owned();
+            return Err((StatusCode::SERVICE_UNAVAILABLE, text));
+        }
+        let last = jobs.last_key_value();
+        if let Some((id, _)) = last.filter(|(_, job)| !job.newest().stage.is_last()) {
+            return Err((StatusCode::CONFLICT, format!("job {id} has the arm")));
+        }
+        let id = last.map_or(1, |(id, _)| id + 1);
+        let [x, y, z] = order.by;
+        let target = Pose::translation(x, y, z) * self.robot.pose();
+        let motion = self.robot.move_to(target);
+        let motion = motion.speed(order.speed.unwrap_or(1.0));
+        let job = Job::start(&self.robot, motion, target);
+        jobs.insert(id, job.clone());
+        if jobs.len() > JOBS {
+            jobs.pop_first();
+        }
+        Ok((id, job))
+    }
+
+    fn job(&self, id: u64) -> Result<Job, Refused> {
+        let jobs = self.jobs.lock().expect("no panic while it is held");
+        let job = jobs.get(&id).cloned();
+        job.ok_or_else(|| (StatusCode::NOT_FOUND, format!("no job {id}")))
+    }
 }
 
 fn refuse(error: MotionError) -> Refused {
     let status = match error {
         MotionError::Goal(_) => StatusCode::UNPROCESSABLE_ENTITY,
-        MotionError::Superseded | MotionError::Stopped => StatusCode::CONFLICT,
-        _ => StatusCode::BAD_GATEWAY,
+        MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => {
+            StatusCode::SERVICE_UNAVAILABLE
+        }
+        MotionError::Violation(_) | MotionError::Protocol { .. } => StatusCode::BAD_GATEWAY,
+        // Something else has the arm, stopped it, or the robot has to be recovered first.
+        _ => StatusCode::CONFLICT,
     };
     (status, error.to_string())
 }
+
+/// Jobs whose end can be asked for.
+const JOBS: usize = 100;

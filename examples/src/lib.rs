@@ -1,12 +1,16 @@
 //! What the examples share: a robot at the address given, or a simulated one in this process;
-//! smooth references; and the dynamics of a state.
+//! smooth references; the dynamics of a state; motions as jobs; the end of a service.
 #![doc = include_str!("../README.md")]
 
 mod dynamics;
 mod ease;
+mod job;
+mod service;
 
 pub use dynamics::dynamics;
 pub use ease::Ease;
+pub use job::{Job, Progress, Stage};
+pub use service::{Serving, serve_until_told};
 
 use std::fmt;
 use std::io::{BufRead, Write};
@@ -91,6 +95,30 @@ impl Connection {
             })?;
             return Ok((robot, None));
         }
+        let sim = self.simulate().await?;
+        let builder = Robot::builder(sim.addr()).realtime(self.scheduling().realtime);
+        let robot = builder.connect().await?;
+        Ok((robot, Some(sim)))
+    }
+
+    /// Connects to the Hand alone. Keep what comes with it, as with [`Self::open`].
+    ///
+    /// # Errors
+    /// If no Hand answers at the address, or the simulator cannot start.
+    pub async fn open_hand(&self) -> anyhow::Result<(Gripper, Option<Running>)> {
+        if let Some(address) = &self.address {
+            let gripper = Gripper::connect(address).await;
+            let gripper =
+                gripper.with_context(|| format!("connecting to the hand at {address}"))?;
+            return Ok((gripper, None));
+        }
+        let sim = self.simulate().await?;
+        let hand = sim.hand().context("the simulator has a hand")?;
+        let gripper = Gripper::connect(hand.addr()).await?;
+        Ok((gripper, Some(sim)))
+    }
+
+    async fn simulate(&self) -> anyhow::Result<Running> {
         let sim = match self.sim {
             Simulated::Fr3 => Sim::fr3(),
             Simulated::Fer => Sim::fer(),
@@ -100,10 +128,7 @@ impl Connection {
         let sim = sim.tool(Tool::hand()).hand(block, 0);
         // It shares the machine with this program.
         let sim = sim.wait_for_commands(Duration::from_secs(1)).start().await;
-        let sim = sim.context("starting the simulator")?;
-        let builder = Robot::builder(sim.addr()).realtime(self.scheduling().realtime);
-        let robot = builder.connect().await?;
-        Ok((robot, Some(sim)))
+        sim.context("starting the simulator")
     }
 
     /// The scheduling of a thread that controls the robot of [`Self::open`].

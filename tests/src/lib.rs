@@ -51,6 +51,9 @@ mod programs {
     #[doc = include_str!("../../docs/src/identify.md")]
     struct Identify;
 
+    #[doc = include_str!("../../docs/src/services.md")]
+    struct Services;
+
     #[doc = include_str!("../../docs/src/sessions.md")]
     struct Sessions;
 

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, mpsc};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use franka_async::{RobotError, RobotMode, RobotState};
 use franka_model::{EndEffector, Frame, JointVector, Load, Model, READY, Wrench};
@@ -12,6 +12,9 @@ use tokio::runtime::{self, Runtime};
 
 /// How long a cycle waits for its command: less than the silence after which a client gives up.
 const PATIENCE: Duration = Duration::from_millis(500);
+
+/// What has not happened within this time never will, on a machine that is busy as well.
+pub(crate) const SOON: Duration = Duration::from_secs(100);
 
 /// From one recorded state to the next, `[ms]`.
 pub(crate) const SAMPLE: u64 = 5;
@@ -122,6 +125,73 @@ impl Arm {
             runtime,
             watch,
         }
+    }
+
+    /// A robot of this name in its ready pose, which keeps the clock on the wall.
+    pub(crate) fn by_the_clock(robot: &str) -> Self {
+        let scene = Scene {
+            on_the_wall: true,
+            ..Scene::default()
+        };
+        Self::start(robot, scene)
+    }
+
+    /// The state of the robot, which its clients need not have seen yet.
+    pub(crate) fn state(&self) -> RobotState {
+        let state = self.runtime.block_on(self.sim.state());
+        state.expect("the simulator runs")
+    }
+
+    /// Waits for a state of which `holds` is true.
+    pub(crate) fn wait_for(&self, what: &str, holds: impl Fn(&RobotState) -> bool) -> RobotState {
+        let end = Instant::now() + SOON;
+        loop {
+            let state = self.state();
+            if holds(&state) {
+                return state;
+            }
+            assert!(Instant::now() < end, "never {what}: {state:?}");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// Waits until the arm moves.
+    pub(crate) fn wait_until_it_moves(&self) {
+        self.wait_for("moving", |state| {
+            state.robot_mode == RobotMode::Move && state.dq.iter().any(|dq| dq.abs() > 0.01)
+        });
+    }
+
+    /// Waits until the arm is let go, and checks that it rests, without an error.
+    pub(crate) fn rests(&self) -> RobotState {
+        let state = self.wait_for("idle", |state| state.robot_mode != RobotMode::Move);
+        assert_eq!(
+            state.robot_mode,
+            RobotMode::Idle,
+            "{:?}",
+            state.reflex_reason
+        );
+        assert!(state.errors.is_empty(), "{:?}", state.errors);
+        let fastest = state
+            .dq
+            .iter()
+            .fold(0.0, |fastest: f64, dq| fastest.max(dq.abs()));
+        assert!(
+            fastest < 0.01,
+            "let go while a joint moves at {fastest} rad/s"
+        );
+        state
+    }
+
+    /// The robot stops itself.
+    pub(crate) fn trip(&self, error: RobotError) {
+        self.with(move |robot| robot.trip(error));
+    }
+
+    /// Does something to the robot.
+    pub(crate) fn with(&self, what: impl FnOnce(&mut Robot) + Send + 'static) {
+        let done = self.sim.with(what);
+        self.runtime.block_on(done).expect("the simulator runs");
     }
 
     /// Ends the simulation and returns what the arm has done.

@@ -1,8 +1,11 @@
 //! Runs the examples as programs.
 
-use std::io::Write;
+use std::io::{BufRead, BufReader, Lines, Write};
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
 use crate::arm::{Arm, MeasuredPath, Scene};
 
@@ -50,6 +53,70 @@ pub(crate) fn run(name: &str, arguments: &[&str], input: &str) -> Said {
         code: output.status.code(),
         stdout: text(output.stdout),
         stderr: text(output.stderr),
+    }
+}
+
+/// An example that runs beside the test, and is killed at the end of it, also when that fails.
+pub(crate) struct Beside {
+    child: Child,
+    lines: Lines<BufReader<ChildStdout>>,
+}
+
+impl Beside {
+    /// Starts an example.
+    pub(crate) fn start(name: &str, arguments: &[&str]) -> Self {
+        let mut child = example(name)
+            .args(arguments)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("it starts");
+        let stdout = child.stdout.take().expect("it is piped");
+        let lines = BufReader::new(stdout).lines();
+        Self { child, lines }
+    }
+
+    /// Starts a service for the robot at `robot`; returns its address, too.
+    pub(crate) fn serve(name: &str, robot: &str, options: &[&str]) -> (Self, String) {
+        let mut arguments = options.to_vec();
+        arguments.extend(["--listen", "127.0.0.1:0", "--realtime", "ignore", robot]);
+        let mut service = Self::start(name, &arguments);
+        let address = service.said("listening on ");
+        (service, address)
+    }
+
+    /// Waits for a line that begins so, and returns the rest of it.
+    pub(crate) fn said(&mut self, beginning: &str) -> String {
+        let said = self.lines.by_ref().find_map(|line| {
+            let line = line.expect("it prints text");
+            line.strip_prefix(beginning).map(str::to_owned)
+        });
+        said.unwrap_or_else(|| panic!("it ended, and never said {beginning:?}"))
+    }
+
+    /// Kills it, without a chance to say goodbye to anyone.
+    pub(crate) fn kill(mut self) {
+        self.child.kill().expect("it runs");
+        self.child.wait().expect("it is ours");
+    }
+
+    /// Sends it a signal.
+    pub(crate) fn signal(&self, signal: Signal) {
+        let id = Pid::from_raw(self.child.id().cast_signed());
+        kill(id, signal).expect("it runs");
+    }
+
+    /// Waits for its end.
+    pub(crate) fn ended(&mut self) -> ExitStatus {
+        self.child.wait().expect("it is ours")
+    }
+}
+
+impl Drop for Beside {
+    fn drop(&mut self) {
+        // Fails only if it has ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
     }
 }
 

@@ -1,0 +1,75 @@
+//! What goes over a socket, as JSON.
+
+use franka_async::nalgebra::{Quaternion, UnitQuaternion};
+use franka_async::{Pose, Robot};
+use serde::{Deserialize, Serialize};
+
+/// From a client.
+#[derive(Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub(crate) enum Request {
+    Take,
+    Target(Placement),
+    Alive,
+    Release,
+}
+
+/// To a client.
+#[derive(Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub(crate) enum Reply {
+    Taken,
+    /// Nothing has changed.
+    Refused {
+        why: String,
+    },
+    /// The lease has ended, and the arm brakes.
+    Lost {
+        why: String,
+    },
+    Released,
+    State {
+        time: u64,
+        mode: String,
+        q: [f64; 7],
+        #[serde(flatten)]
+        pose: Placement,
+    },
+}
+
+/// A pose in the base frame, `[m]` and x y z w.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Placement {
+    position: [f64; 3],
+    quaternion: [f64; 4],
+}
+
+pub(crate) fn refused(why: impl ToString) -> Reply {
+    Reply::Refused {
+        why: why.to_string(),
+    }
+}
+
+impl Reply {
+    /// The newest state.
+    pub(crate) fn state(robot: &Robot) -> Self {
+        let (state, pose) = (robot.state(), robot.pose());
+        Self::State {
+            time: state.message_id,
+            mode: state.robot_mode.to_string(),
+            q: state.q,
+            pose: Placement {
+                position: pose.translation.vector.into(),
+                quaternion: pose.rotation.coords.into(),
+            },
+        }
+    }
+}
+
+impl From<Placement> for Pose {
+    fn from(placement: Placement) -> Self {
+        let [x, y, z, w] = placement.quaternion;
+        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+        Self::from_parts(placement.position.into(), rotation)
+    }
+}

@@ -1,0 +1,84 @@
+//! The messages of the service, and what they are made of.
+
+use franka_async::nalgebra::{Quaternion, UnitQuaternion};
+use franka_async::{Diagnose, MotionError, Robot};
+use prost::Message;
+use tonic::{Code, Status};
+
+use proto::{Pose, Reflex, State};
+
+/// Made by `build.rs`.
+pub(crate) mod proto {
+    #![allow(missing_docs, unreachable_pub, clippy::all)]
+    tonic::include_proto!("franka.example");
+}
+
+/// The newest state.
+pub(crate) fn state(robot: &Robot) -> State {
+    let (state, pose) = (robot.state(), robot.pose());
+    State {
+        time: state.message_id,
+        mode: state.robot_mode.to_string(),
+        q: state.q.to_vec(),
+        pose: Some(Pose {
+            position: pose.translation.vector.as_slice().to_vec(),
+            quaternion: pose.rotation.coords.as_slice().to_vec(),
+        }),
+        errors: state.errors.iter().map(|error| error.to_string()).collect(),
+    }
+}
+
+impl Pose {
+    /// In place of what it leaves out, that of `start`.
+    pub(crate) fn to_isometry(
+        &self,
+        start: &franka_async::Pose,
+    ) -> Result<franka_async::Pose, Status> {
+        let mut pose = *start;
+        match self.position[..] {
+            [x, y, z] => pose.translation = [x, y, z].into(),
+            _ => return Err(Status::invalid_argument("a position has three numbers")),
+        }
+        match self.quaternion[..] {
+            [] => {}
+            [x, y, z, w] => {
+                pose.rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
+            }
+            _ => return Err(Status::invalid_argument("a quaternion has four numbers")),
+        }
+        Ok(pose)
+    }
+}
+
+/// An error of a motion as a status; of a reflex, with [`Reflex`] in its details.
+pub(crate) fn status(error: MotionError) -> Status {
+    let text = error.to_string();
+    let code = match &error {
+        MotionError::Goal(_) => Code::InvalidArgument,
+        MotionError::Control(control) => {
+            let errors = control.failure.reflex_reason;
+            let reflex = Reflex {
+                errors: errors.iter().map(|error| error.to_string()).collect(),
+                diagnosis: error
+                    .diagnose()
+                    .map_or_else(String::new, |why| why.to_string()),
+            };
+            return with_detail(Code::FailedPrecondition, text, &reflex);
+        }
+        MotionError::Rejected(_) | MotionError::Busy => Code::FailedPrecondition,
+        MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => Code::Unavailable,
+        MotionError::Violation(_) | MotionError::Protocol { .. } => Code::Internal,
+        _ => Code::Aborted, // stopped, superseded, given up: the arm rests or goes on
+    };
+    Status::new(code, text)
+}
+
+fn with_detail(code: Code, text: String, detail: &Reflex) -> Status {
+    let detail = prost_types::Any::from_msg(detail).expect("it is in memory");
+    let status = tonic_types::Status {
+        code: code.into(),
+        message: text.clone(),
+        details: vec![detail],
+    };
+    Status::with_details(code, text, status.encode_to_vec().into())
+}
