@@ -205,41 +205,41 @@ fn virtual_floor_stops_the_hand_releases_it_and_keeps_the_elbow() {
 }
 
 #[test]
-fn communication_test_reports_by_its_exit_code() {
+fn link_test_reports_by_its_exit_code() {
     for (good, usable, code) in [("0", "0", 0), ("1.01", "0", 3), ("1.01", "1.01", 4)] {
         let arguments = ["--seconds", "1.5", "--good", good, "--usable", usable];
         let scene = Scene::default();
-        on_both(
-            "communication_test",
-            &arguments,
-            &scene,
-            |robot, said, path| {
-                assert_eq!(said.code, Some(code), "{robot}: {said:?}");
-                assert!(
-                    said.stdout.contains("success rate: min "),
-                    "{robot}: {said:?}"
-                );
-                for axis in 0..3 {
-                    is_about(robot, path.hand(axis), (0.0, 0.0, 0.0), 5e-3);
-                }
-            },
-        );
+        on_both("link_test", &arguments, &scene, |robot, said, path| {
+            assert_eq!(said.code, Some(code), "{robot}: {said:?}");
+            assert!(
+                said.stdout.contains("success rate, min "),
+                "{robot}: {said:?}"
+            );
+            for axis in 0..3 {
+                is_about(robot, path.hand(axis), (0.0, 0.0, 0.0), 5e-3);
+            }
+        });
     }
 }
 
 #[test]
-fn recovery_continues_after_a_reflex() {
-    on_both("recovery", &[], &Scene::default(), |robot, said, path| {
-        assert_eq!(said.code, Some(0), "{robot}: {said:?}");
-        assert!(
+fn recover_explains_a_reflex_and_moves_on_after_it() {
+    on_both(
+        "recover",
+        &["--provoke"],
+        &Scene::default(),
+        |robot, said, path| {
+            assert_eq!(said.code, Some(0), "{robot}: {said:?}");
+            assert!(
             said.stdout.contains(
                 "motion aborted by reflex! [\"joint_motion_generator_acceleration_discontinuity\"]"
             ),
             "{robot}: {said:?}"
         );
-        assert_eq!(path.last().robot_mode, RobotMode::Idle, "{robot}");
-        is_about(robot, path.joint(6), (0.0, 0.3, 0.3), 5e-3);
-    });
+            assert_eq!(path.last().robot_mode, RobotMode::Idle, "{robot}");
+            is_about(robot, path.joint(6), (0.0, 0.3, 0.3), 5e-3);
+        },
+    );
 }
 
 /// Runs the example with a robot of each kind in these scenes.

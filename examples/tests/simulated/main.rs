@@ -5,6 +5,7 @@ mod arm;
 mod control;
 mod jobs;
 mod program;
+mod programs;
 mod remote;
 mod teleoperation;
 
