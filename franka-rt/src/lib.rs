@@ -15,6 +15,7 @@
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
 //!   Pure.
+//! * [`supervision`]: connections lost and made again, reflexes and recovery. Pure.
 //! * [`together`]: motions of several robots that begin at the same time.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
 //! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: what
@@ -38,6 +39,7 @@ pub mod shaping;
 pub mod slot;
 pub mod state_wakeups;
 pub mod stats;
+pub mod supervision;
 mod sys;
 pub mod thread;
 pub mod together;

@@ -1,5 +1,6 @@
 //! Why a connection has ended.
 
+use core::time::Duration;
 use std::io;
 
 use super::Party;
@@ -35,17 +36,48 @@ pub enum CloseReason {
         /// What showed that.
         text: String,
     },
+    /// Link: the robot sent no states, on a connection that looked alive. Its supervisor closed it.
+    #[error("the robot was silent for {} ms more than the link timeout", .silence.as_millis())]
+    Silent {
+        /// For how long, from when it was noticed.
+        silence: Duration,
+    },
+    /// Link: the connection was lost, and the supervisor has given up to make a new one.
+    #[error("no new connection in {} s, {attempts} attempts: {text}", .after.as_secs())]
+    GivenUp {
+        /// Attempts that failed.
+        attempts: u32,
+        /// Time since the connection was lost.
+        after: Duration,
+        /// What went wrong in the last one.
+        text: String,
+    },
+    /// Robot: after the connection was lost, another robot answered. Models and goals are made for
+    /// the one before.
+    #[error("another robot answers: {text}")]
+    AnotherRobot {
+        /// What differs.
+        text: String,
+    },
     /// Caller: the runtime that served the connection was shut down.
     #[error("the runtime that served the connection has ended")]
     RuntimeEnded,
 }
 
 impl CloseReason {
+    /// Whether this program has closed it, or its runtime: nothing was lost.
+    pub fn is_ours(&self) -> bool {
+        matches!(self, Self::ClosedByUs | Self::RuntimeEnded)
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
             Self::ClosedByUs | Self::RuntimeEnded => Party::Caller,
-            Self::ClosedByPeer | Self::Io { .. } => Party::Link,
+            Self::ClosedByPeer | Self::Io { .. } | Self::Silent { .. } | Self::GivenUp { .. } => {
+                Party::Link
+            }
+            Self::AnotherRobot { .. } => Party::Robot,
             Self::Protocol { .. } => Party::Peer,
             Self::ThreadEnded { .. } => Party::Host,
         }

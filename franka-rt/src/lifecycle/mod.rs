@@ -37,6 +37,7 @@ mod programs;
 mod reports;
 #[cfg(test)]
 mod tests;
+mod unready;
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -58,6 +59,7 @@ pub use close_reason::CloseReason;
 pub use engagement::{Engagement, Tuning};
 pub use new_motion::NewMotion;
 pub use outcome::{ControlError, MotionError, MotionReport, Outcome, Party, Stage};
+pub use unready::Unready;
 
 /// Time for the robot to answer a `Move`, and to show the motion's modes after that.
 pub const START_TIMEOUT: Duration = Duration::from_secs(5);

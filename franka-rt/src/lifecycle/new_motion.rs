@@ -81,13 +81,32 @@ impl NewMotion {
         }
     }
 
+    /// Whether it is a goal of a session.
+    pub(crate) fn is_within_a_session(&self) -> bool {
+        matches!(
+            self,
+            Self::Goal {
+                session: Some(_),
+                ..
+            }
+        )
+    }
+
+    /// Whether it begins together with those of other robots.
+    pub(crate) fn has_ticket(&self) -> bool {
+        match self {
+            Self::Goal { ticket, .. } | Self::Program { ticket, .. } => ticket.is_some(),
+            Self::Session { .. } => false,
+        }
+    }
+
     /// Whether it gives way to a newer goal.
-    fn is_superseded_by_goals(&self) -> bool {
+    pub(crate) fn is_superseded_by_goals(&self) -> bool {
         matches!(self, Self::Goal { .. })
     }
 
     /// Whether it supersedes older goals.
-    fn supersedes_goals(&self) -> bool {
+    pub(crate) fn supersedes_goals(&self) -> bool {
         matches!(self, Self::Goal { ticket: None, .. })
     }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
 
-use super::CloseReason;
+use super::{CloseReason, Unready};
 use crate::driver::{Commander, ControlLog, Ended};
 use crate::session::{GoalError, Lapse, PoseError, Shortfall};
 use crate::shaping::InvalidCommand;
@@ -161,6 +161,15 @@ pub enum MotionError {
     /// Clear the cause; after a reflex, recover.
     #[error(transparent)]
     Control(#[from] Box<ControlError>),
+    /// Robot or link: the supervised robot takes no motions now, and this one did not wait, or not
+    /// any longer. It has not begun. The party that can act on it depends on the reason.
+    #[error("{}", not_ready(*.why, *.waited))]
+    NotReady {
+        /// Why not.
+        why: Unready,
+        /// How long it waited.
+        waited: Duration,
+    },
     /// Robot or surroundings: the reference reached the target and the arm did not follow. It rests
     /// where it is.
     #[error(
@@ -237,9 +246,17 @@ impl MotionError {
             | Self::Stalled { .. } => Party::Caller,
             Self::Rejected(_) | Self::Control(_) | Self::TargetNotReached(_) => Party::Robot,
             Self::LinkLost { .. } => Party::Link,
+            Self::NotReady { why, .. } => why.party(),
             Self::ConnectionClosed { reason } => reason.party(),
             Self::Violation(_) | Self::Protocol { .. } => Party::Peer,
         }
+    }
+}
+
+fn not_ready(why: Unready, waited: Duration) -> String {
+    match waited.as_millis() {
+        0 => format!("the motion does not begin: {why}"),
+        waited => format!("the motion has waited for {waited} ms and does not begin: {why}"),
     }
 }
 

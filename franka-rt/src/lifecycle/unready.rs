@@ -1,0 +1,57 @@
+//! Why a robot takes no motion.
+
+use super::Party;
+
+/// Why a supervised robot takes no motion now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Unready {
+    /// Link: there is no connection. The supervisor makes a new one.
+    #[error("there is no connection to the robot")]
+    Disconnected,
+    /// Link: the robot is silent.
+    #[error("the robot is silent")]
+    Silent,
+    /// Robot: a reflex, from which it is being recovered.
+    #[error("the robot is being recovered from a reflex")]
+    Recovering,
+    /// Robot: a reflex. Its recovery waits for somebody to agree.
+    #[error("somebody has to agree to the recovery from a reflex")]
+    AgreementAwaited,
+    /// Robot: a reflex, which somebody has to recover it from.
+    #[error("a reflex holds the robot")]
+    Reflex,
+    /// Robot: the user stop is pressed, or a safety function holds the robot.
+    #[error("the user stop is pressed")]
+    UserStopped,
+    /// Robot: a hand guides the arm.
+    #[error("a hand guides the arm")]
+    Guided,
+    /// Robot: its brakes are closed, or it is not ready for another reason.
+    #[error("the brakes are closed, or the robot is not ready")]
+    Braked,
+}
+
+impl Unready {
+    /// Whether the supervisor is about to end it. Everything else is up to the people at the robot.
+    pub fn is_passing(self) -> bool {
+        matches!(
+            self,
+            Self::Disconnected | Self::Silent | Self::Recovering | Self::AgreementAwaited
+        )
+    }
+
+    /// Returns the party that can act on it.
+    pub fn party(self) -> Party {
+        match self {
+            Self::Disconnected | Self::Silent => Party::Link,
+            Self::Recovering
+            | Self::AgreementAwaited
+            | Self::Reflex
+            | Self::UserStopped
+            | Self::Guided
+            | Self::Braked => Party::Robot,
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Where the connection to a robot stands.
+
+use core::time::Duration;
+
+use franka_proto::{Errors, Load, RobotMode, RobotState};
+
+use super::policy::Policy;
+use super::reflex::ReflexCase;
+use crate::lifecycle::{CloseReason, Unready};
+
+/// Where the connection stands.
+#[derive(Debug)]
+pub(super) enum Connection {
+    /// The first one is being made.
+    First,
+    /// There is one.
+    Up(Up),
+    /// It is lost, and what it had is not yet given back.
+    Ending(Loss),
+    /// The next attempt comes at `at`.
+    Pausing { loss: Loss, at: Duration },
+    /// An attempt is under way.
+    Connecting(Loss),
+    /// There is none, and will be none.
+    Closed,
+}
+
+/// A connection that stands.
+#[derive(Debug)]
+pub(super) struct Up {
+    /// Since when.
+    pub(super) since: Duration,
+    /// Attempts that it took.
+    pub(super) attempts: u32,
+    /// The silence of the robot, if it is silent.
+    pub(super) silent: Option<Silent>,
+    /// What the newest state showed; `None` before the first one since the connection was made, or
+    /// since a silence.
+    pub(super) seen: Option<Seen>,
+    /// The mode that was told last; until one was, the usual one.
+    pub(super) told: RobotMode,
+    /// The reflex that holds the robot.
+    pub(super) reflex: Option<ReflexCase>,
+}
+
+/// A robot that sends no states.
+#[derive(Debug)]
+pub(super) struct Silent {
+    pub(super) since: Duration,
+    /// Whether the connection is about to be closed for it.
+    pub(super) is_given_up: bool,
+}
+
+/// A connection that was lost.
+#[derive(Clone, Debug)]
+pub(super) struct Loss {
+    pub(super) since: Duration,
+    pub(super) reason: CloseReason,
+    /// Whether there will be no other one.
+    pub(super) is_final: bool,
+    /// Attempts to connect that failed since, or did not last.
+    pub(super) failed: u32,
+}
+
+/// What a state shows of the robot as a whole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    pub(super) mode: RobotMode,
+    pub(super) errors: Errors,
+    pub(super) load: Load,
+}
+
+impl Seen {
+    /// Returns what `state` shows. Two states that show the same need not both be passed to
+    /// [`Supervision::on_state`](super::Supervision::on_state), unless there was a silence between
+    /// them.
+    pub fn of(state: &RobotState) -> Self {
+        Self {
+            mode: state.robot_mode,
+            errors: state.errors,
+            load: Load {
+                m_load: state.m_load,
+                F_x_Cload: state.F_x_Cload,
+                I_load: state.I_load,
+            },
+        }
+    }
+}
+
+impl Silent {
+    /// When the connection is to be given up, if it is.
+    pub(super) fn deadline(&self, policy: Option<&Policy>) -> Option<Duration> {
+        let policy = policy.filter(|policy| policy.reconnect.is_some() && !self.is_given_up)?;
+        Some(self.since + policy.silence)
+    }
+}
+
+impl Up {
+    /// Returns a connection that has just been made, and shows nothing yet.
+    pub(super) fn new(attempts: u32, now: Duration) -> Self {
+        Self {
+            since: now,
+            attempts,
+            silent: None,
+            seen: None,
+            told: RobotMode::Idle,
+            reflex: None,
+        }
+    }
+
+    /// When the next step of a reflex is due, if time alone brings it.
+    pub(super) fn deadline_of_reflex(&self) -> Option<Duration> {
+        self.reflex.as_ref()?.deadline(self.seen?.mode)
+    }
+
+    /// Why the robot takes no motions, if it does not.
+    pub(super) fn unready(&self) -> Option<Unready> {
+        if self.silent.is_some() {
+            return Some(Unready::Silent);
+        }
+        let mode = self.seen.map_or(RobotMode::Other, |seen| seen.mode);
+        match (mode, &self.reflex) {
+            (RobotMode::Idle | RobotMode::Move, None) => None,
+            (RobotMode::UserStopped, _) => Some(Unready::UserStopped),
+            (RobotMode::Guiding, _) => Some(Unready::Guided),
+            (RobotMode::Other, _) => Some(Unready::Braked),
+            (_, Some(reflex)) if mode != RobotMode::AutomaticErrorRecovery => {
+                Some(reflex.unready())
+            }
+            _ => Some(Unready::Recovering),
+        }
+    }
+}
+
+impl Connection {
+    /// Why the robot takes no motions, if it does not. A closed connection says so itself.
+    pub(super) fn unready(&self) -> Option<Unready> {
+        match self {
+            Self::Up(up) => up.unready(),
+            Self::First | Self::Ending(_) | Self::Pausing { .. } | Self::Connecting(_) => {
+                Some(Unready::Disconnected)
+            }
+            Self::Closed => None,
+        }
+    }
+
+    /// The reflex that holds the robot.
+    pub(super) fn reflex(&self) -> Option<&ReflexCase> {
+        match self {
+            Self::Up(up) => up.reflex.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The reflex that holds the robot.
+    pub(super) fn reflex_mut(&mut self) -> Option<&mut ReflexCase> {
+        match self {
+            Self::Up(up) => up.reflex.as_mut(),
+            _ => None,
+        }
+    }
+
+    /// The connection that was lost, while a new one is awaited.
+    pub(super) fn loss(&self) -> Option<&Loss> {
+        match self {
+            Self::Ending(loss) | Self::Pausing { loss, .. } | Self::Connecting(loss) => Some(loss),
+            Self::First | Self::Up(_) | Self::Closed => None,
+        }
+    }
+}

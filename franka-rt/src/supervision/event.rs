@@ -1,0 +1,196 @@
+//! What happened to a robot, and how it is.
+
+use core::time::Duration;
+use std::sync::Arc;
+
+use franka_proto::{Errors, Load};
+
+use crate::lifecycle::{CloseReason, ControlError, Outcome, Unready};
+use crate::sched::SchedError;
+
+/// Something that happened to a robot.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Event {
+    /// When, since the robot was first connected to, by this computer's clock.
+    pub at: Duration,
+    /// When, by the robot's clock: `message_id` of its newest state, `[ms]`. `None` without a
+    /// connection. A robot that was restarted may count anew.
+    pub robot_time: Option<u64>,
+    /// What.
+    pub kind: EventKind,
+}
+
+/// What happened to a robot.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum EventKind {
+    /// It is connected. What does not hold by default (a reflex, a pressed stop) follows in events
+    /// of its own.
+    Connected {
+        /// Attempts that this took.
+        attempts: u32,
+        /// Time since the connection before was lost; `None` for the first one.
+        after: Option<Duration>,
+    },
+    /// The operating system refused the control thread what it was asked for, and it goes on
+    /// without. Follows on `Connected`.
+    RealtimeRefused {
+        /// What was refused.
+        refusals: Arc<[SchedError]>,
+    },
+    /// The connection has ended. Motions end with it.
+    Lost {
+        /// Why.
+        reason: CloseReason,
+    },
+    /// No state has come for the link timeout; the connection is still there.
+    Silent {
+        /// For how long.
+        silence: Duration,
+    },
+    /// States come again, over the same connection.
+    Resumed {
+        /// Time since the silence was noticed.
+        after: Duration,
+    },
+    /// The robot stopped itself, or is found to have done so.
+    Reflex(Reflex),
+    /// The supervisor leaves the robot in its reflex: somebody has to recover it.
+    NotRecovered {
+        /// Number of the reflex.
+        reflex: u64,
+        /// Why.
+        why: NotRecovered,
+    },
+    /// The robot has left a reflex and takes motions again.
+    Recovered {
+        /// Number of the reflex.
+        reflex: u64,
+        /// Time from when it was noticed.
+        after: Duration,
+        /// Whether the supervisor did it, rather than this program or a person.
+        by_supervisor: bool,
+    },
+    /// The user stop was pressed or released, or a safety function did as much.
+    UserStop {
+        /// Whether it holds the robot now.
+        pressed: bool,
+    },
+    /// A hand began or ended to guide the arm.
+    Guiding {
+        /// Whether it does now.
+        active: bool,
+    },
+    /// The brakes were closed or opened. A robot that is not ready for another reason looks the
+    /// same.
+    Brakes {
+        /// Whether they are closed now.
+        closed: bool,
+    },
+    /// A motion, a session or a program was accepted. Goals that a session takes without a future
+    /// (`set`, `chunk`, `guide`) are not told.
+    MotionBegun {
+        /// Its name, as in the log.
+        goal: u64,
+    },
+    /// It has ended.
+    MotionEnded {
+        /// Its name.
+        goal: u64,
+        /// How.
+        outcome: Arc<Outcome>,
+    },
+    /// The load that the robot computes with is another one: of this program, or of Desk. What was
+    /// known before a connection was lost counts.
+    LoadChanged {
+        /// The load now.
+        load: Load,
+    },
+    /// There is no connection, and there will be none.
+    Closed {
+        /// Why.
+        reason: CloseReason,
+    },
+}
+
+/// The robot stopped itself.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Reflex {
+    /// Its number, from 1 on. One that is found after a connection was lost has a new one.
+    pub number: u64,
+    /// The errors that hold the robot.
+    pub errors: Errors,
+    /// How it ended the motion that ran, with its last cycles; `None` if none of this program did.
+    /// `franka_diagnosis` says what led to it.
+    pub error: Option<Arc<ControlError>>,
+}
+
+/// Why a supervisor leaves a robot in its reflex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum NotRecovered {
+    /// The policy recovers from no reflex.
+    #[error("the policy recovers from no reflex")]
+    Never,
+    /// The policy names the errors to recover from, and there are others.
+    #[error("the policy does not name all of its errors")]
+    OtherError,
+    /// The robot was recovered as often as the policy allows within its window.
+    #[error("the policy allows no more recoveries for now")]
+    TooOften,
+    /// Whoever was asked did not agree.
+    #[error("the recovery was not agreed to")]
+    Declined,
+    /// The robot demands a recovery by hand, in Desk.
+    #[error("the robot has to be recovered by hand")]
+    ByHand,
+}
+
+/// How a robot is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Health {
+    /// Whether it takes motions.
+    pub condition: Condition,
+    /// Since when, since the robot was first connected to.
+    pub since: Duration,
+    /// Number of the reflex that holds it, if one does: what to agree to the recovery from.
+    pub reflex: Option<u64>,
+    /// Attempts to connect since the connection was lost; 0 while there is one.
+    pub attempts: u32,
+    /// Connections made after the first one.
+    pub reconnects: u64,
+    /// Recoveries by the supervisor.
+    pub recoveries: u64,
+    /// Time that the newest reconnect took, from the loss on.
+    pub last_reconnect: Option<Duration>,
+    /// Time that the newest recovery by the supervisor took, from when the reflex was noticed.
+    pub last_recovery: Option<Duration>,
+}
+
+/// Whether a robot takes motions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Condition {
+    /// It does, or a motion runs.
+    Ready,
+    /// Not now.
+    Unready(Unready),
+    /// There is no connection, and there will be none.
+    Closed,
+}
+
+impl core::fmt::Display for Condition {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Ready => f.write_str("ready"),
+            Self::Unready(why) => why.fmt(f),
+            Self::Closed => f.write_str("closed"),
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! What becomes of a robot between its motions: connections that are lost and made again, reflexes
+//! and the recovery from them, and motions that are asked for meanwhile.
+//!
+//! ```text
+//!   First --> Up ----lost----> Ending --given back--> Connecting --connected--> Up
+//!             |                                        |      ^
+//!             |                                   failed      | time
+//!                                                      v      |
+//!                            Closed <--given up, another robot-- Pausing
+//!
+//!   Up:  ready --reflex--> told, once its motion has ended --> left | agreement awaited | due
+//!          ^                                                            agreed -->      |
+//!          +------- the robot shows that it takes motions <-- answered <-- requested <--+
+//! ```
+//!
+//! It decides when to connect and when to recover. **It moves nothing**: the only motions that it
+//! lets begin are those that a caller waits for, and a reflex, a lost connection, a user stop, a
+//! hand on the arm and closed brakes each turn away the one that waits.
+//!
+//! Inputs are the `on_*` methods (of the connection and the clock), [`Supervision::submit`],
+//! `withdraw`, `stop`, `agree` and `close` (of callers); effects come out of [`Supervision::poll`].
+//! No clock, socket or task in here: `now` is an argument, counted from any fixed moment, and never
+//! goes back.
+
+mod attempts;
+mod connection;
+mod event;
+mod policy;
+mod reflex;
+mod reports;
+#[cfg(test)]
+mod tests;
+mod waiting;
+
+use core::time::Duration;
+use std::collections::{BTreeSet, VecDeque};
+
+use franka_proto::{Load, RobotMode};
+
+use crate::lifecycle::{CloseReason, ControlError, MotionError, NewMotion, Unready};
+use crate::session::GoalId;
+
+use attempts::{Attempts, Pauses};
+use connection::{Connection, Loss};
+use reflex::Step;
+use waiting::Waiting;
+
+pub use connection::Seen;
+pub use event::{Condition, Event, EventKind, Health, NotRecovered, Reflex};
+pub use policy::{Backoff, Policy};
+pub use reflex::RecoveryFailure;
+pub use reports::ConnectFailure;
+pub use waiting::Admission;
+
+/// Something to carry out, in the order given.
+#[derive(Debug)]
+pub enum Output {
+    /// Tell whoever listens.
+    Event(Event),
+    /// Connect. Comes back as [`Supervision::on_connected`] or
+    /// [`Supervision::on_connect_failed`].
+    Connect,
+    /// Close the connection for this reason. Comes back as [`Supervision::on_lost`].
+    Disconnect {
+        /// Why.
+        reason: CloseReason,
+    },
+    /// Have the robot recover (`AutomaticErrorRecovery`). Comes back as
+    /// [`Supervision::on_recovery`] with this number.
+    Recover {
+        /// Number of the reflex.
+        reflex: u64,
+    },
+    /// Ask somebody to agree to the recovery from this reflex. Comes back as
+    /// [`Supervision::agree`], if at all.
+    Ask(Reflex),
+    /// Begin the motion that waited.
+    Begin {
+        /// Its name.
+        goal: GoalId,
+    },
+    /// Refuse the motion that waited.
+    Refuse {
+        /// Its name.
+        goal: GoalId,
+        /// Why.
+        error: MotionError,
+    },
+}
+
+/// The state machine. See the module's documentation.
+#[derive(Debug)]
+pub struct Supervision {
+    /// `None` for a robot that is only watched.
+    policy: Option<Policy>,
+    connection: Connection,
+    /// `message_id` of the newest state.
+    robot_time: Option<u64>,
+    /// The load that the robot was last seen with.
+    load: Option<Load>,
+    /// Reflexes so far.
+    reflexes: u64,
+    recoveries: Attempts,
+    pauses: Pauses,
+    /// How the last motion ended, if that was by a reflex that no state has shown yet.
+    unshown: Option<Box<ControlError>>,
+    /// Motions that have begun and not ended.
+    motions: BTreeSet<GoalId>,
+    waiting: Option<Waiting>,
+    health: Health,
+    outputs: VecDeque<Output>,
+}
+
+impl Supervision {
+    /// Returns the supervision of a robot that is about to be connected to. Without a policy it
+    /// only watches: it neither reconnects nor recovers, and lets every motion begin.
+    pub fn new(policy: Option<Policy>) -> Self {
+        let backoff = policy.and_then(|policy| policy.reconnect);
+        let seed = policy.map_or(0, |policy| policy.seed);
+        Self {
+            policy,
+            connection: Connection::First,
+            robot_time: None,
+            load: None,
+            reflexes: 0,
+            recoveries: Attempts::default(),
+            pauses: Pauses::new(backoff.unwrap_or_default(), seed),
+            unshown: None,
+            motions: BTreeSet::new(),
+            waiting: None,
+            health: Health {
+                condition: Condition::Unready(Unready::Disconnected),
+                since: Duration::ZERO,
+                reflex: None,
+                attempts: 0,
+                reconnects: 0,
+                recoveries: 0,
+                last_reconnect: None,
+                last_recovery: None,
+            },
+            outputs: VecDeque::new(),
+        }
+    }
+
+    /// How the robot is.
+    pub fn health(&self) -> Health {
+        self.health
+    }
+
+    /// The next effect to carry out.
+    pub fn poll(&mut self) -> Option<Output> {
+        self.outputs.pop_front()
+    }
+
+    /// Decides on a motion that a caller asks for.
+    pub fn submit(&mut self, motion: &NewMotion, now: Duration) -> Admission {
+        let why = match self.connection.unready() {
+            Some(why) if why.is_passing() && !motion.is_within_a_session() => why,
+            _ => return Admission::Begin,
+        };
+        let Some(policy) = &self.policy else {
+            return Admission::Begin;
+        };
+        let most = policy.motions_wait;
+        let (admission, before) = Waiting::admit(&mut self.waiting, motion, (why, most), now);
+        if let Some(goal) = before {
+            let error = MotionError::Superseded;
+            self.outputs.push_back(Output::Refuse { goal, error });
+        }
+        admission
+    }
+
+    /// Takes back the motion that waits, if it has this name: it is not named any more.
+    pub fn withdraw(&mut self, goal: GoalId) -> bool {
+        self.waiting.take_if(|it| it.goal == goal).is_some()
+    }
+
+    /// Takes back the motion that waits, because a stop was asked for.
+    pub fn stop(&mut self) {
+        self.refuse(|_| MotionError::Stopped);
+    }
+
+    /// Says whether the robot may be recovered from the reflex of this number. Returns whether that
+    /// was awaited.
+    pub fn agree(&mut self, reflex: u64, agreed: bool, now: Duration) -> bool {
+        let Connection::Up(up) = &mut self.connection else {
+            return false;
+        };
+        let case = up.reflex.as_mut().filter(|case| case.number == reflex);
+        let awaited = case.is_some_and(|case| case.agree(agreed, now));
+        self.go_on(now);
+        awaited
+    }
+
+    /// Ends it: this program closes the connection, or its runtime does. Nothing is asked for any
+    /// more.
+    pub fn close(&mut self, reason: CloseReason, now: Duration) {
+        if matches!(self.connection, Connection::Closed) {
+            return;
+        }
+        self.connection = Connection::Closed;
+        let error = MotionError::ConnectionClosed {
+            reason: reason.clone(),
+        };
+        self.refuse(|_| error);
+        self.tell(EventKind::Closed { reason }, now);
+        self.go_on(now);
+    }
+
+    /// When [`Self::on_time`] has to be called, if nothing else happens before.
+    pub fn deadline(&self) -> Option<Duration> {
+        let of_connection = match &self.connection {
+            Connection::Up(up) => match &up.silent {
+                Some(silent) => silent.deadline(self.policy.as_ref()),
+                None if self.motions.is_empty() => up.deadline_of_reflex(),
+                None => None,
+            },
+            Connection::Pausing { at, .. } => Some(*at),
+            Connection::First
+            | Connection::Ending(_)
+            | Connection::Connecting(_)
+            | Connection::Closed => None,
+        };
+        let of_motion = self.waiting.map(|waiting| waiting.until);
+        [of_connection, of_motion].into_iter().flatten().min()
+    }
+
+    /// Does what is due at `now`.
+    pub fn on_time(&mut self, now: Duration) {
+        match &mut self.connection {
+            Connection::Pausing { loss, at } if now >= *at => {
+                let loss = loss.clone();
+                self.connect(loss);
+            }
+            Connection::Up(up) => {
+                if let Some(silent) = &mut up.silent
+                    && silent
+                        .deadline(self.policy.as_ref())
+                        .is_some_and(|at| now >= at)
+                {
+                    silent.is_given_up = true;
+                    let silence = now - silent.since;
+                    let reason = CloseReason::Silent { silence };
+                    self.outputs.push_back(Output::Disconnect { reason });
+                }
+            }
+            _ => {}
+        }
+        self.go_on(now);
+    }
+
+    fn connect(&mut self, loss: Loss) {
+        self.connection = Connection::Connecting(loss);
+        self.outputs.push_back(Output::Connect);
+    }
+
+    fn tell(&mut self, kind: EventKind, now: Duration) {
+        self.outputs.push_back(Output::Event(Event {
+            at: now,
+            robot_time: self.robot_time,
+            kind,
+        }));
+    }
+
+    /// Refuses the motion that waits, if there is one.
+    fn refuse(&mut self, error: impl FnOnce(&Waiting) -> MotionError) {
+        if let Some(waiting) = self.waiting.take() {
+            let (goal, error) = (waiting.goal, error(&waiting));
+            self.outputs.push_back(Output::Refuse { goal, error });
+        }
+    }
+
+    /// Refuses the motion that waits, since something else has happened.
+    fn turn_away(&mut self, now: Duration) {
+        if let Some(why) = self.connection.unready() {
+            self.refuse(|waiting| waiting.refusal(why, now));
+        }
+    }
+
+    /// Does what has become possible, and brings the health up to date.
+    fn go_on(&mut self, now: Duration) {
+        while let Some(step) = self.next_step(now) {
+            self.take(step, now);
+        }
+        self.end_reflex(now);
+        if let Some(waiting) = self.waiting {
+            match self.connection.unready() {
+                None => {
+                    self.waiting = None;
+                    let goal = waiting.goal;
+                    self.outputs.push_back(Output::Begin { goal });
+                }
+                Some(why) if !why.is_passing() || now >= waiting.until => self.turn_away(now),
+                Some(_) => {}
+            }
+        }
+        let condition = match (&self.connection, self.connection.unready()) {
+            (Connection::Closed, _) => Condition::Closed,
+            (_, None) => Condition::Ready,
+            (_, Some(why)) => Condition::Unready(why),
+        };
+        if condition != self.health.condition {
+            (self.health.condition, self.health.since) = (condition, now);
+        }
+        self.health.attempts = self.connection.loss().map_or(0, |loss| loss.failed);
+        self.health.reflex = self.connection.reflex().map(|case| case.number);
+    }
+
+    fn next_step(&mut self, now: Duration) -> Option<Step> {
+        let Connection::Up(up) = &mut self.connection else {
+            return None;
+        };
+        let (mode, case) = (up.seen?.mode, up.reflex.as_mut()?);
+        let recovery = self.policy.and_then(|policy| policy.recovery);
+        let attempts = (&mut self.recoveries, &mut self.pauses);
+        case.step((mode, !self.motions.is_empty()), recovery, attempts, now)
+    }
+
+    fn take(&mut self, step: Step, now: Duration) {
+        let Some(reflex) = self.connection.reflex().map(|case| case.number) else {
+            return;
+        };
+        match step {
+            Step::Tell(reflex) => self.tell(EventKind::Reflex(reflex), now),
+            Step::Leave(why) => self.tell(EventKind::NotRecovered { reflex, why }, now),
+            Step::Ask(reflex) => self.outputs.push_back(Output::Ask(reflex)),
+            Step::Recover => self.outputs.push_back(Output::Recover { reflex }),
+        }
+    }
+
+    /// Ends the reflex once the robot takes motions again.
+    fn end_reflex(&mut self, now: Duration) {
+        let Connection::Up(up) = &mut self.connection else {
+            return;
+        };
+        let mode = up.seen.map(|seen| seen.mode);
+        let is_over = matches!(mode, Some(RobotMode::Idle | RobotMode::Move));
+        let Some(case) = up.reflex.take_if(|case| is_over && case.is_told()) else {
+            return;
+        };
+        let after = now - case.since;
+        let by_supervisor = case.is_by_supervisor();
+        if by_supervisor {
+            self.health.recoveries += 1;
+            self.health.last_recovery = Some(after);
+        }
+        let recovered = EventKind::Recovered {
+            reflex: case.number,
+            after,
+            by_supervisor,
+        };
+        self.tell(recovered, now);
+    }
+}

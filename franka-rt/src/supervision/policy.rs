@@ -1,0 +1,146 @@
+//! What a supervisor may do, and how often.
+
+use core::time::Duration;
+
+use franka_proto::{Errors, RobotError};
+
+/// What the supervisor of a robot does when the connection or the robot fails. The default
+/// reconnects for as long as it takes, never recovers from a reflex, and refuses motions meanwhile.
+///
+/// Whatever it does, nothing moves that was begun before: motions and sessions end with the
+/// mishap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use = "a policy does nothing until a robot is supervised by it"]
+pub struct Policy {
+    pub(super) recovery: Option<Recovery>,
+    pub(super) agreement: bool,
+    pub(super) reconnect: Option<Backoff>,
+    pub(super) give_up_after: Option<Duration>,
+    pub(super) silence: Duration,
+    pub(super) motions_wait: Option<Duration>,
+    pub(super) seed: u64,
+}
+
+/// When to recover from a reflex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Recovery {
+    pub(super) times: u32,
+    pub(super) window: Duration,
+    /// A reflex with any other error is left alone.
+    pub(super) only: Option<Errors>,
+}
+
+/// How long to wait between two attempts: after the first one `first`, after each other one twice
+/// as long as before, `most` at most. The first attempt is made at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Backoff {
+    /// The first pause.
+    pub first: Duration,
+    /// The longest pause.
+    pub most: Duration,
+    /// Share of each pause that is left to chance, 0 to 1, so that many robots that were lost
+    /// together do not come back in step: a pause is shorter by up to so much.
+    pub jitter: f64,
+}
+
+impl Default for Backoff {
+    /// 100 ms, 5 s, and 0.3.
+    fn default() -> Self {
+        Self {
+            first: Duration::from_millis(100),
+            most: Duration::from_secs(5),
+            jitter: 0.3,
+        }
+    }
+}
+
+impl Default for Policy {
+    fn default() -> Self {
+        Self {
+            recovery: None,
+            agreement: false,
+            reconnect: Some(Backoff::default()),
+            give_up_after: None,
+            silence: SILENCE,
+            motions_wait: None,
+            seed: 0,
+        }
+    }
+}
+
+impl Policy {
+    /// Recovers from reflexes by itself, `times` within any `window` at most, attempts that fail
+    /// included. A reflex beyond that is left to a person.
+    pub fn recover(mut self, times: u32, window: Duration) -> Self {
+        let only = self.recovery.and_then(|recovery| recovery.only);
+        self.recovery = Some(Recovery {
+            times,
+            window,
+            only,
+        });
+        self
+    }
+
+    /// Of the reflexes that [`Self::recover`] is for, recovers from those only whose errors are all
+    /// among these. Without effect if it is not called before.
+    pub fn only(mut self, errors: impl IntoIterator<Item = RobotError>) -> Self {
+        if let Some(recovery) = &mut self.recovery {
+            recovery.only = Some(errors.into_iter().collect());
+        }
+        self
+    }
+
+    /// Recovers from a reflex only after somebody has agreed to it.
+    pub fn ask_first(mut self) -> Self {
+        self.agreement = true;
+        self
+    }
+
+    /// Replaces the pauses between two attempts to connect. Recoveries that fail are repeated after
+    /// the same pauses.
+    pub fn reconnect(mut self, backoff: Backoff) -> Self {
+        self.reconnect = Some(backoff);
+        self
+    }
+
+    /// Makes no new connection when one is lost.
+    pub fn without_reconnecting(mut self) -> Self {
+        self.reconnect = None;
+        self
+    }
+
+    /// Gives up when a lost connection has not come back for so long; never by default.
+    pub fn give_up_after(mut self, time: Duration) -> Self {
+        self.give_up_after = Some(time);
+        self
+    }
+
+    /// How long the robot may be silent, on a connection that looks alive, before that is closed
+    /// and a new one made; 3 s by default. It begins when the silence is noticed, after the link
+    /// timeout.
+    pub fn silence(mut self, time: Duration) -> Self {
+        self.silence = time;
+        self
+    }
+
+    /// Lets a motion that comes while the supervisor reconnects or recovers wait, for `most` at
+    /// most, and begin when the robot is ready. By default it is refused at once, as
+    /// [`MotionError::NotReady`](crate::lifecycle::MotionError::NotReady).
+    ///
+    /// It waits for the end of this mishap only: another reflex, a connection that is lost again, a
+    /// user stop, a hand on the arm and closed brakes turn it away. A newer motion supersedes it as
+    /// it would one that moves, and a stop takes it back.
+    pub fn motions_wait(mut self, most: Duration) -> Self {
+        self.motions_wait = Some(most);
+        self
+    }
+
+    /// Draws what is left to chance from this seed.
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+}
+
+/// Silence after which a connection is given up, from when it is noticed.
+const SILENCE: Duration = Duration::from_secs(3);

@@ -1,0 +1,241 @@
+//! One reflex, from when it is noticed until the robot takes motions again.
+
+use core::time::Duration;
+use std::sync::Arc;
+
+use franka_proto::{Errors, RobotMode};
+
+use super::attempts::{Attempts, Pauses};
+use super::event::{NotRecovered, Reflex};
+use super::policy::{Policy, Recovery};
+use crate::lifecycle::{ControlError, Unready};
+
+/// Why a recovery did not succeed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecoveryFailure {
+    /// The robot demands a recovery by hand.
+    ByHand,
+    /// Anything else: it was refused or given up, or there was no answer. It may be repeated.
+    Other,
+}
+
+/// A reflex that holds the robot.
+#[derive(Debug)]
+pub(super) struct ReflexCase {
+    pub(super) number: u64,
+    pub(super) since: Duration,
+    pub(super) errors: Errors,
+    error: Option<Arc<ControlError>>,
+    /// Whether it has been told. That waits for the end of the motion, which has the log.
+    told: bool,
+    stage: Stage,
+    /// Whether it has been told that somebody is needed, in this stage.
+    stage_told: bool,
+}
+
+/// What becomes of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    /// Somebody else has to recover the robot.
+    Left(NotRecovered),
+    /// Somebody has to agree.
+    AgreementAwaited,
+    /// To be recovered, not before `at`, after so many attempts that failed.
+    Due { at: Duration, failed: u32 },
+    /// The request is out.
+    Requested { failed: u32 },
+    /// The robot has recovered, and is to show it by then.
+    Answered { until: Duration, failed: u32 },
+}
+
+/// What is to be done about a reflex.
+#[derive(Debug, PartialEq)]
+pub(super) enum Step {
+    Tell(Reflex),
+    Leave(NotRecovered),
+    Ask(Reflex),
+    Recover,
+}
+
+impl ReflexCase {
+    /// Returns a reflex that was noticed at `now`.
+    pub(super) fn new(
+        number: u64,
+        errors: Errors,
+        policy: Option<&Policy>,
+        attempts: &mut Attempts,
+        now: Duration,
+    ) -> Self {
+        Self {
+            number,
+            since: now,
+            errors,
+            error: None,
+            told: false,
+            stage: Stage::of(errors, policy, attempts, now),
+            stage_told: false,
+        }
+    }
+
+    /// Adds the error with which it ended a motion.
+    pub(super) fn explain(&mut self, error: ControlError) {
+        self.error.get_or_insert_with(|| Arc::new(error));
+    }
+
+    /// Whether it has been told.
+    pub(super) fn is_told(&self) -> bool {
+        self.told
+    }
+
+    /// Continues one that has not been told, with more errors.
+    pub(super) fn continue_from(&mut self, before: Self) {
+        (self.number, self.since, self.error) = (before.number, before.since, before.error);
+    }
+
+    /// Why the robot takes no motions.
+    pub(super) fn unready(&self) -> Unready {
+        match self.stage {
+            Stage::Left(_) => Unready::Reflex,
+            Stage::AgreementAwaited => Unready::AgreementAwaited,
+            Stage::Due { .. } | Stage::Requested { .. } | Stage::Answered { .. } => {
+                Unready::Recovering
+            }
+        }
+    }
+
+    /// Whether the supervisor has asked the robot to recover.
+    pub(super) fn is_by_supervisor(&self) -> bool {
+        matches!(self.stage, Stage::Requested { .. } | Stage::Answered { .. })
+    }
+
+    /// Takes the answer of whoever was asked. Returns whether it was awaited.
+    pub(super) fn agree(&mut self, agreed: bool, now: Duration) -> bool {
+        let awaited = self.stage == Stage::AgreementAwaited;
+        if awaited {
+            self.enter(match agreed {
+                true => Stage::Due { at: now, failed: 0 },
+                false => Stage::Left(NotRecovered::Declined),
+            });
+        }
+        awaited
+    }
+
+    /// Takes the robot's answer to the request.
+    pub(super) fn on_answer(
+        &mut self,
+        answer: Result<(), RecoveryFailure>,
+        pauses: &mut Pauses,
+        now: Duration,
+    ) {
+        let Stage::Requested { failed } = self.stage else {
+            return;
+        };
+        self.enter(match answer {
+            Ok(()) => Stage::Answered {
+                until: now + SHOWN_WITHIN,
+                failed,
+            },
+            Err(RecoveryFailure::ByHand) => Stage::Left(NotRecovered::ByHand),
+            Err(RecoveryFailure::Other) => Stage::again(failed + 1, pauses, now),
+        });
+    }
+
+    /// Returns the next step, if one is due with the robot in this mode. `is_moving` is whether a
+    /// motion has not been reported as ended. Each step is returned once.
+    pub(super) fn step(
+        &mut self,
+        (mode, is_moving): (RobotMode, bool),
+        recovery: Option<Recovery>,
+        (attempts, pauses): (&mut Attempts, &mut Pauses),
+        now: Duration,
+    ) -> Option<Step> {
+        if is_moving {
+            return None;
+        }
+        if !self.told {
+            self.told = true;
+            return Some(Step::Tell(self.reflex()));
+        }
+        if let Stage::Answered { until, failed } = self.stage
+            && now >= until
+        {
+            self.enter(Stage::again(failed + 1, pauses, now));
+        }
+        if let Stage::Due { at, failed } = self.stage
+            && now >= at
+            && mode == RobotMode::Reflex
+        {
+            let may = recovery
+                .is_some_and(|Recovery { times, window, .. }| attempts.note(times, window, now));
+            if may {
+                self.enter(Stage::Requested { failed });
+                return Some(Step::Recover);
+            }
+            self.enter(Stage::Left(NotRecovered::TooOften));
+        }
+        let step = match self.stage {
+            Stage::Left(why) => Step::Leave(why),
+            Stage::AgreementAwaited => Step::Ask(self.reflex()),
+            Stage::Due { .. } | Stage::Requested { .. } | Stage::Answered { .. } => return None,
+        };
+        (!core::mem::replace(&mut self.stage_told, true)).then_some(step)
+    }
+
+    fn enter(&mut self, stage: Stage) {
+        (self.stage, self.stage_told) = (stage, false);
+    }
+
+    /// When [`Self::step`] has to be called for a robot in this mode, if nothing else happens
+    /// before.
+    pub(super) fn deadline(&self, mode: RobotMode) -> Option<Duration> {
+        match self.stage {
+            Stage::Due { at, .. } if mode == RobotMode::Reflex => Some(at),
+            Stage::Answered { until, .. } => Some(until),
+            Stage::Due { .. }
+            | Stage::Left(_)
+            | Stage::AgreementAwaited
+            | Stage::Requested { .. } => None,
+        }
+    }
+
+    fn reflex(&self) -> Reflex {
+        Reflex {
+            number: self.number,
+            errors: self.errors,
+            error: self.error.clone(),
+        }
+    }
+}
+
+impl Stage {
+    /// What the policy makes of a reflex with these errors.
+    fn of(errors: Errors, policy: Option<&Policy>, attempts: &mut Attempts, now: Duration) -> Self {
+        let Some((policy, recovery)) = policy.and_then(|it| Some((it, it.recovery?))) else {
+            return Self::Left(NotRecovered::Never);
+        };
+        let Recovery {
+            times,
+            window,
+            only,
+        } = recovery;
+        if only.is_some_and(|only| only.union(errors) != only) {
+            Self::Left(NotRecovered::OtherError)
+        } else if !attempts.may(times, window, now) {
+            Self::Left(NotRecovered::TooOften)
+        } else if policy.agreement {
+            Self::AgreementAwaited
+        } else {
+            Self::Due { at: now, failed: 0 }
+        }
+    }
+
+    fn again(failed: u32, pauses: &mut Pauses, now: Duration) -> Self {
+        Self::Due {
+            at: now + pauses.after(failed),
+            failed,
+        }
+    }
+}
+
+/// Time for a robot that has answered a recovery to show it.
+const SHOWN_WITHIN: Duration = Duration::from_secs(2);

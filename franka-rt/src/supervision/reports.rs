@@ -1,0 +1,269 @@
+//! What the connection reports.
+
+use core::time::Duration;
+use std::sync::Arc;
+
+use franka_proto::{Errors, RobotMode, RobotState};
+
+use super::Supervision;
+use super::connection::{Connection, Loss, Seen, Silent, Up};
+use super::event::EventKind;
+use super::reflex::{RecoveryFailure, ReflexCase};
+use crate::lifecycle::{CloseReason, MotionError, Outcome};
+use crate::sched::SchedError;
+use crate::session::GoalId;
+
+/// Why there is no new connection.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ConnectFailure {
+    /// What answers is not the robot that was connected before.
+    AnotherRobot {
+        /// What differs.
+        text: String,
+    },
+    /// Anything else, which may pass.
+    Other {
+        /// What went wrong.
+        text: String,
+    },
+}
+
+impl Supervision {
+    /// Takes note that there is a connection, whose first state this is, and what the control
+    /// thread was refused. Returns false if none is wanted any more: it has to be closed.
+    pub fn on_connected(
+        &mut self,
+        state: &RobotState,
+        refusals: &[SchedError],
+        now: Duration,
+    ) -> bool {
+        let (attempts, after) = match &self.connection {
+            Connection::First => (1, None),
+            Connection::Connecting(loss) => (loss.failed + 1, Some(now - loss.since)),
+            Connection::Up(_)
+            | Connection::Ending(_)
+            | Connection::Pausing { .. }
+            | Connection::Closed => return false,
+        };
+        self.connection = Connection::Up(Up::new(attempts, now));
+        self.robot_time = Some(state.message_id);
+        self.health.reconnects += u64::from(after.is_some());
+        self.health.last_reconnect = after.or(self.health.last_reconnect);
+        self.tell(EventKind::Connected { attempts, after }, now);
+        if !refusals.is_empty() {
+            let refusals = Arc::from(refusals);
+            self.tell(EventKind::RealtimeRefused { refusals }, now);
+        }
+        self.on_state(state, now);
+        true
+    }
+
+    /// Takes a state of the robot. Those that show what the one before has shown may be left out:
+    /// see [`Seen`].
+    pub fn on_state(&mut self, state: &RobotState, now: Duration) {
+        let Connection::Up(up) = &mut self.connection else {
+            return;
+        };
+        self.robot_time = Some(state.message_id);
+        let seen = Seen::of(state);
+        let is_first = up.seen.replace(seen).is_none();
+        let told = core::mem::replace(&mut up.told, seen.mode);
+        if let Some(silent) = up.silent.take() {
+            let after = now - silent.since;
+            self.tell(EventKind::Resumed { after }, now);
+        }
+        if told != seen.mode {
+            let ended = event_of(told, false);
+            let begun = event_of(seen.mode, true);
+            for kind in [ended, begun].into_iter().flatten() {
+                self.tell(kind, now);
+            }
+        }
+        if self
+            .load
+            .replace(seen.load)
+            .is_some_and(|load| load != seen.load)
+        {
+            self.tell(EventKind::LoadChanged { load: seen.load }, now);
+        }
+        if seen.mode == RobotMode::Reflex && self.on_reflex(seen.errors, now) && !is_first {
+            self.turn_away(now);
+        }
+        self.go_on(now);
+    }
+
+    /// Takes note of a robot that these errors hold. Returns whether that is new.
+    fn on_reflex(&mut self, errors: Errors, now: Duration) -> bool {
+        let Connection::Up(up) = &mut self.connection else {
+            return false;
+        };
+        let is_known = |case: &ReflexCase| case.errors.union(errors) == case.errors;
+        if up.reflex.as_ref().is_some_and(is_known) {
+            return false;
+        }
+        let (policy, recoveries) = (self.policy.as_ref(), &mut self.recoveries);
+        let mut case = ReflexCase::new(self.reflexes + 1, errors, policy, recoveries, now);
+        match up.reflex.take() {
+            Some(before) if !before.is_told() => case.continue_from(before),
+            _ => self.reflexes += 1,
+        }
+        if let Some(error) = self.unshown.take() {
+            case.explain(*error);
+        }
+        up.reflex = Some(case);
+        true
+    }
+
+    /// Takes note that the robot has sent no state for `silence`.
+    pub fn on_silence(&mut self, silence: Duration, now: Duration) {
+        let Connection::Up(up) = &mut self.connection else {
+            return;
+        };
+        if up.silent.is_some() {
+            return;
+        }
+        up.seen = None;
+        up.silent = Some(Silent {
+            since: now,
+            is_given_up: false,
+        });
+        self.tell(EventKind::Silent { silence }, now);
+        self.turn_away(now);
+        self.go_on(now);
+    }
+
+    /// Takes note that the connection has ended. What it had may still have to be given back:
+    /// [`Self::on_released`].
+    pub fn on_lost(&mut self, reason: CloseReason, now: Duration) {
+        let Connection::Up(up) = &self.connection else {
+            return;
+        };
+        let was_silent = up.silent.is_some();
+        let is_final =
+            reason.is_ours() || self.policy.is_none_or(|policy| policy.reconnect.is_none());
+        let loss = Loss {
+            since: up.silent.as_ref().map_or(now, |silent| silent.since),
+            reason: reason.clone(),
+            is_final,
+            failed: match now < up.since + LASTING {
+                true => up.attempts,
+                false => 0,
+            },
+        };
+        self.connection = Connection::Ending(loss);
+        self.robot_time = None;
+        if is_final {
+            let reason = reason.clone();
+            self.refuse(|_| MotionError::ConnectionClosed { reason });
+        } else if !was_silent {
+            self.turn_away(now);
+        }
+        if !reason.is_ours() {
+            self.tell(EventKind::Lost { reason }, now);
+        }
+        self.go_on(now);
+    }
+
+    /// Takes note that all that the lost connection had is given back: its control thread has
+    /// ended, and its socket is closed.
+    pub fn on_released(&mut self, now: Duration) {
+        if let Connection::Ending(loss) = &self.connection {
+            let loss = loss.clone();
+            match loss.failed {
+                _ if loss.is_final => self.close(loss.reason, now),
+                0 => self.connect(loss),
+                failed => {
+                    let at = now + self.pauses.after(failed);
+                    self.connection = Connection::Pausing { loss, at };
+                }
+            }
+        }
+        self.go_on(now);
+    }
+
+    /// Takes note that an attempt to connect has failed.
+    pub fn on_connect_failed(&mut self, failure: ConnectFailure, now: Duration) {
+        let Connection::Connecting(loss) = &self.connection else {
+            return;
+        };
+        let mut loss = loss.clone();
+        loss.failed += 1;
+        let after = now - loss.since;
+        let give_up_after = self.policy.and_then(|policy| policy.give_up_after);
+        match failure {
+            ConnectFailure::AnotherRobot { text } => {
+                self.close(CloseReason::AnotherRobot { text }, now);
+            }
+            ConnectFailure::Other { text } if give_up_after.is_some_and(|most| after >= most) => {
+                let attempts = loss.failed;
+                let reason = CloseReason::GivenUp {
+                    attempts,
+                    after,
+                    text,
+                };
+                self.close(reason, now);
+            }
+            ConnectFailure::Other { .. } => {
+                let at = now + self.pauses.after(loss.failed);
+                self.connection = Connection::Pausing { loss, at };
+            }
+        }
+        self.go_on(now);
+    }
+
+    /// Takes the answer to a request to recover from the reflex of this number.
+    pub fn on_recovery(&mut self, reflex: u64, answer: Result<(), RecoveryFailure>, now: Duration) {
+        if let Connection::Up(up) = &mut self.connection
+            && let Some(case) = &mut up.reflex
+            && case.number == reflex
+        {
+            case.on_answer(answer, &mut self.pauses, now);
+        }
+        self.go_on(now);
+    }
+
+    /// Takes note that a motion, a session or a program was accepted.
+    pub fn on_begun(&mut self, goal: GoalId, now: Duration) {
+        self.motions.insert(goal);
+        self.unshown = None;
+        self.tell(EventKind::MotionBegun { goal: goal.0 }, now);
+    }
+
+    /// Takes note of the outcome of a motion. Others than those that were reported as begun are
+    /// ignored.
+    pub fn on_ended(&mut self, goal: GoalId, outcome: &Outcome, now: Duration) {
+        if !self.motions.remove(&goal) {
+            return;
+        }
+        if let Err(MotionError::Control(error)) = outcome
+            && error.is_reflex()
+        {
+            match self.connection.reflex_mut() {
+                Some(case) if !case.is_told() => case.explain((**error).clone()),
+                Some(_) => {}
+                None => self.unshown = Some(error.clone()),
+            }
+        }
+        let outcome = Arc::new(outcome.clone());
+        let goal = goal.0;
+        self.tell(EventKind::MotionEnded { goal, outcome }, now);
+        self.go_on(now);
+    }
+}
+
+/// What it means that a mode has begun or ended, apart from reflexes and motions.
+fn event_of(mode: RobotMode, begun: bool) -> Option<EventKind> {
+    Some(match mode {
+        RobotMode::UserStopped => EventKind::UserStop { pressed: begun },
+        RobotMode::Guiding => EventKind::Guiding { active: begun },
+        RobotMode::Other => EventKind::Brakes { closed: begun },
+        RobotMode::Idle
+        | RobotMode::Move
+        | RobotMode::Reflex
+        | RobotMode::AutomaticErrorRecovery => return None,
+    })
+}
+
+/// A connection that did not last so long counts as an attempt that failed, so that a robot that
+/// drops each one is not asked for the next at once.
+const LASTING: Duration = Duration::from_secs(1);

@@ -1,0 +1,169 @@
+//! Motions that are asked for while the robot is not ready.
+
+use super::*;
+
+#[test]
+fn a_motion_meanwhile_is_refused_unless_it_may_wait() {
+    let mut robot = Supervised::ready(without_chance().recover(3, WINDOW));
+    robot.reflex([COLLISION]);
+    let Admission::Refuse(error) = robot.submit(1) else {
+        panic!("it does not wait")
+    };
+    assert_eq!(error, not_ready(Unready::Recovering, 0));
+    robot.lose(CloseReason::ClosedByPeer);
+    let Admission::Refuse(error) = robot.submit(2) else {
+        panic!("it does not wait")
+    };
+    assert_eq!(error, not_ready(Unready::Disconnected, 0));
+    // The robot itself refuses what the supervisor will not change.
+    let mut robot = Supervised::ready(without_chance().motions_wait(MS(1000)));
+    for mode in [
+        RobotMode::UserStopped,
+        RobotMode::Guiding,
+        RobotMode::Other,
+        RobotMode::Reflex,
+        RobotMode::Idle,
+        RobotMode::Move,
+    ] {
+        robot.shows(mode);
+        assert!(matches!(robot.submit(3), Admission::Begin), "{mode}");
+    }
+}
+
+#[test]
+fn a_motion_that_waits_begins_when_the_robot_is_ready_and_not_after_its_time() {
+    let policy = without_chance().recover(3, WINDOW).motions_wait(MS(500));
+    let mut robot = Supervised::ready(policy);
+    robot.reflex([COLLISION]);
+    assert!(matches!(robot.submit(1), Admission::Wait));
+    robot.pass(499);
+    robot.answers(1, Ok(()));
+    robot.recovers();
+    assert_eq!(robot.motions(), [(1, None)]);
+
+    robot.lose(CloseReason::ClosedByPeer);
+    robot.release();
+    assert!(matches!(robot.submit(2), Admission::Wait));
+    robot.pass(500);
+    let late = not_ready(Unready::Disconnected, 500);
+    assert_eq!(robot.motions(), [(2, Some(late))]);
+    assert!(robot.connect());
+    assert_eq!(robot.motions(), []);
+}
+
+#[test]
+fn of_the_motions_that_wait_the_newest_counts_and_a_stop_takes_it_back() {
+    let policy = without_chance().motions_wait(MS(500));
+    let mut robot = Supervised::ready(policy);
+    robot.lose(CloseReason::ClosedByPeer);
+    robot.release();
+    assert!(matches!(robot.submit(1), Admission::Wait));
+    assert!(matches!(robot.submit(2), Admission::Wait));
+    assert_eq!(robot.motions(), [(1, Some(MotionError::Superseded))]);
+    let session = |motion| match motion {
+        NewMotion::Goal { goal, .. } => NewMotion::Session {
+            goal,
+            engagement: crate::lifecycle::Engagement::default(),
+        },
+        other => other,
+    };
+    let busy = |admission| matches!(admission, Admission::Refuse(MotionError::Busy));
+    assert!(busy(robot.submit_as(3, session)), "it supersedes nothing");
+    assert!(robot.after(|it| it.withdraw(GoalId(2))));
+    assert!(!robot.after(|it| it.withdraw(GoalId(2))));
+    assert!(matches!(robot.submit_as(4, session), Admission::Wait));
+    assert!(busy(robot.submit(5)), "it is not superseded");
+    robot.after(Supervision::stop);
+    assert_eq!(robot.motions(), [(4, Some(MotionError::Stopped))]);
+    assert!(robot.connect());
+    assert_eq!(robot.motions(), []);
+
+    robot.lose(CloseReason::ClosedByPeer);
+    let [ticket] = StartBarrier::new().tickets();
+    let together = |motion| match motion {
+        NewMotion::Goal { goal, session, .. } => NewMotion::Goal {
+            goal,
+            ticket: Some(ticket),
+            session,
+        },
+        other => other,
+    };
+    let refused = robot.submit_as(6, together);
+    assert!(
+        matches!(refused, Admission::Refuse(MotionError::NotReady { .. })),
+        "the others would wait, too: {refused:?}"
+    );
+    let of_session = |motion| match motion {
+        NewMotion::Goal { goal, ticket, .. } => NewMotion::Goal {
+            goal,
+            ticket,
+            session: Some(GoalId(4)),
+        },
+        other => other,
+    };
+    let begun = robot.submit_as(7, of_session);
+    assert!(
+        matches!(begun, Admission::Begin),
+        "its session has ended and says so: {begun:?}"
+    );
+}
+
+#[test]
+fn whatever_else_happens_turns_away_a_motion_that_waits() {
+    type Mishap = fn(&mut Supervised);
+    let mishaps: [(Mishap, MotionError); 6] = [
+        (
+            |robot| robot.reflex([COLLISION, RobotError::JointReflex]),
+            not_ready(Unready::Recovering, 50),
+        ),
+        (
+            |robot| robot.lose(CloseReason::ClosedByPeer),
+            not_ready(Unready::Disconnected, 50),
+        ),
+        (
+            |robot| {
+                let now = MS(robot.now);
+                robot.after(|it| it.on_silence(MS(1000), now));
+            },
+            not_ready(Unready::Silent, 50),
+        ),
+        (
+            |robot| robot.shows(RobotMode::UserStopped),
+            not_ready(Unready::UserStopped, 50),
+        ),
+        (
+            |robot| robot.shows(RobotMode::Guiding),
+            not_ready(Unready::Guided, 50),
+        ),
+        (
+            |robot| robot.shows(RobotMode::Other),
+            not_ready(Unready::Braked, 50),
+        ),
+    ];
+    for (mishap, error) in mishaps {
+        let policy = without_chance().recover(9, WINDOW).motions_wait(MS(1000));
+        let mut robot = Supervised::ready(policy);
+        robot.reflex([COLLISION]);
+        assert!(matches!(robot.submit(1), Admission::Wait));
+        robot.pass(50);
+        mishap(&mut robot);
+        assert_eq!(robot.motions(), [(1, Some(error))]);
+    }
+}
+
+/// As after a network that was cut in the middle of a motion.
+#[test]
+fn a_reflex_that_is_found_with_a_connection_belongs_to_its_loss() {
+    let policy = without_chance().recover(9, WINDOW).motions_wait(MS(5000));
+    let mut robot = Supervised::ready(policy);
+    robot.lose(CloseReason::ClosedByPeer);
+    robot.release();
+    assert!(matches!(robot.submit(1), Admission::Wait));
+    robot.state.errors = COLLISION.into();
+    robot.state.robot_mode = RobotMode::Reflex;
+    assert!(robot.connect());
+    assert_eq!(robot.recoveries(), [1]);
+    robot.answers(1, Ok(()));
+    robot.recovers();
+    assert_eq!(robot.motions(), [(1, None)]);
+}

@@ -1,0 +1,66 @@
+//! The motion that waits for the robot to be ready.
+
+use core::time::Duration;
+
+use crate::lifecycle::{MotionError, NewMotion, Unready};
+use crate::session::GoalId;
+
+/// What becomes of a motion that is asked for.
+#[derive(Debug)]
+pub enum Admission {
+    /// Begin it now. A robot that takes no motions says so itself.
+    Begin,
+    /// Keep it until [`Output::Begin`](super::Output::Begin) or
+    /// [`Output::Refuse`](super::Output::Refuse) names it.
+    Wait,
+    /// It does not begin.
+    Refuse(MotionError),
+}
+
+/// A motion that waits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waiting {
+    pub(super) goal: GoalId,
+    /// Whether it gives way to a newer goal.
+    gives_way: bool,
+    since: Duration,
+    pub(super) until: Duration,
+}
+
+impl Waiting {
+    /// Decides on `motion`, which would wait for `most`: it becomes `waiting`, in the place of one
+    /// that gives way to it and is returned.
+    pub(super) fn admit(
+        waiting: &mut Option<Self>,
+        motion: &NewMotion,
+        (why, most): (Unready, Option<Duration>),
+        now: Duration,
+    ) -> (Admission, Option<GoalId>) {
+        let refusal = MotionError::NotReady {
+            why,
+            waited: Duration::ZERO,
+        };
+        // The others of a common start would wait, too.
+        let Some(most) = most.filter(|_| !motion.has_ticket()) else {
+            return (Admission::Refuse(refusal), None);
+        };
+        if let Some(waiting) = waiting
+            && !(waiting.gives_way && motion.supersedes_goals())
+        {
+            return (Admission::Refuse(MotionError::Busy), None);
+        }
+        let before = waiting.replace(Self {
+            goal: motion.id(),
+            gives_way: motion.is_superseded_by_goals(),
+            since: now,
+            until: now + most,
+        });
+        (Admission::Wait, before.map(|before| before.goal))
+    }
+
+    /// The error of a motion that does not begin because the robot is not ready at `now`.
+    pub(super) fn refusal(&self, why: Unready, now: Duration) -> MotionError {
+        let waited = now - self.since;
+        MotionError::NotReady { why, waited }
+    }
+}
