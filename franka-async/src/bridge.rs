@@ -12,15 +12,17 @@ use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order};
 use franka_rt::event_fd::EventFd;
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{CloseReason, Lifecycle, NewMotion, Outcome, Output};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, NewMotion, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
 use franka_rt::session::{ForceCap, GoalId, Margin, Target};
+use franka_rt::supervision::Seen;
 use franka_rt::thread::{Handle, Notice, Thread};
 use tokio::io::Interest;
 use tokio::io::unix::AsyncFd;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
+use tracing::{Instrument, Span};
 
 use crate::command_channel::{Channel, Connection, Report};
 use crate::destination::Now;
@@ -28,6 +30,7 @@ use crate::input::{Beginning, BridgeHandle, EndReply, Input, Replies};
 use crate::progress::Course;
 use crate::publish::Publisher;
 use crate::robot::{pose_at, pose_of};
+use crate::supervisor::Supervisor;
 use crate::telemetry::{self, Telemetry};
 use crate::thresholds::Thresholds;
 
@@ -73,16 +76,41 @@ pub(crate) struct Bridge {
     thread: Option<Thread<Driver>>,
     channel: Channel,
     connection: Option<Connection>,
-    replies: HashMap<GoalId, Replies>,
+    replies: HashMap<GoalId, (Replies, Span)>,
     started: Instant,
     /// Whether robot or thread is out of reach, for good.
     lost: bool,
     /// Whether the thread that runs active control reads no states.
     stalled: bool,
+    supervisor: Arc<Supervisor>,
+    /// What the supervisor was last shown.
+    seen: Option<Seen>,
+    /// `message_id` of the newest state when a silence was noticed, until one comes.
+    silent_since: Option<u64>,
+}
+
+/// A bridge that is not yet running, with what it will receive.
+pub(crate) struct Prepared {
+    bridge: Bridge,
+    inbox: mpsc::UnboundedReceiver<Input>,
+    reports: mpsc::UnboundedReceiver<Report>,
+}
+
+impl Prepared {
+    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is
+    /// told to end: by an input, or by `cancellation`.
+    pub(crate) fn start(self, cancellation: CancellationToken) {
+        let Self {
+            bridge,
+            inbox,
+            reports,
+        } = self;
+        tokio::spawn(bridge.run(inbox, reports, cancellation).in_current_span());
+    }
 }
 
 impl Bridge {
-    /// Returns a bridge. `states` has the receivers of the driver itself, and no subscriber yet.
+    /// Returns a bridge that publishes to `states` and reports to `supervisor`.
     pub(crate) fn new(
         lifecycle: Lifecycle,
         handle: Handle,
@@ -90,6 +118,7 @@ impl Bridge {
         (channel, connection): (Channel, Connection),
         states: Arc<watch::Sender<RobotState>>,
         (course, thresholds): (Course, Thresholds),
+        supervisor: Arc<Supervisor>,
     ) -> Self {
         Self {
             lifecycle,
@@ -113,23 +142,28 @@ impl Bridge {
             started: Instant::now(),
             lost: false,
             stalled: false,
+            supervisor,
+            seen: None,
+            silent_since: None,
         }
     }
 
-    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is
-    /// told to end: by an input, or by `cancellation`.
-    pub(crate) fn start(
+    /// Returns the way into the bridge, which takes nothing before it is started.
+    pub(crate) fn prepare(
         self,
         reports: mpsc::UnboundedReceiver<Report>,
-        cancellation: CancellationToken,
-    ) -> BridgeHandle {
+    ) -> (BridgeHandle, Prepared) {
         let (sender, inbox) = mpsc::unbounded_channel();
         let handle = BridgeHandle {
             inbox: sender,
             subscriptions: self.publisher.subscriptions(),
         };
-        tokio::spawn(self.run(inbox, reports, cancellation));
-        handle
+        let prepared = Prepared {
+            bridge: self,
+            inbox,
+            reports,
+        };
+        (handle, prepared)
     }
 
     async fn run(
@@ -204,15 +238,19 @@ impl Bridge {
                 Output::Send { motion, request } => self.channel.send(motion, request),
                 Output::Began { id } => {
                     let replies = self.replies.get_mut(&id);
-                    if let Some(began) = replies.and_then(|replies| replies.began.take()) {
+                    if let Some(began) = replies.and_then(|(replies, _)| replies.began.take()) {
                         // The future that began it may have been dropped.
                         let _ = began.send(());
                     }
                 }
                 Output::Resolve { goal, result } => {
-                    log(goal, &result);
-                    if let Some(replies) = self.replies.remove(&goal) {
-                        replies.ended.send(result);
+                    self.supervisor.on_ended(goal, &result);
+                    match self.replies.remove(&goal) {
+                        Some((replies, span)) => {
+                            span.in_scope(|| log(goal, &result));
+                            replies.ended.send(result);
+                        }
+                        None => log(goal, &result),
                     }
                 }
             }
@@ -222,6 +260,8 @@ impl Bridge {
     /// Takes everything that the thread has published.
     fn on_wakeup(&mut self) {
         self.publisher.publish();
+        // Before a motion resolves: what comes next finds a robot that is in a reflex.
+        self.observe();
         self.telemetry.watch(Instant::now());
         self.take_notices();
         self.look_for_a_stall();
@@ -244,7 +284,11 @@ impl Bridge {
                                 "the observer panicked and is not called again"
                             );
                         }
-                        Event::LinkLost { silence } => self.publisher.tell_silence(*silence),
+                        Event::LinkLost { silence } => {
+                            self.publisher.tell_silence(*silence);
+                            self.silent_since = Some(self.publisher.state().message_id);
+                            self.supervisor.on_silence(*silence);
+                        }
                         _ => {}
                     }
                     let now = self.now();
@@ -291,8 +335,30 @@ impl Bridge {
     /// goal that can no longer be taken back.
     fn lose(&mut self, reason: CloseReason) {
         let reason = self.channel.closing().note(reason);
+        // Before the motions resolve: what comes next finds a connection that is lost.
+        self.supervisor.on_lost(reason.clone());
         self.lifecycle.on_connection_closed(reason);
         self.lost = true;
+    }
+
+    fn refuse(&self, goal: GoalId, replies: Replies, error: MotionError) {
+        let refused = Err(error);
+        log(goal, &refused);
+        self.supervisor.on_ended(goal, &refused);
+        replies.ended.send(refused);
+    }
+
+    /// Shows the supervisor the newest state, if it shows anything new of the robot as a whole.
+    fn observe(&mut self) {
+        let state = *self.publisher.state();
+        let resumed = self
+            .silent_since
+            .is_some_and(|since| state.message_id > since);
+        let seen = Some(Seen::of(&state));
+        if resumed || self.seen != seen {
+            (self.seen, self.silent_since) = (seen, None);
+            self.supervisor.on_state(&state);
+        }
     }
 
     /// Says so if an arm may oscillate under these gains.
@@ -325,6 +391,7 @@ impl Bridge {
         let now = self.now();
         // If no wake-up per state is requested, the state that was published last is old.
         self.publisher.refresh();
+        self.observe();
         // The caller may react to an event that is in the queue and not yet read by this task: the
         // queue is read before the input is handled.
         self.look_for_a_stall();
@@ -342,13 +409,10 @@ impl Bridge {
                     Ok(()) => {
                         self.warn_of_margin(id, gains, state);
                         self.warn_of_thresholds(id, force_cap);
-                        self.replies.insert(id, replies);
+                        let span = tracing::info_span!("motion", goal = id.0);
+                        self.replies.insert(id, (replies, span));
                     }
-                    Err(error) => {
-                        let refused = Err(error);
-                        log(id, &refused);
-                        replies.ended.send(refused);
-                    }
+                    Err(error) => self.refuse(id, replies, error),
                 }
             }
             Input::Update {
@@ -404,10 +468,13 @@ impl Bridge {
             Input::Stop { goal, ended } => {
                 if self.lifecycle.stop(goal, now) {
                     let ended = EndReply::One(ended);
-                    self.replies.insert(goal, Replies { began: None, ended });
+                    let span = tracing::info_span!("stop", goal = goal.0);
+                    self.replies
+                        .insert(goal, (Replies { began: None, ended }, span));
                 }
                 // Otherwise nothing moves, and dropping `ended` says so.
             }
+            Input::Lose { reason } => self.lose(reason),
             Input::Shutdown { .. } => unreachable!("taken where the loop decides to close"),
         }
     }
@@ -441,6 +508,8 @@ impl Bridge {
 
     fn on_report(&mut self, report: Report) {
         let now = self.now();
+        self.publisher.refresh();
+        self.observe();
         match report {
             Report::Move { motion, status } => self.lifecycle.on_move_reply(motion, status, now),
             Report::MoveViolation { motion, violation } => {
@@ -466,13 +535,22 @@ impl Bridge {
     ) {
         let reason = self.channel.closing().note(CloseReason::ClosedByUs);
         inbox.close();
+        self.supervisor.on_lost(reason.clone());
         self.lifecycle.on_connection_closed(reason.clone());
         self.carry_out();
         while let Some(input) = inbox.recv().await {
             match input {
                 Input::Shutdown { ended: reply } => done.push(reply),
+                Input::Begin { motion, replies } => {
+                    let reason = reason.clone();
+                    self.refuse(
+                        motion.motion.id(),
+                        replies,
+                        MotionError::ConnectionClosed { reason },
+                    );
+                }
                 // Who waits for another answer sees the end by its channel being closed.
-                other => other.refuse(reason.clone()),
+                _ => {}
             }
         }
         self.rest().await;
@@ -486,6 +564,14 @@ impl Bridge {
                 Err(error) => tracing::error!(%error, "control thread"),
             }
         }
+    }
+}
+
+/// Also when the runtime drops the task.
+impl Drop for Bridge {
+    fn drop(&mut self) {
+        self.supervisor.on_lost(self.channel.closing().reason());
+        self.supervisor.on_released();
     }
 }
 

@@ -1,11 +1,14 @@
 //! How to connect to a robot.
 
+use std::fmt;
+use std::sync::Arc;
 use std::time::Duration;
 
 use franka_proto::Version;
 use franka_rt::driver::ControlLog;
 use franka_rt::identify::Identified;
 use franka_rt::sched::{Realtime, Scheduling};
+use franka_rt::supervision::{Policy, Reflex};
 use tokio_util::sync::CancellationToken;
 
 use crate::dial::TCP_TIMEOUT;
@@ -36,7 +39,19 @@ pub struct Builder {
     pub(crate) nominal_model: bool,
     pub(crate) log_size: usize,
     pub(crate) known: Option<Box<Identified>>,
+    pub(crate) policy: Option<Policy>,
+    pub(crate) ask: Option<Ask>,
     pub(crate) cancellation: CancellationToken,
+}
+
+/// What the program is asked before a recovery.
+#[derive(Clone)]
+pub(crate) struct Ask(pub(crate) Arc<dyn Fn(&Reflex) -> bool + Send + Sync>);
+
+impl fmt::Debug for Ask {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Ask")
+    }
 }
 
 impl Robot {
@@ -57,6 +72,8 @@ impl Builder {
             nominal_model: false,
             log_size: ControlLog::DEFAULT_CAPACITY,
             known: None,
+            policy: None,
+            ask: None,
             cancellation: CancellationToken::new(),
         }
     }
@@ -158,6 +175,33 @@ impl Builder {
     /// are refused as [`ConnectError::Known`](crate::error::ConnectError::Known).
     pub fn known(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));
+        self
+    }
+
+    /// Has the robot supervised: a connection that is lost is made again, and the robot recovered
+    /// from reflexes, as the policy says. Handles go on from connection to connection;
+    /// [`Robot::events`] and [`Robot::health`] tell what happens. Nothing that was begun before
+    /// goes on by itself. [`connect`](Self::connect) itself is not repeated.
+    ///
+    /// What was set at the robot (load, thresholds, impedance) is not set again: a robot that was
+    /// restarted has its own defaults. A program that sets any does so after each
+    /// [`EventKind::Connected`](crate::supervision::EventKind::Connected).
+    pub fn supervise(mut self, policy: Policy) -> Self {
+        self.policy = Some(policy);
+        self
+    }
+
+    /// Asks `agrees` before each recovery that the policy allows, with the reflex and, if it ended
+    /// a motion of this program, its log and [diagnosis](crate::Diagnose). Implies
+    /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). It runs in the task that
+    /// supervises, and holds it up: one that asks a person leaves this away, waits for
+    /// [`Unready::AgreementAwaited`](crate::error::Unready::AgreementAwaited) and calls
+    /// [`Robot::agree`]. One that panics does not agree.
+    pub fn ask_before_recovery(
+        mut self,
+        agrees: impl Fn(&Reflex) -> bool + Send + Sync + 'static,
+    ) -> Self {
+        self.ask = Some(Ask(Arc::new(agrees)));
         self
     }
 

@@ -1,36 +1,21 @@
-//! From an address to a running connection. If the robot refuses the version, the older one that it
-//! names is tried.
+//! From the options of a connection to a robot.
 
-use std::net::SocketAddr;
+use std::hash::{BuildHasher, RandomState};
 use std::sync::Arc;
 
-use franka_proto::client::Session;
-use franka_proto::{RobotState, Version};
-use franka_rt::driver::{ControlLog, Driver, LinkTimeout, ReferenceReader};
-use franka_rt::event_fd::EventFd;
-use franka_rt::exchange;
-use franka_rt::lifecycle::Lifecycle;
-use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
-use tokio::io::unix::AsyncFd;
-use tokio::net::TcpStream;
-use tokio::sync::watch;
-use tokio::time::timeout;
-use tokio_util::codec::Framed;
+use franka_proto::RobotState;
+use franka_rt::driver::{ControlLog, LinkTimeout};
+use tokio::sync::{mpsc, watch};
+use tokio_util::sync::CancellationToken;
+use tracing::Instrument;
 
-use crate::bridge::{self, Bridge};
-use crate::builder::{Builder, VersionPolicy};
-use crate::codec::MessageCodec;
-use crate::command_channel::Channel;
-use crate::connected_model;
-use crate::dial::{dial, dial_one, resolve};
+use crate::builder::Builder;
 use crate::endpoint::Endpoint;
 use crate::error::ConnectError;
-use crate::handshake::shake_hands;
-use crate::link::Link;
-use crate::newest_state::Newest;
-use crate::progress::Course;
+use crate::open::{Opened, open};
+use crate::reconnect::Reconnector;
 use crate::robot::Robot;
-use crate::thresholds::Thresholds;
+use crate::supervisor::Supervisor;
 
 impl Robot {
     /// Connects with the options that [`Robot::builder`] begins with.
@@ -48,178 +33,74 @@ impl Robot {
 
 impl Builder {
     /// Connects: real-time check, TCP, handshake, first state, description. Must be called on a
-    /// Tokio runtime with I/O and time enabled, which then runs the two tasks of the connection.
+    /// Tokio runtime with I/O and time enabled, which then runs the two tasks of the connection,
+    /// and a third one where it is supervised.
     ///
     /// # Errors
-    /// [`ConnectError`]; nothing is left behind.
+    /// [`ConnectError`]; nothing is left behind. Nothing is tried twice, supervised or not.
     ///
     /// # Cancel safety
     /// Dropping the future closes whatever was opened.
     pub async fn connect(self) -> Result<Robot, ConnectError> {
-        connect(self).await
+        let span = tracing::info_span!("connect", endpoint = %self.endpoint);
+        async {
+            let connected = connect(self).await;
+            match &connected {
+                Ok(robot) => tracing::info!(
+                    address = %robot.address(),
+                    version = robot.version().number(),
+                    "connected"
+                ),
+                Err(error) => tracing::warn!(%error, "not connected"),
+            }
+            connected
+        }
+        .instrument(span)
+        .await
     }
 }
 
-async fn connect(builder: Builder) -> Result<Robot, ConnectError> {
+async fn connect(mut builder: Builder) -> Result<Robot, ConnectError> {
     LinkTimeout::new(builder.link_timeout)?;
     if builder.log_size > ControlLog::CAPACITY_MAX {
         let got = builder.log_size;
         return Err(ConnectError::LogSize { got });
     }
-    // Refused before anything is sent, as the reference client does; the thread asks again for
-    // itself.
-    let scheduling = builder.scheduling.clone();
-    off_worker(move || scheduling.probe()).await??;
-
-    let limit = builder.connect_timeout;
-    let addresses = timeout(limit, resolve(&builder.endpoint, Version::TCP_PORT))
-        .await
-        .unwrap_or(Err(ConnectError::Timeout))?;
-    let (tcp, address) = dial(&addresses, limit).await?;
-    let opened = open(tcp, address, &builder).await?;
-    let states = Arc::new(watch::Sender::new(opened.first));
-    let (reader, state_wakeups) = (&opened.handle.states, &opened.handle.state_wakeups);
-    let newest = Newest::new(reader.clone(), &states, state_wakeups.clone());
-    let (channel, connection, reports) =
-        Channel::start(opened.stream, opened.session, newest.clone());
-    let course = Course::new(opened.references);
-    let thresholds = Thresholds::default();
-    let stats = opened.handle.stats.clone();
-    let granted = Arc::new(opened.handle.granted.clone());
-    let lender = opened.handle.lender.clone();
-    let model = Arc::new(connected_model::of(opened.version, &channel, &builder).await?);
-    let mut lifecycle =
-        Lifecycle::new(model.clone(), opened.version).with_log_size(builder.log_size);
-    if let Some(known) = builder.known {
-        known.check(model.kind())?;
-        lifecycle = lifecycle.knowing(*known);
+    if let Some(policy) = builder.policy.take() {
+        let policy = policy.or_seed(RandomState::new().hash_one(()));
+        let asks = builder.ask.is_some();
+        builder.policy = Some(if asks { policy.ask_first() } else { policy });
     }
-    let bridge = Bridge::new(
-        lifecycle,
-        opened.handle,
-        opened.wake,
-        (channel.clone(), connection),
-        states,
-        (course.clone(), thresholds.clone()),
-    );
-    let bridge = bridge.start(reports, builder.cancellation);
-    let link = Link {
-        address,
-        bridge,
-        channel,
-        newest,
-        course,
-        thresholds,
-        stats,
-        granted,
-        lender,
-    };
-    Ok(Robot::new(model, opened.version, link))
-}
-
-struct Opened {
-    version: Version,
-    stream: Framed<TcpStream, MessageCodec>,
-    session: Session,
-    handle: Handle,
-    references: ReferenceReader,
-    wake: AsyncFd<EventFd>,
-    first: RobotState,
-}
-
-/// Opens a session on a new connection to `address`, with the version that the policy allows and
-/// the robot accepts.
-async fn open(
-    tcp: TcpStream,
-    address: SocketAddr,
-    builder: &Builder,
-) -> Result<Opened, ConnectError> {
-    let announced = match builder.versions {
-        VersionPolicy::Exact(version) => version,
-        VersionPolicy::Negotiate => Version::V10,
-    };
-    match open_with(announced, tcp, address, builder).await {
-        Err(ConnectError::IncompatibleVersion(refusal))
-            if builder.versions == VersionPolicy::Negotiate =>
-        {
-            match Version::from_number(refusal.server_version) {
-                Some(older) if older != announced => {
-                    let tcp = dial_one(address, builder.connect_timeout).await?;
-                    open_with(older, tcp, address, builder).await
-                }
-                _ => Err(refusal.into()),
-            }
-        }
-        opened => opened,
-    }
-}
-
-async fn open_with(
-    version: Version,
-    tcp: TcpStream,
-    address: SocketAddr,
-    builder: &Builder,
-) -> Result<Opened, ConnectError> {
-    let udp = exchange::bind(address.ip())?;
-    let port = udp.local_addr()?.port();
-    let mut stream = Framed::new(tcp, MessageCodec::ROBOT);
-    let mut session = Session::new(version);
-    timeout(
-        builder.connect_timeout,
-        shake_hands(&mut stream, &mut session, port),
-    )
-    .await
-    .unwrap_or(Err(ConnectError::HandshakeTimeout))?;
-
-    let config = ThreadConfig {
-        scheduling: builder.scheduling.clone(),
-        ..ThreadConfig::default()
-    };
-    let link_timeout = LinkTimeout::new(builder.link_timeout)?;
-    let driver = Driver::new(version).with_link_timeout(link_timeout);
-    let references = driver.references();
-    let start = move || thread::spawn(config, driver, udp, address.ip(), version);
-    let mut handle = off_worker(start).await??;
-    let wake = bridge::attach(handle.event_fd.clone())?;
-    let first = timeout(builder.connect_timeout, first_state(&mut handle, &wake))
-        .await
-        .map_err(|_| ConnectError::NoState)??;
-    Ok(Opened {
+    let supervisor = Arc::new(Supervisor::new(builder.policy));
+    let states = Arc::new(watch::Sender::new(RobotState::default()));
+    let Opened {
+        model,
         version,
-        stream,
-        session,
-        handle,
-        references,
-        wake,
+        link,
         first,
-    })
-}
-
-/// Runs what blocks for milliseconds (threads that are started and joined, memory that is locked
-/// and touched) where no other task waits for it. Dropping the future drops the result.
-async fn off_worker<T: Send + 'static>(
-    blocking: impl FnOnce() -> T + Send + 'static,
-) -> std::io::Result<T> {
-    let done = tokio::task::spawn_blocking(blocking).await;
-    done.map_err(std::io::Error::other)
-}
-
-/// Waits for the first state: without one there is nothing to control.
-async fn first_state(
-    handle: &mut Handle,
-    wake: &AsyncFd<EventFd>,
-) -> Result<RobotState, ConnectError> {
-    loop {
-        bridge::woken(wake).await?;
-        if let Some(state) = handle.states.newest() {
-            return Ok(state);
-        }
-        while let Some(notice) = handle.notices.pop() {
-            if let Notice::Link(fault) = notice {
-                return Err(fault.into());
-            }
-        }
+        bridge,
+    } = open(&builder, &states, &supervisor).await?;
+    states.send_replace(first);
+    let link = Arc::new(link);
+    supervisor.on_connected(&link, &first, &link.granted.refusals);
+    let span = tracing::info_span!(
+        parent: None,
+        "robot",
+        address = %link.address,
+        version = version.number()
+    );
+    let reconnector = supervisor.is_supervised().then(mpsc::unbounded_channel);
+    let (shutdowns, requests) = reconnector.unzip();
+    let alive = CancellationToken::new();
+    let handles = alive.clone().drop_guard();
+    let robot = Robot::new((model, version), link, supervisor, (shutdowns, handles));
+    let cancellation = builder.cancellation.clone();
+    span.in_scope(|| bridge.start(cancellation));
+    if let Some(requests) = requests {
+        let reconnector = Reconnector::new(&robot, builder, states);
+        tokio::spawn(reconnector.run(requests, alive).instrument(span));
     }
+    Ok(robot)
 }
 
 #[cfg(test)]

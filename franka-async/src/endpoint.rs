@@ -1,5 +1,6 @@
 //! Where a device listens: texts and addresses, and what is wrong with them.
 
+use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::str::FromStr;
 
@@ -42,6 +43,23 @@ pub(crate) enum Host {
     /// An address with the name of its interface.
     Scoped(Ipv6Addr, String),
     Name(String),
+}
+
+impl fmt::Display for Endpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let host = match &self.host {
+            Ok(Host::Address(IpAddr::V6(address), 0)) => format!("[{address}]"),
+            Ok(Host::Address(IpAddr::V6(address), scope)) => format!("[{address}%{scope}]"),
+            Ok(Host::Address(address, _)) => address.to_string(),
+            Ok(Host::Scoped(address, interface)) => format!("[{address}%{interface}]"),
+            Ok(Host::Name(name)) => name.clone(),
+            Err(error) => return error.fmt(f),
+        };
+        match self.port {
+            Some(port) => write!(f, "{host}:{port}"),
+            None => f.write_str(&host),
+        }
+    }
 }
 
 /// Caller: a text that names no place.

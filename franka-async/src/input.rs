@@ -65,17 +65,10 @@ pub(crate) enum Input {
     Shutdown {
         ended: oneshot::Sender<()>,
     },
-}
-
-impl Input {
-    /// Answers what would begin something, on a connection that has ended for `reason`. What other
-    /// inputs ask for has been answered by the end itself.
-    pub(crate) fn refuse(self, reason: CloseReason) {
-        if let Self::Begin { replies, .. } = self {
-            let closed = MotionError::ConnectionClosed { reason };
-            replies.ended.send(Err(closed));
-        }
-    }
+    /// Closes the connection for this reason.
+    Lose {
+        reason: CloseReason,
+    },
 }
 
 /// A motion that is to begin.
@@ -143,6 +136,14 @@ pub(crate) enum EndReply {
 }
 
 impl EndReply {
+    /// Whether nobody waits for it.
+    pub(crate) fn is_closed(&self) -> bool {
+        match self {
+            Self::One(ended) => ended.is_closed(),
+            Self::All(ended) => ended.is_closed(),
+        }
+    }
+
     /// Sends the outcome. What was dropped or detached has no receiver.
     pub(crate) fn send(self, outcome: Outcome) {
         match self {

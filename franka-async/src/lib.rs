@@ -25,6 +25,8 @@
 //!   state. Both whatever moves. [`Robot::stats`], [`stats`]: how punctual control is.
 //! * `Robot::metrics`, `metrics` (feature `metrics`, off by default): the same as OpenMetrics text.
 //! * [`Robot::set_load`] and its siblings, [`settings`]; [`Robot::recover`].
+//! * [`Builder::supervise`], [`Robot::events`], [`Robot::health`], [`supervision`]: connections that
+//!   are made again, recovery by a policy, and what happened.
 //! * [`Robot::identify`], [`Builder::known`], [`identify`]: friction, bias and load of an arm.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
 //! * [`Robot::model`], [`model`]: the model of the connected arm, from its own description (feature
@@ -55,8 +57,8 @@
 //! # What it does not do
 //!
 //! It holds no control loop: no task of the runtime is on the path from a state to its command, so
-//! a blocked worker delays new goals and nothing else. It does not reconnect by itself. It has not
-//! been run against a real arm yet.
+//! a blocked worker delays new goals and nothing else. It neither reconnects nor recovers unless it
+//! is told to supervise, and moves nothing by itself. It has not been run against a real arm yet.
 
 mod active_control;
 mod arm;
@@ -87,15 +89,18 @@ mod link;
 pub mod metrics;
 mod motion;
 mod newest_state;
+mod open;
 mod options;
 mod parameters;
 mod program;
 mod progress;
 mod publish;
+mod reconnect;
 mod robot;
 mod session;
 mod state_stream;
 mod states;
+mod supervisor;
 mod telemetry;
 mod thresholds;
 mod vacuum_gripper;
@@ -174,6 +179,14 @@ pub mod stats {
     pub use franka_rt::stats::{CycleTimes, Phase, Phases, Quantiles, Slack, Stats};
 }
 
+/// Supervised robots: connections that are made again, recovery, events and health.
+pub mod supervision {
+    pub use crate::supervisor::{Events, Notification};
+    pub use franka_rt::supervision::{
+        Backoff, Condition, Event, EventKind, Health, NotRecovered, Policy, Reflex,
+    };
+}
+
 /// The Franka Hand's grasps and states.
 pub mod gripper {
     pub use franka_proto::gripper::{Grasp, State};
@@ -190,6 +203,8 @@ const _: () = {
     const fn spawned<T: Send + 'static>() {}
     shared::<Robot>();
     spawned::<StateStream>();
+    spawned::<supervision::Events>();
+    shared::<supervision::Policy>();
     shared::<Gripper>();
     shared::<VacuumGripper>();
     shared::<Canceller>();
@@ -218,6 +233,8 @@ mod tests {
             sent(robot.engage(Engage::default()));
             sent(robot.read(|_| std::ops::ControlFlow::Break(())));
             sent(robot.recover());
+            sent(robot.closed());
+            sent(async move { robot.events().next().await });
             sent(robot.identify().run());
             sent(robot.set_joint_impedance([0.0; 7]));
             sent(robot.urdf());

@@ -30,12 +30,19 @@ pub(crate) struct Link {
 }
 
 impl Link {
-    /// Sends to the bridge. One that has ended answers what would begin with the reason, and drops
-    /// every other input, and with it the sender of its reply: the receiver sees that.
+    /// Sends to the bridge. One that has ended drops the input, and with it the sender of its
+    /// reply: the receiver sees that.
     pub(crate) fn send(&self, input: Input) {
-        if let Err(unsent) = self.bridge.inbox.send(input) {
-            unsent.0.refuse(self.channel.closing().reason());
-        }
+        let _ = self.try_send(input);
+    }
+
+    /// As [`Self::send`]; returns the input if the bridge has ended.
+    #[expect(
+        clippy::result_large_err,
+        reason = "it goes back to where it came from"
+    )]
+    pub(crate) fn try_send(&self, input: Input) -> Result<(), Input> {
+        self.bridge.inbox.send(input).map_err(|unsent| unsent.0)
     }
 
     pub(crate) fn subscriptions(&self) -> &Subscriptions {

@@ -15,9 +15,10 @@ use tokio::sync::watch;
 pub(crate) struct Newest {
     /// Stays as it is, so that each of its clones finds whatever came later.
     reader: StateReader,
+    /// The state before those that `reader` finds.
+    first: RobotState,
     /// What the bridge has published. Without wake-ups per state it may be some states behind.
-    published: watch::Receiver<RobotState>,
-    /// Weak, so that subscribers see the end of the connection.
+    /// Weak, so that subscribers see the end; and no receiver, as those are counted.
     publisher: Weak<watch::Sender<RobotState>>,
     state_wakeups: StateWakeups,
 }
@@ -34,15 +35,15 @@ pub(crate) fn publish(publisher: &watch::Sender<RobotState>, state: RobotState) 
 }
 
 impl Newest {
-    /// Reads what `reader` has not read yet; `publisher` has the state before.
+    /// Reads what `reader` has not read yet; `first` is the state before.
     pub(crate) fn new(
-        reader: StateReader,
+        (first, reader): (RobotState, StateReader),
         publisher: &Arc<watch::Sender<RobotState>>,
         state_wakeups: StateWakeups,
     ) -> Self {
         Self {
             reader,
-            published: publisher.subscribe(),
+            first,
             publisher: Arc::downgrade(publisher),
             state_wakeups,
         }
@@ -53,17 +54,22 @@ impl Newest {
         // The thread may be writing at each attempt, if the kernel stopped it there: then what was
         // published has to do.
         let newest = self.reader.clone().newest();
-        newest.unwrap_or_else(|| *self.published.borrow())
+        newest.unwrap_or_else(|| {
+            let publisher = self.publisher.upgrade();
+            publisher.map_or(self.first, |publisher| *publisher.borrow())
+        })
     }
 
     /// The newest state, and as it changes from now on.
     pub(crate) fn changes(&self) -> watch::Receiver<RobotState> {
-        let mut states = self.published.clone();
+        let Some(publisher) = self.publisher.upgrade() else {
+            // Closed from the outset.
+            return watch::channel(self.state()).1;
+        };
+        let mut states = publisher.subscribe();
         self.state_wakeups.request();
         // What was published without wake-ups may be some states old.
-        if let Some(publisher) = self.publisher.upgrade() {
-            publish(&publisher, self.state());
-        }
+        publish(&publisher, self.state());
         states.mark_unchanged();
         states
     }

@@ -121,10 +121,7 @@ impl Robot {
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
     pub async fn recover(&self) -> Result<(), CommandError> {
-        self.channel()
-            .call(Request::AutomaticErrorRecovery, RECOVERY)
-            .await
-            .map(|_| ())
+        recover(&self.channel()).await
     }
 
     /// The robot's description of itself, URDF. Protocol 10 only.
@@ -170,6 +167,12 @@ impl Robot {
     async fn set(&self, request: Request) -> Result<(), CommandError> {
         self.channel().call(request, ANSWER).await.map(|_| ())
     }
+}
+
+/// Has the robot recover from a reflex.
+pub(crate) async fn recover(channel: &Channel) -> Result<(), CommandError> {
+    let recovery = channel.call(Request::AutomaticErrorRecovery, RECOVERY);
+    recovery.await.map(|_| ())
 }
 
 /// The robot's description of itself, waited for as long as `deadline`.

@@ -45,8 +45,6 @@ struct Silent {
 
 struct Listeners {
     newest: Arc<watch::Sender<RobotState>>,
-    /// How many of the receivers of the newest are ours, and wait for none.
-    own: usize,
     updates: broadcast::Sender<Update>,
     records: broadcast::Sender<Record>,
 }
@@ -61,7 +59,7 @@ pub(crate) struct Subscriptions {
 }
 
 impl Publisher {
-    /// `states` has the receivers of the driver itself, and no subscriber yet.
+    /// All receivers of `states` are subscribers.
     pub(crate) fn new(
         newest: StateReader,
         sequence: StateSequence,
@@ -76,7 +74,6 @@ impl Publisher {
             state_wakeups,
             silent: Arc::default(),
             listeners: Listeners {
-                own: states.receiver_count(),
                 newest: states,
                 updates: broadcast::channel(STATES).0,
                 records: broadcast::channel(RECORDS).0,
@@ -139,7 +136,7 @@ impl Publisher {
 
 impl Listeners {
     fn are_there(&self) -> bool {
-        self.newest.receiver_count() > self.own
+        self.newest.receiver_count() > 0
             || self.updates.receiver_count() > 0
             || self.records.receiver_count() > 0
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, PoisonError, RwLock, Weak};
 
 use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{RobotState, Version};
@@ -13,13 +13,16 @@ use franka_rt::lifecycle::{CloseReason, MotionError, Outcome};
 use franka_rt::sched::Granted;
 use franka_rt::session::{GoalId, Margin};
 use franka_rt::stats::Stats;
-use tokio::sync::{broadcast, oneshot};
+use franka_rt::supervision::Health;
+use tokio::sync::{broadcast, mpsc, oneshot};
+use tokio_util::sync::DropGuard;
 
 use crate::command_channel::Channel;
 use crate::input::{Beginning, EndReply, Input, Replies};
 use crate::link::Link;
 use crate::progress::Reference;
 use crate::states::States;
+use crate::supervisor::{Events, Supervisor};
 
 /// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame,
 /// `O_T_EE`.
@@ -33,7 +36,8 @@ pub type Pose = nalgebra::Isometry3<f64>;
 /// progress are handles too.
 ///
 /// A connection that is lost ends everything that belongs to it, control thread included; the
-/// handles that are left then say why. If the runtime ends first, the arm is not braked: the
+/// handles that are left then say why, and those of a robot that is supervised
+/// ([`Builder::supervise`](crate::Builder::supervise)) go on with the next one. If the runtime ends first, the arm is not braked: the
 /// robot misses its commands and stops by itself, with a reflex. Await [`Robot::shutdown`]
 /// before the program ends.
 ///
@@ -49,18 +53,36 @@ struct Shared {
     version: Version,
     /// The newest connection.
     link: RwLock<Arc<Link>>,
+    supervisor: Arc<Supervisor>,
+    /// The way into the task that reconnects; `None` if there is none. Closed when it has ended.
+    shutdowns: Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
+    /// Tells that task of the end of the last handle.
+    _handles: DropGuard,
     /// How many goals were named so far, whatever the connection.
     goals: AtomicU64,
 }
 
 impl Robot {
-    /// Returns the robot of this model and version that `link` connects to.
-    pub(crate) fn new(model: Arc<Model>, version: Version, link: Link) -> Self {
+    /// Returns the robot of this model and version that `link` connects to. The last two are the
+    /// way into the task that reconnects, if there is one, and what tells it of the end of the
+    /// last handle.
+    pub(crate) fn new(
+        (model, version): (Arc<Model>, Version),
+        link: Arc<Link>,
+        supervisor: Arc<Supervisor>,
+        (shutdowns, handles): (
+            Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
+            DropGuard,
+        ),
+    ) -> Self {
         Self {
             shared: Arc::new(Shared {
                 model,
                 version,
-                link: RwLock::new(Arc::new(link)),
+                link: RwLock::new(link),
+                supervisor,
+                shutdowns,
+                _handles: handles,
                 goals: AtomicU64::new(0),
             }),
         }
@@ -71,14 +93,19 @@ impl Robot {
         self.link().newest.state()
     }
 
-    /// The newest state as it changes, in motion or not. Ends when the connection does. For every
+    /// The newest state as it changes, in motion or not. Ends when the connection does; of a
+    /// supervised robot it goes on with the next one, and ends when there will be none. For every
     /// state, see [`Self::state_stream`] and [`Self::read`].
     ///
     /// It begins with the newest state at the call. As long as one of these exists, a task is woken
     /// for every state; drop it when it is no longer needed.
     pub fn states(&self) -> States {
         let link = self.link();
-        States::new(link.newest.changes(), link.channel.closing().clone())
+        let closing = match &self.shared.shutdowns {
+            Some(_) => self.shared.supervisor.closing(),
+            None => link.channel.closing(),
+        };
+        States::new(link.newest.changes(), closing.clone())
     }
 
     /// What every cycle of the control thread saw and did, one record per state; the first ones may
@@ -166,7 +193,9 @@ impl Robot {
     pub async fn stop(&self) -> Result<(), MotionError> {
         let (ended, outcome) = oneshot::channel();
         let (goal, link) = (self.next_goal(), self.link());
-        link.send(Input::Stop { goal, ended });
+        self.shared
+            .supervisor
+            .pass(Input::Stop { goal, ended }, &link);
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
             Err(_) if link.has_ended() => Err(link.closed()),
@@ -182,18 +211,71 @@ impl Robot {
     /// Once polled, it goes on in the background.
     pub async fn shutdown(&self) {
         let (reply, ended) = oneshot::channel();
-        self.send(Input::Shutdown { ended: reply });
+        match &self.shared.shutdowns {
+            // Fails if the task has ended.
+            Some(shutdowns) => drop(shutdowns.send(reply)),
+            None => self.send(Input::Shutdown { ended: reply }),
+        }
         // An error means that the bridge has ended already.
         let _ = ended.await;
     }
 
     /// Waits until the connection has ended, and returns why. Every motion has resolved by then or
-    /// is about to.
+    /// is about to. Of a supervised robot: until there is none and will be none, because the
+    /// supervisor has given up or this program has closed it.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
     pub async fn closed(&self) -> CloseReason {
-        self.link().ended().await
+        match &self.shared.shutdowns {
+            Some(shutdowns) => {
+                shutdowns.closed().await;
+                self.shared.supervisor.closing().reason()
+            }
+            None => self.link().ended().await,
+        }
+    }
+
+    /// What happens to the robot from now on: connections lost and made, reflexes with their
+    /// diagnosis, recoveries, user stop, guiding, brakes, motions, loads. Ends when there is no
+    /// connection and will be none. It is there for a robot that is not supervised, too. What
+    /// only a state shows is noticed within 50 ms.
+    pub fn events(&self) -> Events {
+        self.shared.supervisor.events()
+    }
+
+    /// How the robot is, as it changes: whether it takes motions, why not, and how long reconnecting
+    /// and recovering took. Ends as [`Self::events`] does.
+    pub fn health(&self) -> States<Health> {
+        let supervisor = &self.shared.supervisor;
+        States::new(supervisor.health(), supervisor.closing().clone())
+    }
+
+    /// Agrees, or not, to the recovery from the reflex of this number: for a
+    /// [`Policy`](crate::supervision::Policy) that asks first. Returns whether that was awaited: it
+    /// is not if the robot has left the reflex or another error has come, and then nothing happens.
+    /// The number is that of the event, or of [`Health::reflex`].
+    ///
+    /// Nothing moves. A robot may be recovered by [`Self::recover`] as well, whatever the policy.
+    pub fn agree(&self, reflex: u64, agreed: bool) -> bool {
+        self.shared.supervisor.agree(reflex, agreed)
+    }
+
+    pub(crate) fn supervisor(&self) -> &Arc<Supervisor> {
+        &self.shared.supervisor
+    }
+
+    pub(crate) fn downgrade(&self) -> WeakRobot {
+        WeakRobot(Arc::downgrade(&self.shared))
+    }
+
+    /// Replaces the connection, which has ended.
+    pub(crate) fn set_link(&self, link: Arc<Link>) {
+        let newest = self.shared.link.write();
+        let mut newest = newest.unwrap_or_else(PoisonError::into_inner);
+        let before = std::mem::replace(&mut *newest, link);
+        drop(newest);
+        drop(before);
     }
 
     /// The newest connection. Whoever needs several things of the same one, asks once.
@@ -229,9 +311,18 @@ impl Robot {
         self.send(Input::Cancel { goal });
     }
 
-    /// Sends to the bridge of the newest connection.
+    /// Sends to the bridge of the newest connection, or to the motion that waits for one.
     pub(crate) fn send(&self, input: Input) {
-        self.link().send(input);
+        self.shared.supervisor.pass(input, &self.link());
+    }
+}
+
+/// A robot whose handles it does not keep.
+pub(crate) struct WeakRobot(Weak<Shared>);
+
+impl WeakRobot {
+    pub(crate) fn upgrade(&self) -> Option<Robot> {
+        self.0.upgrade().map(|shared| Robot { shared })
     }
 }
 

@@ -91,7 +91,7 @@ impl Session {
     ) -> Result<(), MotionError> {
         let (taken, reply) = oneshot::channel();
         let link = self.robot.link();
-        link.send(input(taken));
+        self.robot.send(input(taken));
         let reply = reply.await.unwrap_or_else(|_| Err(link.closed()));
         reply.map_err(|error| self.explain(error))
     }

@@ -85,6 +85,7 @@ use franka_proto::{Errors, RobotError};
 use franka_rt::driver::ControlLog;
 use franka_rt::lifecycle::{ControlError, MotionError};
 use franka_rt::stats::MotionStatistics;
+use franka_rt::supervision::Reflex;
 
 pub use advice::Advice;
 pub use cause::Cause;
@@ -110,6 +111,13 @@ impl Diagnose for ControlError {
 impl Diagnose for MotionError {
     fn diagnose(&self) -> Option<Diagnosis> {
         self.control()?.diagnose()
+    }
+}
+
+/// `None` for a reflex that ended no motion of this program.
+impl Diagnose for Reflex {
+    fn diagnose(&self) -> Option<Diagnosis> {
+        self.error.as_deref()?.diagnose()
     }
 }
 

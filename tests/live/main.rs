@@ -31,6 +31,7 @@ mod reading;
 mod scripts;
 mod stalls;
 mod starving;
+mod supervising;
 mod telemetry;
 mod together;
 

@@ -88,13 +88,13 @@ pub enum EventKind {
         /// Whether they are closed now.
         closed: bool,
     },
-    /// A motion, a session or a program was accepted. Goals that a session takes without a future
-    /// (`set`, `chunk`, `guide`) are not told.
+    /// A motion, a session or a program was handed over to the connection. Goals that a session
+    /// takes without a future (`set`, `chunk`, `guide`) are not told.
     MotionBegun {
         /// Its name, as in the log.
         goal: u64,
     },
-    /// It has ended.
+    /// It has ended, or was not accepted.
     MotionEnded {
         /// Its name.
         goal: u64,

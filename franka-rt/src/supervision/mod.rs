@@ -116,7 +116,7 @@ impl Supervision {
     /// only watches: it neither reconnects nor recovers, and lets every motion begin.
     pub fn new(policy: Option<Policy>) -> Self {
         let backoff = policy.and_then(|policy| policy.reconnect);
-        let seed = policy.map_or(0, |policy| policy.seed);
+        let seed = policy.and_then(|policy| policy.seed).unwrap_or_default();
         Self {
             policy,
             connection: Connection::First,
@@ -145,6 +145,11 @@ impl Supervision {
     /// How the robot is.
     pub fn health(&self) -> Health {
         self.health
+    }
+
+    /// Whether there is a connection, or one that has not yet given back what it had.
+    pub fn has_connection(&self) -> bool {
+        matches!(self.connection, Connection::Up(_) | Connection::Ending(_))
     }
 
     /// The next effect to carry out.

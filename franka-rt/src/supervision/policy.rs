@@ -18,7 +18,7 @@ pub struct Policy {
     pub(super) give_up_after: Option<Duration>,
     pub(super) silence: Duration,
     pub(super) motions_wait: Option<Duration>,
-    pub(super) seed: u64,
+    pub(super) seed: Option<u64>,
 }
 
 /// When to recover from a reflex.
@@ -63,7 +63,7 @@ impl Default for Policy {
             give_up_after: None,
             silence: SILENCE,
             motions_wait: None,
-            seed: 0,
+            seed: None,
         }
     }
 }
@@ -135,9 +135,15 @@ impl Policy {
         self
     }
 
-    /// Draws what is left to chance from this seed.
+    /// Draws what is left to chance from this seed; each robot from another one by default.
     pub fn seed(mut self, seed: u64) -> Self {
-        self.seed = seed;
+        self.seed = Some(seed);
+        self
+    }
+
+    /// As [`Self::seed`], unless there is one already.
+    pub fn or_seed(mut self, seed: u64) -> Self {
+        self.seed = self.seed.or(Some(seed));
         self
     }
 }

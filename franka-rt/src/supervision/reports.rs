@@ -222,7 +222,8 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note that a motion, a session or a program was accepted.
+    /// Takes note that a motion, a session or a program is handed over to the connection, before it
+    /// is: until its end is reported, the robot is not recovered.
     pub fn on_begun(&mut self, goal: GoalId, now: Duration) {
         self.motions.insert(goal);
         self.unshown = None;

@@ -1,0 +1,214 @@
+//! From an address to a connection. If the robot refuses the version, the older one that it names is
+//! tried.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+
+use franka_model::Model;
+use franka_proto::client::Session;
+use franka_proto::{RobotState, Version};
+use franka_rt::driver::{Driver, LinkTimeout, ReferenceReader};
+use franka_rt::event_fd::EventFd;
+use franka_rt::exchange;
+use franka_rt::lifecycle::Lifecycle;
+use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
+use tokio::io::unix::AsyncFd;
+use tokio::net::TcpStream;
+use tokio::sync::watch;
+use tokio::time::timeout;
+use tokio_util::codec::Framed;
+
+use crate::bridge::{self, Bridge, Prepared};
+use crate::builder::{Builder, VersionPolicy};
+use crate::codec::MessageCodec;
+use crate::command_channel::Channel;
+use crate::connected_model;
+use crate::dial::{dial, dial_one, resolve};
+use crate::error::ConnectError;
+use crate::handshake::shake_hands;
+use crate::link::Link;
+use crate::newest_state::Newest;
+use crate::progress::Course;
+use crate::supervisor::Supervisor;
+use crate::thresholds::Thresholds;
+
+/// A connection whose bridge does not run yet.
+pub(crate) struct Opened {
+    pub(crate) model: Arc<Model>,
+    pub(crate) version: Version,
+    pub(crate) link: Link,
+    pub(crate) first: RobotState,
+    /// To be started once the supervisor knows of the connection.
+    pub(crate) bridge: Prepared,
+}
+
+/// Opens a connection, which is to publish to `states` and reports to `supervisor`.
+pub(crate) async fn open(
+    builder: &Builder,
+    states: &Arc<watch::Sender<RobotState>>,
+    supervisor: &Arc<Supervisor>,
+) -> Result<Opened, ConnectError> {
+    // Refused before anything is sent, as the reference client does; the thread asks again for
+    // itself.
+    let scheduling = builder.scheduling.clone();
+    off_worker(move || scheduling.probe()).await??;
+
+    let limit = builder.connect_timeout;
+    let addresses = timeout(limit, resolve(&builder.endpoint, Version::TCP_PORT))
+        .await
+        .unwrap_or(Err(ConnectError::Timeout))?;
+    let (tcp, address) = dial(&addresses, limit).await?;
+    let session = negotiate(tcp, address, builder).await?;
+    let (reader, state_wakeups) = (&session.handle.states, &session.handle.state_wakeups);
+    let newest = Newest::new(
+        (session.first, reader.clone()),
+        states,
+        state_wakeups.clone(),
+    );
+    let (channel, connection, reports) =
+        Channel::start(session.stream, session.session, newest.clone());
+    let course = Course::new(session.references);
+    let thresholds = Thresholds::default();
+    let stats = session.handle.stats.clone();
+    let granted = Arc::new(session.handle.granted.clone());
+    let lender = session.handle.lender.clone();
+    let model = Arc::new(connected_model::of(session.version, &channel, builder).await?);
+    let mut lifecycle =
+        Lifecycle::new(model.clone(), session.version).with_log_size(builder.log_size);
+    if let Some(known) = &builder.known {
+        known.check(model.kind())?;
+        lifecycle = lifecycle.knowing((**known).clone());
+    }
+    let bridge = Bridge::new(
+        lifecycle,
+        session.handle,
+        session.wake,
+        (channel.clone(), connection),
+        states.clone(),
+        (course.clone(), thresholds.clone()),
+        supervisor.clone(),
+    );
+    let (bridge, prepared) = bridge.prepare(reports);
+    Ok(Opened {
+        model,
+        version: session.version,
+        link: Link {
+            address,
+            bridge,
+            channel,
+            newest,
+            course,
+            thresholds,
+            stats,
+            granted,
+            lender,
+        },
+        first: session.first,
+        bridge: prepared,
+    })
+}
+
+struct Negotiated {
+    version: Version,
+    stream: Framed<TcpStream, MessageCodec>,
+    session: Session,
+    handle: Handle,
+    references: ReferenceReader,
+    wake: AsyncFd<EventFd>,
+    first: RobotState,
+}
+
+/// Opens a session on a new connection to `address`, with the version that the policy allows and
+/// the robot accepts.
+async fn negotiate(
+    tcp: TcpStream,
+    address: SocketAddr,
+    builder: &Builder,
+) -> Result<Negotiated, ConnectError> {
+    let announced = match builder.versions {
+        VersionPolicy::Exact(version) => version,
+        VersionPolicy::Negotiate => Version::V10,
+    };
+    match open_with(announced, tcp, address, builder).await {
+        Err(ConnectError::IncompatibleVersion(refusal))
+            if builder.versions == VersionPolicy::Negotiate =>
+        {
+            match Version::from_number(refusal.server_version) {
+                Some(older) if older != announced => {
+                    let tcp = dial_one(address, builder.connect_timeout).await?;
+                    open_with(older, tcp, address, builder).await
+                }
+                _ => Err(refusal.into()),
+            }
+        }
+        opened => opened,
+    }
+}
+
+async fn open_with(
+    version: Version,
+    tcp: TcpStream,
+    address: SocketAddr,
+    builder: &Builder,
+) -> Result<Negotiated, ConnectError> {
+    let udp = exchange::bind(address.ip())?;
+    let port = udp.local_addr()?.port();
+    let mut stream = Framed::new(tcp, MessageCodec::ROBOT);
+    let mut session = Session::new(version);
+    timeout(
+        builder.connect_timeout,
+        shake_hands(&mut stream, &mut session, port),
+    )
+    .await
+    .unwrap_or(Err(ConnectError::HandshakeTimeout))?;
+
+    let config = ThreadConfig {
+        scheduling: builder.scheduling.clone(),
+        ..ThreadConfig::default()
+    };
+    let link_timeout = LinkTimeout::new(builder.link_timeout)?;
+    let driver = Driver::new(version).with_link_timeout(link_timeout);
+    let references = driver.references();
+    let start = move || thread::spawn(config, driver, udp, address.ip(), version);
+    let mut handle = off_worker(start).await??;
+    let wake = bridge::attach(handle.event_fd.clone())?;
+    let first = timeout(builder.connect_timeout, first_state(&mut handle, &wake))
+        .await
+        .map_err(|_| ConnectError::NoState)??;
+    Ok(Negotiated {
+        version,
+        stream,
+        session,
+        handle,
+        references,
+        wake,
+        first,
+    })
+}
+
+/// Runs what blocks for milliseconds (threads that are started and joined, memory that is locked
+/// and touched) where no other task waits for it. Dropping the future drops the result.
+async fn off_worker<T: Send + 'static>(
+    blocking: impl FnOnce() -> T + Send + 'static,
+) -> std::io::Result<T> {
+    let done = tokio::task::spawn_blocking(blocking).await;
+    done.map_err(std::io::Error::other)
+}
+
+/// Waits for the first state: without one there is nothing to control.
+async fn first_state(
+    handle: &mut Handle,
+    wake: &AsyncFd<EventFd>,
+) -> Result<RobotState, ConnectError> {
+    loop {
+        bridge::woken(wake).await?;
+        if let Some(state) = handle.states.newest() {
+            return Ok(state);
+        }
+        while let Some(notice) = handle.notices.pop() {
+            if let Notice::Link(fault) = notice {
+                return Err(fault.into());
+            }
+        }
+    }
+}

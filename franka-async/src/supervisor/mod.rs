@@ -1,0 +1,394 @@
+//! What watches over a robot: `franka_rt::supervision` between the handles, the bridge of the newest
+//! connection, and the task that reconnects and recovers.
+//!
+//! Handles and bridge call it, so that it knows of a mishap before a motion resolves for it. Its
+//! lock is held for some microseconds, and never on the control thread.
+
+mod events;
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Duration;
+
+use franka_proto::RobotState;
+use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome};
+use franka_rt::sched::SchedError;
+use franka_rt::session::GoalId;
+use franka_rt::supervision::{
+    Admission, Condition, ConnectFailure, Event, EventKind, Health, Output, Policy,
+    RecoveryFailure, Reflex, Supervision,
+};
+use tokio::sync::{Notify, broadcast, watch};
+use tokio::time::Instant;
+
+use crate::close::Closing;
+use crate::input::{Beginning, Input, Replies};
+use crate::link::Link;
+
+pub use events::{Events, Notification};
+
+/// Something for the task to do.
+#[derive(Debug)]
+pub(crate) enum Job {
+    Connect,
+    Disconnect { reason: CloseReason },
+    Recover { reflex: u64 },
+    Ask(Reflex),
+}
+
+/// Watches over a robot.
+pub(crate) struct Supervisor {
+    begun: Instant,
+    is_supervised: bool,
+    inner: Mutex<Inner>,
+    health: watch::Receiver<Health>,
+    /// Why there will be no connection any more.
+    closing: Closing,
+    /// Notified when there is a job, or the deadline has changed.
+    work: Notify,
+}
+
+struct Inner {
+    core: Supervision,
+    /// Where a motion that waited begins. Weak: what waits does not keep the connection.
+    link: Weak<Link>,
+    waiting: Option<Waiting>,
+    refused: Vec<Refused>,
+    jobs: VecDeque<Job>,
+    /// `None` once closed, as the next.
+    events: Option<broadcast::Sender<Event>>,
+    health: Option<watch::Sender<Health>>,
+}
+
+/// A motion that waits until the robot is ready.
+struct Waiting {
+    motion: Beginning,
+    replies: Replies,
+    /// Whether its stream of targets has ended.
+    is_closed: bool,
+}
+
+/// A motion that does not begin. It is dropped without the lock: it may own anything of the user's.
+struct Refused {
+    motion: Beginning,
+    replies: Replies,
+    error: MotionError,
+}
+
+impl Supervisor {
+    /// Watches over a robot that is about to be connected to, as `policy` says; only watches
+    /// without one.
+    pub(crate) fn new(policy: Option<Policy>) -> Self {
+        let core = Supervision::new(policy);
+        let (health, shown) = watch::channel(core.health());
+        Self {
+            begun: Instant::now(),
+            is_supervised: policy.is_some(),
+            inner: Mutex::new(Inner {
+                core,
+                link: Weak::new(),
+                waiting: None,
+                refused: Vec::new(),
+                jobs: VecDeque::new(),
+                events: Some(broadcast::channel(events::CAPACITY).0),
+                health: Some(health),
+            }),
+            health: shown,
+            closing: Closing::default(),
+            work: Notify::new(),
+        }
+    }
+
+    /// Whether there is no connection and will be none.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.lock().core.health().condition == Condition::Closed
+    }
+
+    /// Whether there is a connection, or one that has not yet given back what it had.
+    pub(crate) fn is_connected(&self) -> bool {
+        self.lock().core.has_connection()
+    }
+
+    /// Whether lost connections and reflexes are acted on, rather than only told.
+    pub(crate) fn is_supervised(&self) -> bool {
+        self.is_supervised
+    }
+
+    pub(crate) fn closing(&self) -> &Closing {
+        &self.closing
+    }
+
+    pub(crate) fn events(&self) -> Events {
+        let inner = self.lock();
+        Events::new(match &inner.events {
+            Some(events) => events.subscribe(),
+            // Closed from the outset.
+            None => broadcast::channel(1).1,
+        })
+    }
+
+    pub(crate) fn health(&self) -> watch::Receiver<Health> {
+        self.health.clone()
+    }
+
+    /// Takes over a connection that has just been made. Returns false if none is wanted any more.
+    pub(crate) fn on_connected(
+        &self,
+        link: &Arc<Link>,
+        state: &RobotState,
+        refusals: &[SchedError],
+    ) -> bool {
+        self.with(|inner, now| {
+            inner.link = Arc::downgrade(link);
+            inner.core.on_connected(state, refusals, now)
+        })
+    }
+
+    pub(crate) fn on_connect_failed(&self, failure: ConnectFailure) {
+        self.with(|inner, now| inner.core.on_connect_failed(failure, now));
+    }
+
+    /// See [`Supervision::on_state`].
+    pub(crate) fn on_state(&self, state: &RobotState) {
+        self.with(|inner, now| inner.core.on_state(state, now));
+    }
+
+    pub(crate) fn on_silence(&self, silence: Duration) {
+        self.with(|inner, now| inner.core.on_silence(silence, now));
+    }
+
+    pub(crate) fn on_lost(&self, reason: CloseReason) {
+        self.with(|inner, now| inner.core.on_lost(reason, now));
+    }
+
+    pub(crate) fn on_released(&self) {
+        self.with(|inner, now| inner.core.on_released(now));
+    }
+
+    pub(crate) fn on_recovery(&self, reflex: u64, answer: Result<(), RecoveryFailure>) {
+        self.with(|inner, now| inner.core.on_recovery(reflex, answer, now));
+    }
+
+    pub(crate) fn on_ended(&self, goal: GoalId, outcome: &Outcome) {
+        self.with(|inner, now| inner.core.on_ended(goal, outcome, now));
+    }
+
+    pub(crate) fn on_time(&self) {
+        self.with(|inner, now| inner.core.on_time(now));
+    }
+
+    pub(crate) fn close(&self, reason: CloseReason) {
+        self.with(|inner, now| inner.core.close(reason, now));
+    }
+
+    pub(crate) fn agree(&self, reflex: u64, agreed: bool) -> bool {
+        self.with(|inner, now| inner.core.agree(reflex, agreed, now))
+    }
+
+    /// When [`Self::on_time`] has to be called.
+    pub(crate) fn deadline(&self) -> Option<Instant> {
+        self.lock().core.deadline().map(|after| self.begun + after)
+    }
+
+    pub(crate) fn take_job(&self) -> Option<Job> {
+        self.lock().jobs.pop_front()
+    }
+
+    /// Waits until there is a job, or the deadline has changed.
+    ///
+    /// # Cancel safety
+    /// A notification is not lost: the next call returns at once.
+    pub(crate) async fn worked(&self) {
+        self.work.notified().await;
+    }
+
+    /// Passes an input on to the bridge of the newest connection, or keeps it back with the motion
+    /// that waits.
+    pub(crate) fn pass(&self, input: Input, link: &Link) {
+        self.with(|inner, now| inner.pass(input, link, now));
+    }
+
+    /// Does something, and then what follows from it.
+    fn with<T>(&self, act: impl FnOnce(&mut Inner, Duration) -> T) -> T {
+        let mut inner = self.lock();
+        let now = self.begun.elapsed();
+        let result = act(&mut inner, now);
+        inner.carry_out(&self.closing, now);
+        let refused = std::mem::take(&mut inner.refused);
+        drop(inner);
+        self.work.notify_one();
+        for Refused {
+            motion,
+            replies,
+            error,
+        } in refused
+        {
+            tracing::info!(goal = motion.motion.id().0, %error, "motion does not begin");
+            replies.ended.send(Err(error));
+        }
+        result
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Inner> {
+        // Nothing panics while it is held.
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Inner {
+    fn pass(&mut self, input: Input, link: &Link, now: Duration) {
+        let input = match input {
+            Input::Begin { motion, replies } => {
+                match self.core.submit(&motion.motion, now) {
+                    Admission::Begin => return self.begin(motion, replies, link, now),
+                    Admission::Wait => {
+                        tracing::info!(
+                            goal = motion.motion.id().0,
+                            "motion waits until the robot is ready"
+                        );
+                        let waiting = Waiting {
+                            motion,
+                            replies,
+                            is_closed: false,
+                        };
+                        if let Some(before) = self.waiting.replace(waiting) {
+                            self.refuse(before.motion, before.replies, MotionError::Superseded);
+                        }
+                    }
+                    Admission::Refuse(error) => self.refuse(motion, replies, error),
+                }
+                return;
+            }
+            Input::Update {
+                goal,
+                target,
+                taken,
+            } => match &mut self.waiting {
+                Some(Waiting {
+                    motion:
+                        Beginning {
+                            motion: NewMotion::Goal { goal: waiting, .. },
+                            destination,
+                        },
+                    ..
+                }) if waiting.id == goal => {
+                    (waiting.target, *destination) = (target, None);
+                    // Its receiver may have been dropped.
+                    let _ = taken.send(Ok(true));
+                    return;
+                }
+                _ => Input::Update {
+                    goal,
+                    target,
+                    taken,
+                },
+            },
+            Input::Close { goal } => match &mut self.waiting {
+                Some(waiting) if waiting.motion.motion.id() == goal => {
+                    waiting.is_closed = true;
+                    return;
+                }
+                _ => Input::Close { goal },
+            },
+            Input::Cancel { goal } if self.core.withdraw(goal) => {
+                if let Some(Waiting {
+                    motion, replies, ..
+                }) = self.waiting.take()
+                {
+                    self.refuse(motion, replies, MotionError::Stopped);
+                }
+                return;
+            }
+            Input::Stop { .. } => {
+                self.core.stop();
+                input
+            }
+            other => other,
+        };
+        link.send(input);
+    }
+
+    /// Hands a motion over to a connection.
+    fn begin(&mut self, motion: Beginning, replies: Replies, link: &Link, now: Duration) {
+        let goal = motion.motion.id();
+        // Noted before the bridge has it: until it has ended, the robot is not recovered.
+        self.core.on_begun(goal, now);
+        let sent = link.try_send(Input::Begin { motion, replies });
+        if let Err(Input::Begin { motion, replies }) = sent {
+            let error = link.closed();
+            self.core.on_ended(goal, &Err(error.clone()), now);
+            self.refuse(motion, replies, error);
+        }
+    }
+
+    fn refuse(&mut self, motion: Beginning, replies: Replies, error: MotionError) {
+        self.refused.push(Refused {
+            motion,
+            replies,
+            error,
+        });
+    }
+
+    /// Carries out what the core has decided, in its order, and shows how the robot is.
+    fn carry_out(&mut self, closing: &Closing, now: Duration) {
+        // Whoever is told of an event finds the robot as it is after that.
+        let health = self.core.health();
+        if let Some(shown) = &self.health {
+            shown.send_if_modified(|before| std::mem::replace(before, health) != health);
+        }
+        while let Some(output) = self.core.poll() {
+            match output {
+                Output::Event(event) => self.tell(event, closing),
+                Output::Connect => self.jobs.push_back(Job::Connect),
+                Output::Disconnect { reason } => self.jobs.push_back(Job::Disconnect { reason }),
+                Output::Recover { reflex } => self.jobs.push_back(Job::Recover { reflex }),
+                Output::Ask(reflex) => self.jobs.push_back(Job::Ask(reflex)),
+                Output::Begin { goal } => self.begin_waiting(goal, now),
+                Output::Refuse { goal, error } => {
+                    if let Some(waiting) = self.take_waiting(goal) {
+                        self.refuse(waiting.motion, waiting.replies, error);
+                    }
+                }
+            }
+        }
+        // Nothing else will be told.
+        if self.events.is_none() {
+            self.health = None;
+        }
+    }
+
+    fn begin_waiting(&mut self, goal: GoalId, now: Duration) {
+        let (Some(waiting), Some(link)) = (self.take_waiting(goal), self.link.upgrade()) else {
+            // The last handle has just been dropped, and the future with it.
+            return;
+        };
+        // A motion that waits begins for whoever awaits it, and not for itself.
+        if waiting.replies.ended.is_closed() {
+            return self.refuse(waiting.motion, waiting.replies, MotionError::Stopped);
+        }
+        self.begin(waiting.motion, waiting.replies, &link, now);
+        if waiting.is_closed {
+            link.send(Input::Close { goal });
+        }
+    }
+
+    fn take_waiting(&mut self, goal: GoalId) -> Option<Waiting> {
+        self.waiting
+            .take_if(|waiting| waiting.motion.motion.id() == goal)
+    }
+
+    fn tell(&mut self, event: Event, closing: &Closing) {
+        let reason = match &event.kind {
+            EventKind::Closed { reason } => Some(reason.clone()),
+            _ => None,
+        };
+        if let Some(events) = &self.events {
+            // Fails if nobody listens.
+            let _ = events.send(event);
+        }
+        if let Some(reason) = reason {
+            closing.note(reason);
+            self.events = None;
+        }
+    }
+}
