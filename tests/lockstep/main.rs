@@ -21,6 +21,7 @@ mod schedules;
 mod silence;
 mod stalls;
 mod steps;
+mod supervised;
 mod switching;
 mod taking_over;
 mod telemetry;

@@ -7,7 +7,9 @@ use std::time::Duration;
 use franka_model::Model;
 use franka_proto::client::{Event, Session};
 use franka_proto::framing::next_message;
-use franka_proto::{CommandId, MoveRequest, Reply, Request, RobotState, Version, Violation};
+use franka_proto::{
+    CommandId, MoveRequest, RecoveryStatus, Reply, Request, RobotState, Version, Violation,
+};
 use franka_rt::driver::{Driver, MotionId, Program, Record};
 use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, NewMotion, Outcome, Output};
 use franka_rt::session::GoalId;
@@ -38,7 +40,10 @@ pub struct DriverStack {
     to_robot: VecDeque<Vec<u8>>,
     from_robot: Vec<u8>,
     outcomes: BTreeMap<GoalId, Outcome>,
-    goals: u64,
+    /// How many goals were named so far.
+    pub(super) goals: u64,
+    /// Answers to requests to recover, the oldest first.
+    pub(super) recoveries: VecDeque<RecoveryStatus>,
     /// Whether the command connection has ended.
     closed: bool,
 }
@@ -62,6 +67,7 @@ impl DriverStack {
             from_robot: Vec::new(),
             outcomes: BTreeMap::new(),
             goals: 0,
+            recoveries: VecDeque::new(),
             closed: false,
         }
     }
@@ -133,6 +139,10 @@ impl DriverStack {
                     let motion = self.motions[&id];
                     self.lifecycle.on_move_reply(motion, status, self.now);
                 }
+                Ok(Event::Reply {
+                    reply: Reply::Recovery(status),
+                    ..
+                }) => self.recoveries.push_back(status),
                 Ok(_) => {}
                 Err(violation) if violation.is_fatal() => {
                     return self.close(violated(&violation));

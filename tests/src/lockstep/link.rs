@@ -16,6 +16,9 @@ pub struct Link {
     pub requests: bool,
     /// Whether the robot's replies arrive.
     pub replies: bool,
+    /// Whether requests and replies wait: the command connection repeats them when the network is
+    /// back.
+    pub delayed: bool,
 }
 
 /// A state that the client receives.
@@ -47,6 +50,7 @@ impl Link {
             drop_finishing: 0,
             requests: true,
             replies: true,
+            delayed: false,
         }
     }
 

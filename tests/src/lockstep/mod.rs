@@ -21,6 +21,7 @@ mod engaged;
 mod guard;
 mod guarded;
 mod link;
+mod supervised;
 mod wander;
 
 use std::time::Duration;
@@ -41,6 +42,7 @@ use rand::Rng;
 pub use driver_stack::DriverStack;
 pub use guarded::{Guarded, Workload};
 pub use link::Link;
+pub use supervised::{Asked, Supervised};
 pub use wander::Wander;
 
 use guard::CommandGuard;
@@ -140,7 +142,9 @@ impl Lockstep {
     pub fn tick_around(&mut self, mut around: impl FnMut(Part, &mut dyn FnMut())) {
         self.milliseconds += 1;
         self.client.now = Duration::from_millis(self.milliseconds);
-        while let Some(bytes) = self.client.take_message() {
+        while !self.link.delayed
+            && let Some(bytes) = self.client.take_message()
+        {
             if self.link.requests {
                 self.robot
                     .receive(&bytes)
@@ -152,7 +156,9 @@ impl Lockstep {
             self.link.network.to_client.send(now, state.bytes);
         }
         let mut replies = Vec::new();
-        while let Some(reply) = self.robot.take_reply() {
+        while !self.link.delayed
+            && let Some(reply) = self.robot.take_reply()
+        {
             replies.extend_from_slice(&reply);
         }
         if !self.take_states(&mut around) {

@@ -1,0 +1,400 @@
+//! A supervised robot in one thread on virtual time: the decisions of `franka_rt::supervision`, and
+//! connections that end and are made again.
+//!
+//! It stands for what `franka-async` has around them: tasks, sockets and futures.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use franka_model::JointVector;
+use franka_proto::{Errors, RecoveryStatus, Request, RobotError, RobotMode, RobotState};
+use franka_rt::driver::LINK_TIMEOUT;
+use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome};
+use franka_rt::session::{Goal, GoalId, OnArrival, Target};
+use franka_rt::supervision::{
+    Admission, ConnectFailure, Event, Health, Output, Policy, RecoveryFailure, Reflex, Supervision,
+};
+use franka_sim::{Config, Robot};
+
+use super::guard::CommandGuard;
+use super::{DriverStack, Link, Lockstep};
+
+/// A supervised robot, one millisecond at a time.
+pub struct Supervised {
+    lockstep: Lockstep,
+    config: Config,
+    supervision: Supervision,
+    /// Whether the robot's computer runs.
+    is_up: bool,
+    connection: Connection,
+    /// `message_id` of the newest state that the supervision has seen.
+    seen: u64,
+    /// Motions that are with the lifecycle.
+    under_way: BTreeSet<GoalId>,
+    waiting: Option<NewMotion>,
+    goals: u64,
+    /// What was told since it was taken.
+    pub events: Vec<Event>,
+    /// What was asked for since it was taken.
+    pub requests: Vec<Asked>,
+    /// How each motion that was submitted has ended.
+    pub outcomes: BTreeMap<GoalId, Outcome>,
+}
+
+/// What a supervision has asked for.
+#[derive(Debug)]
+pub enum Asked {
+    /// To connect.
+    Connect,
+    /// To recover from the reflex of this number, of a robot that shows this mode and these errors.
+    Recover(u64, RobotMode, Errors),
+    /// Somebody, to agree.
+    Agreement(Reflex),
+    /// To begin a motion that waited.
+    Begin(GoalId),
+}
+
+/// Where the connection stands, for the harness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Connection {
+    Up,
+    /// Its thread may still brake the arm, until then.
+    Ending {
+        until: u64,
+    },
+    None,
+    /// Until then the robot has to have answered.
+    Connecting {
+        until: u64,
+    },
+}
+
+/// Time for a thread without a connection to brake, as `franka-async` gives it, `[ms]`.
+const BRAKING: u64 = 3000;
+
+/// Time that an attempt to connect takes at most, `[ms]`.
+const CONNECTING: u64 = 50;
+
+impl Supervised {
+    /// Returns a robot that is connected and supervised by this policy.
+    ///
+    /// # Panics
+    /// As [`Lockstep::new`].
+    pub fn new(config: Config, policy: Policy) -> Self {
+        let lockstep = Lockstep::new(config.clone());
+        let mut this = Self {
+            supervision: Supervision::new(Some(policy)),
+            lockstep,
+            config,
+            is_up: true,
+            connection: Connection::Up,
+            seen: 0,
+            under_way: BTreeSet::new(),
+            waiting: None,
+            goals: 0,
+            events: Vec::new(),
+            requests: Vec::new(),
+            outcomes: BTreeMap::new(),
+        };
+        this.connected();
+        this
+    }
+
+    /// The time since the beginning, `[ms]`.
+    pub fn now(&self) -> u64 {
+        self.lockstep.now()
+    }
+
+    /// The simulated robot.
+    pub fn robot(&mut self) -> &mut Robot {
+        &mut self.lockstep.robot
+    }
+
+    /// Whether the robot's computer runs.
+    pub fn is_up(&self) -> bool {
+        self.is_up
+    }
+
+    /// The robot's computer runs, it is connected, and its states arrive.
+    pub fn is_seen(&self) -> bool {
+        self.is_up && self.connection == Connection::Up && !self.lockstep.link.delayed
+    }
+
+    /// The newest state that has arrived.
+    pub fn state(&self) -> &RobotState {
+        &self.lockstep.client.state
+    }
+
+    /// Whether a motion is with the connection, or was and has not ended.
+    pub fn is_under_way(&self, goal: GoalId) -> bool {
+        self.under_way.contains(&goal)
+    }
+
+    /// How the supervision takes the robot to be.
+    pub fn health(&self) -> Health {
+        self.supervision.health()
+    }
+
+    /// Advances everything by one millisecond.
+    pub fn tick(&mut self) {
+        if self.is_up {
+            self.lockstep.tick();
+        } else {
+            self.lockstep.silence(1);
+        }
+        self.look();
+        let now = self.time();
+        if self.supervision.deadline().is_some_and(|due| now >= due) {
+            self.supervision.on_time(now);
+        }
+        self.carry_out();
+    }
+
+    /// What has come of the connection in this millisecond.
+    fn look(&mut self) {
+        let now = self.time();
+        match self.connection {
+            Connection::Up => {
+                let state = self.lockstep.client.state;
+                let silence = Duration::from_millis(self.lockstep.now() - self.lockstep.heard);
+                if state.message_id != self.seen {
+                    self.seen = state.message_id;
+                    self.supervision.on_state(&state, now);
+                } else if silence == LINK_TIMEOUT {
+                    self.supervision.on_silence(silence, now);
+                }
+                while let Some(status) = self.lockstep.client.recoveries.pop_front() {
+                    let answer = match status {
+                        RecoveryStatus::Success => Ok(()),
+                        RecoveryStatus::ManualErrorRecoveryRequiredRejected => {
+                            Err(RecoveryFailure::ByHand)
+                        }
+                        _ => Err(RecoveryFailure::Other),
+                    };
+                    // One request is out at a time.
+                    if let Some(reflex) = self.health().reflex {
+                        self.supervision.on_recovery(reflex, answer, now);
+                    }
+                }
+                self.take_outcomes();
+            }
+            Connection::Ending { until } => {
+                self.take_outcomes();
+                if !self.lockstep.client.lifecycle.is_braking() || self.lockstep.now() >= until {
+                    self.connection = Connection::None;
+                    self.supervision.on_released(now);
+                }
+            }
+            Connection::Connecting { until } => {
+                let client = &self.lockstep.client;
+                if client.is_connected() && client.state.message_id > 0 {
+                    self.connected();
+                } else if self.lockstep.now() >= until {
+                    self.lockstep.robot.disconnect();
+                    self.connection = Connection::None;
+                    let text = String::from("no answer");
+                    let failure = ConnectFailure::Other { text };
+                    self.supervision.on_connect_failed(failure, now);
+                }
+            }
+            Connection::None => {}
+        }
+    }
+
+    fn connected(&mut self) {
+        self.connection = Connection::Up;
+        let state = self.lockstep.client.state;
+        self.seen = state.message_id;
+        let now = self.time();
+        assert!(
+            self.supervision.on_connected(&state, &[], now),
+            "it is wanted"
+        );
+        self.carry_out();
+    }
+
+    fn take_outcomes(&mut self) {
+        let now = self.time();
+        for goal in self.under_way.clone() {
+            if let Some(outcome) = self.lockstep.client.outcome(goal).cloned() {
+                self.under_way.remove(&goal);
+                self.supervision.on_ended(goal, &outcome, now);
+                self.resolve(goal, outcome);
+            }
+        }
+    }
+
+    fn carry_out(&mut self) {
+        while let Some(output) = self.supervision.poll() {
+            match output {
+                Output::Event(event) => self.events.push(event),
+                Output::Connect => {
+                    self.requests.push(Asked::Connect);
+                    self.connect();
+                }
+                Output::Disconnect { reason } => self.lose(reason),
+                Output::Recover { reflex } => {
+                    let state = self.state();
+                    let asked = Asked::Recover(reflex, state.robot_mode, state.errors);
+                    self.requests.push(asked);
+                    self.lockstep.request(&Request::AutomaticErrorRecovery);
+                }
+                Output::Ask(reflex) => self.requests.push(Asked::Agreement(reflex)),
+                Output::Begin { goal } => {
+                    self.requests.push(Asked::Begin(goal));
+                    let motion = self.waiting.take().expect("it waits");
+                    assert_eq!(motion.id(), goal);
+                    self.begin(motion);
+                }
+                Output::Refuse { goal, error } => {
+                    self.waiting.take_if(|motion| motion.id() == goal);
+                    self.resolve(goal, Err(error));
+                }
+            }
+        }
+    }
+
+    fn connect(&mut self) {
+        assert_eq!(self.connection, Connection::None, "one at a time");
+        let model = self.lockstep.model;
+        let mut client = DriverStack::new(model, self.lockstep.robot.version());
+        client.goals = self.goals;
+        let reachable = self.is_up && !self.lockstep.link.delayed;
+        if reachable && self.lockstep.robot.connect() {
+            client.connect(40_000);
+        }
+        self.lockstep.client = client;
+        self.lockstep.guard = Some(CommandGuard::new(model.joint_limits()));
+        self.lockstep.heard = self.lockstep.now();
+        let until = self.lockstep.now() + CONNECTING;
+        self.connection = Connection::Connecting { until };
+    }
+
+    /// Ends the command connection.
+    fn lose(&mut self, reason: CloseReason) {
+        self.lockstep.robot.disconnect();
+        if self.connection != Connection::Up {
+            return;
+        }
+        let until = self.lockstep.now() + BRAKING;
+        self.connection = Connection::Ending { until };
+        let now = self.time();
+        self.supervision.on_lost(reason.clone(), now);
+        self.lockstep.client.close(reason);
+        self.take_outcomes();
+        self.carry_out();
+    }
+
+    /// Kills the simulator, which is gone at once.
+    pub fn kill(&mut self) {
+        self.is_up = false;
+        self.lose(CloseReason::ClosedByPeer);
+    }
+
+    /// Starts it again where the arm stands.
+    pub fn restart(&mut self) {
+        let q: JointVector = *self.lockstep.robot.q();
+        self.lockstep.robot = Robot::new(self.config.clone());
+        self.lockstep.robot.place(&q);
+        self.lockstep.link = Link::perfect();
+        self.is_up = true;
+    }
+
+    /// Cuts the network: nothing gets through, and the command connection repeats what it has.
+    pub fn cut(&mut self) {
+        self.lockstep.link.delayed = true;
+        self.lockstep.link.drop_states(u64::MAX);
+        self.lockstep.link.drop_commands(u64::MAX);
+    }
+
+    /// Mends the network, after so long that both ends have given the command connection up if
+    /// `gave_up`.
+    pub fn mend(&mut self, gave_up: bool) {
+        self.lockstep.link = Link::perfect();
+        if gave_up {
+            self.lose(CloseReason::Io {
+                kind: std::io::ErrorKind::TimedOut,
+                text: String::from("libfranka: TCP receive: Timeout"),
+            });
+        }
+    }
+
+    /// Trips the robot.
+    pub fn trip(&mut self, error: RobotError) {
+        self.lockstep.robot.trip(error);
+    }
+
+    /// Has the robot recover, as its program or a person does.
+    pub fn recover(&mut self) {
+        if self.connection == Connection::Up {
+            self.lockstep.request(&Request::AutomaticErrorRecovery);
+        }
+    }
+
+    /// Answers for a person.
+    pub fn agree(&mut self, reflex: u64, agreed: bool) -> bool {
+        let now = self.time();
+        let awaited = self.supervision.agree(reflex, agreed, now);
+        self.carry_out();
+        awaited
+    }
+
+    /// Submits a motion and returns its name.
+    pub fn submit(&mut self, target: Target) -> GoalId {
+        self.goals += 1;
+        let limits = self.lockstep.model.joint_limits();
+        let goal = Goal::new(
+            GoalId(self.goals),
+            target,
+            OnArrival::ReportAndFinish,
+            limits,
+        );
+        let (motion, now) = (NewMotion::to(goal), self.time());
+        let admission = self.supervision.submit(&motion, now);
+        self.carry_out();
+        match admission {
+            Admission::Begin => self.begin(motion),
+            Admission::Wait => self.waiting = Some(motion),
+            Admission::Refuse(error) => self.resolve(goal.id, Err(error)),
+        }
+        goal.id
+    }
+
+    /// Takes a motion back, as dropping its future does.
+    pub fn cancel(&mut self, goal: GoalId) {
+        if self.supervision.withdraw(goal) {
+            self.waiting = None;
+            self.resolve(goal, Err(MotionError::Stopped));
+        } else if self.under_way.contains(&goal) {
+            self.lockstep.cancel(goal);
+        }
+    }
+
+    fn begin(&mut self, motion: NewMotion) {
+        let (goal, now) = (motion.id(), self.time());
+        self.supervision.on_begun(goal, now);
+        self.under_way.insert(goal);
+        let begun = match self.connection {
+            Connection::Up => self.lockstep.client.begin(motion).map(drop),
+            _ => Err(MotionError::ConnectionClosed {
+                reason: CloseReason::ClosedByPeer,
+            }),
+        };
+        if let Err(error) = begun {
+            self.under_way.remove(&goal);
+            let refused = Err(error);
+            self.supervision.on_ended(goal, &refused, now);
+            self.resolve(goal, refused);
+        }
+        self.carry_out();
+    }
+
+    fn resolve(&mut self, goal: GoalId, outcome: Outcome) {
+        let twice = self.outcomes.insert(goal, outcome);
+        assert!(twice.is_none(), "{goal:?} is resolved twice: {twice:?}");
+    }
+
+    fn time(&self) -> Duration {
+        Duration::from_millis(self.lockstep.now())
+    }
+}
