@@ -350,14 +350,14 @@ impl Bridge {
 
     /// Shows the supervisor the newest state, if it shows anything new of the robot as a whole.
     fn observe(&mut self) {
-        let state = *self.publisher.state();
-        let resumed = self
-            .silent_since
-            .is_some_and(|since| state.message_id > since);
-        let seen = Some(Seen::of(&state));
+        let (newest, seen) = {
+            let state = self.publisher.state();
+            (state.message_id, Some(Seen::of(&state)))
+        };
+        let resumed = self.silent_since.is_some_and(|since| newest > since);
         if resumed || self.seen != seen {
             (self.seen, self.silent_since) = (seen, None);
-            self.supervisor.on_state(&state);
+            self.supervisor.observe();
         }
     }
 

@@ -148,9 +148,9 @@ impl Supervisor {
         self.with(|inner, now| inner.core.on_connect_failed(failure, now));
     }
 
-    /// See [`Supervision::on_state`].
-    pub(crate) fn on_state(&self, state: &RobotState) {
-        self.with(|inner, now| inner.core.on_state(state, now));
+    /// Looks at the newest state, as everything else in here does first.
+    pub(crate) fn observe(&self) {
+        self.with(|_, _| ());
     }
 
     pub(crate) fn on_silence(&self, silence: Duration) {
@@ -208,10 +208,11 @@ impl Supervisor {
         self.with(|inner, now| inner.pass(input, link, now));
     }
 
-    /// Does something, and then what follows from it.
+    /// Does something to a robot as its newest state shows it, and then what follows from it.
     fn with<T>(&self, act: impl FnOnce(&mut Inner, Duration) -> T) -> T {
         let mut inner = self.lock();
         let now = self.begun.elapsed();
+        inner.observe(now);
         let result = act(&mut inner, now);
         inner.carry_out(&self.closing, now);
         let refused = std::mem::take(&mut inner.refused);
@@ -236,6 +237,14 @@ impl Supervisor {
 }
 
 impl Inner {
+    /// Shows the core the newest state: a motion that is asked for right after a reflex finds a
+    /// robot that is in it.
+    fn observe(&mut self, now: Duration) {
+        if let Some(link) = self.link.upgrade() {
+            self.core.on_state(&link.newest.state(), now);
+        }
+    }
+
     fn pass(&mut self, input: Input, link: &Link, now: Duration) {
         let input = match input {
             Input::Begin { motion, replies } => {

@@ -54,13 +54,19 @@ impl Supervision {
             let refusals = Arc::from(refusals);
             self.tell(EventKind::RealtimeRefused { refusals }, now);
         }
-        self.on_state(state, now);
+        self.show(state, now);
         true
     }
 
-    /// Takes a state of the robot. Those that show what the one before has shown may be left out:
-    /// see [`Seen`].
+    /// Takes a state of the robot. One that is not newer than the newest is ignored; those that show
+    /// what the one before has shown may be left out: see [`Seen`].
     pub fn on_state(&mut self, state: &RobotState, now: Duration) {
+        if self.robot_time < Some(state.message_id) {
+            self.show(state, now);
+        }
+    }
+
+    fn show(&mut self, state: &RobotState, now: Duration) {
         let Connection::Up(up) = &mut self.connection else {
             return;
         };
@@ -86,8 +92,13 @@ impl Supervision {
         {
             self.tell(EventKind::LoadChanged { load: seen.load }, now);
         }
-        if seen.mode == RobotMode::Reflex && self.on_reflex(seen.errors, now) && !is_first {
-            self.turn_away(now);
+        if seen.mode == RobotMode::Reflex {
+            let is_new = self.on_reflex(seen.errors, now);
+            // Something has stopped the robot again, if only for the same errors.
+            let is_again = told == RobotMode::AutomaticErrorRecovery;
+            if (is_new || is_again) && !is_first {
+                self.turn_away(now);
+            }
         }
         self.go_on(now);
     }

@@ -160,6 +160,8 @@ impl Supervised {
                 if state.message_id != self.seen {
                     self.seen = state.message_id;
                     self.supervision.on_state(&state, now);
+                    // Before the outcomes: nothing may depend on their being there.
+                    self.carry_out();
                 } else if silence == LINK_TIMEOUT {
                     self.supervision.on_silence(silence, now);
                 }
@@ -234,6 +236,7 @@ impl Supervised {
                 }
                 Output::Disconnect { reason } => self.lose(reason),
                 Output::Recover { reflex } => {
+                    assert!(self.under_way.is_empty(), "{:?}", self.under_way);
                     let state = self.state();
                     let asked = Asked::Recover(reflex, state.robot_mode, state.errors);
                     self.requests.push(asked);
@@ -266,7 +269,9 @@ impl Supervised {
         self.lockstep.client = client;
         self.lockstep.guard = Some(CommandGuard::new(model.joint_limits()));
         self.lockstep.heard = self.lockstep.now();
-        let until = self.lockstep.now() + CONNECTING;
+        // A computer that does not run refuses at once.
+        let most = if self.is_up { CONNECTING } else { 1 };
+        let until = self.lockstep.now() + most;
         self.connection = Connection::Connecting { until };
     }
 

@@ -111,9 +111,16 @@ fn of_the_motions_that_wait_the_newest_counts_and_a_stop_takes_it_back() {
 #[test]
 fn whatever_else_happens_turns_away_a_motion_that_waits() {
     type Mishap = fn(&mut Supervised);
-    let mishaps: [(Mishap, MotionError); 6] = [
+    let mishaps: [(Mishap, MotionError); 7] = [
         (
             |robot| robot.reflex([COLLISION, RobotError::JointReflex]),
+            not_ready(Unready::Recovering, 50),
+        ),
+        (
+            |robot| {
+                robot.shows(RobotMode::AutomaticErrorRecovery);
+                robot.reflex([COLLISION]);
+            },
             not_ready(Unready::Recovering, 50),
         ),
         (
