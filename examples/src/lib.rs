@@ -19,7 +19,7 @@ use std::time::Duration;
 use anyhow::{Context, ensure};
 use clap::{Args, Parser, ValueEnum};
 use franka_async::settings::CollisionBehavior;
-use franka_async::{Gripper, MotionReport, Robot};
+use franka_async::{Builder, Gripper, MotionReport, Robot};
 use franka_model::{READY, Wrench};
 use franka_rt::sched::Scheduling;
 use franka_sim::{Fingers, Running, Sim, Tool};
@@ -84,9 +84,20 @@ impl Connection {
     /// # Errors
     /// If nothing answers at the address, or the simulator cannot start.
     pub async fn open(&self) -> anyhow::Result<(Robot, Option<Running>)> {
+        self.open_with(|builder| builder).await
+    }
+
+    /// Connects like [`Self::open`], with further options.
+    ///
+    /// # Errors
+    /// Those of [`Self::open`].
+    pub async fn open_with(
+        &self,
+        options: impl FnOnce(Builder) -> Builder,
+    ) -> anyhow::Result<(Robot, Option<Running>)> {
         if let Some(address) = &self.address {
             let builder = Robot::builder(address).realtime(self.scheduling().realtime);
-            let robot = builder.connect().await;
+            let robot = options(builder).connect().await;
             let robot = robot.with_context(|| match self.realtime {
                 Realtime::Enforce => format!(
                     "connecting to {address} (a simulator needs no real-time kernel: --realtime ignore)"
@@ -97,7 +108,7 @@ impl Connection {
         }
         let sim = self.simulate().await?;
         let builder = Robot::builder(sim.addr()).realtime(self.scheduling().realtime);
-        let robot = builder.connect().await?;
+        let robot = options(builder).connect().await?;
         Ok((robot, Some(sim)))
     }
 

@@ -62,3 +62,22 @@ fn pick_holds_the_block_and_puts_it_down() {
         );
     }
 }
+
+#[test]
+fn supervised_goes_on_after_reflexes() {
+    for robot in ROBOTS {
+        let said = run("supervised", robot);
+        assert!(
+            said.contains("reflex 2 [\"cartesian_reflex\"]"),
+            "{robot}: {said}"
+        );
+        assert!(
+            said.contains("; 0 reconnects, 2 recoveries"),
+            "{robot}: {said}"
+        );
+        assert!(
+            said.contains("Closed { reason: ClosedByUs }"),
+            "{robot}: {said}"
+        );
+    }
+}
