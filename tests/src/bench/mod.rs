@@ -22,6 +22,7 @@
 //! | [`otg`] | a new target for axes in motion |
 //! | [`shape`] | filter, limiter and check of torques and of a pose |
 //! | [`sim`] | the simulator under target control, in virtual time |
+//! | [`supervisor`] | how soon a supervised robot takes motions again, over sockets |
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -37,6 +38,7 @@ pub mod otg;
 pub mod shape;
 pub mod sim;
 mod subject;
+pub mod supervisor;
 
 pub use subject::Subject;
 
@@ -47,7 +49,7 @@ pub struct Benchmark {
     pub key: &'static str,
     /// What to report of a round.
     pub statistics: &'static [Statistic],
-    /// Runs one round and returns the nanoseconds of each call; never empty.
+    /// Runs one round and returns what each call took, in the unit of the key; never empty.
     pub round: Box<dyn FnMut() -> Vec<u64>>,
 }
 
@@ -99,6 +101,7 @@ pub fn all() -> Vec<Benchmark> {
         otg::all(),
         shape::all(),
         sim::all(),
+        supervisor::all(),
     ]
     .into_iter()
     .flatten()
