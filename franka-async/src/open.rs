@@ -77,7 +77,7 @@ pub(crate) async fn open(
         Lifecycle::new(model.clone(), session.version).with_log_size(builder.log_size);
     if let Some(known) = &builder.known {
         known.check(model.kind())?;
-        lifecycle = lifecycle.knowing((**known).clone());
+        lifecycle = lifecycle.knowing(**known);
     }
     let bridge = Bridge::new(
         lifecycle,

@@ -1,5 +1,5 @@
-//! What watches over a robot: `franka_rt::supervision` between the handles, the bridge of the newest
-//! connection, and the task that reconnects and recovers.
+//! What watches over a robot: `franka_rt::supervision` between the handles, the bridge of the
+//! newest connection, and the task that reconnects and recovers.
 //!
 //! Handles and bridge call it, so that it knows of a mishap before a motion resolves for it. Its
 //! lock is held for some microseconds, and never on the control thread.

@@ -128,8 +128,8 @@ impl Policy {
     /// [`MotionError::NotReady`](crate::lifecycle::MotionError::NotReady).
     ///
     /// It waits for the end of this mishap only: another reflex, one during the recovery, a
-    /// connection that is lost again, a user stop, a hand on the arm and closed brakes turn it away. A newer motion supersedes it as
-    /// it would one that moves, and a stop takes it back.
+    /// connection that is lost again, a user stop, a hand on the arm and closed brakes turn it
+    /// away. A newer motion supersedes it as it would one that moves, and a stop takes it back.
     pub fn motions_wait(mut self, most: Duration) -> Self {
         self.motions_wait = Some(most);
         self

@@ -58,8 +58,8 @@ impl Supervision {
         true
     }
 
-    /// Takes a state of the robot. One that is not newer than the newest is ignored; those that show
-    /// what the one before has shown may be left out: see [`Seen`].
+    /// Takes a state of the robot. One that is not newer than the newest is ignored; those that
+    /// show what the one before has shown may be left out: see [`Seen`].
     pub fn on_state(&mut self, state: &RobotState, now: Duration) {
         if self.robot_time < Some(state.message_id) {
             self.show(state, now);

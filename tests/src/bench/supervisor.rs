@@ -1,5 +1,5 @@
-//! How soon a supervised robot takes motions again, over real sockets: after a reflex, and after its
-//! simulator was killed and started again at once.
+//! How soon a supervised robot takes motions again, over real sockets: after a reflex, and after
+//! its simulator was killed and started again at once.
 //!
 //! The values are what the supervisor itself reports. A simulated recovery takes 100 ms, by the
 //! simulator's choice.
