@@ -18,7 +18,9 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use clap::Parser;
-use franka_async::{CancellationToken, MotionError, Pose, Robot, metrics};
+use franka_async::goal::Offset;
+use franka_async::nalgebra::Translation3;
+use franka_async::{CancellationToken, MotionError, Robot, metrics};
 use franka_examples::{Job, Serving, serve_until_told};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -135,11 +137,10 @@ impl Service {
             return Err((StatusCode::CONFLICT, format!("job {id} has the arm")));
         }
         let id = last.map_or(1, |(id, _)| id + 1);
-        let [x, y, z] = order.by;
-        let target = Pose::translation(x, y, z) * self.robot.pose();
-        let motion = self.robot.move_to(target);
-        let motion = motion.speed(order.speed.unwrap_or(1.0));
-        let job = Job::start(&self.robot, motion, target);
+        let motion = self
+            .robot
+            .move_by(Offset::base(Translation3::from(order.by)));
+        let job = Job::start(motion.speed(order.speed.unwrap_or(1.0)));
         jobs.insert(id, job.clone());
         if jobs.len() > JOBS {
             jobs.pop_first();

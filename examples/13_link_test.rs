@@ -161,8 +161,10 @@ const QUANTILES: [(&str, f64); 4] = [
     ("max", 1.0),
 ];
 
+type Figure = fn(&Measured) -> String;
+
 /// Figures of one robot's test, by their names.
-const FIGURES: [(&str, fn(&Measured) -> String); 6] = [
+const FIGURES: [(&str, Figure); 6] = [
     ("robot", |of| of.robot.address().to_string()),
     ("success rate, min", |of| {
         format!("{:.2}", of.report.success_rate_min)

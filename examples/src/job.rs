@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use franka_async::{Canceller, Motion, MotionError, Pose, Robot};
+use franka_async::{Motion, MotionError, MotionHandle};
 use serde_json::{Value, json};
 use tokio::sync::watch;
 use tokio_stream::wrappers::WatchStream;
@@ -13,7 +13,7 @@ use tokio_stream::{Stream, StreamExt};
 #[derive(Clone, Debug)]
 pub struct Job {
     progress: watch::Receiver<Progress>,
-    canceller: Canceller,
+    motion: MotionHandle,
 }
 
 /// The newest event of a job.
@@ -32,8 +32,10 @@ pub enum Stage {
     Queued,
     /// The robot moves.
     Moving {
-        /// From the end effector to the target, `[m]`.
-        to_go: f64,
+        /// The share of its time that has passed, from 0 to 1.
+        fraction: f64,
+        /// Until the arm is at the target, where it then settles.
+        remaining: Duration,
     },
     /// The arm rests at the target.
     Arrived {
@@ -45,25 +47,25 @@ pub enum Stage {
 }
 
 impl Job {
-    /// Begins `motion`, whose target is `target`.
-    pub fn start(robot: &Robot, motion: Motion, target: Pose) -> Self {
+    /// Begins `motion`.
+    pub fn start(motion: Motion) -> Self {
         let queued = Progress {
             number: 0,
             stage: Stage::Queued,
         };
         let (sender, progress) = watch::channel(queued);
-        let canceller = motion.canceller();
+        let handle = motion.handle();
         // The task owns the motion: nobody else can drop it, and so brake the arm.
-        tokio::spawn(run(robot.clone(), motion, target, sender));
+        tokio::spawn(run(motion, sender));
         Self {
             progress,
-            canceller,
+            motion: handle,
         }
     }
 
     /// Brakes the arm. The job fails as stopped when it rests.
     pub fn cancel(&self) {
-        self.canceller.cancel();
+        self.motion.cancel();
     }
 
     /// The newest event.
@@ -118,7 +120,10 @@ impl Stage {
     pub fn to_json(&self) -> Value {
         let mut json = match self {
             Self::Queued => json!({}),
-            Self::Moving { to_go } => json!({ "to_go": to_go }),
+            Self::Moving {
+                fraction,
+                remaining,
+            } => json!({ "fraction": fraction, "remaining": remaining.as_secs_f64() }),
             Self::Arrived { duration } => json!({ "seconds": duration.as_secs_f64() }),
             Self::Failed(error) => json!({ "text": error.to_string(), "party": error.party() }),
         };
@@ -127,7 +132,7 @@ impl Stage {
     }
 }
 
-async fn run(robot: Robot, motion: Motion, target: Pose, progress: watch::Sender<Progress>) {
+async fn run(motion: Motion, progress: watch::Sender<Progress>) {
     let tell = |stage| {
         progress.send_modify(|newest| {
             *newest = Progress {
@@ -136,14 +141,15 @@ async fn run(robot: Robot, motion: Motion, target: Pose, progress: watch::Sender
             }
         });
     };
+    let handle = motion.handle();
     let mut moving = motion.into_future();
     let mut clock = tokio::time::interval(Duration::from_millis(50));
     let outcome = loop {
         tokio::select! {
             outcome = &mut moving => break outcome,
-            _ = clock.tick() => if robot.state().motion_running() {
-                let way = target.translation.vector - robot.pose().translation.vector;
-                tell(Stage::Moving { to_go: way.norm() });
+            _ = clock.tick() => if let Some(progress) = handle.progress() {
+                let (fraction, remaining) = (progress.fraction(), progress.remaining);
+                tell(Stage::Moving { fraction, remaining });
             },
         }
     };

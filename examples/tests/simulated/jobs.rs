@@ -115,17 +115,20 @@ fn a_job_goes_on_when_its_client_is_killed() {
     let events: Vec<_> = client.events(1, None).expect("events").collect();
     let (last, way) = events.split_last().expect("events");
     assert_eq!(last.0, "arrived", "{last:?}");
-    // Each event once, in order, and nearer and nearer.
+    // Each event once, in order, and further and further.
     assert!(way.iter().all(|(name, _, _)| name == "moving"), "{way:?}");
     assert!(
         events.is_sorted_by_key(|(_, number, _)| *number),
         "{events:?}"
     );
-    let to_go = |event: &(_, _, Value)| event.2["to_go"].as_f64().expect("a distance");
-    let (first, nearest) = (to_go(&way[0]), to_go(&way[way.len() - 1]));
+    let figures = |name| {
+        way.iter()
+            .map(move |event| event.2[name].as_f64().expect("a number"))
+    };
+    assert!(figures("fraction").is_sorted(), "{way:?}");
     assert!(
-        nearest < 0.01 && nearest < first,
-        "from {first} to {nearest}"
+        figures("remaining").is_sorted_by(|one, next| one >= next),
+        "{way:?}"
     );
     let risen = above(&arm.rests(), &start);
     assert!((risen - 0.1).abs() < 2e-3, "{risen}");
