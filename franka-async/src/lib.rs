@@ -25,8 +25,8 @@
 //!   state. Both whatever moves. [`Robot::stats`], [`stats`]: how punctual control is.
 //! * `Robot::metrics`, `metrics` (feature `metrics`, off by default): the same as OpenMetrics text.
 //! * [`Robot::set_load`] and its siblings, [`settings`]; [`Robot::recover`].
-//! * [`Builder::supervise`], [`Robot::events`], [`Robot::health`], [`supervision`]: connections that
-//!   are made again, recovery by a policy, and what happened.
+//! * [`Builder::supervise`], [`Robot::events`], [`Robot::health`], [`supervision`]: connections
+//!   that are made again, recovery by a policy, and what happened.
 //! * [`Robot::identify`], [`Builder::known`], [`identify`]: friction, bias and load of an arm.
 //! * [`Gripper`], [`VacuumGripper`]: the end effectors, each with a connection of its own.
 //! * [`Robot::model`], [`model`]: the model of the connected arm, from its own description (feature

@@ -1,5 +1,5 @@
-//! From an address to a connection. If the robot refuses the version, the older one that it names is
-//! tried.
+//! From an address to a connection. If the robot refuses the version, the older one that it names
+//! is tried.
 
 use std::net::SocketAddr;
 use std::sync::Arc;

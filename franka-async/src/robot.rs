@@ -244,8 +244,8 @@ impl Robot {
         self.shared.supervisor.events()
     }
 
-    /// How the robot is, as it changes: whether it takes motions, why not, and how long reconnecting
-    /// and recovering took. Ends as [`Self::events`] does.
+    /// How the robot is, as it changes: whether it takes motions, why not, and how long
+    /// reconnecting and recovering took. Ends as [`Self::events`] does.
     pub fn health(&self) -> States<Health> {
         let supervisor = &self.shared.supervisor;
         States::new(supervisor.health(), supervisor.closing().clone())
