@@ -21,7 +21,7 @@ use crate::robot::Robot;
 use crate::session::Session;
 
 /// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a
-/// motion of its own, with its own [`canceller`](Self::canceller) and without the
+/// motion of its own, with its own [`handle`](Self::handle) and without the
 /// [`start_with`](Self::start_with) of the original.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
