@@ -65,7 +65,9 @@ pub(crate) fn status(error: MotionError) -> Status {
             };
             return with_detail(Code::FailedPrecondition, text, &reflex);
         }
-        MotionError::Rejected(_) | MotionError::Busy => Code::FailedPrecondition,
+        MotionError::Rejected(_) | MotionError::NotReady { .. } | MotionError::Busy => {
+            Code::FailedPrecondition
+        }
         MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => Code::Unavailable,
         MotionError::Violation(_) | MotionError::Protocol { .. } => Code::Internal,
         _ => Code::Aborted, // stopped, superseded, given up: the arm rests or goes on

@@ -101,6 +101,8 @@ mod session;
 mod state_stream;
 mod states;
 mod supervisor;
+#[cfg(feature = "metrics")]
+mod tally;
 mod telemetry;
 mod thresholds;
 mod vacuum_gripper;

@@ -279,6 +279,12 @@ impl Robot {
     }
 
     /// The newest connection. Whoever needs several things of the same one, asks once.
+    /// What happened so far, counted.
+    #[cfg(feature = "metrics")]
+    pub(crate) fn tally(&self) -> crate::tally::Tally {
+        self.shared.supervisor.tally()
+    }
+
     pub(crate) fn link(&self) -> Arc<Link> {
         let link = self.shared.link.read();
         // Nothing can panic while it is held.

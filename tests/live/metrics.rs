@@ -2,11 +2,14 @@
 //! those of the handles.
 
 use std::collections::{BTreeMap, HashSet};
+use std::time::Duration;
 
 use franka_async::control::{Finish, JointVelocities};
 use franka_async::metrics::Exporter;
-use franka_async::{MotionError, Robot, RobotMode};
+use franka_async::supervision::Policy;
+use franka_async::{MotionError, Realtime, Robot, RobotError, RobotMode};
 use franka_sim::{Sim, Tool};
+use franka_tests::PATIENCE;
 
 use crate::{alone, at_the_clients_pace, simulated, until};
 
@@ -188,6 +191,13 @@ async fn the_text_has_the_counts_of_the_handle_and_the_mode_of_the_state() {
         );
     }
     assert_eq!(sample(&samples, "franka_connected", &label, ""), 1.0);
+    assert_eq!(sample(&samples, "franka_ready", &label, ""), 1.0);
+    let motions = |samples: &Samples, outcome| {
+        let outcome = format!(",outcome=\"{outcome}\"");
+        sample(samples, "franka_motions_total", &label, &outcome)
+    };
+    assert_eq!(motions(&samples, "done"), 1.0);
+    assert_eq!(motions(&samples, "stopped"), 0.0);
 
     robot.shutdown().await;
     let samples = parse(&robot.metrics());
@@ -209,17 +219,48 @@ async fn robots_of_one_text_share_their_families_and_a_reflex_is_named() {
     );
     until(&left, |state| state.robot_mode == RobotMode::Reflex).await;
     let samples = parse(&exporter.text());
-    let error = ",error=\"joint_motion_generator_acceleration_discontinuity\"";
+    let error = "joint_motion_generator_acceleration_discontinuity";
     for (robot, reflex) in [("left", 1.0), ("right", 0.0)] {
-        assert_eq!(
-            sample(&samples, "franka_error_active", robot, error),
-            reflex
-        );
-        assert_eq!(
-            sample(&samples, "franka_robot_mode", robot, ",mode=\"reflex\""),
-            reflex
-        );
+        for (name, label, value) in [
+            ("franka_error_active", "error", error),
+            ("franka_robot_mode", "mode", "reflex"),
+            ("franka_reflexes_total", "reason", error),
+            ("franka_motions_total", "outcome", "reflex"),
+        ] {
+            let label = format!(",{label}=\"{value}\"");
+            assert_eq!(sample(&samples, name, robot, &label), reflex, "{name}");
+        }
+        assert_eq!(sample(&samples, "franka_ready", robot, ""), 1.0 - reflex);
     }
     left.shutdown().await;
     right.shutdown().await;
+}
+
+#[tokio::test]
+async fn recoveries_of_a_supervised_robot_are_counted_and_timed() {
+    let _alone = alone();
+    let sim = Sim::fr3().ideal().virtual_time(PATIENCE).start().await;
+    let sim = sim.expect("a simulator starts");
+    let policy = Policy::default().recover(1, Duration::from_secs(60));
+    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let robot = builder.supervise(policy).connect().await.unwrap();
+    let label = robot.address().to_string();
+    let before = parse(&robot.metrics());
+    assert_eq!(sample(&before, "franka_recoveries_total", &label, ""), 0.0);
+    let timed = |samples: &Samples| {
+        let name = "franka_recovery_seconds{";
+        samples.iter().any(|(series, _)| series.starts_with(name))
+    };
+    assert!(!timed(&before), "{before:#?}");
+    sim.with(|robot| robot.trip(RobotError::CartesianReflex))
+        .await
+        .unwrap();
+    let mut health = robot.health();
+    let recovered = health.wait_for(|health| health.recoveries == 1).await;
+    recovered.expect("the connection stands");
+    let after = parse(&robot.metrics());
+    assert_eq!(sample(&after, "franka_recoveries_total", &label, ""), 1.0);
+    assert_eq!(sample(&after, "franka_reconnects_total", &label, ""), 0.0);
+    assert!(timed(&after), "{after:#?}");
+    robot.shutdown().await;
 }

@@ -24,6 +24,8 @@ use tokio::time::Instant;
 use crate::close::Closing;
 use crate::input::{Beginning, Input, Replies};
 use crate::link::Link;
+#[cfg(feature = "metrics")]
+use crate::tally::Tally;
 
 pub use events::{Events, Notification};
 
@@ -58,6 +60,8 @@ struct Inner {
     /// `None` once closed, as the next.
     events: Option<broadcast::Sender<Event>>,
     health: Option<watch::Sender<Health>>,
+    #[cfg(feature = "metrics")]
+    tally: Tally,
 }
 
 /// A motion that waits until the robot is ready.
@@ -92,6 +96,8 @@ impl Supervisor {
                 jobs: VecDeque::new(),
                 events: Some(broadcast::channel(events::CAPACITY).0),
                 health: Some(health),
+                #[cfg(feature = "metrics")]
+                tally: Tally::default(),
             }),
             health: shown,
             closing: Closing::default(),
@@ -129,6 +135,12 @@ impl Supervisor {
 
     pub(crate) fn health(&self) -> watch::Receiver<Health> {
         self.health.clone()
+    }
+
+    /// What happened so far, counted.
+    #[cfg(feature = "metrics")]
+    pub(crate) fn tally(&self) -> Tally {
+        self.lock().tally.clone()
     }
 
     /// Takes over a connection that has just been made. Returns false if none is wanted any more.
@@ -387,6 +399,8 @@ impl Inner {
     }
 
     fn tell(&mut self, event: Event, closing: &Closing) {
+        #[cfg(feature = "metrics")]
+        self.tally.note(&event.kind);
         let reason = match &event.kind {
             EventKind::Closed { reason } => Some(reason.clone()),
             _ => None,

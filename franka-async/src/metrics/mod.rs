@@ -1,0 +1,97 @@
+//! What connections have counted and measured, as [OpenMetrics] text: for Prometheus and whatever
+//! else reads its format.
+//!
+//! [`Robot::metrics`] is one robot's text. [`Exporter`] is that of several, or a collector for a
+//! registry of the program's own. Both read the counters that the control thread keeps anyway
+//! ([`Robot::stats`]), the newest state, [`Robot::health`] and [`Robot::granted`], when they are
+//! called, and how motions ended: the thread does nothing for them. The thread's counts begin anew
+//! with each connection of a supervised robot.
+//!
+//! | metric | type | labels beside `robot` |
+//! |---|---|---|
+//! | `franka_build_info` | info | `version`; without `robot` |
+//! | `franka_connected` | gauge, 0 or 1 | |
+//! | `franka_ready` | gauge, whether the robot takes motions | |
+//! | `franka_robot_mode` | gauge, 1 for the mode of the newest state | `mode` |
+//! | `franka_error_active` | gauge, 1 for each error of the newest state | `error` |
+//! | `franka_success_ratio` | gauge, the robot's `control_command_success_rate` | |
+//! | `franka_rt_granted` | gauge, 0 or 1 | `what`: `fifo`, `busy_poll` |
+//! | `franka_motions_total` | counter, motions that have ended; of a session, its goals, too | `outcome` |
+//! | `franka_reflexes_total` | counter, reflexes by error; one of several errors counts for each | `reason` |
+//! | `franka_recoveries_total`, `franka_reconnects_total` | counter, those of the supervisor | |
+//! | `franka_recovery_seconds`, `franka_reconnect_seconds` | gauge, how long the newest took; none before the first | |
+//! | `franka_cycles_total` | counter, states that the control thread took up | |
+//! | `franka_commands_total`, `franka_commands_late_total` | counter; late: after the next state was due | |
+//! | `franka_states_lost_total`, `franka_states_skipped_total`, `franka_states_stale_total` | counter | |
+//! | `franka_datagrams_refused_total` | counter | `reason`: `foreign`, `malformed` |
+//! | `franka_socket_errors_total` | counter | `call`: `receive`, `send` |
+//! | `franka_state_interval_seconds`, `franka_cycle_turnaround_seconds` | histogram | |
+//! | `franka_cycle_slack_seconds` | gauge, the least so far; negative for an overrun | |
+//!
+//! The thread's buckets are finer than these histograms' and do not end where theirs do: a bucket
+//! counts all durations up to 15/16 of its bound, some of those up to the bound, and none above.
+//! The sum is that of the middles of the thread's buckets, within 1/32.
+//!
+//! [OpenMetrics]: https://prometheus.io/docs/specs/om/open_metrics_spec/
+
+mod buckets;
+mod families;
+
+use std::fmt;
+
+use prometheus_client::collector::Collector;
+use prometheus_client::encoding::{DescriptorEncoder, text};
+use prometheus_client::registry::Registry;
+
+use crate::robot::Robot;
+use families::{Families, Scrape};
+
+/// The library that [`Exporter`] is a collector of.
+pub use prometheus_client;
+
+/// The content type of the text, for the answer to a scrape.
+pub const CONTENT_TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+
+impl Robot {
+    /// The metrics of this robot as OpenMetrics text; the label `robot` is its address. See
+    /// [`metrics`](crate::metrics). The content type is
+    /// [`CONTENT_TYPE`](crate::metrics::CONTENT_TYPE).
+    pub fn metrics(&self) -> String {
+        Exporter::new([(self.address().to_string(), self.clone())]).text()
+    }
+}
+
+/// The metrics of some robots. It holds a handle of each: a connection ends with the exporter, or
+/// by [`Robot::shutdown`], if no other handle is left.
+#[derive(Clone, Debug)]
+pub struct Exporter {
+    robots: Vec<(String, Robot)>,
+}
+
+impl Exporter {
+    /// Metrics of these robots, each with its value of the label `robot`: no two the same, and the
+    /// same whenever the program runs.
+    pub fn new<L: Into<String>>(robots: impl IntoIterator<Item = (L, Robot)>) -> Self {
+        let robots = robots.into_iter();
+        Self {
+            robots: robots.map(|(label, robot)| (label.into(), robot)).collect(),
+        }
+    }
+
+    /// The text, which ends with `# EOF`.
+    pub fn text(&self) -> String {
+        let mut registry = Registry::default();
+        registry.register_collector(Box::new(self.clone()));
+        let mut text = String::new();
+        text::encode(&mut text, &registry).expect("writing to a string does not fail");
+        text
+    }
+}
+
+impl Collector for Exporter {
+    fn encode(&self, encoder: DescriptorEncoder<'_>) -> fmt::Result {
+        let robots = self.robots.iter();
+        let scrapes = robots.map(|(label, robot)| Scrape::new(label, robot));
+        Families::new(encoder, scrapes).encode()
+    }
+}
