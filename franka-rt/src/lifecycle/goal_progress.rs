@@ -7,7 +7,7 @@ use super::outcome::{Counted, Outcome};
 use super::{MotionError, MotionReport};
 use crate::driver::{Ended, Ending, Program};
 use crate::session::{
-    Backend, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Settlement, Target,
+    Backend, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Reacted, Settlement, Target,
 };
 use crate::slot::SlotWriter;
 
@@ -50,6 +50,7 @@ pub(super) struct Settled {
     pub(super) settlement: Settlement,
     pub(super) duration_ms: u64,
     pub(super) compensation: Option<[f64; 7]>,
+    pub(super) reacted: Option<Reacted>,
     /// What the motion had come to by then.
     pub(super) counted: Counted,
 }
@@ -119,9 +120,12 @@ impl Goals {
         if settled.goal != goal.id {
             return None;
         }
+        let reaction = goal.reaction.filter(|_| settled.reacted.is_some());
         let held = match settled.settlement {
             Settlement::Arrived(_) => Goal {
+                target: reaction.map_or(goal.target, |reaction| reaction.then),
                 on_arrival: OnArrival::Hold,
+                reaction: None,
                 ..goal
             },
             // One that did not arrive is not what the arm is held at.
@@ -194,6 +198,7 @@ impl Settled {
         };
         Ok(MotionReport {
             compensation: self.compensation,
+            reacted: self.reacted,
             ..MotionReport::new(counted, self.duration_ms, final_error)
         })
     }

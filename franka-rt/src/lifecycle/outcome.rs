@@ -9,7 +9,7 @@ use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, St
 
 use super::{CloseReason, Unready};
 use crate::driver::{Commander, ControlLog, Ended};
-use crate::session::{GoalError, Lapse, PoseError, Shortfall};
+use crate::session::{GoalError, Lapse, PoseError, Reacted, Shortfall};
 use crate::shaping::InvalidCommand;
 use crate::stats::{CycleTimes, MotionStatistics, MotionTimes, Quantiles, Slack};
 use crate::together::StartFault;
@@ -35,6 +35,10 @@ pub struct MotionReport {
     /// springs could not do. `None` without our law: under the robot's controller, and of a control
     /// function.
     pub compensation: Option<[f64; 7]>,
+    /// What the motion saw when the condition became true that it was to go on until, and did
+    /// something else for: see [`Reaction`](crate::session::Reaction). `None` if it has arrived
+    /// without, and for a motion without a condition.
+    pub reacted: Option<Reacted>,
     /// States that never arrived while the motion ran.
     pub lost_states: u64,
     /// States that arrived meanwhile but were skipped, because a newer one had come before they
@@ -67,6 +71,7 @@ impl MotionReport {
             final_error,
             released_error: None,
             compensation: None,
+            reacted: None,
             lost_states: statistics.lost_states,
             skipped_states: statistics.skipped_states,
             success_rate_min: statistics.success_rate_min,

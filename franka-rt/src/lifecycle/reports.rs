@@ -113,12 +113,14 @@ impl Lifecycle {
                 settlement,
                 duration_ms,
                 compensation,
+                reacted,
             } => {
                 let settled = Settled {
                     goal,
                     settlement,
                     duration_ms,
                     compensation,
+                    reacted,
                     counted: Counted {
                         statistics,
                         times: current.times.clone(),

@@ -12,7 +12,7 @@ use crate::session::{ForceCap, Goal, GoalError, Guard, SessionCommand, Target};
 ///
 /// | guard | [`Torques`](Self::Torques) | [`RobotController`](Self::RobotController) |
 /// |---|---|---|
-/// | clearance, lead, watchdog, deadman | yes | yes |
+/// | clearance, lead, watchdog, deadman, reaction | yes | yes |
 /// | joints' bounds on the way to a pose | yes | yes |
 /// | leash, deviation, velocity barrier | yes | no: an arm that is held back or pushed away springs back to its setpoint |
 /// | force cap | yes | no: a goal that asks for one is refused |
@@ -89,6 +89,7 @@ impl Backend {
             | Guard::Lead
             | Guard::Watchdog
             | Guard::Deadman
+            | Guard::Reaction
             | Guard::PlanFailure => true,
             Guard::Leash
             | Guard::Deviation
@@ -105,10 +106,13 @@ impl Backend {
     /// # Errors
     /// [`GoalError::Backend`].
     pub(crate) fn check(self, goal: &Goal) -> Result<(), GoalError> {
+        let joints = |target| matches!(target, Target::Joints(_));
+        let to_joints = joints(goal.target.place())
+            || goal.reaction.is_some_and(|reaction| joints(reaction.then));
         let why = match (self, goal.target.place()) {
             (Self::Torques, _) => return Ok(()),
             (_, Target::Guide(_)) => "takes no guiding hand",
-            (Self::RobotController(Setpoints::Poses), Target::Joints(_)) => "takes poses only",
+            (Self::RobotController(Setpoints::Poses), _) if to_joints => "takes poses only",
             _ if matches!(goal.force_cap, ForceCap::Newtons(_)) => {
                 "keeps no force cap: its stiffness is set on the robot"
             }

@@ -9,6 +9,7 @@ use franka_otg::AxisLimits;
 use franka_proto::{RobotState, Version};
 
 use crate::law::{GainError, Law};
+use crate::session::condition::ConditionError;
 use crate::session::{
     Budget, Chunk, ForceCap, Goal, KeepOut, OnArrival, Target, Watchdog, approach,
 };
@@ -110,6 +111,9 @@ pub enum GoalError {
         /// The value given.
         got: f64,
     },
+    /// The condition of a reaction is not accepted, or what follows it.
+    #[error(transparent)]
+    Condition(#[from] ConditionError),
     /// A silence of a watchdog or a deadman is shorter than a lossy network may bring by itself.
     #[error("silence of {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
     Silence {
@@ -164,6 +168,9 @@ impl Goal {
         }
         if self.target.moves() && self.on_arrival != OnArrival::Hold {
             return Err(GoalError::Moves);
+        }
+        if let Some(reaction) = &self.reaction {
+            reaction.check(model, state)?;
         }
         // What is finite with masses in single precision is finite in every version.
         super::load_of(state, Version::V10).ok_or(GoalError::Tool)?;

@@ -38,6 +38,17 @@ pub(super) struct Effort {
     bound: bool,
 }
 
+/// What the law does about what holds an arm back at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Resistance {
+    /// It takes it for friction, and overcomes it.
+    Overcome,
+    /// The arm rests on what it has met, and presses on it with its springs alone.
+    Yield,
+    /// The motion ends, and the torques with it.
+    Release,
+}
+
 /// The acceleration that is fed forward as a torque.
 ///
 /// While the leash moves the reference with an arm that is pushed, the reference accelerates as
@@ -128,14 +139,14 @@ impl Effort {
     }
 
     /// The torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
-    /// velocities. A motion that is `ending` gets rid of what is compensated.
+    /// velocities.
     pub(super) fn step(
         &mut self,
         reference: &Reference,
         state: &RobotState,
         dynamics: &Dynamics,
         limits: &JointLimits,
-        ending: bool,
+        resistance: Resistance,
         bindings: &mut Bindings,
     ) -> JointVector {
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
@@ -161,8 +172,8 @@ impl Effort {
             error: &error,
             springs: &springs,
             bounds: &tuning.compensation,
-            held: self.bound || leashed,
-            ending,
+            held: self.bound || leashed || resistance == Resistance::Yield,
+            ending: resistance == Resistance::Release,
         });
         let springs = springs + self.compensated;
         let dampers = dampers.torques(&(feedforward - dq));

@@ -8,7 +8,7 @@ use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use crate::law::Gains;
-use crate::session::{Budget, ForceCap, Lead, OnTimeout, Tolerance, Watchdog};
+use crate::session::{Budget, ForceCap, Lead, OnTimeout, Reaction, Tolerance, Watchdog};
 use crate::slot::Words;
 
 /// Identifies one goal for the life of a connection. Updates of a followed target keep the id of
@@ -186,6 +186,9 @@ pub struct Goal {
     /// Whether the arm is to stop on its way, within the budget, and to stay there until this is
     /// taken back.
     pub paused: bool,
+    /// Until what it is pursued, if not only until the arrival. A goal keeps the one that it began
+    /// with.
+    pub reaction: Option<Reaction>,
     /// Incremented by each new target and each new end, not by tuning. Only a new revision feeds
     /// the watchdog.
     pub revision: u64,
@@ -213,11 +216,13 @@ impl Goal {
             force_cap: ForceCap::Default,
             lead: None,
             paused: false,
+            reaction: None,
             revision: 0,
         }
     }
 
-    /// Returns the goal with rest as its target. Gains for guiding are replaced by gains that hold.
+    /// Returns the goal with rest as its target, without a reaction. Gains for guiding are replaced
+    /// by gains that hold.
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),
@@ -228,37 +233,74 @@ impl Goal {
             on_arrival,
             gains,
             paused: false,
+            reaction: None,
             ..*self
         }
     }
 }
 
-/// Name, revision, kind of target and whether it is paused, what follows, 2 of the watchdog; then 7
-/// numbers of target, 7 of its velocity, 27 of budget, the gains, 2 of tolerance, the force cap, 3
-/// of the lead, which are zero without one.
-///
-/// Written by hand: generated code needs an implementation for the type of each field, which comes
-/// to as many lines. The test below fails if a field is left out.
-impl Words for Goal {
-    const WORDS: usize = 6 + 7 + 7 + 27 + Gains::NUMBERS + 2 + 1 + 3;
+/// The kind of target, 7 numbers, and 7 of its velocity.
+impl Words for Target {
+    const WORDS: usize = 1 + 7 + 7;
 
     fn store(&self, words: &mut [u64]) {
         let numbers_of = |pose: &Isometry3<f64>| {
             let (p, r) = (pose.translation.vector, pose.rotation.coords);
             [p.x, p.y, p.z, r.x, r.y, r.z, r.w]
         };
-        let (kind, target, velocity) = match &self.target {
-            Target::Rest => (0, [0.0; 7], [0.0; 7]),
-            Target::Joints(q) => (1, *q, [0.0; 7]),
-            Target::Pose(pose) => (2, numbers_of(pose), [0.0; 7]),
-            Target::Guide(free) => (3 | free.to_word() << 4, [0.0; 7], [0.0; 7]),
-            Target::MovingJoints { q, dq } => (4, *q, *dq),
-            Target::MovingPose { pose, twist } => {
+        let (kind, place, velocity) = match self {
+            Self::Rest => (0, [0.0; 7], [0.0; 7]),
+            Self::Joints(q) => (1, *q, [0.0; 7]),
+            Self::Pose(pose) => (2, numbers_of(pose), [0.0; 7]),
+            Self::Guide(free) => (3 | free.to_word() << 3, [0.0; 7], [0.0; 7]),
+            Self::MovingJoints { q, dq } => (4, *q, *dq),
+            Self::MovingPose { pose, twist } => {
                 let velocity = core::array::from_fn(|i| if i < 6 { twist[i] } else { 0.0 });
                 (5, numbers_of(pose), velocity)
             }
         };
-        let kind = kind | u64::from(self.paused) << 3;
+        words[0] = kind;
+        place.store(&mut words[1..8]);
+        velocity.store(&mut words[8..]);
+    }
+
+    fn load(words: &[u64]) -> Self {
+        let place = <[f64; 7]>::load(&words[1..8]);
+        let velocity = <[f64; 7]>::load(&words[8..]);
+        let pose = || {
+            let [x, y, z, i, j, k, w] = place;
+            Isometry3::from_parts(
+                Translation3::new(x, y, z),
+                UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
+            )
+        };
+        match words[0] & 7 {
+            1 => Self::Joints(place),
+            2 => Self::Pose(pose()),
+            3 => Self::Guide(Free::from_word(words[0] >> 3)),
+            4 => Self::MovingJoints {
+                q: place,
+                dq: velocity,
+            },
+            5 => Self::MovingPose {
+                pose: pose(),
+                twist: Twist::from_column_slice(&velocity[..6]),
+            },
+            _ => Self::Rest,
+        }
+    }
+}
+
+/// Name, revision, what follows and whether it is paused, 2 of the watchdog; then 27 numbers of
+/// budget, the gains, 2 of tolerance, the force cap, 3 of the lead, which are zero without one; then
+/// the target and the reaction.
+///
+/// Written by hand: generated code needs an implementation for the type of each field, which comes
+/// to as many lines. The test below fails if a field is left out.
+impl Words for Goal {
+    const WORDS: usize = NUMBERS + Target::WORDS + Option::<Reaction>::WORDS;
+
+    fn store(&self, words: &mut [u64]) {
         let (watched, silence) = match self.watchdog {
             None => (0, 0),
             Some(Watchdog {
@@ -276,10 +318,8 @@ impl Words for Goal {
             rotation,
         } = self.budget;
         let axes = joints.into_iter().chain([translation, rotation]);
-        let numbers = target
-            .into_iter()
-            .chain(velocity)
-            .chain(axes.flat_map(|l| [l.velocity, l.acceleration, l.jerk]))
+        let numbers = axes
+            .flat_map(|l| [l.velocity, l.acceleration, l.jerk])
             .chain(self.gains.to_array())
             .chain(self.tolerance.map_or([0.0; 2], |tolerance| {
                 [tolerance.translation, tolerance.rotation]
@@ -288,29 +328,25 @@ impl Words for Goal {
             .chain(self.lead.map_or([0.0; 3], |lead| {
                 [lead.translation, lead.rotation, lead.joints]
             }));
-        let on_arrival = self.on_arrival.to_word();
-        let all = [self.id.0, self.revision, kind, on_arrival, watched, silence]
+        let on_arrival = self.on_arrival.to_word() | u64::from(self.paused) << 2;
+        let all = [self.id.0, self.revision, on_arrival, watched, silence]
             .into_iter()
             .chain(numbers.map(f64::to_bits));
         for (word, value) in words.iter_mut().zip(all) {
             *word = value;
         }
+        let (target, reaction) = words[NUMBERS..].split_at_mut(Target::WORDS);
+        self.target.store(target);
+        self.reaction.store(reaction);
     }
 
     fn load(words: &[u64]) -> Self {
-        let mut words = words.iter().copied();
+        let (numbers, others) = words.split_at(NUMBERS);
+        let (target, reaction) = others.split_at(Target::WORDS);
+        let mut words = numbers.iter().copied();
         let mut next = || words.next().unwrap_or_default();
-        let [id, revision, kind, on_arrival, watched, silence] = core::array::from_fn(|_| next());
+        let [id, revision, on_arrival, watched, silence] = core::array::from_fn(|_| next());
         let mut number = || f64::from_bits(next());
-        let [target, velocity]: [[f64; 7]; 2] =
-            core::array::from_fn(|_| core::array::from_fn(|_| number()));
-        let pose = || {
-            let [x, y, z, i, j, k, w] = target;
-            Isometry3::from_parts(
-                Translation3::new(x, y, z),
-                UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
-            )
-        };
         let mut axis = || AxisLimits {
             velocity: number(),
             acceleration: number(),
@@ -323,22 +359,9 @@ impl Words for Goal {
         };
         Self {
             id: GoalId(id),
-            target: match kind & 7 {
-                1 => Target::Joints(target),
-                2 => Target::Pose(pose()),
-                3 => Target::Guide(Free::from_word(kind >> 4)),
-                4 => Target::MovingJoints {
-                    q: target,
-                    dq: velocity,
-                },
-                5 => Target::MovingPose {
-                    pose: pose(),
-                    twist: Twist::from_column_slice(&velocity[..6]),
-                },
-                _ => Target::Rest,
-            },
-            paused: kind >> 3 & 1 == 1,
-            on_arrival: OnArrival::from_word(on_arrival),
+            target: Target::load(target),
+            paused: on_arrival >> 2 & 1 == 1,
+            on_arrival: OnArrival::from_word(on_arrival & 3),
             watchdog: (watched & 1 == 1).then(|| Watchdog {
                 silence: Duration::from_millis(silence),
                 on_timeout: if watched >> 1 & 1 == 1 {
@@ -361,10 +384,14 @@ impl Words for Goal {
                 joints: number(),
             })
             .filter(|lead| lead.translation > 0.0),
+            reaction: Words::load(reaction),
             revision,
         }
     }
 }
+
+/// Words of a goal before those of its target.
+const NUMBERS: usize = 5 + 27 + Gains::NUMBERS + 2 + 1 + 3;
 
 impl OnArrival {
     fn to_word(self) -> u64 {
@@ -387,6 +414,7 @@ impl OnArrival {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::condition::{Axis, Quantity, elapsed, force_z};
     use franka_model::Model;
 
     #[test]
@@ -408,13 +436,17 @@ mod tests {
             rotation: 0.2,
             joints: 0.1,
         };
-        for (target, on_arrival, watchdog, force_cap, lead) in [
+        let low = Quantity::Position(Axis::Z).below(0.1);
+        let touched = force_z(8.0).relative().held_for(Duration::from_millis(20)) | low;
+        let brake = Reaction::from(!touched & elapsed(Duration::from_millis(300)));
+        for (target, on_arrival, watchdog, force_cap, lead, reaction) in [
             (
                 Target::Rest,
                 OnArrival::ReportAndFinish,
                 None,
                 ForceCap::Off,
                 None,
+                Some(touched.then(pose)),
             ),
             (
                 Target::Joints([0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7]),
@@ -422,6 +454,7 @@ mod tests {
                 Some(watchdog),
                 ForceCap::Newtons(25.0),
                 None,
+                Some(brake),
             ),
             (
                 Target::Pose(pose),
@@ -429,12 +462,14 @@ mod tests {
                 None,
                 ForceCap::Newtons(5.0),
                 Some(lead),
+                Some(touched.then([0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7])),
             ),
             (
                 Target::Guide(free),
                 OnArrival::Hold,
                 Some(watchdog),
                 ForceCap::Default,
+                None,
                 None,
             ),
             (
@@ -446,6 +481,7 @@ mod tests {
                 None,
                 ForceCap::Default,
                 Some(lead),
+                Some(brake),
             ),
             (
                 Target::MovingPose {
@@ -455,6 +491,7 @@ mod tests {
                 OnArrival::Hold,
                 Some(watchdog),
                 ForceCap::Off,
+                None,
                 None,
             ),
         ] {
@@ -472,6 +509,7 @@ mod tests {
                 force_cap,
                 lead,
                 paused: lead.is_some(),
+                reaction,
                 revision: 5,
             };
             let mut words = [u64::MAX; Goal::WORDS];

@@ -24,6 +24,7 @@ mod backend;
 mod budget;
 pub(crate) mod check;
 mod chunk;
+pub mod condition;
 mod course;
 mod effort;
 mod goal;
@@ -34,6 +35,7 @@ mod kinematics;
 mod landing;
 mod margin;
 mod pose;
+mod reaction;
 mod reference;
 mod route;
 mod running;
@@ -71,6 +73,7 @@ pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT, Shortfall};
 pub use margin::Margin;
+pub use reaction::{Reacted, Reaction};
 pub use tolerance::Tolerance;
 
 use reference::Reference;
@@ -82,6 +85,10 @@ pub const STALL_TIMEOUT: Duration = SETTLE_TIMEOUT;
 
 /// What a session reports to the lifecycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "made on the thread, where a box would allocate"
+)]
 #[non_exhaustive]
 pub enum SessionEvent {
     /// A goal that was to finish has come to its end; the session releases the arm unless a newer
@@ -96,6 +103,8 @@ pub enum SessionEvent {
         /// What friction and bias are compensated by there, `[N m]`; `None` where the robot's
         /// controller turns setpoints into torques.
         compensation: Option<[f64; 7]>,
+        /// The reaction that has led it to this end, if one has.
+        reacted: Option<Reacted>,
     },
     /// The robot's state names an end effector that is not a rigid transformation, or a load that
     /// is not finite; the session ends without a torque.

@@ -1,5 +1,6 @@
 //! A session between a state and its answer, and before the next state.
 
+use super::condition::{elapsed, force_z};
 use super::*;
 use crate::slot::{SlotWriter, slot};
 use franka_model::{JointVector, READY};
@@ -125,4 +126,63 @@ fn a_goal_that_comes_as_its_common_start_breaks_is_not_taken_for_the_one_that_wa
         let unstarted = settlement == Settlement::Unstarted(fault);
         assert_eq!(unstarted, !another, "{settlement:?}");
     }
+}
+
+/// A goal for a turn of joint 1 that reacts to 5 N along z, or after so many milliseconds.
+fn watched(by: f64, milliseconds: u64) -> Goal {
+    let mut q: [f64; 7] = READY.into();
+    q[0] += by;
+    let limits = Model::fr3().joint_limits();
+    let due = elapsed(Duration::from_millis(milliseconds));
+    Goal {
+        reaction: Some((force_z(5.0) | due).into()),
+        ..Goal::new(GoalId(1), q.into(), OnArrival::ReportAndHold, limits)
+    }
+}
+
+#[test]
+fn a_state_with_a_force_that_is_no_number_is_answered_and_not_reacted_to() {
+    let mut arm = Arm::new();
+    arm.goals.write(&watched(1.0, 100_000));
+    for force in [0.0, f64::NAN, f64::INFINITY, 0.0] {
+        arm.state.O_F_ext_hat_K[2] = force;
+        for _ in 0..50 {
+            let step = arm.answer(Gate::Open);
+            arm.session.prepare();
+            assert!(!step.trace.bindings.contains(Guard::Reaction), "{force}");
+            assert!(step.trace.reference.q.iter().all(|q| q.is_finite()));
+        }
+    }
+    arm.state.O_F_ext_hat_K[2] = -5.0;
+    let before = arm.answer(Gate::Open);
+    arm.session.prepare();
+    let after = arm.answer(Gate::Open);
+    let says_so = |step: &SessionStep| step.trace.bindings.contains(Guard::Reaction);
+    assert_eq!((says_so(&before), says_so(&after)), (false, true));
+}
+
+#[test]
+fn a_goal_that_waits_for_its_common_start_does_not_react_before_it() {
+    let mut arm = Arm::new();
+    arm.goals.write(&watched(1.0, 100));
+    assert!(!arm.session.is_withdrawn());
+    arm.state.O_F_ext_hat_K[2] = -20.0;
+    for _ in 0..500 {
+        arm.answer(Gate::Closed);
+        arm.session.prepare();
+    }
+    arm.state.O_F_ext_hat_K[2] = 0.0;
+    let opens = arm.state.message_id;
+    for _ in 0..1000 {
+        let step = arm.answer(Gate::Open);
+        arm.session.prepare();
+        if let Some(SessionEvent::Settled { reacted, .. }) = step.event {
+            let reacted = reacted.expect("a reaction");
+            assert_eq!(reacted.after, Duration::from_millis(100));
+            // The first state of the goal is the second one that finds the gate open.
+            assert_eq!(reacted.time - opens, 102);
+            return;
+        }
+    }
+    panic!("no reaction");
 }

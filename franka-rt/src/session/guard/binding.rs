@@ -39,6 +39,9 @@ pub enum Guard {
     Lead,
     /// No plan could be made to the target (only by a defect); the previous course goes on.
     PlanFailure,
+    /// The condition of the goal was true: the arm comes to rest or goes to the other target, or is
+    /// there, for that reason.
+    Reaction,
 }
 
 /// A set of guards.
@@ -46,7 +49,7 @@ pub enum Guard {
 pub struct Bindings(u16);
 
 impl Guard {
-    const ALL: [Self; 15] = [
+    const ALL: [Self; 16] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
@@ -62,6 +65,7 @@ impl Guard {
         Self::Deviation,
         Self::Lead,
         Self::PlanFailure,
+        Self::Reaction,
     ];
 }
 

@@ -4,6 +4,7 @@
 //! that does not is prepared after the answer before: goals, plans and the reference's next step.
 
 mod chunks;
+mod react;
 mod stages;
 mod watch;
 
@@ -18,9 +19,10 @@ use crate::law::compensation::Learned;
 use crate::session::reference::Reference;
 
 use super::backend::Backend;
+use super::budget::Budget;
 use super::chunk::ChunkReader;
 use super::course::{Course, CourseStep};
-use super::effort::Effort;
+use super::effort::{Effort, Resistance};
 use super::goal::{Goal, OnArrival, Target};
 use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Deviation;
@@ -30,7 +32,8 @@ use super::guard::{Bindings, Guard};
 use super::landing::{self, PoseError};
 use super::route::Route;
 use super::setpoint_stream::SetpointStream;
-use super::{Lapse, SessionCommand, SessionStep, Trace, end_effector_of, load_of, rigid};
+use super::{Lapse, Reacted, SessionCommand, SessionStep, Trace, end_effector_of, load_of, rigid};
+use react::Reacting;
 use stages::GoalStage;
 
 /// The part of a session that exists from its first state on.
@@ -62,6 +65,10 @@ pub(super) struct RunningSession {
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
     standing: Standing,
+    /// The reaction of the goal, until its condition was true; `goal` has none.
+    reacting: Option<Reacting>,
+    /// Whether the arm comes to rest, or rests, on what it may have met in a reaction.
+    yields: bool,
     /// Grows by 1 in a cycle in which the course is held back, and falls by 1 in any other.
     held_back: u64,
 }
@@ -75,6 +82,8 @@ enum Standing {
     TakenBack,
     /// It was given up for `cause`: the arm holds the last target, or brakes.
     GivenUp { action: OnTimeout, cause: Lapse },
+    /// Its condition was true: the arm brakes, and goes on to the other target if there is one.
+    Reacted(Reacted),
 }
 
 /// What follows the reference.
@@ -112,7 +121,7 @@ pub(super) struct Measured {
 impl RunningSession {
     pub(super) fn begin(
         model: &Model,
-        goal: Goal,
+        mut goal: Goal,
         backend: Backend,
         version: Version,
         keep_out: KeepOut,
@@ -160,6 +169,8 @@ impl RunningSession {
             since: state.message_id,
             heard: state.message_id,
             standing: Standing::InForce,
+            reacting: Self::reacting_to(&mut goal, state.message_id),
+            yields: false,
             posture: q,
             reference,
             goal,
@@ -198,15 +209,16 @@ impl RunningSession {
 
     /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
     /// anew.
-    fn take_up(&mut self, goal: Goal, now: u64) {
+    fn take_up(&mut self, mut goal: Goal, now: u64) {
         if matches!(self.stage, GoalStage::Finished(_)) {
             return;
         }
         let named = goal.id == self.goal.id;
+        let reacting = Self::reacting_to(&mut goal, now);
         let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
         // Tuning leaves the revision as it is.
         let tuned = goal.revision == self.goal.revision;
-        // The caller has not yet seen the abort: ignore where the update leads.
+        // The caller has not yet seen the abort or the reaction: ignore where the update leads.
         let aborted = !taken_back && self.is_given_up_for_good();
         if named && (tuned || aborted) {
             return self.tune(goal);
@@ -222,6 +234,7 @@ impl RunningSession {
         }
         if !named {
             self.since = now;
+            self.reacting = reacting;
         }
         self.goal = goal;
         self.fade_gains();
@@ -231,6 +244,12 @@ impl RunningSession {
             Standing::InForce
         };
         self.set_out();
+    }
+
+    /// Takes the reaction out of a goal that begins with the state `since`, `message_id`.
+    fn reacting_to(goal: &mut Goal, since: u64) -> Option<Reacting> {
+        let reaction = goal.reaction.take();
+        reaction.map(|reaction| Reacting::new(reaction, since))
     }
 
     /// Keeps the target, and takes budget, gains, tolerance and guards from `goal`. Gains for
@@ -299,6 +318,7 @@ impl RunningSession {
         let mut bindings = Bindings::default();
         bindings.set(Guard::PlanFailure, moved.is_err());
         bindings.set(Guard::Deviation, self.watch_deviation(model, leashed));
+        self.react();
         if let Some(goal) = newer {
             self.take_up(goal, now);
         }
@@ -317,7 +337,9 @@ impl RunningSession {
         bindings.set(Guard::Watchdog, silent);
         bindings.set(Guard::Lead, self.draw_nearer(now));
         self.halt_without_news(now);
-        let aim = self.aim(now);
+        bindings.set(Guard::Reaction, self.has_reacted());
+        self.yields &= self.aim == Target::Rest;
+        let aim = self.aim(model, now);
         self.route.renew(model, &self.ee, &self.reference, &aim);
         let guided = matches!(self.route.course, Course::Guide(_));
         let step = (!guided).then(|| self.advance(model, now, &mut bindings));
@@ -326,7 +348,7 @@ impl RunningSession {
 
     /// Moves the course by one step, for the answer to the state `now`.
     fn advance(&mut self, model: &Model, now: u64, bindings: &mut Bindings) -> CourseStep {
-        let aim = self.aim(now);
+        let aim = self.aim(model, now);
         let step = self.route.step(
             model,
             &self.ee,
@@ -354,12 +376,22 @@ impl RunningSession {
         }
     }
 
-    /// The goal with what the reference heads for at `now` as its target.
-    fn aim(&self, now: u64) -> Goal {
+    /// The goal with what the reference heads for at `now` as its target. A goal that is slow on
+    /// purpose is left quickly after a reaction.
+    fn aim(&self, model: &Model, now: u64) -> Goal {
         let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
+        let budget = if self.has_reacted() {
+            let default = Budget::of(model.joint_limits());
+            self.goal.budget.as_brisk_as(&default)
+        } else {
+            self.goal.budget
+        };
         Goal {
             target: self.aim.after(since),
-            paused: self.goal.paused || self.halted,
+            // A stop is not to be paused.
+            paused: self.goal.paused && self.aim != Target::Rest || self.halted,
+            budget,
+            reaction: None,
             ..self.goal
         }
     }
@@ -384,6 +416,7 @@ impl RunningSession {
         self.reference = step.reference;
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         let event = self.advance_stage(model, at_rest, state.message_id);
+        self.check_condition(state);
         // Under the robot's own controller the reference is anchored on that one's setpoint.
         if let Drive::Torques(_) = self.drive {
             self.held = leash::hold(&self.route.course, &mut self.reference, &self.arm);
@@ -398,9 +431,20 @@ impl RunningSession {
         let answer = match &mut self.drive {
             Drive::Torques(effort) => {
                 let limits = model.joint_limits();
-                let ending = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
+                let resistance = match self.stage {
+                    GoalStage::Releasing(_) | GoalStage::Finished(_) => Resistance::Release,
+                    _ if self.yields => Resistance::Yield,
+                    _ => Resistance::Overcome,
+                };
                 let reference = &self.reference;
-                let tau = effort.step(reference, state, &dynamics, limits, ending, &mut bindings);
+                let tau = effort.step(
+                    reference,
+                    state,
+                    &dynamics,
+                    limits,
+                    resistance,
+                    &mut bindings,
+                );
                 SessionCommand::Torques(Torques(tau.into()))
             }
             Drive::Setpoints(stream) => {
@@ -438,7 +482,7 @@ impl RunningSession {
         };
         self.reference = echo;
         let target = match self.stage {
-            GoalStage::UnderWay => self.aim(state.message_id).target,
+            GoalStage::UnderWay => self.aim(model, state.message_id).target,
             GoalStage::Landing(_)
             | GoalStage::Staying
             | GoalStage::Releasing(_)
@@ -446,7 +490,7 @@ impl RunningSession {
         };
         let aim = Goal {
             target,
-            ..self.aim(state.message_id)
+            ..self.aim(model, state.message_id)
         };
         self.route
             .begin_again(model, &self.ee, &self.reference, &aim);

@@ -40,10 +40,15 @@ impl RunningSession {
     ) -> Option<SessionEvent> {
         let heading = self.heading();
         let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
+        let has_braked = self.has_braked_before(&heading);
         match &mut self.stage {
+            GoalStage::UnderWay if has_braked => {
+                self.turn_to(heading);
+                None
+            }
             GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                let waits = self.goal.paused && !self.is_given_up();
+                let waits = self.goal.paused && heading != Target::Rest && !self.is_given_up();
                 let ends = self.goal.on_arrival != OnArrival::Hold && !waits;
                 if ends && (self.route.is_done() || stalled) {
                     if stalled && self.route.is_hindered() {
@@ -111,7 +116,13 @@ impl RunningSession {
                                 Settlement::Braked(cause)
                             }
                         }
-                        Standing::InForce | Standing::TakenBack => settlement,
+                        Standing::InForce | Standing::TakenBack | Standing::Reacted(_) => {
+                            settlement
+                        }
+                    },
+                    reacted: match self.standing {
+                        Standing::Reacted(reacted) => Some(reacted),
+                        _ => None,
                     },
                     duration_ms: (now - self.since).saturating_sub(held),
                     compensation,

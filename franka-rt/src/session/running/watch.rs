@@ -18,7 +18,7 @@ impl RunningSession {
         };
         let chunks =
             matches!(self.route.course, Course::Chunk(_)) || self.route.chunk_end.is_some();
-        if chunks || !matches!(self.stage, GoalStage::UnderWay) {
+        if chunks || self.has_reacted() || !matches!(self.stage, GoalStage::UnderWay) {
             return false;
         }
         if now.saturating_sub(self.heard) <= Lead::FRESH_MS {
@@ -51,11 +51,12 @@ impl RunningSession {
         self.lapse(OnTimeout::Brake, lapse);
     }
 
-    /// Whether neither an update nor a chunk brings back a goal that was given up.
+    /// Whether neither an update nor a chunk brings back a goal that was given up or has reacted.
     pub(super) fn is_given_up_for_good(&self) -> bool {
         let settled = matches!(self.stage, GoalStage::Staying | GoalStage::Releasing(_));
         match self.standing {
             Standing::GivenUp { cause, .. } => settled || cause.is_final(),
+            Standing::Reacted(_) => true,
             Standing::InForce | Standing::TakenBack => false,
         }
     }
@@ -89,7 +90,7 @@ impl RunningSession {
             );
         }
         let arm = &self.arm;
-        let aim = self.aim(arm.time).target.place();
+        let aim = self.aim(model, arm.time).target.place();
         let exceeded = self
             .deviation
             .is_exceeded(model, &self.ee, &arm.q, &arm.pose, &aim);

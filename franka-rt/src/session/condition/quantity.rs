@@ -1,0 +1,169 @@
+//! The numbers that a condition can be about.
+
+use franka_model::Twist;
+use franka_proto::RobotState;
+
+use crate::session::condition::{Bound, Condition, Node};
+use crate::session::running::Measured;
+
+/// An axis of the base frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Axis {
+    /// Forwards.
+    X,
+    /// To the left.
+    Y,
+    /// Upwards.
+    Z,
+}
+
+/// A number that changes while the arm moves: what a condition compares.
+///
+/// Forces and torques are the robot's estimates, and positive where the arm exerts them on its
+/// surroundings: one that presses on a table shows a negative force along z. Axes are those of the
+/// base frame.
+///
+/// ```
+/// use franka_rt::session::condition::{Axis, Quantity};
+///
+/// let low = Quantity::Position(Axis::Z).below(0.15);
+/// let slow = Quantity::Speed.below(0.01);
+/// let at_the_door = low & slow;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Quantity {
+    /// Force along an axis, `O_F_ext_hat_K`, `[N]`.
+    Force(Axis),
+    /// Norm of the force, `[N]`.
+    ForceNorm,
+    /// Torque about an axis through the origin of the stiffness frame, `O_F_ext_hat_K`, `[N m]`.
+    Torque(Axis),
+    /// Norm of that torque, `[N m]`.
+    TorqueNorm,
+    /// External torque of a joint, 1 to 7, `tau_ext_hat_filtered`, `[N m]`.
+    JointTorque(u8),
+    /// The largest magnitude of these, `[N m]`.
+    LargestJointTorque,
+    /// Position of the end effector along an axis, from the measured joints, `[m]`.
+    Position(Axis),
+    /// Its velocity along an axis, from the measured joint velocities, `[m/s]`.
+    Velocity(Axis),
+    /// Norm of that velocity, `[m/s]`.
+    Speed,
+    /// Angular velocity of the end effector about an axis, `[rad/s]`.
+    AngularVelocity(Axis),
+    /// Norm of the angular velocity, `[rad/s]`.
+    AngularSpeed,
+    /// Measured position of a joint, 1 to 7, `[rad]`.
+    JointPosition(u8),
+    /// Measured velocity of a joint, 1 to 7, `[rad/s]`.
+    JointVelocity(u8),
+}
+
+impl Quantity {
+    /// True while it is at or above `value`.
+    pub fn above(self, value: f64) -> Condition {
+        Node::compare(self, Bound::Above(value)).into()
+    }
+
+    /// True while it is at or below `value`.
+    pub fn below(self, value: f64) -> Condition {
+        Node::compare(self, Bound::Below(value)).into()
+    }
+
+    /// True while its magnitude is at or above `value`, which has to be above zero.
+    pub fn beyond(self, value: f64) -> Condition {
+        Node::compare(self, Bound::Beyond(value)).into()
+    }
+
+    /// The joint that it is about, if it is about one.
+    pub(super) fn joint(self) -> Option<u8> {
+        match self {
+            Self::JointTorque(joint) | Self::JointPosition(joint) | Self::JointVelocity(joint) => {
+                Some(joint)
+            }
+            _ => None,
+        }
+    }
+
+    /// Its value in a sample; not finite where the sample is not, or has no such joint.
+    pub(super) fn of(self, sample: &Sample) -> f64 {
+        let along = |first: usize, axis: Axis| sample.0[first + axis as usize];
+        let joint = |first: usize, joint: u8| match joint {
+            1..=7 => sample.0[first + usize::from(joint) - 1],
+            _ => f64::NAN,
+        };
+        let norm = |first: usize| {
+            let [x, y, z] = core::array::from_fn(|i| sample.0[first + i]);
+            (x * x + y * y + z * z).sqrt()
+        };
+        match self {
+            Self::Force(axis) => along(FORCE, axis),
+            Self::ForceNorm => norm(FORCE),
+            Self::Torque(axis) => along(TORQUE, axis),
+            Self::TorqueNorm => norm(TORQUE),
+            Self::JointTorque(number) => joint(JOINT_TORQUE, number),
+            Self::LargestJointTorque => {
+                let torques = sample.0[JOINT_TORQUE..POSITION].iter();
+                torques.fold(0.0, |most, torque| match torque.abs() {
+                    torque if torque > most || torque.is_nan() => torque,
+                    _ => most,
+                })
+            }
+            Self::Position(axis) => along(POSITION, axis),
+            Self::Velocity(axis) => along(VELOCITY, axis),
+            Self::Speed => norm(VELOCITY),
+            Self::AngularVelocity(axis) => along(ANGULAR_VELOCITY, axis),
+            Self::AngularSpeed => norm(ANGULAR_VELOCITY),
+            Self::JointPosition(number) => joint(JOINT_POSITION, number),
+            Self::JointVelocity(number) => joint(JOINT_VELOCITY, number),
+        }
+    }
+}
+
+/// What the quantities of one state come from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample([f64; LENGTH]);
+
+/// Where each part of a sample begins.
+const FORCE: usize = 0;
+const TORQUE: usize = 3;
+const JOINT_TORQUE: usize = 6;
+const POSITION: usize = 13;
+const VELOCITY: usize = 16;
+const ANGULAR_VELOCITY: usize = 19;
+const JOINT_POSITION: usize = 22;
+const JOINT_VELOCITY: usize = 29;
+const LENGTH: usize = 36;
+
+impl Sample {
+    pub(super) fn of(state: &RobotState, arm: &Measured) -> Self {
+        let twist: Twist = arm.jacobian * franka_model::JointVector::from(state.dq);
+        let mut sample = [0.0; LENGTH];
+        let mut put = |first: usize, numbers: &[f64]| {
+            sample[first..first + numbers.len()].copy_from_slice(numbers);
+        };
+        put(FORCE, &state.O_F_ext_hat_K);
+        put(JOINT_TORQUE, &state.tau_ext_hat_filtered);
+        put(POSITION, arm.pose.translation.vector.as_slice());
+        put(VELOCITY, twist.as_slice());
+        put(JOINT_POSITION, &state.q);
+        put(JOINT_VELOCITY, &state.dq);
+        Self(sample)
+    }
+
+    /// What has changed since `before`.
+    pub(super) fn since(&self, before: &Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] - before.0[i]))
+    }
+
+    /// Takes from `newer` what is not finite.
+    pub(super) fn complete_from(&mut self, newer: &Self) {
+        for (number, newer) in self.0.iter_mut().zip(&newer.0) {
+            if !number.is_finite() {
+                *number = *newer;
+            }
+        }
+    }
+}

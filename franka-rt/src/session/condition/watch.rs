@@ -1,0 +1,146 @@
+//! Checks a condition in every cycle.
+
+use franka_proto::RobotState;
+
+use super::quantity::Sample;
+use super::{Bound, Condition, Flag, Node};
+use crate::session::running::Measured;
+
+/// A condition under watch: what it remembers from state to state.
+#[derive(Debug)]
+pub(in crate::session) struct Watch {
+    condition: Condition,
+    /// When the goal began, `message_id` of the state.
+    since: u64,
+    /// The first state of the goal.
+    first: Option<Sample>,
+    /// Since when the operand of a node has been true, `message_id` of the state.
+    held: [Option<u64>; Condition::ROOM],
+}
+
+impl Watch {
+    /// For a goal that begins with the state `since`, `message_id`.
+    pub(in crate::session) fn new(condition: Condition, since: u64) -> Self {
+        Self {
+            condition,
+            since,
+            first: None,
+            held: [None; Condition::ROOM],
+        }
+    }
+
+    /// Whether the condition is true in this state, with the arm as it was measured in it. Bounded
+    /// work, the same in every cycle.
+    pub(in crate::session) fn is_met(&mut self, state: &RobotState, arm: &Measured) -> bool {
+        let now = Sample::of(state, arm);
+        let first = self.first.get_or_insert(now);
+        first.complete_from(&now);
+        let change = now.since(first);
+        let mut stack = Stack::default();
+        for (node, held) in self.condition.nodes().iter().zip(&mut self.held) {
+            match *node {
+                Node::Compare {
+                    quantity,
+                    bound,
+                    relative,
+                } => {
+                    let value = quantity.of(if relative { &change } else { &now });
+                    stack.push(value.is_finite().then(|| bound.holds(value)));
+                }
+                Node::Flag(flag) => stack.push(flag.is_set(state)),
+                Node::Elapsed(time) => {
+                    stack.push(Some(arm.time.saturating_sub(self.since) >= time));
+                }
+                Node::HeldFor(time) => {
+                    let operand = stack.pop();
+                    *held = match operand {
+                        Some(true) => held.or(Some(arm.time)),
+                        Some(false) | None => None,
+                    };
+                    stack.push(
+                        operand.map(|_| {
+                            held.is_some_and(|since| arm.time.saturating_sub(since) >= time)
+                        }),
+                    );
+                }
+                Node::Not => {
+                    let operand = stack.pop();
+                    stack.push(operand.map(|operand| !operand));
+                }
+                Node::And => stack.join(|a, b| a & b, false),
+                Node::Or => stack.join(|a, b| a | b, true),
+            }
+        }
+        stack.pop() == Some(true)
+    }
+}
+
+impl Bound {
+    fn holds(self, value: f64) -> bool {
+        match self {
+            Self::Above(bound) => value >= bound,
+            Self::Below(bound) => value <= bound,
+            Self::Beyond(bound) => value.abs() >= bound,
+        }
+    }
+}
+
+impl Flag {
+    /// `None` if a number that decides is not one.
+    fn is_set(self, state: &RobotState) -> Option<bool> {
+        let any = |flags: &[f64]| {
+            let set = flags.iter().any(|&flag| flag > 0.0);
+            let known = set || !flags.iter().any(|flag| flag.is_nan());
+            known.then_some(set)
+        };
+        let either = |joints: &[f64], axes: &[f64]| match (any(joints), any(axes)) {
+            (Some(true), _) | (_, Some(true)) => Some(true),
+            (Some(false), Some(false)) => Some(false),
+            _ => None,
+        };
+        match self {
+            Self::Contact => either(&state.joint_contact, &state.cartesian_contact),
+            Self::Collision => either(&state.joint_collision, &state.cartesian_collision),
+            Self::CartesianContact => any(&state.cartesian_contact),
+            Self::JointContact(joint) => {
+                let index = usize::from(joint).checked_sub(1)?;
+                any(core::slice::from_ref(state.joint_contact.get(index)?))
+            }
+        }
+    }
+}
+
+/// The operands on the way through a condition, the newest in bit 0: true, false or, without either
+/// bit, unknown.
+#[derive(Debug, Default)]
+struct Stack {
+    yes: u32,
+    no: u32,
+}
+
+const _: () = assert!(Condition::ROOM <= 32, "a stack has a bit for each operand");
+
+impl Stack {
+    fn push(&mut self, operand: Option<bool>) {
+        self.yes = self.yes << 1 | u32::from(operand == Some(true));
+        self.no = self.no << 1 | u32::from(operand == Some(false));
+    }
+
+    fn pop(&mut self) -> Option<bool> {
+        let known = (self.yes | self.no) & 1 == 1;
+        let operand = known.then_some(self.yes & 1 == 1);
+        self.yes >>= 1;
+        self.no >>= 1;
+        operand
+    }
+
+    /// Joins two operands. If one of them is `decisive`, the other need not be known.
+    fn join(&mut self, by: impl Fn(bool, bool) -> bool, decisive: bool) {
+        let joined = match (self.pop(), self.pop()) {
+            (Some(a), Some(b)) => Some(by(a, b)),
+            (Some(a), None) | (None, Some(a)) if a == decisive => Some(decisive),
+            _ => None,
+        };
+        self.push(joined);
+    }
+}

@@ -1,0 +1,114 @@
+//! What a motion does when a condition becomes true, and what is reported of it.
+
+use core::time::Duration;
+
+use franka_model::Model;
+use franka_proto::RobotState;
+use nalgebra::Isometry3;
+
+use crate::session::condition::{Condition, ConditionError};
+use crate::session::{Budget, GoalError, Target, check};
+use crate::slot::Words;
+
+/// A condition, and where the motion goes once it is true: to rest by itself, or with
+/// [`Condition::then`] to another target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reaction {
+    /// Checked in every cycle until the goal has come to its end.
+    pub condition: Condition,
+    /// Where the arm goes when it becomes true: [`Target::Rest`], joint positions or a pose.
+    pub then: Target,
+}
+
+/// What a motion saw when its condition became true.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Reacted {
+    /// Time from the first state of the goal to the one in which the condition was true, by the
+    /// robot's clock.
+    pub after: Duration,
+    /// `message_id` of that state, `[ms]` of the robot's clock.
+    pub time: u64,
+    /// External wrench in it, `O_F_ext_hat_K`, `[N, N m]`: positive is what the arm exerts.
+    pub wrench: [f64; 6],
+    /// Pose of the end effector in it, base frame, from the measured joints.
+    pub pose: Isometry3<f64>,
+}
+
+impl From<Condition> for Reaction {
+    /// The arm comes to rest.
+    fn from(condition: Condition) -> Self {
+        Self {
+            condition,
+            then: Target::Rest,
+        }
+    }
+}
+
+impl Condition {
+    /// Has the motion go on to `target`, a pose or joint positions, once the condition is true: the
+    /// arm brakes as quickly as by itself and then turns there, without waiting for the program.
+    ///
+    /// It goes as fast as the motion does; acceleration and jerk are at least those of the default
+    /// budget, so that a slow approach does not make it leave slowly.
+    pub fn then(self, target: impl Into<Target>) -> Reaction {
+        Reaction {
+            condition: self,
+            then: target.into(),
+        }
+    }
+}
+
+impl Reaction {
+    /// Checks the reaction for a robot in `state`.
+    pub(super) fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
+        self.condition.check()?;
+        if let Target::Guide(_) = self.then {
+            return Err(ConditionError::Guided.into());
+        }
+        if self.then.moves() {
+            return Err(GoalError::Moves);
+        }
+        check::target(&self.then, model, state)
+    }
+}
+
+impl Budget {
+    /// The budget with accelerations and jerks that are at least those of `other`.
+    pub(super) fn as_brisk_as(&self, other: &Self) -> Self {
+        let brisk =
+            |own: franka_otg::AxisLimits, other: &franka_otg::AxisLimits| franka_otg::AxisLimits {
+                velocity: own.velocity,
+                acceleration: own.acceleration.max(other.acceleration),
+                jerk: own.jerk.max(other.jerk),
+            };
+        Self {
+            joints: core::array::from_fn(|i| brisk(self.joints[i], &other.joints[i])),
+            translation: brisk(self.translation, &other.translation),
+            rotation: brisk(self.rotation, &other.rotation),
+        }
+    }
+}
+
+/// A word that says whether there is a reaction, 8 of the target, and those of the condition.
+impl Words for Option<Reaction> {
+    const WORDS: usize = 1 + Target::WORDS + Condition::WORDS;
+
+    fn store(&self, words: &mut [u64]) {
+        words[0] = u64::from(self.is_some());
+        if let Some(reaction) = self {
+            let (target, condition) = words[1..].split_at_mut(Target::WORDS);
+            reaction.then.store(target);
+            reaction.condition.store(condition);
+        }
+    }
+
+    fn load(words: &[u64]) -> Self {
+        let (target, condition) = words[1..].split_at(Target::WORDS);
+        (words[0] == 1).then(|| Reaction {
+            condition: Condition::load(condition),
+            then: Target::load(target),
+        })
+    }
+}

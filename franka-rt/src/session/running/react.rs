@@ -1,0 +1,97 @@
+//! What a session does when the condition of its goal becomes true.
+
+use core::time::Duration;
+
+use franka_proto::RobotState;
+
+use super::{GoalStage, RunningSession, Standing};
+use crate::session::condition::Watch;
+use crate::session::{Goal, OnArrival, OnTimeout, Reacted, Reaction, Target};
+
+/// The reaction of a goal.
+#[derive(Debug)]
+pub(super) struct Reacting {
+    watch: Watch,
+    then: Target,
+    /// The condition was true in the newest state that was answered.
+    met: Option<Reacted>,
+}
+
+impl Reacting {
+    /// Of a goal that begins with the state `since`, `message_id`.
+    pub(super) fn new(reaction: Reaction, since: u64) -> Self {
+        Self {
+            watch: Watch::new(reaction.condition, since),
+            then: reaction.then,
+            met: None,
+        }
+    }
+}
+
+impl RunningSession {
+    /// Checks the condition in the newest state, which `self.arm` was measured in. What follows is
+    /// done by [`Self::react`] after the answer.
+    pub(super) fn check_condition(&mut self, state: &RobotState) {
+        let watched = self.is_watched();
+        if let Some(reacting) = &mut self.reacting {
+            let is_met = reacting.watch.is_met(state, &self.arm);
+            reacting.met = (is_met && watched).then(|| Reacted {
+                after: Duration::from_millis(self.arm.time.saturating_sub(self.since)),
+                time: self.arm.time,
+                wrench: state.O_F_ext_hat_K,
+                pose: self.arm.pose,
+            });
+        }
+    }
+
+    /// Brakes if the condition was true, and has the goal end at rest or at the other target.
+    pub(super) fn react(&mut self) {
+        // It may have been given up since.
+        if !self.is_watched() {
+            return;
+        }
+        let Some((then, met)) = self
+            .reacting
+            .as_ref()
+            .and_then(|reacting| reacting.met.map(|met| (reacting.then, met)))
+        else {
+            return;
+        };
+        let on_arrival = match self.goal.on_arrival {
+            OnArrival::Hold => self.afterwards,
+            reporting => reporting,
+        };
+        self.goal = Goal {
+            target: then,
+            paused: self.goal.paused,
+            ..self.goal.at_rest(on_arrival)
+        };
+        self.fade_gains();
+        self.set_out();
+        self.turn_to(Target::Rest);
+        self.standing = Standing::Reacted(met);
+        self.yields = true;
+        self.reacting = None;
+    }
+
+    /// Whether a condition of the goal counts: until the goal was reported, taken back or braked.
+    fn is_watched(&self) -> bool {
+        let pursued = match self.standing {
+            Standing::InForce => true,
+            Standing::GivenUp { action, .. } => action == OnTimeout::Hold,
+            Standing::TakenBack | Standing::Reacted(_) => false,
+        };
+        pursued && matches!(self.stage, GoalStage::UnderWay | GoalStage::Landing(_))
+    }
+
+    /// Whether the arm has come to rest after a reaction, and is to go on to `heading`.
+    pub(super) fn has_braked_before(&self, heading: &Target) -> bool {
+        let braked = self.has_reacted() && self.aim == Target::Rest && self.route.is_done();
+        braked && *heading != Target::Rest
+    }
+
+    /// Whether the goal ends otherwise since its condition was true.
+    pub(super) fn has_reacted(&self) -> bool {
+        matches!(self.standing, Standing::Reacted(_))
+    }
+}
