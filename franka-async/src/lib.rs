@@ -14,6 +14,8 @@
 //!   at their own rate.
 //! * [`Robot::engage`], [`Arm`]: one session, many goals of any kind. [`goal`]: targets, limits,
 //!   gains, chunks, deadman, guards.
+//! * [`condition`], [`Motion::until`]: motions that react to forces, positions and time on the
+//!   control thread: move until contact.
 //! * [`Diagnosis`]: why the robot ended a motion, and what to change. [`Robot::records`],
 //!   [`Engage::observer`] and [`record`]: every cycle.
 //! * [`Control`]: the user's own control functions at 1 kHz, on the real-time thread. [`Active`]:
@@ -146,6 +148,15 @@ pub mod goal {
         ROTATION_LEASH, SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints, TRANSLATION_DEVIATION,
         TRANSLATION_LEASH, Target, Tolerance, VELOCITY_BARRIER_ONSET,
     };
+}
+
+/// Conditions that a motion goes on [until](Motion::until), and what was seen when one became true.
+pub mod condition {
+    pub use franka_rt::session::condition::{
+        Axis, Condition, Quantity, cartesian_contact, collision, contact, elapsed, force, force_x,
+        force_y, force_z, joint_contact, joint_torques, torque,
+    };
+    pub use franka_rt::session::{Reacted, Reaction};
 }
 
 /// Commands at 1 kHz: what control functions return and [`Active`] writes.

@@ -2,7 +2,7 @@
 
 use franka_model::Model;
 use franka_rt::lifecycle::Tuning;
-use franka_rt::session::{Budget, Goal, GoalError, Tolerance};
+use franka_rt::session::{Budget, Goal, GoalError, Reaction, Tolerance};
 
 /// Options of one goal or of many. What is `None` is left to the goal, whose kind decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,6 +11,7 @@ pub(crate) struct GoalOptions {
     pub(crate) speed: Option<f64>,
     pub(crate) stiffness: Option<[f64; 6]>,
     pub(crate) tolerance: Option<Tolerance>,
+    pub(crate) reaction: Option<Reaction>,
 }
 
 impl GoalOptions {
@@ -33,6 +34,7 @@ impl GoalOptions {
             gains: self.stiffness.map_or(goal.gains, softened),
             budget: self.at_speed(goal.budget, model)?,
             tolerance: self.tolerance.or(goal.tolerance),
+            reaction: self.reaction.or(goal.reaction),
             ..goal
         })
     }
@@ -126,6 +128,37 @@ macro_rules! goal_options {
         /// [`Tolerance::under`](crate::goal::Tolerance::under).
         pub fn tolerance(mut self, tolerance: crate::goal::Tolerance) -> Self {
             self.options.tolerance = Some(tolerance);
+            self
+        }
+
+        /// Goes on until a condition is true, if that comes before the arrival: then the arm stops
+        /// as quickly as the jerk limit allows, or, for a
+        /// [`Reaction`](crate::condition::Reaction) with another target, brakes and goes there. The
+        /// control thread checks the condition in every cycle, until the motion is reported, and
+        /// acts in the next one. Replaces an earlier condition.
+        ///
+        /// Both ends are `Ok`: [`MotionReport::reacted`](crate::MotionReport::reacted) tells a
+        /// reaction from an arrival without one. See [`condition`](crate::condition) for what to
+        /// compare, and with what.
+        ///
+        /// ```no_run
+        /// # use std::time::Duration;
+        /// # use franka_async::{MotionError, Pose, Robot};
+        /// use franka_async::condition::{elapsed, force_z};
+        ///
+        /// # async fn run(robot: Robot) -> Result<(), MotionError> {
+        /// let down = Pose::translation(0.0, 0.0, -0.2) * robot.pose();
+        /// let touched = force_z(10.0) & elapsed(Duration::from_millis(200));
+        /// let report = robot.move_to(down).speed(0.3).until(touched).await?;
+        /// match report.reacted {
+        ///     Some(contact) => println!("contact at {:.3} m", contact.pose.translation.z),
+        ///     None => println!("nothing there"),
+        /// }
+        /// # Ok(())
+        /// # }
+        /// ```
+        pub fn until(mut self, reaction: impl Into<crate::condition::Reaction>) -> Self {
+            self.options.reaction = Some(reaction.into());
             self
         }
     };
