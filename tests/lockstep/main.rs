@@ -16,6 +16,7 @@ mod laws;
 mod mishaps;
 mod moving_targets;
 mod random_targets;
+mod reactions;
 mod reflex_log;
 mod schedules;
 mod silence;

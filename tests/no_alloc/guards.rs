@@ -1,10 +1,14 @@
 //! The guards that act on the reference, while they bind.
 
+use std::time::Duration;
+
 use franka_model::collision::Obstacle;
 use franka_model::{READY, Wrench};
 use franka_proto::{CollisionBehavior, Request};
-use franka_rt::session::{Bindings, Guard, KeepOut, Lead, OnArrival, Target};
+use franka_rt::session::condition::{Axis, Condition, Quantity, contact, elapsed, force};
+use franka_rt::session::{Bindings, Goal, Guard, KeepOut, Lead, OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, Part};
+use nalgebra::Translation3;
 
 use super::calls_during;
 
@@ -81,4 +85,56 @@ fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
         lockstep.robot.push_end_effector(pull, 2);
     });
     assert_eq!((calls, bound), (0, [true; 3]));
+}
+
+/// As long as a condition may be, with every kind of operand.
+fn full() -> Condition {
+    let ms = Duration::from_millis(1);
+    let held = (force(50.0).relative() | contact()).held_for(20 * ms);
+    let far = Quantity::Position(Axis::Z).above(9.0) | Quantity::LargestJointTorque.beyond(80.0);
+    let shaken = !(Quantity::AngularSpeed.below(30.0) | Quantity::JointVelocity(7).below(-30.0));
+    let due = elapsed(400 * ms) & Quantity::Speed.below(9.0) & Quantity::TorqueNorm.below(90.0);
+    let above = Quantity::JointPosition(4).above(3.0);
+    let full = held | far | shaken | due.held_for(2 * ms) | above | above;
+    assert!(full.check().is_ok() && (!full).check().is_err());
+    full
+}
+
+#[test]
+fn a_full_condition_and_what_follows_it_allocate_and_free_nothing() {
+    for engaged in [false, true] {
+        let mut lockstep = Lockstep::ready();
+        let home = lockstep.arm_pose();
+        let up = Translation3::new(0.0, 0.0, 0.15) * home;
+        let on_arrival = match engaged {
+            true => OnArrival::ReportAndHold,
+            false => OnArrival::ReportAndFinish,
+        };
+        let goal = Goal {
+            reaction: Some(full().then(home)),
+            ..lockstep.goal(up.into(), on_arrival)
+        };
+        let id = match engaged {
+            true => {
+                let session = lockstep.engage();
+                lockstep.submit_within(session, goal)
+            }
+            false => lockstep.submit(goal),
+        };
+        let id = id.expect("within reach");
+        lockstep.run(20);
+        let (mut calls, mut cycles) = (0, 0);
+        while lockstep.client.outcome(id).is_none() {
+            lockstep.tick_around(|part, work| {
+                let during = calls_during(work);
+                // What has ended is handed over after the answer.
+                calls += during;
+                cycles += u64::from(part == Part::Answer);
+            });
+        }
+        let report = lockstep.until_resolved(id, 1).expect("an arrival");
+        assert!(report.reacted.is_some() && report.final_error.is_some());
+        assert!(cycles > 500, "{cycles}");
+        assert_eq!(calls, 0);
+    }
 }
