@@ -36,10 +36,10 @@ pub type Pose = nalgebra::Isometry3<f64>;
 /// progress are handles too.
 ///
 /// A connection that is lost ends everything that belongs to it, control thread included; the
-/// handles that are left then say why, and those of a robot that is supervised
-/// ([`Builder::supervise`](crate::Builder::supervise)) go on with the next one. If the runtime ends first, the arm is not braked: the
-/// robot misses its commands and stops by itself, with a reflex. Await [`Robot::shutdown`]
-/// before the program ends.
+/// handles that are left then say why, and those of a robot that is
+/// [supervised](crate::Builder::supervise) go on with the next one. If the runtime ends first, the
+/// arm is not braked: the robot misses its commands and stops by itself, with a reflex. Await
+/// [`Robot::shutdown`] before the program ends.
 ///
 /// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
 #[derive(Clone)]

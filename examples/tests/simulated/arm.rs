@@ -5,9 +5,10 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::{Duration, Instant};
 
+use franka_async::nalgebra::Vector3;
 use franka_async::{RobotError, RobotMode, RobotState};
 use franka_model::{EndEffector, Frame, JointVector, Load, Model, READY, Wrench};
-use franka_sim::{Robot, Running, Sim, Tool};
+use franka_sim::{Robot, Running, Sim, Tool, Touch};
 use tokio::runtime::{self, Runtime};
 
 /// How long a cycle waits for its command: less than the silence after which a client gives up.
@@ -41,6 +42,8 @@ pub(crate) enum Event {
     /// The elbow is swung, which hardly moves the hand: joint 3 gets this torque, `[N m]`, for so
     /// many milliseconds.
     SwingElbow(f64, u64),
+    /// A table is so far below the hand, `[m]`.
+    LayTable(f64),
     /// The robot stops itself.
     Trip(RobotError),
 }
@@ -249,6 +252,11 @@ impl Event {
                 let (q, load) = (*robot.q(), Load::NONE);
                 let torques = Model::fr3().mass(&q, &load) * self_motion(&q);
                 robot.push_joints(torques * (torque / torques[2]), duration);
+            }
+            Self::LayTable(below) => {
+                let hand = robot.true_pose().translation.vector;
+                let table = hand - Vector3::z() * below;
+                robot.touch(Touch::wall(table, Vector3::z()));
             }
             Self::Trip(error) => robot.trip(error),
         }

@@ -53,6 +53,14 @@ fn script_draws_its_circle_and_comes_back() {
 }
 
 #[test]
+fn guarded_move_finds_the_table_of_its_own_simulator() {
+    for robot in ROBOTS {
+        let said = run("guarded_move", robot);
+        assert_eq!(said.matches("contact at").count(), 3, "{robot}: {said}");
+    }
+}
+
+#[test]
 fn pick_holds_the_block_and_puts_it_down() {
     for robot in ROBOTS {
         let said = run("pick", robot);

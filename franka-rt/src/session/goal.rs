@@ -292,8 +292,8 @@ impl Words for Target {
 }
 
 /// Name, revision, what follows and whether it is paused, 2 of the watchdog; then 27 numbers of
-/// budget, the gains, 2 of tolerance, the force cap, 3 of the lead, which are zero without one; then
-/// the target and the reaction.
+/// budget, the gains, 2 of tolerance, the force cap, 3 of the lead, which are zero without one;
+/// then the target and the reaction.
 ///
 /// Written by hand: generated code needs an implementation for the type of each field, which comes
 /// to as many lines. The test below fails if a field is left out.

@@ -7,7 +7,7 @@ use franka_rt::session::{Backend, GoalError, GoalId, OnArrival, Setpoints, Targe
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
-use super::{MS, above, at, felt, realistic, report, says_so, table, tolerate};
+use super::{MS, above, at, felt, goes_on, realistic, report, says_so, table, tolerate};
 
 fn engaged(lockstep: &mut Lockstep, setpoints: Setpoints) -> GoalId {
     tolerate(lockstep);
@@ -43,7 +43,7 @@ fn the_robots_controller_reacts_to_a_table_as_well() {
                 );
                 let goal = lockstep.submit_within(engaged, goal).expect("within reach");
                 let mut most = 0.0_f64;
-                while lockstep.client.outcome(goal).is_none() {
+                while goes_on(&lockstep, goal) {
                     lockstep.tick();
                     most = most.max(felt(&lockstep, table));
                 }

@@ -10,7 +10,9 @@ use franka_tests::lockstep::Lockstep;
 use franka_tests::thorough;
 use nalgebra::{Translation3, Vector3};
 
-use super::{MS, above, at, felt, reacted, realistic, report, says_so, table, tolerate, with_arm};
+use super::{
+    MS, above, at, felt, goes_on, reacted, realistic, report, says_so, table, tolerate, with_arm,
+};
 
 /// Of a padded table, and of a firm one, `[N/m]`.
 const SOFT: f64 = 2000.0;
@@ -75,7 +77,7 @@ fn guarded(lockstep: &mut Lockstep, velocity: f64, stiffness: f64, retreats: boo
     let (mut contact, mut braked, mut left) = (None, None, None);
     let mut seen = Contact::default();
     let (mut reaction, mut first) = (None, None);
-    while lockstep.client.outcome(goal).is_none() {
+    while goes_on(lockstep, goal) {
         lockstep.tick();
         let state = &lockstep.client.state;
         let (now, force) = (state.message_id, felt(lockstep, table));
@@ -177,7 +179,7 @@ fn an_arm_that_approaches_gently_retreats_all_the_same() {
     let slow = goal.budget.translation.velocity;
     let goal = lockstep.submit(goal).expect("within reach");
     let (mut left, mut fastest) = (None, 0.0_f64);
-    while lockstep.client.outcome(goal).is_none() {
+    while goes_on(&lockstep, goal) {
         let before = lockstep.reference_pose().translation.vector;
         lockstep.tick();
         let now = lockstep.client.state.message_id;

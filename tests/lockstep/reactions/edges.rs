@@ -11,7 +11,7 @@ use franka_rt::session::{Free, Goal, GoalError, GoalId, OnArrival, Reaction, Tar
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
-use super::{MS, above, at, reacted, report, says_so};
+use super::{MS, above, at, goes_on, reacted, report, says_so};
 
 /// A motion of 12 cm upwards, under way, until so many milliseconds have passed.
 fn until(
@@ -49,7 +49,7 @@ fn a_condition_that_is_true_from_the_first_cycle_on_stops_the_arm_at_once() {
             let goal = lockstep.submit(goal).expect("within reach");
             let first = begin(&mut lockstep, goal);
             let mut highest = 0.0_f64;
-            while lockstep.client.outcome(goal).is_none() {
+            while goes_on(&lockstep, goal) {
                 let up = lockstep.reference_pose().translation.z - home.translation.z;
                 highest = highest.max(up);
                 lockstep.tick();
@@ -76,8 +76,8 @@ fn a_condition_counts_until_the_arrival_is_reported_and_not_after() {
         let duration = report(&mut lockstep, goal).duration.as_millis() as u32;
         let ended = lockstep.client.state.message_id - first;
         println!("arrived after {duration} ms, ended after {ended} ms");
-        // While it settles; in the last cycles before the report and the first after it, which comes
-        // 250 ms after the arrival, one more or less; released; ended.
+        // While it settles; in the last cycles before the report and the first after it, which
+        // comes 250 ms after the arrival, one more or less; released; ended.
         let early = [duration + 10, duration + 200, duration + 247];
         let late = [duration + 253, duration + 300, ended as u32 + 50];
         for (milliseconds, counts) in early
@@ -149,7 +149,7 @@ fn a_newer_goal_takes_over_whether_or_not_the_older_one_has_reacted() {
                 assert_eq!(outcome, Some(&Err(MotionError::Superseded)));
                 lockstep.tick();
                 lockstep.tick();
-                while lockstep.client.outcome(newer).is_none() {
+                while goes_on(&lockstep, newer) {
                     lockstep.tick();
                     assert!(!says_so(&lockstep), "that was the older one");
                 }

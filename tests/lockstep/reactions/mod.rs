@@ -83,6 +83,15 @@ fn says_so(lockstep: &Lockstep) -> bool {
     lockstep.client.record.bindings.contains(Guard::Reaction)
 }
 
+/// Whether the goal is not resolved yet.
+///
+/// # Panics
+/// If the robot has been running for two minutes.
+fn goes_on(lockstep: &Lockstep, goal: GoalId) -> bool {
+    assert!(lockstep.now() < 120_000, "{goal:?} never resolves");
+    lockstep.client.outcome(goal).is_none()
+}
+
 /// Runs until the goal is resolved.
 fn report(lockstep: &mut Lockstep, goal: GoalId) -> MotionReport {
     let outcome = lockstep.until_resolved(goal, 20_000);

@@ -6,14 +6,12 @@ use franka_model::RobotKind;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
 use franka_rt::session::condition::{Axis, Quantity, contact, elapsed, force_z};
-use franka_rt::session::{
-    Deadman, Goal, GoalId, Lapse, Lead, OnArrival, OnTimeout, Target, Watchdog,
-};
+use franka_rt::session::{Deadman, Goal, GoalId, Lapse, Lead, OnArrival, OnTimeout, Watchdog};
 use franka_sim::Touch;
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Translation3, Vector3};
 
-use super::{MS, above, at, felt, reacted, realistic, report, says_so, table};
+use super::{MS, above, at, felt, goes_on, reacted, realistic, report, says_so, table};
 
 /// An engaged arm that has met a table 3 cm below and rests on it.
 fn on_a_table(seed: u64) -> (Lockstep, GoalId, franka_sim::TouchId) {
@@ -51,7 +49,7 @@ fn after_a_reaction_the_arm_is_tuned_and_moved_like_any_that_is_held() {
     let along = (Translation3::new(0.0, 0.03, 0.0) * lockstep.reference_pose()).into();
     let goal = lockstep.within(engaged, along, OnArrival::ReportAndHold);
     let goal = goal.expect("within reach");
-    while lockstep.client.outcome(goal).is_none() {
+    while goes_on(&lockstep, goal) {
         lockstep.tick();
         assert!(!says_so(&lockstep));
     }
@@ -154,7 +152,7 @@ fn a_stream_ends_at_a_reaction_whatever_comes_after_it() {
                     None => lockstep.submit(goal),
                 };
                 let goal = goal.expect("within reach");
-                while lockstep.client.outcome(goal).is_none() {
+                while goes_on(&lockstep, goal) {
                     follow(&mut lockstep, goal, &home);
                     lockstep.tick();
                 }
@@ -247,7 +245,6 @@ fn an_arm_that_holds_may_wait_for_a_push() {
     assert!(seen.wrench[0] > 8.0, "{seen:?}");
     assert!(report.final_error.is_some());
     assert_eq!(lockstep.client.outcome(engaged), None);
-    let _: Target = aside.into();
 }
 
 /// Nothing moves an arm that is paused, not even its reaction; a stop needs no way.

@@ -19,10 +19,11 @@
 //! # Thresholds of forces
 //!
 //! The robot's estimate of the external force shows the friction of its joints, too. Simulated arms
-//! with the friction of real ones show up to 6.5 N along one axis and 8.5 N in all with nothing
-//! touched, and bad ones twice as much: a threshold below 8 N along an axis, or 10 N for the norm,
-//! reacts to nothing on some arm. Tool and payload have to be declared, or their weight counts, too:
-//! see [`Condition::relative`].
+//! with the friction of real ones, moving at up to 0.1 m/s with nothing touched, show up to 7.1 N
+//! along z and 8.8 N in all, and bad ones twice as much. A threshold below 8 N along z, or 10 N
+//! along another axis or for the norm, reacts to nothing on some arm; at the default pace they have
+//! to be a quarter higher. Tool and payload have to be declared, or their weight counts, too: see
+//! [`Condition::relative`].
 
 mod quantity;
 #[cfg(test)]
@@ -35,7 +36,7 @@ use core::time::Duration;
 
 pub use quantity::{Axis, Quantity};
 
-pub(super) use watch::Watch;
+pub(super) use watch::{Observed, Watch};
 
 /// What has to be the case in a state: comparisons of [quantities](Quantity), flags of the robot
 /// and the time since the goal began, joined by `&`, `|` and `!`.
@@ -60,6 +61,8 @@ enum Node {
     Compare {
         quantity: Quantity,
         bound: Bound,
+        /// What it is compared with.
+        value: f64,
         /// Whether the change since the first state of the goal is compared.
         relative: bool,
     },
@@ -73,13 +76,13 @@ enum Node {
     Or,
 }
 
-/// What a quantity is compared with.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// On which side of a value a quantity has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Bound {
-    Above(f64),
-    Below(f64),
-    /// Of the magnitude.
-    Beyond(f64),
+    Above,
+    Below,
+    /// Its magnitude above.
+    Beyond,
 }
 
 /// What the robot itself says of contacts.
@@ -157,8 +160,8 @@ pub fn joint_torques(newton_metres: f64) -> Condition {
     Quantity::LargestJointTorque.beyond(newton_metres)
 }
 
-/// True while the robot reports any contact, of a joint or at the end effector: while an estimate is
-/// above a lower threshold of its collision behaviour.
+/// True while the robot reports any contact, of a joint or at the end effector: while an estimate
+/// is above a lower threshold of its collision behaviour.
 pub fn contact() -> Condition {
     Node::Flag(Flag::Contact).into()
 }
@@ -195,8 +198,8 @@ impl Condition {
     /// For loads that the robot does not know of, whose weight shows in its estimate; for
     /// displacements; and for what a torque sensor is off by. Friction changes as the arm begins to
     /// move, so a force needs the same threshold as without: see the [module](self). A goal that
-    /// takes over in mid-motion, in a session, compares with the friction in motion, and needs about
-    /// two thirds of it.
+    /// takes over in mid-motion, in a session, compares with the friction in motion, and needs
+    /// about two thirds of it.
     #[must_use]
     pub fn relative(mut self) -> Self {
         for node in &mut self.nodes {
@@ -289,10 +292,11 @@ impl Node {
     /// Fills the room that a condition does not need.
     const UNUSED: Self = Self::Or;
 
-    fn compare(quantity: Quantity, bound: Bound) -> Self {
+    fn compare(quantity: Quantity, bound: Bound, value: f64) -> Self {
         Self::Compare {
             quantity,
             bound,
+            value,
             relative: false,
         }
     }
@@ -300,12 +304,12 @@ impl Node {
     fn check(&self) -> Result<(), ConditionError> {
         let joint = match *self {
             Self::Compare {
-                quantity, bound, ..
+                quantity,
+                bound,
+                value: got,
+                ..
             } => {
-                let (got, accepted) = match bound {
-                    Bound::Above(got) | Bound::Below(got) => (got, got.is_finite()),
-                    Bound::Beyond(got) => (got, got.is_finite() && got > 0.0),
-                };
+                let accepted = got.is_finite() && (bound != Bound::Beyond || got > 0.0);
                 if !accepted {
                     return Err(ConditionError::Threshold { quantity, got });
                 }

@@ -1,9 +1,8 @@
 //! The numbers that a condition can be about.
 
-use franka_model::Twist;
-use franka_proto::RobotState;
+use franka_model::{JointVector, Twist};
 
-use crate::session::condition::{Bound, Condition, Node};
+use crate::session::condition::{Bound, Condition, Node, Observed};
 use crate::session::running::Measured;
 
 /// An axis of the base frame.
@@ -64,17 +63,17 @@ pub enum Quantity {
 impl Quantity {
     /// True while it is at or above `value`.
     pub fn above(self, value: f64) -> Condition {
-        Node::compare(self, Bound::Above(value)).into()
+        Node::compare(self, Bound::Above, value).into()
     }
 
     /// True while it is at or below `value`.
     pub fn below(self, value: f64) -> Condition {
-        Node::compare(self, Bound::Below(value)).into()
+        Node::compare(self, Bound::Below, value).into()
     }
 
     /// True while its magnitude is at or above `value`, which has to be above zero.
     pub fn beyond(self, value: f64) -> Condition {
-        Node::compare(self, Bound::Beyond(value)).into()
+        Node::compare(self, Bound::Beyond, value).into()
     }
 
     /// The joint that it is about, if it is about one.
@@ -138,17 +137,17 @@ const JOINT_VELOCITY: usize = 29;
 const LENGTH: usize = 36;
 
 impl Sample {
-    pub(super) fn of(state: &RobotState, arm: &Measured) -> Self {
-        let twist: Twist = arm.jacobian * franka_model::JointVector::from(state.dq);
+    pub(super) fn of(state: &Observed, arm: &Measured) -> Self {
+        let twist: Twist = arm.jacobian * JointVector::from(state.dq);
         let mut sample = [0.0; LENGTH];
         let mut put = |first: usize, numbers: &[f64]| {
             sample[first..first + numbers.len()].copy_from_slice(numbers);
         };
-        put(FORCE, &state.O_F_ext_hat_K);
-        put(JOINT_TORQUE, &state.tau_ext_hat_filtered);
+        put(FORCE, &state.wrench);
+        put(JOINT_TORQUE, &state.joint_torques);
         put(POSITION, arm.pose.translation.vector.as_slice());
         put(VELOCITY, twist.as_slice());
-        put(JOINT_POSITION, &state.q);
+        put(JOINT_POSITION, arm.q.as_slice());
         put(JOINT_VELOCITY, &state.dq);
         Self(sample)
     }

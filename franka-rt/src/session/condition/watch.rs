@@ -6,6 +6,36 @@ use super::quantity::Sample;
 use super::{Bound, Condition, Flag, Node};
 use crate::session::running::Measured;
 
+/// What conditions need of a state, beside the joints and the pose that the session measures.
+///
+/// Copied before the answer to the state leaves; what it comes to is computed afterwards.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::session) struct Observed {
+    /// `O_F_ext_hat_K`
+    pub(in crate::session) wrench: [f64; 6],
+    /// `tau_ext_hat_filtered`
+    pub(super) joint_torques: [f64; 7],
+    pub(super) dq: [f64; 7],
+    joint_contact: [f64; 7],
+    cartesian_contact: [f64; 6],
+    joint_collision: [f64; 7],
+    cartesian_collision: [f64; 6],
+}
+
+impl Observed {
+    pub(in crate::session) fn of(state: &RobotState) -> Self {
+        Self {
+            wrench: state.O_F_ext_hat_K,
+            joint_torques: state.tau_ext_hat_filtered,
+            dq: state.dq,
+            joint_contact: state.joint_contact,
+            cartesian_contact: state.cartesian_contact,
+            joint_collision: state.joint_collision,
+            cartesian_collision: state.cartesian_collision,
+        }
+    }
+}
+
 /// A condition under watch: what it remembers from state to state.
 #[derive(Debug)]
 pub(in crate::session) struct Watch {
@@ -31,7 +61,7 @@ impl Watch {
 
     /// Whether the condition is true in this state, with the arm as it was measured in it. Bounded
     /// work, the same in every cycle.
-    pub(in crate::session) fn is_met(&mut self, state: &RobotState, arm: &Measured) -> bool {
+    pub(in crate::session) fn is_met(&mut self, state: &Observed, arm: &Measured) -> bool {
         let now = Sample::of(state, arm);
         let first = self.first.get_or_insert(now);
         first.complete_from(&now);
@@ -42,10 +72,11 @@ impl Watch {
                 Node::Compare {
                     quantity,
                     bound,
+                    value,
                     relative,
                 } => {
-                    let value = quantity.of(if relative { &change } else { &now });
-                    stack.push(value.is_finite().then(|| bound.holds(value)));
+                    let number = quantity.of(if relative { &change } else { &now });
+                    stack.push(number.is_finite().then(|| bound.admits(number, value)));
                 }
                 Node::Flag(flag) => stack.push(flag.is_set(state)),
                 Node::Elapsed(time) => {
@@ -76,18 +107,18 @@ impl Watch {
 }
 
 impl Bound {
-    fn holds(self, value: f64) -> bool {
+    fn admits(self, number: f64, value: f64) -> bool {
         match self {
-            Self::Above(bound) => value >= bound,
-            Self::Below(bound) => value <= bound,
-            Self::Beyond(bound) => value.abs() >= bound,
+            Self::Above => number >= value,
+            Self::Below => number <= value,
+            Self::Beyond => number.abs() >= value,
         }
     }
 }
 
 impl Flag {
     /// `None` if a number that decides is not one.
-    fn is_set(self, state: &RobotState) -> Option<bool> {
+    fn is_set(self, state: &Observed) -> Option<bool> {
         let any = |flags: &[f64]| {
             let set = flags.iter().any(|&flag| flag > 0.0);
             let known = set || !flags.iter().any(|flag| flag.is_nan());

@@ -36,15 +36,11 @@ impl Node {
             Self::Compare {
                 quantity,
                 bound,
+                value,
                 relative,
             } => {
                 let (kind, part) = quantity.to_bytes();
-                let (bounded, value) = match bound {
-                    Bound::Above(value) => (0, value),
-                    Bound::Below(value) => (1, value),
-                    Bound::Beyond(value) => (2, value),
-                };
-                let what = [0, kind, part, bounded, u8::from(relative)];
+                let what = [0, kind, part, bound as u8, u8::from(relative)];
                 [code(what), value.to_bits()]
             }
             Self::Flag(flag) => {
@@ -65,16 +61,16 @@ impl Node {
     }
 
     fn from_words([what, number]: [u64; 2]) -> Self {
-        let [node, kind, part, bounded, relative, ..] = what.to_le_bytes();
-        let value = f64::from_bits(number);
+        let [node, kind, part, bound, relative, ..] = what.to_le_bytes();
         match node {
             0 => Self::Compare {
                 quantity: Quantity::from_bytes(kind, part),
-                bound: match bounded {
-                    0 => Bound::Above(value),
-                    1 => Bound::Below(value),
-                    _ => Bound::Beyond(value),
+                bound: match bound {
+                    0 => Bound::Above,
+                    1 => Bound::Below,
+                    _ => Bound::Beyond,
                 },
+                value: f64::from_bits(number),
                 relative: relative == 1,
             },
             1 => Self::Flag(match kind {

@@ -342,20 +342,25 @@ impl RunningSession {
         let aim = self.aim(model, now);
         self.route.renew(model, &self.ee, &self.reference, &aim);
         let guided = matches!(self.route.course, Course::Guide(_));
-        let step = (!guided).then(|| self.advance(model, now, &mut bindings));
+        let step = (!guided).then(|| self.advance(model, &aim, now, &mut bindings));
         self.next = Some(Next { step, bindings });
     }
 
-    /// Moves the course by one step, for the answer to the state `now`.
-    fn advance(&mut self, model: &Model, now: u64, bindings: &mut Bindings) -> CourseStep {
-        let aim = self.aim(model, now);
+    /// Moves the course by one step towards `aim`, for the answer to the state `now`.
+    fn advance(
+        &mut self,
+        model: &Model,
+        aim: &Goal,
+        now: u64,
+        bindings: &mut Bindings,
+    ) -> CourseStep {
         let step = self.route.step(
             model,
             &self.ee,
             &self.posture,
             &self.reference,
             &self.arm,
-            &aim,
+            aim,
             now,
         );
         let bounds = &step.bounds;
@@ -380,20 +385,18 @@ impl RunningSession {
     /// purpose is left quickly after a reaction.
     fn aim(&self, model: &Model, now: u64) -> Goal {
         let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
-        let budget = if self.has_reacted() {
-            let default = Budget::of(model.joint_limits());
-            self.goal.budget.as_brisk_as(&default)
-        } else {
-            self.goal.budget
-        };
-        Goal {
+        let mut aim = Goal {
             target: self.aim.after(since),
             // A stop is not to be paused.
             paused: self.goal.paused && self.aim != Target::Rest || self.halted,
-            budget,
             reaction: None,
             ..self.goal
+        };
+        if self.has_reacted() {
+            let default = Budget::of(model.joint_limits());
+            aim.budget = aim.budget.as_brisk_as(&default);
         }
+        aim
     }
 
     /// Answers one state, once the answer is prepared.
@@ -411,12 +414,15 @@ impl RunningSession {
         let anchored = self.reanchor(model, state);
         let step = match step {
             Some(step) if !anchored => step,
-            _ => self.advance(model, state.message_id, &mut bindings),
+            _ => {
+                let aim = self.aim(model, state.message_id);
+                self.advance(model, &aim, state.message_id, &mut bindings)
+            }
         };
         self.reference = step.reference;
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         let event = self.advance_stage(model, at_rest, state.message_id);
-        self.check_condition(state);
+        self.observe(state);
         // Under the robot's own controller the reference is anchored on that one's setpoint.
         if let Drive::Torques(_) = self.drive {
             self.held = leash::hold(&self.route.course, &mut self.reference, &self.arm);

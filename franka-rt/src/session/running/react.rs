@@ -5,7 +5,7 @@ use core::time::Duration;
 use franka_proto::RobotState;
 
 use super::{GoalStage, RunningSession, Standing};
-use crate::session::condition::Watch;
+use crate::session::condition::{Observed, Watch};
 use crate::session::{Goal, OnArrival, OnTimeout, Reacted, Reaction, Target};
 
 /// The reaction of a goal.
@@ -13,8 +13,8 @@ use crate::session::{Goal, OnArrival, OnTimeout, Reacted, Reaction, Target};
 pub(super) struct Reacting {
     watch: Watch,
     then: Target,
-    /// The condition was true in the newest state that was answered.
-    met: Option<Reacted>,
+    /// The newest state that was answered, until the condition has been checked in it.
+    newest: Option<Observed>,
 }
 
 impl Reacting {
@@ -23,39 +23,39 @@ impl Reacting {
         Self {
             watch: Watch::new(reaction.condition, since),
             then: reaction.then,
-            met: None,
+            newest: None,
         }
     }
 }
 
 impl RunningSession {
-    /// Checks the condition in the newest state, which `self.arm` was measured in. What follows is
-    /// done by [`Self::react`] after the answer.
-    pub(super) fn check_condition(&mut self, state: &RobotState) {
-        let watched = self.is_watched();
+    /// Takes note of the newest state, for [`Self::react`] after the answer.
+    pub(super) fn observe(&mut self, state: &RobotState) {
         if let Some(reacting) = &mut self.reacting {
-            let is_met = reacting.watch.is_met(state, &self.arm);
-            reacting.met = (is_met && watched).then(|| Reacted {
-                after: Duration::from_millis(self.arm.time.saturating_sub(self.since)),
-                time: self.arm.time,
-                wrench: state.O_F_ext_hat_K,
-                pose: self.arm.pose,
-            });
+            reacting.newest = Some(Observed::of(state));
         }
     }
 
-    /// Brakes if the condition was true, and has the goal end at rest or at the other target.
+    /// Checks the condition in the newest state, which `self.arm` was measured in. If it is true,
+    /// brakes, and has the goal end at rest or at the other target.
     pub(super) fn react(&mut self) {
-        // It may have been given up since.
-        if !self.is_watched() {
+        let watched = self.is_watched();
+        let Some(reacting) = &mut self.reacting else {
+            return;
+        };
+        let Some(state) = reacting.newest.take() else {
+            return;
+        };
+        let is_met = reacting.watch.is_met(&state, &self.arm);
+        if !is_met || !watched {
             return;
         }
-        let Some((then, met)) = self
-            .reacting
-            .as_ref()
-            .and_then(|reacting| reacting.met.map(|met| (reacting.then, met)))
-        else {
-            return;
+        let then = reacting.then;
+        let reacted = Reacted {
+            after: Duration::from_millis(self.arm.time.saturating_sub(self.since)),
+            time: self.arm.time,
+            wrench: state.wrench,
+            pose: self.arm.pose,
         };
         let on_arrival = match self.goal.on_arrival {
             OnArrival::Hold => self.afterwards,
@@ -69,7 +69,7 @@ impl RunningSession {
         self.fade_gains();
         self.set_out();
         self.turn_to(Target::Rest);
-        self.standing = Standing::Reacted(met);
+        self.standing = Standing::Reacted(reacted);
         self.yields = true;
         self.reacting = None;
     }
