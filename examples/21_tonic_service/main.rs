@@ -65,7 +65,7 @@ impl Arm for Service {
     type FollowTargetsStream = Answers<State>;
 
     async fn get_state(&self, _: Request<()>) -> Result<Response<State>, Status> {
-        Ok(Response::new(state(&self.robot)))
+        Ok(Response::new(state(&self.robot, &self.robot.state())))
     }
 
     async fn stream_states(
@@ -81,7 +81,7 @@ impl Arm for Service {
         let robot = self.robot.clone();
         let states = robot.states().throttle(Duration::from_secs_f64(1.0 / rate));
         Ok(Response::new(Box::pin(
-            states.map(move |_| Ok(state(&robot))),
+            states.map(move |newest| Ok(state(&robot, &newest))),
         )))
     }
 
@@ -125,7 +125,7 @@ impl Arm for Service {
     async fn recover(&self, _: Request<()>) -> Result<Response<State>, Status> {
         let recovered = self.robot.recover().await;
         recovered.map_err(|error| Status::failed_precondition(error.to_string()))?;
-        Ok(Response::new(state(&self.robot)))
+        Ok(Response::new(state(&self.robot, &self.robot.state())))
     }
 }
 
@@ -162,7 +162,7 @@ async fn follow(
                 _ => newest = None, // the caller has closed its side: on to the last target
             },
             // A caller that does not read misses states, and holds nothing up.
-            _ = clock.tick() => drop(states.try_send(Ok(state(robot)))),
+            _ = clock.tick() => drop(states.try_send(Ok(state(robot, &robot.state())))),
         }
     }
 }

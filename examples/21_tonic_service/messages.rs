@@ -1,7 +1,7 @@
 //! The messages of the service, and what they are made of.
 
 use franka_async::nalgebra::{Quaternion, UnitQuaternion};
-use franka_async::{Diagnose, MotionError, Robot};
+use franka_async::{Diagnose, MotionError, Robot, RobotState};
 use prost::Message;
 use tonic::{Code, Status};
 
@@ -14,8 +14,8 @@ pub(crate) mod proto {
 }
 
 /// The newest state.
-pub(crate) fn state(robot: &Robot) -> State {
-    let (state, pose) = (robot.state(), robot.pose());
+pub(crate) fn state(robot: &Robot, state: &RobotState) -> State {
+    let pose = robot.pose_at(state.q);
     State {
         time: state.message_id,
         mode: state.robot_mode.to_string(),
