@@ -130,11 +130,8 @@ async fn goals_of_an_engaged_arm_may_be_dropped_at_every_poll() {
         ("set", |arm, start, _| {
             Box::pin(async move { arm.set(start).await })
         }),
-        ("at_rest", |arm, _, q| {
-            Box::pin(async move {
-                arm.set(q).await?;
-                arm.at_rest().await
-            })
+        ("set joints", |arm, _, q| {
+            Box::pin(async move { arm.set(q).await })
         }),
         ("guide", |arm, _, _| {
             Box::pin(async move { arm.guide(Free::ALL).await })

@@ -85,6 +85,40 @@ fn an_engaged_arm_is_held_at_its_other_target() {
     });
 }
 
+/// Tuning writes what the arm is held at once more.
+#[test]
+fn the_condition_of_a_goal_ends_with_it() {
+    for_each_robot(|ready| {
+        for cancelled in [false, true] {
+            let mut lockstep = ready();
+            let engaged = lockstep.engage();
+            let home = lockstep.arm_pose();
+            let up = above(&lockstep, 0.1);
+            let late = elapsed(2500 * MS).then(home);
+            let goal = at(0.3, up, late, OnArrival::ReportAndHold, &mut lockstep);
+            let goal = lockstep.submit_within(engaged, goal).expect("within reach");
+            if cancelled {
+                lockstep.run(500);
+                lockstep.cancel(goal);
+            }
+            let outcome = lockstep.until_resolved(goal, 2000);
+            assert_eq!(outcome.is_err(), cancelled);
+            let rests = lockstep.reference_pose().translation.vector;
+            let tuning = Tuning {
+                gains: Some(Gains::cartesian()),
+                ..Tuning::default()
+            };
+            lockstep.tune(engaged, tuning).expect("sound gains");
+            for _ in 0..3000 {
+                lockstep.tick();
+                assert!(!says_so(&lockstep));
+                let moved = lockstep.reference_pose().translation.vector - rests;
+                assert!(moved.norm() < 1e-3, "{moved}");
+            }
+        }
+    });
+}
+
 /// A condition of a goal that takes over in mid-motion begins with it.
 #[test]
 fn time_and_changes_count_from_the_goal_that_the_condition_belongs_to() {
@@ -152,13 +186,20 @@ fn a_stream_ends_at_a_reaction_whatever_comes_after_it() {
                     None => lockstep.submit(goal),
                 };
                 let goal = goal.expect("within reach");
+                let mut braked = None;
                 while goes_on(&lockstep, goal) {
                     follow(&mut lockstep, goal, &home);
                     lockstep.tick();
+                    let record = &lockstep.client.record;
+                    if says_so(&lockstep) && record.dq_ref == [0.0; 7] {
+                        braked.get_or_insert(record.time);
+                    }
                 }
                 let report = report(&mut lockstep, goal);
                 let seen = report.reacted.expect("in mid-stream");
                 assert_eq!(seen.after, 1500 * MS);
+                let braked = braked.expect("it brakes first") - seen.time;
+                assert!(braked < 250, "{braked} ms");
                 assert_eq!(report.final_error.is_some(), then);
                 let rests = match then {
                     true => aside.translation.vector,
