@@ -81,7 +81,9 @@ impl Course {
 
     /// How far the motion `goal` has come; `None` before it has begun and after its end.
     pub(crate) fn progress(&self, goal: GoalId) -> Option<Progress> {
-        let newest = self.reference().filter(|newest| newest.goal == goal)?;
+        // In the first cycle of a session nothing is planned yet.
+        let begun = |newest: &ReferenceState| newest.goal == goal && !newest.elapsed.is_zero();
+        let newest = self.reference().filter(begun)?;
         Some(Progress {
             elapsed: newest.elapsed,
             remaining: newest.remaining,

@@ -107,6 +107,7 @@ async fn a_handle_tells_how_far_a_motion_is_and_pauses_it() {
     handle.pause();
     let moving = tokio::spawn(motion.into_future());
     under_way(&robot).await;
+    robot_time(&robot, 5).await;
     let begun = handle.progress().expect("under way");
     assert!(begun.remaining > Duration::from_millis(500), "{begun:?}");
     robot_time(&robot, 200).await;

@@ -159,7 +159,8 @@ fn a_cancelled_job_brakes_and_the_next_one_is_taken() {
     assert_eq!(content["text"], "stopped on request");
     assert_eq!(content["party"], "Caller");
     let risen = above(&arm.rests(), &start);
-    assert!((0.0..0.09).contains(&risen), "{risen}");
+    // Perhaps before it has risen at all.
+    assert!((-1e-3..0.09).contains(&risen), "{risen}");
     client.begin(0.01);
     assert_eq!(
         client
