@@ -10,18 +10,21 @@ use franka_async::control::{Finish, Torques};
 use franka_async::goal::Gains;
 use franka_async::settings::CollisionBehavior;
 use franka_async::stats::Phase;
-use franka_async::{MotionReport, Pose, Robot};
+use franka_async::supervision::{Condition, Policy};
+use franka_async::{MotionReport, Pose, Realtime, Robot, RobotError};
 use franka_sim::{Sim, Tool};
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
+use tracing_subscriber::registry::LookupSpan;
 use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::{SOON, ahead_of_the_client, alone};
 
-/// One event, with the thread that it came from.
+/// One event, with the thread that it came from and the spans that it is in, the outermost first.
 struct Told {
     thread: String,
+    spans: Vec<&'static str>,
     level: Level,
     fields: BTreeMap<&'static str, String>,
 }
@@ -31,8 +34,8 @@ static TOLD: Mutex<Vec<Told>> = Mutex::new(Vec::new());
 
 struct Listener;
 
-impl<S: Subscriber> Layer<S> for Listener {
-    fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
+impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Listener {
+    fn on_event(&self, event: &Event<'_>, context: Context<'_, S>) {
         struct Fields(BTreeMap<&'static str, String>);
         impl Visit for Fields {
             fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
@@ -42,9 +45,13 @@ impl<S: Subscriber> Layer<S> for Listener {
         let mut fields = Fields(BTreeMap::new());
         event.record(&mut fields);
         let thread = std::thread::current().name().unwrap_or_default().to_owned();
+        let scope = context.event_scope(event).into_iter();
+        let spans = scope.flat_map(|scope| scope.from_root().map(|span| span.name()));
+        let spans = spans.collect();
         let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
         told.push(Told {
             thread,
+            spans,
             level: *event.metadata().level(),
             fields: fields.0,
         });
@@ -211,6 +218,41 @@ async fn how_a_detached_motion_ends_is_told_even_if_it_does_not_begin() {
         panic!("{errors:?}")
     };
     assert!(refused.contains("no joint positions"), "{refused}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn connecting_a_motion_and_a_recovery_have_a_line_each_in_their_spans() {
+    let _alone = alone();
+    listen();
+    let (robot, sim) = ahead_of_the_client(Sim::fr3().ideal().tool(Tool::hand())).await;
+    robot.shutdown().await;
+    listen();
+    let policy = Policy::default().recover(1, Duration::from_secs(1));
+    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let robot = builder.supervise(policy).connect().await.expect("it runs");
+    let there = robot.state().q;
+    robot.move_joints(there).await.expect("it is there");
+    let mut health = robot.health();
+    let trip = |robot: &mut franka_sim::Robot| robot.trip(RobotError::JointReflex);
+    sim.with(trip).await.expect("it runs");
+    for ready in [false, true] {
+        let shown = health.wait_for(|health| (health.condition == Condition::Ready) == ready);
+        tokio::time::timeout(SOON, shown)
+            .await
+            .expect("it is told")
+            .expect("it goes on");
+    }
+    robot.shutdown().await;
+    let told = told("message");
+    for (spans, message) in [
+        (&["connect"][..], "connected"),
+        (&["robot", "motion"], "motion ended"),
+        (&["robot", "recovery"], "recovered"),
+    ] {
+        let lines = told.iter().filter(|told| told.spans == spans);
+        let lines: Vec<_> = lines.map(|told| told.fields["message"].as_str()).collect();
+        assert_eq!(lines, [message], "{spans:?}");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]
