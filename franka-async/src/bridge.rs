@@ -8,7 +8,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
-use franka_proto::RobotState;
+use franka_proto::{RobotMode, RobotState};
 use franka_rt::driver::{Driver, Event, Order};
 use franka_rt::event_fd::EventFd;
 use franka_rt::law::Gains;
@@ -350,13 +350,16 @@ impl Bridge {
 
     /// Shows the supervisor the newest state, if it shows anything new of the robot as a whole.
     fn observe(&mut self) {
-        let (newest, seen) = {
+        let (newest, mode, seen) = {
             let state = self.publisher.state();
-            (state.message_id, Some(Seen::of(&state)))
+            (state.message_id, state.robot_mode, Some(Seen::of(&state)))
         };
         let resumed = self.silent_since.is_some_and(|since| newest > since);
         if resumed || self.seen != seen {
             (self.seen, self.silent_since) = (seen, None);
+            // Recovery is over soon: motions wait for it.
+            self.publisher
+                .watch(mode == RobotMode::AutomaticErrorRecovery);
             self.supervisor.observe();
         }
     }

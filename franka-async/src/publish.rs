@@ -32,6 +32,8 @@ pub(crate) struct Publisher {
     pub(crate) queue: Receiver<Record>,
     state_wakeups: StateWakeups,
     silent: Arc<Mutex<Option<Silent>>>,
+    /// Whether the bridge itself looks at every state.
+    is_watched: bool,
     listeners: Listeners,
 }
 
@@ -73,6 +75,7 @@ impl Publisher {
             queue,
             state_wakeups,
             silent: Arc::default(),
+            is_watched: false,
             listeners: Listeners {
                 newest: states,
                 updates: broadcast::channel(STATES).0,
@@ -114,7 +117,16 @@ impl Publisher {
         while let Some(record) = self.queue.pop() {
             let _ = self.listeners.records.send(record);
         }
-        self.state_wakeups.release(|| self.listeners.are_there());
+        let is_wanted = || self.is_watched || self.listeners.are_there();
+        self.state_wakeups.release(is_wanted);
+    }
+
+    /// Has the thread wake the bridge for every state, or not on behalf of the bridge itself.
+    pub(crate) fn watch(&mut self, every_state: bool) {
+        self.is_watched = every_state;
+        if every_state {
+            self.state_wakeups.request();
+        }
     }
 
     /// Passes on the newest state only. Without subscribers, the one that was passed on last
