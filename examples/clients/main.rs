@@ -97,7 +97,11 @@ async fn call(address: &str) -> anyhow::Result<()> {
     target.position[2] += 0.1;
     println!("moving");
     let target = Some(target);
-    arm.move_to(MoveRequest { target, speed: 0.2 }).await?;
+    arm.move_to(MoveRequest {
+        target,
+        speed: 0.05,
+    })
+    .await?;
     Ok(())
 }
 

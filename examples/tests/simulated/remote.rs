@@ -119,12 +119,16 @@ fn a_caller_that_is_killed_brakes_the_arm() {
 
 #[test]
 fn a_caller_that_freezes_is_given_up_and_the_arm_brakes() {
-    let arm = Arm::by_the_clock("fer");
-    let (_service, address) = Beside::serve("tonic_service", &arm.address, &[]);
-    let frozen = client("follow", &address, &arm);
-    frozen.signal(Signal::SIGSTOP);
-    arm.rests();
-    frozen.signal(Signal::SIGCONT);
+    for task in ["move", "follow"] {
+        let arm = Arm::by_the_clock("fer");
+        let (_service, address) = Beside::serve("tonic_service", &arm.address, &[]);
+        let start = arm.state();
+        let frozen = client(task, &address, &arm);
+        frozen.signal(Signal::SIGSTOP);
+        let way = arm.rests().O_T_EE[14] - start.O_T_EE[14];
+        assert!(way < 0.09, "{task}: went on to {way}");
+        frozen.signal(Signal::SIGCONT);
+    }
 }
 
 #[test]
