@@ -13,6 +13,9 @@ use franka_tests::lockstep::{Lockstep, Outcome, pose_of};
 
 use super::causes::Causes;
 
+/// Time in which an update is sure to be taken up, `[ms]`.
+const IN_FLIGHT: u64 = 3;
+
 /// Guards that may keep an arm from its target.
 const HINDRANCES: [Guard; 9] = [
     Guard::Leash,
@@ -43,8 +46,8 @@ pub(super) struct Submission {
     pub(super) work: Work,
     pub(super) on_arrival: OnArrival,
     pub(super) watchdog: Option<Watchdog>,
-    /// The time of its newest update, `[ms]`.
-    pub(super) heard: u64,
+    /// The times of its updates, `[ms]`.
+    pub(super) heard: Vec<u64>,
     pub(super) superseded: bool,
     /// Cancelled by its owner.
     pub(super) cancelled: bool,
@@ -71,7 +74,7 @@ impl Submission {
             work,
             on_arrival,
             watchdog: None,
-            heard: now,
+            heard: vec![now],
             superseded: false,
             cancelled: false,
             stopped: false,
@@ -186,8 +189,12 @@ impl Submission {
         else {
             return false;
         };
-        // A gap in the states makes the silence longer, but not longer than it is now.
-        let since = Duration::from_millis(now + 1 - self.heard);
+        // A gap in the states makes the silence longer, but not longer than it is now. News of the
+        // last cycles may have come too late.
+        let in_time = |heard: &&u64| **heard + IN_FLIGHT <= now;
+        let heard = self.heard.iter().rev().find(in_time);
+        let heard = heard.unwrap_or(&self.heard[0]);
+        let since = Duration::from_millis(now + 1 - heard);
         on_timeout == how && reported >= silence && reported <= since
     }
 }

@@ -33,18 +33,31 @@ impl Sessions<'_> {
     /// Submits a motion from another handle.
     pub(super) fn interfere(&mut self) {
         let goal = self.lockstep.goal(Target::Rest, OnArrival::ReportAndFinish);
-        let has_it = self.session.as_ref().is_some_and(|session| {
-            let ended = self.lockstep.client.outcome(session.id).is_some();
-            let of_it = self
-                .open
-                .iter()
-                .find(|submission| submission.id == session.id);
-            // While a session is ending, other motions may wait for the arm.
-            let lets_go = of_it.is_none_or(|submission| submission.released || submission.stopped);
-            !(ended || lets_go || session.over)
-        });
-        if has_it {
-            assert_eq!(self.lockstep.submit(goal), Err(MotionError::Busy));
+        let Some(session) = self.session.as_ref().filter(|session| !session.over) else {
+            return;
+        };
+        let id = session.id;
+        let of_it = self.open.iter().find(|submission| submission.id == id);
+        let ended = self.lockstep.client.outcome(id).is_some();
+        // While a session is ending, other motions may wait for the arm.
+        if ended || of_it.is_none_or(|submission| submission.released || submission.stopped) {
+            return;
+        }
+        match self.lockstep.submit(goal) {
+            Ok(waiting) => {
+                // By the robot: its answer has come, the states that show it have not.
+                assert!(self.causes.any(), "the session goes on");
+                self.lockstep.cancel(waiting);
+                let told = |it: &Self| it.lockstep.client.outcome(id).is_some();
+                let ended = (0..100).any(|_| {
+                    self.tick();
+                    told(self)
+                });
+                assert!(ended, "the session is ending");
+                // Resolved like the motions of the schedule.
+                self.submitted += 1;
+            }
+            refused => assert_eq!(refused, Err(MotionError::Busy)),
         }
     }
 

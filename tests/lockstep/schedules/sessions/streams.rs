@@ -33,7 +33,7 @@ impl Sessions<'_> {
             match (updated, submission) {
                 (Ok(true), Some(submission)) => {
                     submission.work = Work::Goal(target);
-                    submission.heard = now;
+                    submission.heard.push(now);
                 }
                 (Ok(false), submission) => {
                     let told = self.lockstep.client.outcome(id).is_some();
@@ -91,7 +91,7 @@ impl Sessions<'_> {
             });
             match (goes_on, &taken) {
                 (Some(submission), Ok(_)) => {
-                    submission.heard = heard;
+                    submission.heard.push(heard);
                     self.chunks.push(goal.id);
                 }
                 _ => {
