@@ -9,6 +9,7 @@ use franka_proto::RobotState;
 use franka_rt::driver::{Observer, Record, ReferenceState};
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, NewMotion, Tuning};
 use franka_rt::session::{Backend, Chunk, DeadmanMonitor, Free, Goal, OnArrival, Target};
+use franka_rt::team::Member;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
@@ -49,6 +50,12 @@ impl Engage {
     /// more. See [`Deadman::new`](crate::goal::Deadman::new).
     pub fn deadman(mut self, monitor: DeadmanMonitor) -> Self {
         self.engagement.deadman = Some(monitor);
+        self
+    }
+
+    /// Makes the session a member of a team.
+    pub(crate) fn in_team(mut self, member: Member) -> Self {
+        self.engagement.team = Some(member);
         self
     }
 
@@ -363,6 +370,11 @@ impl Arm {
         &self,
     ) -> impl Future<Output = Result<MotionReport, MotionError>> + Send + 'static {
         self.session.ended()
+    }
+
+    /// Whether the session of a motion is that of this arm.
+    pub(crate) fn owns(&self, session: Option<&Arc<Session>>) -> bool {
+        session.is_some_and(|session| Arc::ptr_eq(session, &self.session))
     }
 
     /// A goal that is set and then held.

@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use franka_rt::lifecycle::{MotionError, MotionReport, NewMotion};
 use franka_rt::session::{Goal, Lead, OnArrival, OnTimeout, Target, Watchdog};
+use franka_rt::team::Round;
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::wrappers::WatchStream;
@@ -98,6 +99,16 @@ impl Follow {
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
         self.ticket = Some(ticket);
         self
+    }
+
+    /// Makes it part of a joint motion.
+    pub(crate) fn in_round(mut self, round: Round) -> Self {
+        self.options.round = Some(round);
+        self
+    }
+
+    pub(crate) fn session(&self) -> Option<&Arc<Session>> {
+        self.session.as_ref()
     }
 
     async fn run(self) -> Result<MotionReport, MotionError> {

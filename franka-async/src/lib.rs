@@ -22,7 +22,8 @@
 //!   the same from a thread of the user's, which reads states and writes commands.
 //!   [`AsynchronousControl`]: sparse joint targets between which the robot plans.
 //!   [`control`]: their commands.
-//! * [`StartBarrier`]: motions of several robots that begin within the same millisecond.
+//! * [`StartBarrier`]: motions of several robots that begin within the same millisecond. [`team`]:
+//!   several arms as one, with one stop.
 //! * [`Robot::states`]: the newest state as it changes. [`Robot::read`], [`StateStream`]: every
 //!   state. Both whatever moves. [`Robot::stats`], [`stats`]: how punctual control is.
 //! * `Robot::metrics`, `metrics` (feature `metrics`, off by default): the same as OpenMetrics text.
@@ -105,6 +106,7 @@ mod states;
 mod supervisor;
 #[cfg(feature = "metrics")]
 mod tally;
+pub mod team;
 mod telemetry;
 mod thresholds;
 mod vacuum_gripper;
@@ -223,6 +225,9 @@ const _: () = {
     shared::<Canceller>();
     shared::<Motion>();
     shared::<Arm>();
+    shared::<team::Stopper>();
+    spawned::<team::Team<2>>();
+    spawned::<team::TeamMotion<2>>();
     spawned::<Follow>();
     spawned::<goal::Deadman>();
     shared::<std::sync::Arc<AsynchronousControl>>();

@@ -8,6 +8,7 @@ use std::task::{Context, Poll};
 
 use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
 use franka_rt::session::{Goal, GoalError, GoalId, OnArrival};
+use franka_rt::team::Round;
 use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
 
@@ -91,6 +92,16 @@ impl Motion {
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
         self.ticket = Some(ticket);
         self
+    }
+
+    /// Makes it part of a joint motion.
+    pub(crate) fn in_round(mut self, round: Round) -> Self {
+        self.options.round = Some(round);
+        self
+    }
+
+    pub(crate) fn session(&self) -> Option<&Arc<Session>> {
+        self.session.as_ref()
     }
 
     /// Begins the motion without a future: it runs on, and its outcome is only logged. It does not

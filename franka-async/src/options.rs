@@ -3,6 +3,7 @@
 use franka_model::Model;
 use franka_rt::lifecycle::Tuning;
 use franka_rt::session::{Budget, Goal, GoalError, Reaction, Tolerance};
+use franka_rt::team::Round;
 
 /// Options of one goal or of many. What is `None` is left to the goal, whose kind decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,6 +13,8 @@ pub(crate) struct GoalOptions {
     pub(crate) stiffness: Option<[f64; 6]>,
     pub(crate) tolerance: Option<Tolerance>,
     pub(crate) reaction: Option<Reaction>,
+    /// The joint motion of a team that it is part of.
+    pub(crate) round: Option<Round>,
 }
 
 impl GoalOptions {
@@ -35,6 +38,7 @@ impl GoalOptions {
             budget: self.at_speed(goal.budget, model)?,
             tolerance: self.tolerance.or(goal.tolerance),
             reaction: self.reaction.or(goal.reaction),
+            round: self.round.or(goal.round),
             ..goal
         })
     }

@@ -16,7 +16,8 @@
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
 //!   Pure.
 //! * [`supervision`]: connections lost and made again, reflexes and recovery. Pure.
-//! * [`together`]: motions of several robots that begin at the same time.
+//! * [`together`]: motions of several robots that begin at the same time. [`team`]: sessions of
+//!   several robots whose motions begin together, and brake together for a fault of one.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
 //! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: what
 //!   the loop is built of. [`stats`] says when a state is late.
@@ -41,5 +42,6 @@ pub mod state_wakeups;
 pub mod stats;
 pub mod supervision;
 mod sys;
+pub mod team;
 pub mod thread;
 pub mod together;

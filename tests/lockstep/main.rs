@@ -25,5 +25,6 @@ mod steps;
 mod supervised;
 mod switching;
 mod taking_over;
+mod team;
 mod telemetry;
 mod together;

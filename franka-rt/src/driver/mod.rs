@@ -51,6 +51,7 @@ use franka_proto::{RobotCommand, RobotState, Version};
 use crate::control::{Command, Failure, WriteError};
 use crate::slot::{SlotWriter, slot};
 use crate::stats::MotionStatistics;
+use crate::team::{self, MemberFault};
 use crate::together::Gate;
 
 pub use commander::Commander;
@@ -316,9 +317,14 @@ impl Driver {
         Ok(sent)
     }
 
-    /// Tells that no state has come for `silence`. At the link timeout a motion ends with
-    /// [`Ending::LinkLost`].
+    /// Tells that no state has come for `silence`. After [`team::SILENCE`] the others of a team
+    /// brake, and at the link timeout a motion ends with [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
+        if silence >= team::SILENCE
+            && let Some(motion) = self.phase.begun_mut()
+        {
+            motion.program.fail_team(MemberFault::Silent);
+        }
         if silence < self.link_timeout.get() || self.lost.is_some() {
             return;
         }
@@ -380,7 +386,8 @@ impl Driver {
     }
 
     /// Leaves a motion without commands from now on, as its program cannot go on.
-    fn fail(&mut self, motion: Execution, failure: Failure) -> Option<RobotCommand> {
+    fn fail(&mut self, mut motion: Execution, failure: Failure) -> Option<RobotCommand> {
+        motion.program.fail_team(MemberFault::Failed);
         self.record.activity = Activity::Silent;
         self.events.push(Event::Failed {
             motion: motion.id,
@@ -410,6 +417,7 @@ impl Driver {
 
     fn give_back(&mut self, mut motion: Execution, ending: Ending, statistics: MotionStatistics) {
         motion.leave();
+        motion.tell_team(ending);
         let Execution {
             id,
             program,

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use franka_proto::{RobotCommand, RobotMode, RobotState};
 
-use super::{ControlLog, MotionId, Observer, Program};
+use super::{ControlLog, Ending, MotionId, Observer, Program};
 use crate::control::Modes;
 use crate::stats::MotionTimes;
+use crate::team::MemberFault;
 use crate::together::{Gate, StartTicket};
 
 /// What the driver is doing.
@@ -78,6 +79,17 @@ impl Execution {
         if let Some(ticket) = &mut self.ticket {
             ticket.end();
         }
+    }
+
+    /// Brakes the others of its team if it ends otherwise than asked.
+    pub(super) fn tell_team(&mut self, ending: Ending) {
+        match ending {
+            Ending::Finished => {}
+            Ending::Aborted => self.program.fail_team(MemberFault::RobotStopped),
+            Ending::LinkLost { .. } => self.program.fail_team(MemberFault::Silent),
+            Ending::Disarmed | Ending::Refused => self.program.fail_team(MemberFault::Gone),
+        }
+        self.program.leave_team();
     }
 
     /// Whether the robot no longer runs the motion.

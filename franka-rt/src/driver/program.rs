@@ -5,6 +5,7 @@ use franka_proto::{RobotState, Version};
 use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command, Failure};
 use crate::driver::Record;
 use crate::session::{SessionCommand, SessionEvent, TargetSession, Trace};
+use crate::team::MemberFault;
 use crate::together::Gate;
 
 /// What answers the states of a running motion. Built outside the thread and freed outside it.
@@ -59,6 +60,22 @@ impl Program {
         match self {
             Self::Target(session) => session.is_withdrawn(),
             Self::Callback(_) | Self::Active(_) | Self::Asynchronous(_) => false,
+        }
+    }
+
+    /// Brakes the others of its team, if it has one.
+    pub(super) fn fail_team(&mut self, fault: MemberFault) {
+        match self {
+            Self::Target(session) => session.fail_team(fault),
+            Self::Callback(_) | Self::Active(_) | Self::Asynchronous(_) => {}
+        }
+    }
+
+    /// Leaves its team, if it has one, without a fault.
+    pub(super) fn leave_team(&mut self) {
+        match self {
+            Self::Target(session) => session.leave_team(),
+            Self::Callback(_) | Self::Active(_) | Self::Asynchronous(_) => {}
         }
     }
 

@@ -12,12 +12,15 @@ use crate::session::{
     Backend, Budget, Chunk, DeadmanMonitor, ForceCap, Goal, GoalError, GoalId, OnArrival, Target,
     TooManyChunks,
 };
+use crate::team::Member;
 
 /// What a session that goes from goal to goal has beside its goals.
 #[derive(Debug, Default)]
 pub struct Engagement {
     /// The deadman that it is bound to.
     pub deadman: Option<DeadmanMonitor>,
+    /// Its part in a team.
+    pub team: Option<Member>,
     /// What the arm keeps out of, in the place of the regions of [`Lifecycle::keep_out_of`]; up to
     /// [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX), base frame.
     pub keep_out: Option<Vec<Obstacle>>,

@@ -134,6 +134,7 @@ impl Goals {
         self.current = Goal {
             id: engaged,
             watchdog: None,
+            round: None,
             ..held
         };
         let cancelled = core::mem::take(&mut self.cancelled);

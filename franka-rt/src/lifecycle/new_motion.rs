@@ -267,6 +267,9 @@ impl Lifecycle {
             if let Some(deadman) = engagement.deadman {
                 session = session.bound_to(deadman);
             }
+            if let Some(member) = engagement.team {
+                session = session.in_team(member);
+            }
         }
         let program = Program::Target(Box::new(session));
         let request = goals.backend.request(self.version);

@@ -90,6 +90,7 @@ impl Backend {
             | Guard::Watchdog
             | Guard::Deadman
             | Guard::Reaction
+            | Guard::Team
             | Guard::PlanFailure => true,
             Guard::Leash
             | Guard::Deviation

@@ -10,6 +10,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use crate::law::Gains;
 use crate::session::{Budget, ForceCap, Lead, OnTimeout, Reaction, Tolerance, Watchdog};
 use crate::slot::Words;
+use crate::team::Round;
 
 /// Identifies one goal for the life of a connection. Updates of a followed target keep the id of
 /// their goal.
@@ -189,6 +190,11 @@ pub struct Goal {
     /// Until what it is pursued, if not only until the arrival. A goal keeps the one that it began
     /// with.
     pub reaction: Option<Reaction>,
+    /// The joint motion of a team that it is part of: it begins with the goals of the other
+    /// members, and is given up for a fault of one. Only for sessions with a [`Member`].
+    ///
+    /// [`Member`]: crate::team::Member
+    pub round: Option<Round>,
     /// Incremented by each new target and each new end, not by tuning. Only a new revision feeds
     /// the watchdog.
     pub revision: u64,
@@ -217,11 +223,12 @@ impl Goal {
             lead: None,
             paused: false,
             reaction: None,
+            round: None,
             revision: 0,
         }
     }
 
-    /// Returns the goal with rest as its target, without a reaction. Gains for guiding are replaced
+    /// Returns the goal with rest as its target, without a reaction or a team. Gains for guiding are replaced
     /// by gains that hold.
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
@@ -234,6 +241,7 @@ impl Goal {
             gains,
             paused: false,
             reaction: None,
+            round: None,
             ..*self
         }
     }
@@ -291,7 +299,7 @@ impl Words for Target {
     }
 }
 
-/// Name, revision, what follows and whether it is paused, 2 of the watchdog; then 27 numbers of
+/// Name, revision, what follows and whether it is paused, the round, 2 of the watchdog; then 27 numbers of
 /// budget, the gains, 2 of tolerance, the force cap, 3 of the lead, which are zero without one;
 /// then the target and the reaction.
 ///
@@ -329,9 +337,17 @@ impl Words for Goal {
                 [lead.translation, lead.rotation, lead.joints]
             }));
         let on_arrival = self.on_arrival.to_word() | u64::from(self.paused) << 2;
-        let all = [self.id.0, self.revision, on_arrival, watched, silence]
-            .into_iter()
-            .chain(numbers.map(f64::to_bits));
+        let round = Round::to_word(self.round);
+        let all = [
+            self.id.0,
+            self.revision,
+            on_arrival,
+            round,
+            watched,
+            silence,
+        ]
+        .into_iter()
+        .chain(numbers.map(f64::to_bits));
         for (word, value) in words.iter_mut().zip(all) {
             *word = value;
         }
@@ -345,7 +361,7 @@ impl Words for Goal {
         let (target, reaction) = others.split_at(Target::WORDS);
         let mut words = numbers.iter().copied();
         let mut next = || words.next().unwrap_or_default();
-        let [id, revision, on_arrival, watched, silence] = core::array::from_fn(|_| next());
+        let [id, revision, on_arrival, round, watched, silence] = core::array::from_fn(|_| next());
         let mut number = || f64::from_bits(next());
         let mut axis = || AxisLimits {
             velocity: number(),
@@ -385,13 +401,14 @@ impl Words for Goal {
             })
             .filter(|lead| lead.translation > 0.0),
             reaction: Words::load(reaction),
+            round: Round::from_word(round),
             revision,
         }
     }
 }
 
 /// Words of a goal before those of its target.
-const NUMBERS: usize = 5 + 27 + Gains::NUMBERS + 2 + 1 + 3;
+const NUMBERS: usize = 6 + 27 + Gains::NUMBERS + 2 + 1 + 3;
 
 impl OnArrival {
     fn to_word(self) -> u64 {
@@ -510,6 +527,7 @@ mod tests {
                 lead,
                 paused: lead.is_some(),
                 reaction,
+                round: Round::from_word(if lead.is_some() { 7 } else { 0 }),
                 revision: 5,
             };
             let mut words = [u64::MAX; Goal::WORDS];

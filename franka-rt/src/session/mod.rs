@@ -34,6 +34,7 @@ mod joints;
 mod kinematics;
 mod landing;
 mod margin;
+mod membership;
 mod pose;
 mod reaction;
 mod reference;
@@ -54,6 +55,7 @@ use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 use crate::control::{MotionCommand, Torques};
 use crate::law::compensation::Learned;
 use crate::slot::{Read, SlotReader};
+use crate::team::{Member, MemberFault, TeamStop};
 use crate::together::{Gate, StartFault};
 
 pub use backend::{Backend, Setpoints};
@@ -76,6 +78,7 @@ pub use margin::Margin;
 pub use reaction::{Reacted, Reaction};
 pub use tolerance::Tolerance;
 
+use membership::Membership;
 use reference::Reference;
 use running::RunningSession;
 
@@ -148,12 +151,17 @@ pub enum Lapse {
     /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`]
     /// and [`KEEP_OUT_STOP`].
     Blocked,
+    /// The team that it is a member of has stopped.
+    Team(TeamStop),
 }
 
 impl Lapse {
     /// Whether no update brings the goal back.
     fn is_final(self) -> bool {
-        matches!(self, Self::Deadman | Self::Displaced | Self::Blocked)
+        match self {
+            Self::Silent { .. } => false,
+            Self::Deadman | Self::Displaced | Self::Blocked | Self::Team(_) => true,
+        }
     }
 }
 
@@ -167,6 +175,7 @@ impl core::fmt::Display for Lapse {
                 f,
                 "the way leads too near to the arm itself or to a region to keep out of"
             ),
+            Self::Team(stop) => stop.fmt(f),
         }
     }
 }
@@ -214,6 +223,8 @@ pub struct TargetSession {
     unstarted: Option<(GoalId, StartFault)>,
     /// The deadman that it is bound to.
     deadman: Option<DeadmanMonitor>,
+    /// Its part in a team.
+    team: Option<Membership>,
     backend: Backend,
     version: Version,
     /// Where chunks come from.
@@ -238,6 +249,7 @@ impl TargetSession {
             held: None,
             unstarted: None,
             deadman: None,
+            team: None,
             backend: Backend::default(),
             version,
             chunks: None,
@@ -297,6 +309,27 @@ impl TargetSession {
         self
     }
 
+    /// Makes the session a member of a team.
+    #[must_use]
+    pub fn in_team(mut self, member: Member) -> Self {
+        self.team = Some(Membership::new(member));
+        self
+    }
+
+    /// Stops the team, if it is a member of one, for a fault outside its goals.
+    pub(crate) fn fail_team(&mut self, fault: MemberFault) {
+        if let Some(team) = &mut self.team {
+            team.fail(fault);
+        }
+    }
+
+    /// Leaves the team, if it is a member of one.
+    pub(crate) fn leave_team(&mut self) {
+        if let Some(team) = &mut self.team {
+            team.leave();
+        }
+    }
+
     /// Lets the session take up chunks.
     ///
     /// The newest chunk of the goal in force moves the arm, whatever the goal's own target is;
@@ -343,6 +376,10 @@ impl TargetSession {
                     event: None,
                 };
             };
+            let goal = match &mut self.team {
+                Some(team) => team.first(goal),
+                None => goal,
+            };
             self.active = RunningSession::begin(
                 &self.model,
                 goal,
@@ -364,6 +401,9 @@ impl TargetSession {
             };
         };
         let mut step = active.answer(&self.model, state);
+        if let (Some(team), Some(event)) = (&mut self.team, &step.event) {
+            team.settle(event);
+        }
         if let Some(SessionEvent::Settled {
             goal, settlement, ..
         }) = &mut step.event
@@ -389,11 +429,18 @@ impl TargetSession {
         if self.active.as_ref().is_none_or(RunningSession::is_prepared) {
             return;
         }
-        let newer = self.newer();
+        let mut newer = self.newer();
+        let mut stop = None;
+        if let Some(team) = &mut self.team {
+            (newer, stop) = team.admit(newer, now);
+        }
         let alive = |monitor: &mut DeadmanMonitor| monitor.is_alive(now);
         let alive = self.deadman.as_mut().is_none_or(alive);
         if let Some(active) = &mut self.active {
-            active.prepare(&self.model, newer, alive, self.chunks.as_mut(), now);
+            active.prepare(&self.model, newer, (alive, stop), self.chunks.as_mut(), now);
+            if let Some(team) = &mut self.team {
+                team.watch(active);
+            }
         }
     }
 

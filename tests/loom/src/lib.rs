@@ -12,6 +12,8 @@ mod lifetime;
 mod slot;
 #[path = "../../../franka-rt/src/state_wakeups.rs"]
 mod state_wakeups;
+#[path = "../../../franka-rt/src/team.rs"]
+mod team;
 #[path = "../../../franka-rt/src/together.rs"]
 mod together;
 

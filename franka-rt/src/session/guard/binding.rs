@@ -42,14 +42,17 @@ pub enum Guard {
     /// The condition of the goal was true: the arm comes to rest or goes to the other target, or is
     /// there, for that reason.
     Reaction,
+    /// A member of the team has a fault, or the team was stopped: the arm comes to rest, or rests,
+    /// for that reason.
+    Team,
 }
 
 /// A set of guards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Bindings(u16);
+pub struct Bindings(u32);
 
 impl Guard {
-    const ALL: [Self; 16] = [
+    const ALL: [Self; 17] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
@@ -66,18 +69,19 @@ impl Guard {
         Self::Lead,
         Self::PlanFailure,
         Self::Reaction,
+        Self::Team,
     ];
 }
 
 impl Bindings {
     /// Adds `guard` where `binds`.
     pub(crate) fn set(&mut self, guard: Guard, binds: bool) {
-        self.0 |= u16::from(binds) << guard as u16;
+        self.0 |= u32::from(binds) << guard as u32;
     }
 
     /// Whether `guard` bound the command.
     pub fn contains(self, guard: Guard) -> bool {
-        self.0 & (1 << guard as u16) != 0
+        self.0 & (1 << guard as u32) != 0
     }
 
     /// The guards that did.

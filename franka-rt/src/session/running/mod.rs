@@ -17,6 +17,7 @@ use nalgebra::Isometry3;
 use crate::control::Torques;
 use crate::law::compensation::Learned;
 use crate::session::reference::Reference;
+use crate::team::TeamStop;
 
 use super::backend::Backend;
 use super::budget::Budget;
@@ -303,12 +304,13 @@ impl RunningSession {
 
     /// Prepares the answer to the state `now`, `message_id`: takes up a `newer` goal, if there is
     /// one, plans, and moves the reference by one step. `alive` is false once the deadman of the
-    /// session is silent or dropped.
+    /// session is silent or dropped; `stop` is there in the cycle that sees that its team has
+    /// stopped.
     pub(super) fn prepare(
         &mut self,
         model: &Model,
         newer: Option<Goal>,
-        alive: bool,
+        (alive, stop): (bool, Option<TeamStop>),
         chunks: Option<&mut ChunkReader>,
         now: u64,
     ) {
@@ -326,7 +328,9 @@ impl RunningSession {
             self.follow_chunks(model, chunks, now);
         }
         self.watch(alive, now);
+        self.stop_with_team(stop);
         bindings.set(Guard::Deadman, !alive);
+        bindings.set(Guard::Team, self.has_stopped_with_team());
         let silent = matches!(
             self.standing,
             Standing::GivenUp {

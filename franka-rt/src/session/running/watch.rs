@@ -9,6 +9,7 @@ use super::{GoalStage, RunningSession, Standing};
 use crate::session::course::Course;
 use crate::session::guard::lead::Lead;
 use crate::session::{Lapse, OnArrival, OnTimeout, Target};
+use crate::team::TeamStop;
 
 impl RunningSession {
     /// Draws a target nearer that is too far ahead of the arm. Returns whether it is.
@@ -104,15 +105,43 @@ impl RunningSession {
         exceeded
     }
 
-    /// Gives the goal up if its updates stay away or its deadman is silent.
-    pub(super) fn watch(&mut self, alive: bool, now: u64) {
-        let braked = matches!(
+    /// Gives the goal up if the team has just stopped and the arm goes anywhere.
+    pub(super) fn stop_with_team(&mut self, stop: Option<TeamStop>) {
+        let over = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
+        if let Some(stop) = stop
+            && !over
+            && !self.has_braked()
+            && self.heading() != Target::Rest
+        {
+            self.give_up(Lapse::Team(stop));
+        }
+    }
+
+    /// Whether the goal was given up because the team has stopped.
+    pub(super) fn has_stopped_with_team(&self) -> bool {
+        matches!(
+            self.standing,
+            Standing::GivenUp {
+                cause: Lapse::Team(_),
+                ..
+            }
+        )
+    }
+
+    /// Whether the goal was given up and the arm brakes, or has braked, for that.
+    pub(in crate::session) fn has_braked(&self) -> bool {
+        matches!(
             self.standing,
             Standing::GivenUp {
                 action: OnTimeout::Brake,
                 ..
             }
-        );
+        )
+    }
+
+    /// Gives the goal up if its updates stay away or its deadman is silent.
+    pub(super) fn watch(&mut self, alive: bool, now: u64) {
+        let braked = self.has_braked();
         // A goal of coming to rest needs no deadman.
         let comes_to_rest =
             self.heading() == Target::Rest && self.goal.on_arrival != OnArrival::Hold;

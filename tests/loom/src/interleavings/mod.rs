@@ -7,6 +7,7 @@
 //! | [`handoff`] | the cycle, lent to a thread of the user's |
 //! | [`event_fd`] | wake-ups, and the end of the thread |
 //! | [`together`] | motions of several robots that begin together, or not at all |
+//! | [`team`] | motions of several robots that begin together, again and again, and stop together |
 //! | [`state_wakeups`] | whether to send a wake-up for every state |
 //!
 //! The queues are rtrb's and not explored here: nothing of ours is inside them, and loom cannot see
@@ -18,4 +19,5 @@ mod event_fd;
 mod handoff;
 mod slot;
 mod state_wakeups;
+mod team;
 mod together;

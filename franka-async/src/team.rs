@@ -1,0 +1,321 @@
+//! Several arms as one: motions that begin together, one stop, one outcome for each arm.
+//!
+//! ```text
+//!             +-- Arm 0 --> session, real-time thread 0 <--+
+//!  Team ------+                                            |  one atomic word
+//!             +-- Arm 1 --> session, real-time thread 1 <--+
+//! ```
+//!
+//! The real-time threads of the arms share one atomic word, which each looks at once in each cycle.
+//! So the arms begin within a millisecond of each other, and the fault of one brakes the others
+//! within two of their cycles after its thread has seen it, whatever the runtime is busy with. What
+//! counts as a fault says [`MemberFault`]; an arm that arrives, and one whose
+//! [condition](crate::condition) became true, have none.
+//!
+//! ```no_run
+//! use franka_async::team::Team;
+//! use franka_async::{Engage, Pose, Robot};
+//!
+//! # async fn run(left: Robot, right: Robot) -> Result<(), Box<dyn std::error::Error>> {
+//! let team = Team::engage([(&left, Engage::default()), (&right, Engage::default())]).await?;
+//! let up = Pose::translation(0.0, 0.0, 0.1);
+//! let [one, other] = team.move_to([up * left.pose(), up * right.pose()]).await;
+//! println!("{:?}, {:?}", one?.duration, other?.duration);
+//! team.disengage().await;
+//! # Ok(())
+//! # }
+//! ```
+
+use std::future::{Future, IntoFuture};
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::task::{Context, Poll};
+
+use franka_rt::lifecycle::{MotionError, MotionReport};
+use franka_rt::team::{Coordinator, Member, Round, team};
+use futures::future::join_all;
+
+pub use franka_rt::team::{MEMBERS_MAX, MemberFault, SILENCE, START_TIMEOUT, TeamStop};
+
+use crate::arm::{Arm, Engage};
+use crate::destination::Destination;
+use crate::error::Error;
+use crate::follow::Follow;
+use crate::motion::Motion;
+use crate::robot::Robot;
+
+/// How the motion of one member has ended.
+type Outcome = Result<MotionReport, MotionError>;
+
+/// `N` arms in one session each, with one stop. Members count from 0, in the order in which they
+/// were given.
+///
+/// The [`arms`](Self::arms) can also be moved by themselves: such a motion waits for no other and
+/// its end concerns no other. But every motion of a member, joint or not, brakes when the session of
+/// another one ends otherwise than by [`Arm::disengage`], or when the team is stopped. A motion
+/// that comes after that begins as usual.
+///
+/// Dropping it brakes all arms and ends their sessions, in the background, unless other handles of
+/// the arms are left.
+#[derive(Debug)]
+pub struct Team<const N: usize> {
+    arms: [Arm; N],
+    coordinator: Coordinator,
+    /// Held while the goals of a joint motion are sent, so that all arms get those of two motions
+    /// in the same order.
+    submission: Arc<Mutex<()>>,
+}
+
+/// Caller, robot or link: an arm did not join its team.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("member {member} of the team: {error}")]
+pub struct NotEngaged {
+    /// Which.
+    pub member: usize,
+    /// Why not.
+    #[source]
+    pub error: MotionError,
+}
+
+impl From<NotEngaged> for Error {
+    fn from(error: NotEngaged) -> Self {
+        error.error.into()
+    }
+}
+
+impl<const N: usize> Team<N> {
+    /// Begins a session for each robot, as [`Robot::engage`] does; resolves when all have begun. If
+    /// one does not, the others end.
+    ///
+    /// # Errors
+    /// [`NotEngaged`] with the first member that did not, and why.
+    ///
+    /// # Cancel safety
+    /// Dropping the future ends all sessions, in the background.
+    pub async fn engage(robots: [(&Robot, Engage); N]) -> Result<Self, NotEngaged> {
+        let (coordinator, members) = team::<N>();
+        let engage = |((robot, engage), member): ((&Robot, Engage), Member)| {
+            let robot = robot.clone();
+            async move { robot.engage(engage.in_team(member)).await }
+        };
+        let engaging: Vec<_> = robots.into_iter().zip(members).map(engage).collect();
+        let mut arms = Vec::with_capacity(N);
+        for (member, arm) in join_all(engaging).await.into_iter().enumerate() {
+            arms.push(arm.map_err(|error| NotEngaged { member, error })?);
+        }
+        Ok(Self {
+            arms: arms.try_into().expect("one for each robot"),
+            coordinator,
+            submission: Arc::default(),
+        })
+    }
+
+    /// The arms, in the order of the members.
+    pub fn arms(&self) -> &[Arm; N] {
+        &self.arms
+    }
+
+    /// A motion of all arms, each to its destination; see [`Arm::move_to`]. With other options:
+    /// [`Self::run`].
+    pub fn move_to<D: Into<Destination>>(&self, destinations: [D; N]) -> TeamMotion<N> {
+        let mut destinations = destinations.into_iter();
+        self.run(|_, arm| {
+            let destination = destinations.next().expect("one for each arm");
+            arm.move_to(destination)
+        })
+    }
+
+    /// A motion of all arms: `motion` gives that of each member, made by its arm. All begin
+    /// together, when the last one's goal is there; an arm that moves goes on until then. Where
+    /// some follow targets and others do not, convert each `into` a [`MemberMotion`].
+    ///
+    /// If one has a fault, the others brake and resolve as [`MotionError::Braked`] with
+    /// [`Lapse::Team`](crate::error::Lapse::Team), which names the member. All of them hold where
+    /// they come to rest. If one is refused or taken back before the start, none begins.
+    ///
+    /// # Panics
+    /// If a motion is not one of the arm that was given.
+    pub fn run<M: Into<MemberMotion>>(
+        &self,
+        mut motion: impl FnMut(usize, &Arm) -> M,
+    ) -> TeamMotion<N> {
+        let motions = core::array::from_fn(|member| {
+            let arm = &self.arms[member];
+            let motion = motion(member, arm).into();
+            assert!(
+                motion.is_of(arm),
+                "the motion of member {member} is one of its arm"
+            );
+            motion
+        });
+        TeamMotion {
+            coordinator: self.coordinator.clone(),
+            submission: self.submission.clone(),
+            stage: Stage::Ready(motions),
+        }
+    }
+
+    /// Brakes all arms, each within two of its cycles, whatever the runtime is busy with: the
+    /// real-time threads see it by themselves. Motions resolve as [`MotionError::Braked`] with
+    /// [`TeamStop::Requested`]. The sessions go on and hold the arms.
+    pub fn stop(&self) {
+        self.coordinator.stop();
+    }
+
+    /// A handle that stops the team from elsewhere.
+    pub fn stopper(&self) -> Stopper {
+        Stopper(self.coordinator.clone())
+    }
+
+    /// Why the newest joint motion, or what came after it, has stopped; `None` if nothing has.
+    pub fn stopped(&self) -> Option<TeamStop> {
+        self.coordinator.stopped()
+    }
+
+    /// Brakes all arms, lets them go and ends their sessions; resolves when all have ended, with
+    /// how each did: see [`Arm::disengage`].
+    ///
+    /// # Cancel safety
+    /// Once polled the sessions end all the same.
+    pub async fn disengage(self) -> [Outcome; N] {
+        let ended = join_all(self.arms.map(Arm::disengage)).await;
+        ended.try_into().expect("one for each arm")
+    }
+}
+
+/// Stops a team. It does not count as a handle of the sessions.
+#[derive(Clone, Debug)]
+pub struct Stopper(Coordinator);
+
+impl Stopper {
+    /// See [`Team::stop`]. Never waits: fit for any thread.
+    pub fn stop(&self) {
+        self.0.stop();
+    }
+}
+
+/// What one member does in a joint motion.
+#[derive(Debug)]
+#[must_use = "a motion does nothing until it is awaited"]
+#[non_exhaustive]
+pub enum MemberMotion {
+    /// It goes to one target.
+    Motion(Motion),
+    /// It follows a stream of targets. Its part in the start is the first of them.
+    Follow(Follow),
+}
+
+impl From<Motion> for MemberMotion {
+    fn from(motion: Motion) -> Self {
+        Self::Motion(motion)
+    }
+}
+
+impl From<Follow> for MemberMotion {
+    fn from(follow: Follow) -> Self {
+        Self::Follow(follow)
+    }
+}
+
+/// The motion of one member under way.
+type Running = Pin<Box<dyn Future<Output = Outcome> + Send>>;
+
+impl MemberMotion {
+    fn is_of(&self, arm: &Arm) -> bool {
+        match self {
+            Self::Motion(motion) => arm.owns(motion.session()),
+            Self::Follow(follow) => arm.owns(follow.session()),
+        }
+    }
+
+    fn begin(self, round: Round) -> Running {
+        match self {
+            Self::Motion(motion) => Box::pin(motion.in_round(round).into_future()),
+            Self::Follow(follow) => follow.in_round(round).into_future(),
+        }
+    }
+}
+
+/// A motion of all arms of a team as a future. It begins with the first poll and resolves when the
+/// motions of all members have ended, with one outcome for each, in their order.
+///
+/// A newer joint motion supersedes it: those of its motions that are under way go on until the
+/// newer one begins.
+///
+/// # Cancel safety
+/// Dropping it, at any time, brakes all arms, each within two of its cycles; they hold where they
+/// come to rest. Dropped before the first poll, nothing has happened.
+///
+/// # Panics
+/// When polled after it has resolved, as futures may.
+#[must_use = "futures do nothing unless polled"]
+pub struct TeamMotion<const N: usize> {
+    coordinator: Coordinator,
+    submission: Arc<Mutex<()>>,
+    stage: Stage<N>,
+}
+
+enum Stage<const N: usize> {
+    Ready([MemberMotion; N]),
+    Begun {
+        round: Round,
+        members: [Result<Outcome, Running>; N],
+    },
+    Over,
+}
+
+impl<const N: usize> Future for TeamMotion<N> {
+    type Output = [Outcome; N];
+
+    fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<[Outcome; N]> {
+        let Self {
+            coordinator,
+            submission,
+            stage,
+        } = &mut *self;
+        let (round, mut members, _first) = match std::mem::replace(stage, Stage::Over) {
+            Stage::Ready(motions) => {
+                // Nothing of it can be left half done.
+                let first = submission.lock().unwrap_or_else(PoisonError::into_inner);
+                let round = coordinator.begin();
+                let members = motions.map(|motion| Err(motion.begin(round)));
+                (round, members, Some(first))
+            }
+            Stage::Begun { round, members } => (round, members, None),
+            Stage::Over => panic!("a motion is not polled after it has resolved"),
+        };
+        for (number, member) in members.iter_mut().enumerate() {
+            if let Err(running) = member
+                && let Poll::Ready(outcome) = running.as_mut().poll(context)
+            {
+                // The thread has said so already, unless the goal never came to it.
+                if outcome.is_err() {
+                    coordinator.refuse(round, number);
+                }
+                *member = Ok(outcome);
+            }
+        }
+        if members.iter().any(Result::is_err) {
+            *stage = Stage::Begun { round, members };
+            return Poll::Pending;
+        }
+        let ended = |member: Result<Outcome, Running>| member.ok().expect("all have ended");
+        Poll::Ready(members.map(ended))
+    }
+}
+
+impl<const N: usize> Drop for TeamMotion<N> {
+    fn drop(&mut self) {
+        if let Stage::Begun { round, .. } = self.stage {
+            self.coordinator.take_back(round);
+        }
+    }
+}
+
+impl<const N: usize> std::fmt::Debug for TeamMotion<N> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TeamMotion")
+            .field("coordinator", &self.coordinator)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,154 @@
+//! The part of a session in a team: which goals may begin, when the arm has to brake for the
+//! others, and when the others have to for this one.
+
+use super::running::RunningSession;
+use super::{Goal, GoalId, OnArrival, SessionEvent, Settlement, Target};
+use crate::team::{Member, MemberFault, Passage, Round, TeamStop};
+
+/// What a session knows of its team.
+#[derive(Debug)]
+pub(super) struct Membership {
+    member: Member,
+    /// A goal of a round that has not begun.
+    waiting: Option<(Round, Goal)>,
+    /// The goal of a round that has begun.
+    pursued: Option<Pursued>,
+    /// Whether the team has been told that the session has a fault, since its newest state.
+    has_failed: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Pursued {
+    round: Round,
+    goal: GoalId,
+    /// Whether it has come to its end as asked.
+    is_done: bool,
+}
+
+impl Membership {
+    pub(super) fn new(member: Member) -> Self {
+        Self {
+            member,
+            waiting: None,
+            pursued: None,
+            has_failed: false,
+        }
+    }
+
+    /// Replaces the first goal of a session by one that holds the arm, if it has to wait.
+    pub(super) fn first(&mut self, goal: Goal) -> Goal {
+        let Some(round) = goal.round else {
+            return goal;
+        };
+        self.waiting = Some((round, goal));
+        Goal {
+            id: GoalId::default(), // no goal's
+            watchdog: None,        // None may expire before it begins.
+            ..goal.at_rest(OnArrival::Hold)
+        }
+    }
+
+    /// Returns the goal to take up for the answer to the state `now`, `message_id`, and the stop of
+    /// the team, in the cycle that sees it or that takes up a goal of a round that has stopped.
+    pub(super) fn admit(
+        &mut self,
+        newer: Option<Goal>,
+        now: u64,
+    ) -> (Option<Goal>, Option<TeamStop>) {
+        self.has_failed = false;
+        let mut stop = self.member.take_stop();
+        let mut taken = newer.filter(|goal| !self.keeps(goal));
+        if let Some((round, goal)) = self.waiting {
+            match self.member.pass(round, now) {
+                Passage::Waiting => return (taken, stop),
+                Passage::Open => {
+                    self.pursued = Some(Pursued {
+                        round,
+                        goal: goal.id,
+                        is_done: false,
+                    });
+                }
+                Passage::Stopped(reason) => stop = Some(reason),
+            }
+            self.waiting = None;
+            taken = Some(goal);
+        }
+        (taken, stop)
+    }
+
+    /// Takes note of a goal that was read. Returns whether it waits for the other members.
+    fn keeps(&mut self, goal: &Goal) -> bool {
+        let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
+        if let Some((round, waiting)) = self.waiting
+            && (waiting.id != goal.id || taken_back)
+        {
+            self.waiting = None;
+            self.member.give_up(round, MemberFault::TakenBack);
+        }
+        if let Some(pursued) = self.pursued {
+            if pursued.goal == goal.id && !taken_back {
+                return false;
+            }
+            self.pursued = None;
+            if !pursued.is_done {
+                self.member.give_up(pursued.round, MemberFault::TakenBack);
+            }
+        }
+        let Some(round) = goal.round.filter(|_| !taken_back) else {
+            return false;
+        };
+        self.waiting = Some((round, *goal));
+        true
+    }
+
+    /// Stops the round if its goal has been given up.
+    pub(super) fn watch(&mut self, session: &RunningSession) {
+        if let Some(pursued) = self.pursued
+            && session.goal.id == pursued.goal
+            && session.has_braked()
+        {
+            self.pursued = None;
+            self.member.give_up(pursued.round, MemberFault::GivenUp);
+        }
+    }
+
+    /// Takes note of the end of a goal. One that ended as asked is still part of its round: if it
+    /// is given up later, the others brake.
+    pub(super) fn settle(&mut self, event: &SessionEvent) {
+        let SessionEvent::Settled {
+            goal, settlement, ..
+        } = event
+        else {
+            return;
+        };
+        let Some(pursued) = self.pursued.as_mut().filter(|it| it.goal == *goal) else {
+            return;
+        };
+        let fault = match settlement {
+            Settlement::Arrived(_) | Settlement::AtRest => {
+                pursued.is_done = true;
+                return;
+            }
+            Settlement::TargetNotReached(_) => MemberFault::NotReached,
+            Settlement::Held(_) | Settlement::Braked(_) | Settlement::Unstarted(_) => {
+                MemberFault::GivenUp
+            }
+        };
+        let round = pursued.round;
+        self.pursued = None;
+        self.member.give_up(round, fault);
+    }
+
+    /// Stops the team for a fault outside the goals, once until the next state.
+    pub(super) fn fail(&mut self, fault: MemberFault) {
+        if !self.has_failed {
+            self.has_failed = true;
+            self.member.stop(fault);
+        }
+    }
+
+    /// Leaves the team without a fault.
+    pub(super) fn leave(&mut self) {
+        self.member.leave();
+    }
+}

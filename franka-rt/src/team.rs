@@ -1,0 +1,409 @@
+//! Joint motions of several robots: they begin together, and the fault of one brakes the others.
+//!
+//! ```text
+//!  Coordinator::begin --> Round: one goal for each member
+//!
+//!              the last goal is taken up            a goal is given up, a robot stops, ...
+//!   waiting ---------------------------------> open ---------------------------------> stopped
+//!      |                                                                                  ^
+//!      +----------------------------------------------------------------------------------+
+//!         a goal is refused or taken back, a robot stops, a member has waited too long
+//! ```
+//!
+//! The state of the newest round is one atomic word, which all members look at once in each of
+//! their own cycles: a load. Whoever sees a fault writes it there, by a compare-and-exchange. No
+//! thread waits for another one, and no async runtime is on the way: a member that brakes begins to
+//! within two of its cycles after the fault was seen by the thread of the member that has it. The
+//! first fault of a round stays.
+//!
+//! [`together`](crate::together) has common starts of motions that end by themselves; here a session
+//! goes from goal to goal.
+
+#[cfg(loom)]
+use loom::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+#[cfg(not(loom))]
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+
+use core::num::NonZeroU32;
+use core::time::Duration;
+
+/// The most members of a team.
+pub const MEMBERS_MAX: usize = 254;
+
+/// Silence of a member's robot after which the others brake. A robot that misses as many commands
+/// stops by itself. Noticed late by one wait of the member's thread at most, 20 ms.
+pub const SILENCE: Duration = Duration::from_millis(20);
+
+/// How long a goal of a joint motion waits for those of the other members, by the clock of its
+/// robot. The arm is held meanwhile, or goes on with what it did before.
+pub const START_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// One joint motion of a team.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Round(NonZeroU32);
+
+impl Round {
+    pub(crate) fn to_word(round: Option<Self>) -> u64 {
+        round.map_or(0, |round| round.0.get().into())
+    }
+
+    pub(crate) fn from_word(word: u64) -> Option<Self> {
+        NonZeroU32::new(word as u32).map(Self)
+    }
+}
+
+/// Why the members of a team brake. Members count from 0, in the order of the team.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum TeamStop {
+    /// Caller: the team was told to stop.
+    Requested,
+    /// A member has a fault; its own motion says more.
+    Member {
+        /// Which.
+        member: usize,
+        /// What happened to it.
+        fault: MemberFault,
+    },
+}
+
+/// What happened to a member of a team.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum MemberFault {
+    /// Its robot ended the session: a reflex, a user stop, another client.
+    RobotStopped,
+    /// Its robot was silent for [`SILENCE`].
+    Silent,
+    /// A command could not be sent, and the robot was told to stop.
+    Failed,
+    /// Its session was dropped: the control thread has ended, or panicked.
+    Gone,
+    /// Its goal was given up: the arm was displaced, its way is blocked, its deadman or its stream
+    /// of targets is silent.
+    GivenUp,
+    /// It did not reach its target.
+    NotReached,
+    /// Its motion was dropped, cancelled or stopped, or gave way to another goal.
+    TakenBack,
+    /// Its goal was refused.
+    Refused,
+    /// The goals of the others did not come in time.
+    TimedOut,
+}
+
+impl core::fmt::Display for TeamStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Requested => write!(f, "the team was told to stop"),
+            Self::Member { member, fault } => write!(f, "member {member} of the team: {fault}"),
+        }
+    }
+}
+
+impl core::fmt::Display for MemberFault {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::RobotStopped => "its robot has stopped by itself",
+            Self::Silent => "its robot is silent",
+            Self::Failed => "its command could not be sent",
+            Self::Gone => "its session is gone",
+            Self::GivenUp => "its goal was given up",
+            Self::NotReached => "it did not reach its target",
+            Self::TakenBack => "its motion was taken back",
+            Self::Refused => "its goal was refused",
+            Self::TimedOut => "it has waited for the others for too long",
+        })
+    }
+}
+
+/// Begins and stops the joint motions of a team, from any thread. Clones are for the same team.
+#[derive(Clone, Debug)]
+pub struct Coordinator {
+    shared: Arc<Shared>,
+}
+
+/// The part of one session in a team. Dropping it, unless it has left, is a fault.
+#[derive(Debug)]
+#[must_use = "dropping a member stops the team"]
+pub struct Member {
+    shared: Arc<Shared>,
+    number: u8,
+    /// The newest round that it has taken part in, and since when, `[ms]` of its robot.
+    arrived: Option<(Round, u64)>,
+    /// The newest stop that it has seen.
+    seen: Word,
+    has_left: bool,
+}
+
+/// Whether the goal of a round may be pursued.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passage {
+    /// Not all members are there.
+    Waiting,
+    /// It may.
+    Open,
+    /// It may not.
+    Stopped(TeamStop),
+}
+
+/// A team of `N` members that are to be handed to sessions.
+pub fn team<const N: usize>() -> (Coordinator, [Member; N]) {
+    const { assert!(N <= MEMBERS_MAX, "so many members fit") };
+    let shared = Arc::new(Shared {
+        word: AtomicU64::new(Word::default().0),
+        members: N as u8,
+    });
+    let member = |number| Member {
+        shared: shared.clone(),
+        number: number as u8,
+        arrived: None,
+        seen: Word::default(),
+        has_left: false,
+    };
+    let members = core::array::from_fn(member);
+    (Coordinator { shared }, members)
+}
+
+impl Coordinator {
+    /// Begins a round: the members wait until each has a goal of it. A round before it that has not
+    /// begun never does; goals under way of an older one go on until theirs of this one begin.
+    pub fn begin(&self) -> Round {
+        let word = self.shared.change(|word| Some(word.next_round()));
+        word.round().unwrap_or(Round(NonZeroU32::MIN))
+    }
+
+    /// Brakes all members within two of their cycles. They hold where they come to rest, until they
+    /// are given other goals. Wait-free but for the members' own changes.
+    pub fn stop(&self) {
+        self.shared.stop(CALLER, Cause::Requested);
+    }
+
+    /// Notes that the goal of `member` in this round was refused or has ended with an error.
+    /// Without effect on a round that has stopped, and on one that is not the newest.
+    pub fn refuse(&self, round: Round, member: usize) {
+        let cause = Cause::Member(MemberFault::Refused);
+        self.shared.stop_round(round, member as u8, cause);
+    }
+
+    /// Brakes all members, if this round is the newest. Without effect on one that has stopped.
+    pub fn take_back(&self, round: Round) {
+        self.shared.stop_round(round, CALLER, Cause::Requested);
+    }
+
+    /// Why the newest round has stopped; `None` if it has not.
+    pub fn stopped(&self) -> Option<TeamStop> {
+        self.shared.look().stop()
+    }
+}
+
+impl Member {
+    /// Its number, from 0.
+    pub fn number(&self) -> usize {
+        self.number.into()
+    }
+
+    /// Returns whether the goal of `round` may be pursued at `now`, `[ms]` of the robot's clock.
+    /// The first call is the arrival. Never waits.
+    pub fn pass(&mut self, round: Round, now: u64) -> Passage {
+        let since = match self.arrived {
+            Some((arrived, since)) if arrived == round => since,
+            _ => {
+                self.arrived = Some((round, now));
+                let members = self.shared.members;
+                self.shared.change(|word| {
+                    let waits = word.is_going(round) && word.present() < members;
+                    waits.then(|| word.with_one_more())
+                });
+                now
+            }
+        };
+        let passage = self.passage(round);
+        let waited = u128::from(now.saturating_sub(since));
+        if passage == Passage::Waiting && waited >= START_TIMEOUT.as_millis() {
+            self.give_up(round, MemberFault::TimedOut);
+            return self.passage(round);
+        }
+        passage
+    }
+
+    fn passage(&self, round: Round) -> Passage {
+        let word = self.shared.look();
+        match word.stop() {
+            Some(stop) => Passage::Stopped(stop),
+            None if word.round() != Some(round) => Passage::Stopped(TeamStop::Member {
+                member: self.number(),
+                fault: MemberFault::TakenBack,
+            }),
+            None if word.present() == self.shared.members => Passage::Open,
+            None => Passage::Waiting,
+        }
+    }
+
+    /// The stop of the team, if this is the first call since then.
+    pub fn take_stop(&mut self) -> Option<TeamStop> {
+        let word = self.shared.look();
+        let stop = word.stop().filter(|_| word != self.seen)?;
+        self.seen = word;
+        Some(stop)
+    }
+
+    /// Stops `round` for a fault of this member in it. Without effect on a round that has stopped,
+    /// and on one that is not the newest.
+    pub fn give_up(&self, round: Round, fault: MemberFault) {
+        let cause = Cause::Member(fault);
+        self.shared.stop_round(round, self.number, cause);
+    }
+
+    /// Stops whatever the other members do, in a round or not.
+    pub fn stop(&self, fault: MemberFault) {
+        self.shared.stop(self.number, Cause::Member(fault));
+    }
+
+    /// Leaves the team, which goes on for as long as it needs no goal of this member.
+    pub fn leave(&mut self) {
+        self.has_left = true;
+    }
+}
+
+impl Drop for Member {
+    fn drop(&mut self) {
+        if !self.has_left {
+            self.stop(MemberFault::Gone);
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Shared {
+    word: AtomicU64,
+    members: u8,
+}
+
+impl Shared {
+    fn look(&self) -> Word {
+        // Relaxed, here and below: no other memory is read depending on the word, and all threads
+        // see the changes of one atomic in the same order.
+        Word(self.word.load(Ordering::Relaxed))
+    }
+
+    /// Stops the newest round, or what is done after it has stopped before.
+    fn stop(&self, member: u8, cause: Cause) {
+        self.change(|word| {
+            let going = match word.stop() {
+                None => word,
+                Some(_) => word.next_round(),
+            };
+            Some(going.stopped(member, cause))
+        });
+    }
+
+    fn stop_round(&self, round: Round, member: u8, cause: Cause) {
+        self.change(|word| word.is_going(round).then(|| word.stopped(member, cause)));
+    }
+
+    /// Replaces the word, as long as there is something to change; returns the newest.
+    fn change(&self, to: impl Fn(Word) -> Option<Word>) -> Word {
+        let mut word = self.look();
+        while let Some(next) = to(word) {
+            // Strong: it fails only if the word was changed meanwhile. In a round each member
+            // does that twice at most; other changes are calls from outside.
+            let order = Ordering::Relaxed;
+            match self.word.compare_exchange(word.0, next.0, order, order) {
+                Ok(_) => return next,
+                Err(newer) => word = Word(newer),
+            }
+        }
+        word
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cause {
+    Requested,
+    Member(MemberFault),
+}
+
+/// Bits: 0 to 7 members present, 8 to 15 the member that stopped it, 16 to 23 why (0: it goes on),
+/// 32 to 63 the round.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Word(u64);
+
+impl Word {
+    fn round(self) -> Option<Round> {
+        Round::from_word(self.0 >> 32)
+    }
+
+    fn present(self) -> u8 {
+        self.0 as u8
+    }
+
+    /// Whether this is the newest round, and it has not stopped.
+    fn is_going(self, round: Round) -> bool {
+        self.round() == Some(round) && self.stop().is_none()
+    }
+
+    fn stop(self) -> Option<TeamStop> {
+        let cause = (self.0 >> 16) as u8;
+        if cause == REQUESTED {
+            return Some(TeamStop::Requested);
+        }
+        let fault = *FAULTS.get(usize::from(cause).checked_sub(1)?)?;
+        let member = usize::from((self.0 >> 8) as u8);
+        Some(TeamStop::Member { member, fault })
+    }
+
+    fn next_round(self) -> Self {
+        // Four thousand million rounds later the numbers begin anew; 0 is none.
+        let round = ((self.0 >> 32) as u32).wrapping_add(1).max(1);
+        Self(u64::from(round) << 32)
+    }
+
+    fn with_one_more(self) -> Self {
+        Self(self.0 + 1)
+    }
+
+    fn stopped(self, member: u8, cause: Cause) -> Self {
+        let cause = match cause {
+            Cause::Requested => REQUESTED,
+            // Every fault is in the list: see the test.
+            Cause::Member(fault) => FAULTS
+                .iter()
+                .position(|it| *it == fault)
+                .map_or(REQUESTED, |place| place as u8 + 1),
+        };
+        Self(self.0 | u64::from(member) << 8 | u64::from(cause) << 16)
+    }
+}
+
+/// Stands for the caller in the place of a member.
+const CALLER: u8 = u8::MAX;
+
+/// What stands for [`TeamStop::Requested`] in a word.
+const REQUESTED: u8 = u8::MAX;
+
+/// What stands in a word for a fault is its place here, from 1.
+const FAULTS: [MemberFault; 9] = [
+    MemberFault::RobotStopped,
+    MemberFault::Silent,
+    MemberFault::Failed,
+    MemberFault::Gone,
+    MemberFault::GivenUp,
+    MemberFault::NotReached,
+    MemberFault::TakenBack,
+    MemberFault::Refused,
+    MemberFault::TimedOut,
+];
+
+// The path also holds where `tests/loom` includes this file.
+#[cfg(all(test, not(loom)))]
+#[path = "team/tests.rs"]
+mod tests;

@@ -1,0 +1,85 @@
+//! Members of one team, in one thread.
+
+use super::*;
+
+fn stop_of(member: usize, fault: MemberFault) -> TeamStop {
+    TeamStop::Member { member, fault }
+}
+
+#[test]
+fn a_round_opens_when_the_last_goal_is_there_and_each_round_anew() {
+    let (coordinator, [mut first, mut second]) = team();
+    for now in [100, 5000] {
+        let round = coordinator.begin();
+        assert_eq!(first.pass(round, now), Passage::Waiting);
+        assert_eq!(first.pass(round, now + 1), Passage::Waiting);
+        assert_eq!(second.pass(round, 7), Passage::Open);
+        assert_eq!(first.pass(round, now + 2), Passage::Open);
+    }
+    first.leave();
+    drop(first);
+    assert_eq!(coordinator.stopped(), None, "it left");
+}
+
+#[test]
+fn the_first_fault_of_a_round_stays_and_is_seen_once() {
+    let (coordinator, [mut first, mut second, mut third]) = team();
+    let round = coordinator.begin();
+    for member in [&mut first, &mut second, &mut third] {
+        member.pass(round, 0);
+    }
+    second.give_up(round, MemberFault::GivenUp);
+    third.give_up(round, MemberFault::TakenBack);
+    let stop = stop_of(1, MemberFault::GivenUp);
+    assert_eq!(coordinator.stopped(), Some(stop));
+    assert_eq!(first.take_stop(), Some(stop));
+    assert_eq!(first.take_stop(), None);
+    assert_eq!(first.pass(round, 1), Passage::Stopped(stop));
+    // The next round is a new beginning; faults of the one before are no longer of interest.
+    let next = coordinator.begin();
+    second.give_up(round, MemberFault::NotReached);
+    assert_eq!((first.take_stop(), coordinator.stopped()), (None, None));
+    assert_eq!(first.pass(next, 2), Passage::Waiting);
+    // A goal of the round before comes too late.
+    let late = stop_of(2, MemberFault::TakenBack);
+    assert_eq!(third.pass(round, 3), Passage::Stopped(late));
+}
+
+#[test]
+fn a_session_that_ends_stops_what_is_done_after_a_stop_too() {
+    let (coordinator, [mut first, second]) = team();
+    coordinator.stop();
+    assert_eq!(first.take_stop(), Some(TeamStop::Requested));
+    second.stop(MemberFault::RobotStopped);
+    let stop = stop_of(1, MemberFault::RobotStopped);
+    assert_eq!(first.take_stop(), Some(stop));
+    drop(second);
+    let stop = stop_of(1, MemberFault::Gone);
+    assert_eq!(first.take_stop(), Some(stop));
+}
+
+#[test]
+fn waiting_ends_at_the_timeout() {
+    let (coordinator, [mut first, _second]) = team();
+    let round = coordinator.begin();
+    let last = START_TIMEOUT.as_millis() as u64 + 100;
+    assert_eq!(first.pass(round, 100), Passage::Waiting);
+    assert_eq!(first.pass(round, last - 1), Passage::Waiting);
+    let stop = stop_of(0, MemberFault::TimedOut);
+    assert_eq!(first.pass(round, last), Passage::Stopped(stop));
+}
+
+#[test]
+fn every_fault_survives_its_word() {
+    for fault in FAULTS {
+        for member in [0, 253] {
+            let word = Word(0x1234_5678_0000_0002).stopped(member, Cause::Member(fault));
+            assert_eq!(word.stop(), Some(stop_of(member.into(), fault)));
+            assert_eq!(word.present(), 2);
+            assert_eq!(Round::to_word(word.round()), 0x1234_5678);
+        }
+    }
+    let word = Word::default().stopped(CALLER, Cause::Requested);
+    assert_eq!(word.stop(), Some(TeamStop::Requested));
+    assert_eq!(Word(u64::MAX).next_round().round(), Round::from_word(1));
+}
