@@ -30,9 +30,10 @@ use std::future::{Future, IntoFuture};
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll};
+use std::time::Duration;
 
 use franka_rt::lifecycle::{MotionError, MotionReport};
-use franka_rt::team::{Coordinator, Member, Round, team};
+use franka_rt::team::{Coordinator, Member, Round, team_tolerating};
 use futures::future::join_all;
 
 pub use franka_rt::team::{MEMBERS_MAX, MemberFault, SILENCE, START_TIMEOUT, TeamStop};
@@ -93,7 +94,23 @@ impl<const N: usize> Team<N> {
     /// # Cancel safety
     /// Dropping the future ends all sessions, in the background.
     pub async fn engage(robots: [(&Robot, Engage); N]) -> Result<Self, NotEngaged> {
-        let (coordinator, members) = team::<N>();
+        Self::engage_tolerating(SILENCE, robots).await
+    }
+
+    /// As [`Self::engage`], with the silence of a robot after which the others brake in place of
+    /// [`SILENCE`]: for simulators on a machine that is busy with other things. A robot stops by
+    /// itself after 20 ms without commands.
+    ///
+    /// # Errors
+    /// As [`Self::engage`].
+    ///
+    /// # Cancel safety
+    /// As [`Self::engage`].
+    pub async fn engage_tolerating(
+        silence: Duration,
+        robots: [(&Robot, Engage); N],
+    ) -> Result<Self, NotEngaged> {
+        let (coordinator, members) = team_tolerating::<N>(silence);
         let engage = |((robot, engage), member): ((&Robot, Engage), Member)| {
             let robot = robot.clone();
             async move { robot.engage(engage.in_team(member)).await }

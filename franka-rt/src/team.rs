@@ -36,7 +36,7 @@ use core::time::Duration;
 /// The most members of a team.
 pub const MEMBERS_MAX: usize = 254;
 
-/// Silence of a member's robot after which the others brake. A robot that misses as many commands
+/// Silence of a member's robot after which the others brake, unless said otherwise. A robot that misses as many commands
 /// stops by itself. Noticed late by one wait of the member's thread at most, 20 ms.
 pub const SILENCE: Duration = Duration::from_millis(20);
 
@@ -81,7 +81,7 @@ pub enum TeamStop {
 pub enum MemberFault {
     /// Its robot ended the session: a reflex, a user stop, another client.
     RobotStopped,
-    /// Its robot was silent for [`SILENCE`].
+    /// Its robot was silent for too long: [`SILENCE`].
     Silent,
     /// A command could not be sent, and the robot was told to stop.
     Failed,
@@ -157,10 +157,16 @@ pub enum Passage {
 
 /// A team of `N` members that are to be handed to sessions.
 pub fn team<const N: usize>() -> (Coordinator, [Member; N]) {
+    team_tolerating(SILENCE)
+}
+
+/// A team whose members' robots may be silent for so long.
+pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Member; N]) {
     const { assert!(N <= MEMBERS_MAX, "so many members fit") };
     let shared = Arc::new(Shared {
         word: AtomicU64::new(Word::default().0),
         members: N as u8,
+        silence,
     });
     let member = |number| Member {
         shared: shared.clone(),
@@ -209,6 +215,11 @@ impl Member {
     /// Its number, from 0.
     pub fn number(&self) -> usize {
         self.number.into()
+    }
+
+    /// For how long its robot may be silent.
+    pub fn silence(&self) -> Duration {
+        self.shared.silence
     }
 
     /// Returns whether the goal of `round` may be pursued at `now`, `[ms]` of the robot's clock.
@@ -286,6 +297,7 @@ impl Drop for Member {
 struct Shared {
     word: AtomicU64,
     members: u8,
+    silence: Duration,
 }
 
 impl Shared {

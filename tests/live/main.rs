@@ -32,6 +32,7 @@ mod scripts;
 mod stalls;
 mod starving;
 mod supervising;
+mod team;
 mod telemetry;
 mod together;
 

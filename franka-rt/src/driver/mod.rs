@@ -51,7 +51,7 @@ use franka_proto::{RobotCommand, RobotState, Version};
 use crate::control::{Command, Failure, WriteError};
 use crate::slot::{SlotWriter, slot};
 use crate::stats::MotionStatistics;
-use crate::team::{self, MemberFault};
+use crate::team::MemberFault;
 use crate::together::Gate;
 
 pub use commander::Commander;
@@ -317,13 +317,11 @@ impl Driver {
         Ok(sent)
     }
 
-    /// Tells that no state has come for `silence`. After [`team::SILENCE`] the others of a team
-    /// brake, and at the link timeout a motion ends with [`Ending::LinkLost`].
+    /// Tells that no state has come for `silence`. After [`team::SILENCE`](crate::team::SILENCE)
+    /// the others of a team brake, and at the link timeout a motion ends with [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
-        if silence >= team::SILENCE
-            && let Some(motion) = self.phase.begun_mut()
-        {
-            motion.program.fail_team(MemberFault::Silent);
+        if let Some(motion) = self.phase.begun_mut() {
+            motion.program.on_silence(silence);
         }
         if silence < self.link_timeout.get() || self.lost.is_some() {
             return;

@@ -1,5 +1,7 @@
 //! What answers the states of a running motion.
 
+use core::time::Duration;
+
 use franka_proto::{RobotState, Version};
 
 use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command, Failure};
@@ -65,17 +67,22 @@ impl Program {
 
     /// Brakes the others of its team, if it has one.
     pub(super) fn fail_team(&mut self, fault: MemberFault) {
-        match self {
-            Self::Target(session) => session.fail_team(fault),
-            Self::Callback(_) | Self::Active(_) | Self::Asynchronous(_) => {}
+        if let Self::Target(session) = self {
+            session.fail_team(fault);
+        }
+    }
+
+    /// Brakes the others of its team, if it has one, when the robot has been silent for too long.
+    pub(super) fn on_silence(&mut self, silence: Duration) {
+        if let Self::Target(session) = self {
+            session.on_silence(silence);
         }
     }
 
     /// Leaves its team, if it has one, without a fault.
     pub(super) fn leave_team(&mut self) {
-        match self {
-            Self::Target(session) => session.leave_team(),
-            Self::Callback(_) | Self::Active(_) | Self::Asynchronous(_) => {}
+        if let Self::Target(session) = self {
+            session.leave_team();
         }
     }
 

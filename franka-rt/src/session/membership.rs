@@ -1,6 +1,8 @@
 //! The part of a session in a team: which goals may begin, when the arm has to brake for the
 //! others, and when the others have to for this one.
 
+use core::time::Duration;
+
 use super::running::RunningSession;
 use super::{Goal, GoalId, OnArrival, SessionEvent, Settlement, Target};
 use crate::team::{Member, MemberFault, Passage, Round, TeamStop};
@@ -144,6 +146,13 @@ impl Membership {
         if !self.has_failed {
             self.has_failed = true;
             self.member.stop(fault);
+        }
+    }
+
+    /// Stops the team if that is too long for no state to come.
+    pub(super) fn on_silence(&mut self, silence: Duration) {
+        if silence >= self.member.silence() {
+            self.fail(MemberFault::Silent);
         }
     }
 

@@ -323,6 +323,13 @@ impl TargetSession {
         }
     }
 
+    /// Tells that no state has come for `silence`.
+    pub(crate) fn on_silence(&mut self, silence: Duration) {
+        if let Some(team) = &mut self.team {
+            team.on_silence(silence);
+        }
+    }
+
     /// Leaves the team, if it is a member of one.
     pub(crate) fn leave_team(&mut self) {
         if let Some(team) = &mut self.team {
