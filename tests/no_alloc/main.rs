@@ -6,6 +6,7 @@ mod endings;
 mod engaged;
 mod generator;
 mod guards;
+mod team;
 mod thread;
 
 use std::alloc::{GlobalAlloc, Layout, System};
