@@ -18,7 +18,7 @@ mod rigid;
 pub use drive::{DriveTrain, LinkTorque};
 pub use fingers::FingerDrive;
 #[cfg(feature = "mujoco")]
-pub use mujoco::{MujocoArm, Scene, SceneError};
+pub use mujoco::{Mount, MujocoArm, Scene, SceneError, SharedArm, shared_world};
 pub use rigid::RigidArm;
 
 use std::any::Any;

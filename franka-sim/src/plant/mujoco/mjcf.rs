@@ -11,13 +11,14 @@ use nalgebra::{Isometry3, Matrix3, UnitQuaternion, Vector3};
 use super::{fingers, joint_name};
 use crate::arm;
 
-/// The MJCF text of an arm that stands in the world's origin and carries `load`.
+/// The MJCF text of an arm whose base frame is `base` in the world and that carries `load`.
 pub(super) fn arm(
     kind: RobotKind,
     body: &arm::Body,
     armature: &JointVector,
     load: &Load,
     has_hand: bool,
+    base: &Isometry3<f64>,
 ) -> String {
     let built = body.as_built(kind);
     let shapes = Shapes::of(kind, has_hand);
@@ -25,7 +26,13 @@ pub(super) fn arm(
     // A load may have any moments of inertia; MuJoCo takes the nearest that a body can have.
     text.push_str(
         "<mujoco><compiler angle='radian' balanceinertia='true'/><default>\
-         <geom contype='2' conaffinity='1' mass='0'/></default><worldbody><body name='link0'>",
+         <geom contype='2' conaffinity='1' mass='0'/></default><worldbody>",
+    );
+    let place = numbers(&base.translation.vector);
+    let turn = quaternion(&base.rotation);
+    add(
+        &mut text,
+        format_args!("<body name='link0' pos='{place}' quat='{turn}'>"),
     );
     shapes.write(&mut text, Body::Link(0));
     for (i, (origin, link)) in built.joint_origins().iter().zip(built.links()).enumerate() {

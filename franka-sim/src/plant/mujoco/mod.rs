@@ -3,10 +3,12 @@
 mod fingers;
 mod mjcf;
 mod scene;
+mod shared;
 #[cfg(test)]
 mod tests;
 
 pub use scene::{Scene, SceneError};
+pub use shared::{Mount, SharedArm, shared_world};
 
 use franka_model::{CYCLE, JointVector, Load, RobotKind};
 use mujoco_rs::prelude::{MjData, MjModel, MjtState};
@@ -76,11 +78,7 @@ impl MujocoArm {
     /// Pose of a body of the scene, in the base frame, as it was when the last step began; `None`
     /// if there is no body of this name. The robot's own have names that begin with `franka_`.
     pub fn body_pose(&self, name: &str) -> Option<Isometry3<f64>> {
-        let id = scene::body(self.data.model(), name)?;
-        let position = Vector3::from(self.data.xpos()[id]);
-        let [w, x, y, z] = self.data.xquat()[id];
-        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
-        Some(Isometry3::from_parts(position.into(), rotation))
+        body_pose(&self.data, name)
     }
 
     /// Puts a body of the scene that has a free joint somewhere else, at rest: its pose in the base
@@ -134,9 +132,7 @@ impl MujocoArm {
 
     /// Reads positions and velocities of the joints from MuJoCo.
     fn read(&mut self) {
-        let (q, dq) = (self.data.qpos(), self.data.qvel());
-        self.q = self.places.qpos.map(|place| q[place]).into();
-        self.dq = self.places.dof.map(|place| dq[place]).into();
+        (self.q, self.dq) = read(&self.data, &self.places);
     }
 }
 
@@ -162,16 +158,14 @@ impl Plant for MujocoArm {
     }
 
     fn step(&mut self, drive: &LinkTorque, external: &JointVector, dt: f64) {
-        let (stop, stop_slope) = self.arm.body.stops.resistance(&self.q, &self.dq, dt);
-        // The model has the drives' least inertia. The rest is that of a damper over one step.
-        let rest = (drive.inertia - self.armature).map(|inertia| inertia.max(0.0) / dt);
-        // The dampers subtract slope · dq at the start of the step: what is beyond that is a force.
-        let slope = drive.damping + rest + stop_slope;
-        let force = drive.torque + external - stop + slope.component_mul(&self.dq);
-        for i in 0..7 {
-            self.data.ctrl_mut()[self.places.damper[i]] = slope[i];
-            self.data.qfrc_applied_mut()[self.places.dof[i]] = force[i];
-        }
+        let (places, armature) = (&self.places, &self.armature);
+        apply(
+            &mut self.data,
+            places,
+            &self.arm,
+            armature,
+            (drive, external, dt),
+        );
         if let Some(fingers) = &mut self.fingers {
             fingers.drive(&mut self.data, dt);
         }
@@ -207,6 +201,45 @@ impl Plant for MujocoArm {
         let fingers = self.fingers.as_mut()?;
         fingers.set(*drive);
         Some(fingers.width(&self.data))
+    }
+}
+
+/// Positions and velocities of the joints of an arm.
+fn read(data: &MjData<Box<MjModel>>, places: &Places) -> (JointVector, JointVector) {
+    let (q, dq) = (data.qpos(), data.qvel());
+    (
+        places.qpos.map(|place| q[place]).into(),
+        places.dof.map(|place| dq[place]).into(),
+    )
+}
+
+/// Pose of a body in the world.
+fn body_pose(data: &MjData<Box<MjModel>>, name: &str) -> Option<Isometry3<f64>> {
+    let id = scene::body(data.model(), name)?;
+    let position = Vector3::from(data.xpos()[id]);
+    let [w, x, y, z] = data.xquat()[id];
+    let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+    Some(Isometry3::from_parts(position.into(), rotation))
+}
+
+/// Sets the forces on an arm for a step of `dt` seconds.
+fn apply(
+    data: &mut MjData<Box<MjModel>>,
+    places: &Places,
+    arm: &Arm,
+    armature: &JointVector,
+    (drive, external, dt): (&LinkTorque, &JointVector, f64),
+) {
+    let (q, dq) = read(data, places);
+    let (stop, stop_slope) = arm.body.stops.resistance(&q, &dq, dt);
+    // The model has the drives' least inertia. The rest is that of a damper over one step.
+    let rest = (drive.inertia - armature).map(|inertia| inertia.max(0.0) / dt);
+    // The dampers subtract slope · dq at the start of the step: what is beyond that is a force.
+    let slope = drive.damping + rest + stop_slope;
+    let force = drive.torque + external - stop + slope.component_mul(&dq);
+    for i in 0..7 {
+        data.ctrl_mut()[places.damper[i]] = slope[i];
+        data.qfrc_applied_mut()[places.dof[i]] = force[i];
     }
 }
 

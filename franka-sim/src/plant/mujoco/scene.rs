@@ -6,6 +6,8 @@ use franka_model::{JointVector, Load, RobotKind};
 use mujoco_rs::mujoco_c::{mjtCone, mjtDisableBit, mjtIntegrator};
 use mujoco_rs::prelude::{Attach as _, MjModel, MjSpec, MjtJoint, MjtObjBase};
 
+use nalgebra::Isometry3;
+
 use super::fingers::FingerJoints;
 use super::{joint_name, mjcf};
 use crate::arm;
@@ -108,24 +110,39 @@ impl Scene {
         armature: &JointVector,
         load: &Load,
     ) -> Result<(MjModel, Places), SceneError> {
+        let base = Isometry3::identity();
+        let text = mjcf::arm(kind, body, armature, load, self.has_hand, &base);
+        let model = self.compile_around(&[(PREFIX, text)], body.gravity_earth.into())?;
+        let places = Places::of(&model, PREFIX)?;
+        Ok((model, places))
+    }
+
+    /// Surroundings and these arms, each an MJCF text with the beginning of its names, as one
+    /// model.
+    pub(super) fn compile_around(
+        &self,
+        arms: &[(&str, String)],
+        gravity_earth: [f64; 3],
+    ) -> Result<MjModel, SceneError> {
         let mut spec = match &self.surroundings {
             Surroundings::Table => MjSpec::from_xml_string(TABLE),
             Surroundings::Text(text) => MjSpec::from_xml_string(text),
             Surroundings::File(path) => MjSpec::from_xml(path),
         }
         .map_err(|error| SceneError::Unreadable(error.to_string()))?;
-        let text = mjcf::arm(kind, body, armature, load, self.has_hand);
         let conflict =
             |error: mujoco_rs::error::MjEditError| SceneError::Conflict(error.to_string());
-        let mut arm = MjSpec::from_xml_string(&text).map_err(conflict)?;
-        spec.world_body_mut()
-            .attach_by_deep_copy(&mut arm, PREFIX, "")
-            .map_err(conflict)?;
+        for (prefix, text) in arms {
+            let mut arm = MjSpec::from_xml_string(text).map_err(conflict)?;
+            spec.world_body_mut()
+                .attach_by_deep_copy(&mut arm, prefix, "")
+                .map_err(conflict)?;
+        }
         let mut model = spec
             .compile()
             .map_err(|error| SceneError::Impossible(error.to_string()))?;
         let options = model.opt_mut();
-        options.gravity = body.gravity_earth.into();
+        options.gravity = gravity_earth;
         // Takes the dampers of the joints implicitly.
         options.integrator = mjtIntegrator::mjINT_IMPLICITFAST as i32;
         // Without these two a grasp creeps: friction is as soft as contact, and weaker along
@@ -134,8 +151,12 @@ impl Scene {
         options.impratio = 10.0;
         // A simulation that has become unstable must not look like one that begins anew.
         options.disableflags |= mjtDisableBit::mjDSBL_AUTORESET as i32;
-        let places = Places::of(&model)?;
-        Ok((model, places))
+        Ok(model)
+    }
+
+    /// Whether there is a Franka Hand.
+    pub(super) fn has_hand(&self) -> bool {
+        self.has_hand
     }
 
     /// The fingers, if the scene has some.
@@ -153,7 +174,8 @@ pub(super) struct Places {
 }
 
 impl Places {
-    fn of(model: &MjModel) -> Result<Self, SceneError> {
+    /// Those of the arm whose names begin like this.
+    pub(super) fn of(model: &MjModel, prefix: &str) -> Result<Self, SceneError> {
         let mut places = Self {
             qpos: [0; 7],
             dof: [0; 7],
@@ -161,8 +183,8 @@ impl Places {
         };
         for i in 0..7 {
             let name = joint_name(i);
-            (places.qpos[i], places.dof[i]) = joint(model, &name)?;
-            places.damper[i] = find(model, MjtObjBase::mjOBJ_ACTUATOR, &name)?;
+            (places.qpos[i], places.dof[i]) = joint_of(model, prefix, &name)?;
+            places.damper[i] = find(model, MjtObjBase::mjOBJ_ACTUATOR, prefix, &name)?;
         }
         Ok(places)
     }
@@ -170,7 +192,11 @@ impl Places {
 
 /// The places of a joint of one coordinate in `qpos` and `qvel`.
 pub(super) fn joint(model: &MjModel, name: &str) -> Result<(usize, usize), SceneError> {
-    let id = find(model, MjtObjBase::mjOBJ_JOINT, name)?;
+    joint_of(model, PREFIX, name)
+}
+
+fn joint_of(model: &MjModel, prefix: &str, name: &str) -> Result<(usize, usize), SceneError> {
+    let id = find(model, MjtObjBase::mjOBJ_JOINT, prefix, name)?;
     let place = |addresses: &[i32]| addresses[id] as usize;
     Ok((place(model.jnt_qposadr()), place(model.jnt_dofadr())))
 }
@@ -189,8 +215,8 @@ pub(super) fn body(model: &MjModel, name: &str) -> Option<usize> {
     model.name_to_id(MjtObjBase::mjOBJ_BODY, name)
 }
 
-fn find(model: &MjModel, kind: MjtObjBase, name: &str) -> Result<usize, SceneError> {
-    let name = format!("{PREFIX}{name}");
+fn find(model: &MjModel, kind: MjtObjBase, prefix: &str, name: &str) -> Result<usize, SceneError> {
+    let name = format!("{prefix}{name}");
     model.name_to_id(kind, &name).ok_or(SceneError::Lacks(name))
 }
 

@@ -1,0 +1,349 @@
+//! Several arms in one world: each moved by a robot of its own, and all of them among the same
+//! objects.
+//!
+//! The world takes a step when the drives of all arms have said what they push with. Robots are
+//! advanced one after the other, a millisecond at a time: an arm whose robot comes first goes ahead
+//! of the world, on a copy of it in which the others go on pushing as they did last. When the last
+//! robot has come, the world catches up with what all have really done, and every arm is where it
+//! is there. What the one that comes first sees of the others is so a millisecond old at most, as
+//! long as the robots are in step.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use franka_model::{CYCLE, JointVector, Load, RobotKind};
+use mujoco_rs::prelude::{MjData, MjModel, MjtState};
+use nalgebra::Isometry3;
+
+use super::scene::{Places, Scene, SceneError};
+use super::{apply, body_pose, link_inertia, mjcf, read};
+use crate::arm;
+use crate::plant::{LinkTorque, Plant, STEPS};
+
+/// Where an arm stands in a world that it shares.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mount {
+    /// Its kind.
+    pub kind: RobotKind,
+    /// With what the names of its bodies begin: its flange is the body `{name}_flange`.
+    pub name: String,
+    /// Its base frame in the world. The world's gravity is that of the first arm, in the axes of
+    /// the world.
+    pub base: Isometry3<f64>,
+}
+
+/// One of several arms in one world of MuJoCo; see [`shared_world`]. It is a plant like
+/// [`MujocoArm`](super::MujocoArm), without a hand.
+///
+/// The robots that move the arms have to be in step, within 10 ms: one that comes later than that
+/// misses milliseconds of the world, in which its drives push as they did last.
+pub struct SharedArm {
+    world: Arc<Mutex<World>>,
+    number: usize,
+    q: JointVector,
+    dq: JointVector,
+}
+
+/// A world with `N` arms, ideal and at rest in the ready pose until their robots fit and place
+/// them. Names in the MJCF of the scene may refer to the bodies of the arms: a `<weld>` between a
+/// flange and an object is a grasp.
+///
+/// # Errors
+/// [`SceneError`] if MuJoCo cannot make the scene, or if it has a hand.
+pub fn shared_world<const N: usize>(
+    scene: Scene,
+    mounts: [Mount; N],
+) -> Result<[SharedArm; N], SceneError> {
+    if scene.has_hand() {
+        let text = "arms that share a world have no hands";
+        return Err(SceneError::Impossible(text.into()));
+    }
+    let arms: Vec<_> = mounts.into_iter().map(Standing::ideal).collect();
+    let (data, places) = compile(&scene, &arms)?;
+    let mut world = World {
+        scene,
+        arms,
+        ahead: copy(&data),
+        ahead_is_of: None,
+        data,
+        places,
+    };
+    for number in 0..N {
+        world.place(number, &franka_model::READY);
+    }
+    let world = Arc::new(Mutex::new(world));
+    Ok(core::array::from_fn(|number| SharedArm {
+        world: world.clone(),
+        number,
+        q: franka_model::READY,
+        dq: JointVector::zeros(),
+    }))
+}
+
+impl SharedArm {
+    /// Pose of a body in the world, as it was when its last step began; `None` if there is no body
+    /// of this name.
+    pub fn body_pose(&self, name: &str) -> Option<Isometry3<f64>> {
+        body_pose(&self.world().data, name)
+    }
+
+    /// What contacts and grasps exerted on the joints in the last step of the world, `[N·m]`;
+    /// positive torques push towards positive angles.
+    pub fn contact_torque(&self) -> JointVector {
+        let world = self.world();
+        let force = world.data.qfrc_constraint();
+        world.places[self.number].dof.map(|dof| force[dof]).into()
+    }
+
+    fn world(&self) -> MutexGuard<'_, World> {
+        // A panic of MuJoCo's ends the process; nothing else can be left half done.
+        self.world.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Plant for SharedArm {
+    fn q(&self) -> &JointVector {
+        &self.q
+    }
+
+    fn dq(&self) -> &JointVector {
+        &self.dq
+    }
+
+    /// Makes the world anew if the arm is another, which takes milliseconds.
+    ///
+    /// # Panics
+    /// As [`attach`](Self::attach).
+    fn fit(&mut self, kind: RobotKind, arm: &arm::Arm) {
+        let mut world = self.world();
+        let own = &mut world.arms[self.number];
+        if (own.kind, &own.arm) != (kind, arm) {
+            (own.kind, own.arm) = (kind, arm.clone());
+            own.armature = link_inertia(arm);
+            world.remake();
+        }
+    }
+
+    fn step(&mut self, drive: &LinkTorque, external: &JointVector, dt: f64) {
+        let mut world = self.world();
+        let push = Push {
+            drive: *drive,
+            external: *external,
+        };
+        let (q, dq) = world.step(self.number, push, dt);
+        drop(world);
+        (self.q, self.dq) = (q, dq);
+    }
+
+    fn place(&mut self, q: &JointVector) -> JointVector {
+        let holding = self.world().place(self.number, q);
+        (self.q, self.dq) = (*q, JointVector::zeros());
+        holding
+    }
+
+    /// Makes the world anew, which takes milliseconds.
+    ///
+    /// # Panics
+    /// As [`MujocoArm`](super::MujocoArm)'s.
+    fn attach(&mut self, load: Load) {
+        let mut world = self.world();
+        let own = &mut world.arms[self.number];
+        if own.load != load {
+            own.load = load;
+            world.remake();
+        }
+    }
+}
+
+impl fmt::Debug for SharedArm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SharedArm")
+            .field("number", &self.number)
+            .field("q", &self.q)
+            .finish_non_exhaustive()
+    }
+}
+
+struct World {
+    scene: Scene,
+    arms: Vec<Standing>,
+    places: Vec<Places>,
+    data: MjData<Box<MjModel>>,
+    /// A copy that is ahead of `data`.
+    ahead: MjData<Box<MjModel>>,
+    /// The arm for which it is, if it is up to date.
+    ahead_is_of: Option<usize>,
+}
+
+/// An arm in the world.
+struct Standing {
+    kind: RobotKind,
+    prefix: String,
+    base: Isometry3<f64>,
+    arm: arm::Arm,
+    armature: JointVector,
+    load: Load,
+    /// What its drives push with in the steps that the world has not taken.
+    pending: VecDeque<Push>,
+    /// What they pushed with in the newest step that is known.
+    newest: Push,
+    /// Steps that the world has taken without it.
+    missed: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Push {
+    drive: LinkTorque,
+    external: JointVector,
+}
+
+impl Standing {
+    fn ideal(mount: Mount) -> Self {
+        let arm = arm::Arm::ideal(mount.kind);
+        Self {
+            kind: mount.kind,
+            prefix: format!("{}_", mount.name),
+            base: mount.base,
+            armature: link_inertia(&arm),
+            arm,
+            load: Load::NONE,
+            pending: VecDeque::new(),
+            newest: Push {
+                drive: LinkTorque::ZERO,
+                external: JointVector::zeros(),
+            },
+            missed: 0,
+        }
+    }
+}
+
+impl World {
+    /// Takes a step of one arm; returns where it is after that, and how fast.
+    fn step(&mut self, number: usize, push: Push, dt: f64) -> (JointVector, JointVector) {
+        let own = &mut self.arms[number];
+        own.newest = push;
+        if own.missed > 0 {
+            own.missed -= 1;
+            return read(&self.data, &self.places[number]);
+        }
+        own.pending.push_back(push);
+        let late = own.pending.len() > AHEAD_MAX;
+        if late || self.arms.iter().all(|arm| !arm.pending.is_empty()) {
+            self.catch_up(dt);
+        }
+        if self.arms[number].pending.is_empty() {
+            return read(&self.data, &self.places[number]);
+        }
+        self.go_ahead(number, dt);
+        read(&self.ahead, &self.places[number])
+    }
+
+    /// Takes a step with what is pending; arms of which nothing is have missed it.
+    fn catch_up(&mut self, dt: f64) {
+        for (arm, places) in self.arms.iter_mut().zip(&self.places) {
+            let push = arm.pending.pop_front().unwrap_or_else(|| {
+                arm.missed += 1;
+                arm.newest
+            });
+            push.apply(&mut self.data, places, arm, dt);
+        }
+        self.data.step();
+        self.ahead_is_of = None;
+    }
+
+    /// Takes the copy of the world to where this arm is.
+    fn go_ahead(&mut self, number: usize, dt: f64) {
+        let taken = if self.ahead_is_of == Some(number) {
+            self.arms[number].pending.len() - 1
+        } else {
+            self.ahead
+                .copy_state_from_data(&self.data, STATE)
+                .expect("two copies of one world");
+            0
+        };
+        for step in taken..self.arms[number].pending.len() {
+            for (arm, places) in self.arms.iter().zip(&self.places) {
+                arm.push_at(step).apply(&mut self.ahead, places, arm, dt);
+            }
+            self.ahead.step();
+        }
+        self.ahead_is_of = Some(number);
+    }
+
+    fn place(&mut self, number: usize, q: &JointVector) -> JointVector {
+        let places = &self.places[number];
+        for i in 0..7 {
+            self.data.qpos_mut()[places.qpos[i]] = q[i];
+            self.data.qvel_mut()[places.dof[i]] = 0.0;
+        }
+        self.data.forward();
+        let own = &mut self.arms[number];
+        own.pending.clear();
+        own.missed = 0;
+        self.ahead_is_of = None;
+        let bias = self.data.qfrc_bias();
+        places.dof.map(|dof| bias[dof]).into()
+    }
+
+    /// Compiles the world again and goes on in the same state.
+    fn remake(&mut self) {
+        let (data, _) = compile(&self.scene, &self.arms)
+            .unwrap_or_else(|error| panic!("the world with other arms: {error}"));
+        let state = self.data.state(STATE);
+        self.data = data;
+        self.data
+            .set_state(&state, STATE)
+            .unwrap_or_else(|error| panic!("the file of the scene has changed: {error}"));
+        self.data.forward();
+        self.ahead = copy(&self.data);
+        self.ahead_is_of = None;
+    }
+}
+
+impl Standing {
+    /// What its drives push with, so many steps after the newest of the world.
+    fn push_at(&self, step: usize) -> Push {
+        self.pending.get(step).copied().unwrap_or(self.newest)
+    }
+}
+
+impl Push {
+    fn apply(&self, data: &mut MjData<Box<MjModel>>, places: &Places, arm: &Standing, dt: f64) {
+        let push = (&self.drive, &self.external, dt);
+        apply(data, places, &arm.arm, &arm.armature, push);
+    }
+}
+
+fn compile(
+    scene: &Scene,
+    arms: &[Standing],
+) -> Result<(MjData<Box<MjModel>>, Vec<Places>), SceneError> {
+    let texts: Vec<_> = arms
+        .iter()
+        .map(|it| {
+            let body = &it.arm.body;
+            let text = mjcf::arm(it.kind, body, &it.armature, &it.load, false, &it.base);
+            (it.prefix.as_str(), text)
+        })
+        .collect();
+    let gravity = arms
+        .first()
+        .map_or([0.0; 3], |it| it.arm.body.gravity_earth.into());
+    let mut model = scene.compile_around(&texts, gravity)?;
+    model.opt_mut().timestep = CYCLE / f64::from(STEPS);
+    let places = arms.iter().map(|it| Places::of(&model, &it.prefix));
+    let places = places.collect::<Result<_, _>>()?;
+    Ok((MjData::new(Box::new(model)), places))
+}
+
+/// Another world of the same model, in the state of a new one.
+fn copy(data: &MjData<Box<MjModel>>) -> MjData<Box<MjModel>> {
+    MjData::new(Box::new(data.model().clone()))
+}
+
+/// Everything that a step depends on.
+const STATE: u32 = MjtState::mjSTATE_INTEGRATION as u32;
+
+/// Steps by which an arm may be ahead of the world: 10 ms.
+const AHEAD_MAX: usize = 10 * STEPS as usize;
