@@ -9,9 +9,8 @@ use std::time::Duration;
 
 use clap::Parser;
 use franka_async::blocking::Wait;
-use franka_async::goal::Offset;
 use franka_async::nalgebra::{Translation3, Vector6};
-use franka_async::{Engage, Pose};
+use franka_async::{Engage, Offset, Pose};
 use franka_examples::{Connection, Summary};
 
 #[derive(Parser)]

@@ -4,8 +4,8 @@
 //! `cargo run --release --example move_to_ready -- [ADDRESS] [--speed FACTOR]`
 
 use clap::Parser;
+use franka_async::READY;
 use franka_examples::{Connection, Summary};
-use franka_model::READY;
 
 #[derive(Parser)]
 struct Arguments {
@@ -22,7 +22,7 @@ async fn main() -> anyhow::Result<()> {
     let (robot, _sim) = connection.open().await?;
     connection.ask("goes to its ready pose, all joints at once")?;
     println!("from {:.3?} rad", robot.state().q);
-    let report = robot.move_joints(READY.into()).speed(speed).await?;
+    let report = robot.move_to(READY).speed(speed).await?;
     println!("to   {:.3?} rad", robot.state().q);
     println!("{}", Summary(&report));
     robot.shutdown().await;

@@ -5,10 +5,11 @@
 //! `joint-velocities`, `cartesian-pose` and `cartesian-velocities`
 
 use clap::{Parser, ValueEnum};
+use franka_async::Robot;
 use franka_async::control::{
-    CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, MoveControllerMode,
+    CartesianPose, CartesianVelocities, Control, Finish, JointPositions, JointVelocities,
+    MoveControllerMode,
 };
-use franka_async::{Control, Robot};
 use franka_examples::{Connection, Ease, Summary};
 
 #[derive(Parser)]

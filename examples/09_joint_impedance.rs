@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 
 use clap::Parser;
 use franka_async::control::{CartesianPose, Finish, Torques};
+use franka_async::model::JointVector;
 use franka_examples::{Arguments, Ease, Summary, dynamics};
-use franka_model::JointVector;
 
 /// Radius of the circle, `[m]`.
 const RADIUS: f64 = 0.05;

@@ -6,12 +6,16 @@
 //! likewise `active`
 
 use clap::{Parser, ValueEnum};
+use franka_async::connection::Version;
 use franka_async::control::{Finish, Torques};
 use franka_async::model::Model;
-use franka_async::{MotionError, MotionReport, Pose, Robot, RobotState, Version};
+use franka_async::model::{JointVector, Twist, Wrench};
+use franka_async::pose;
+use franka_async::pose::rotation;
+use franka_async::realtime::Scheduling;
+use franka_async::state::RobotState;
+use franka_async::{MotionError, MotionReport, Pose, Robot};
 use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
-use franka_model::{JointVector, Twist, Wrench, rotation, transform};
-use franka_rt::sched::Scheduling;
 use tokio::runtime::Handle;
 use tokio::sync::oneshot;
 
@@ -84,7 +88,7 @@ impl Springs {
     /// torques.
     fn torques(&self, state: &RobotState) -> Torques {
         let dynamics = dynamics(&self.model, self.version, state);
-        let pose = transform::isometry(&dynamics.pose).unwrap_or(self.place);
+        let pose = pose::from_matrix(&dynamics.pose).unwrap_or(self.place);
         let dq = JointVector::from(state.dq);
         let twist = dynamics.jacobian * dq;
         let mut error = Twist::zeros();

@@ -5,11 +5,13 @@
 //! `cargo run --release --example virtual_floor -- [ADDRESS] [--below 0.05] [--seconds 20]`
 
 use clap::Parser;
+use franka_async::READY;
+use franka_async::connection::Version;
 use franka_async::control::{Finish, Torques};
 use franka_async::model::Model;
-use franka_async::{RobotState, Version};
+use franka_async::model::{Dynamics, JointVector, Twist, Wrench};
+use franka_async::state::RobotState;
 use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
-use franka_model::{Dynamics, JointVector, READY, Twist, Wrench};
 
 #[derive(Parser)]
 struct Arguments {

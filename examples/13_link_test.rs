@@ -14,10 +14,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use franka_async::control::{Finish, Torques};
+use franka_async::realtime::Histogram;
 use franka_async::record::{Activity, Record};
 use franka_async::{MotionReport, Robot};
 use franka_examples::Connection;
-use franka_rt::stats::Histogram;
 use tokio::sync::broadcast;
 use tokio::sync::broadcast::error::RecvError;
 

@@ -4,8 +4,9 @@
 //! `cargo run --release --example two_robots -- [ADDRESS OTHER]`
 
 use clap::Parser;
-use franka_async::control::{Finish, JointPositions};
-use franka_async::{Control, Robot, StartBarrier};
+use franka_async::Robot;
+use franka_async::control::{Control, Finish, JointPositions};
+use franka_async::motion::StartBarrier;
 use franka_examples::{Connection, Ease, Summary, make_ready};
 
 #[derive(Parser)]

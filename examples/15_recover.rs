@@ -12,10 +12,11 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use clap::Parser;
 use franka_async::control::{Finish, JointVelocities};
-use franka_async::diagnosis::{Case, Commander};
+use franka_async::diagnosis::{Case, Commander, Diagnose, Diagnosis};
 use franka_async::error::ControlError;
 use franka_async::record::ControlLog;
-use franka_async::{Diagnose, Diagnosis, MotionError, Robot, RobotMode};
+use franka_async::state::RobotMode;
+use franka_async::{MotionError, Robot};
 use franka_examples::{Connection, Ease, Summary, make_ready};
 
 #[derive(Parser)]

@@ -6,9 +6,11 @@
 use std::time::Duration;
 
 use clap::Parser;
+use franka_async::diagnosis::Diagnose;
 use franka_async::error::PoseError;
 use franka_async::goal::{Chunk, Deadman, Free, Gains, OnTimeout, Tuning};
-use franka_async::{Diagnose, Engage, MotionError, Pose, Robot, RobotState};
+use franka_async::state::RobotState;
+use franka_async::{Engage, MotionError, Pose, Robot};
 use franka_examples::Arguments;
 use tokio::sync::watch;
 

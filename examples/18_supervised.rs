@@ -8,8 +8,10 @@ use std::time::Duration;
 
 use anyhow::ensure;
 use clap::Parser;
+use franka_async::diagnosis::Diagnose;
+use franka_async::state::RobotError;
 use franka_async::supervision::{EventKind, Policy};
-use franka_async::{Diagnose, Pose, Robot, RobotError};
+use franka_async::{Pose, Robot};
 use franka_examples::Connection;
 use tokio::task::JoinHandle;
 use tokio::time::sleep;

@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use clap::Parser;
 use franka_async::condition::{Reacted, elapsed, force_z};
-use franka_async::goal::{Budget, Offset};
+use franka_async::goal::Budget;
 use franka_async::nalgebra::{Translation3, Vector3};
-use franka_async::{Engage, Pose};
+use franka_async::{Engage, Offset, Pose};
 use franka_examples::Connection;
 use franka_sim::{Running, Touch};
 

@@ -4,8 +4,9 @@ use std::future::pending;
 use std::pin::Pin;
 use std::time::Duration;
 
+use franka_async::diagnosis::Diagnose;
 use franka_async::goal::{Deadman, Lead};
-use franka_async::{Arm, Diagnose, Engage, MotionError, MotionReport, Pose, Robot};
+use franka_async::{Arm, Engage, MotionError, MotionReport, Pose, Robot};
 use tokio::sync::{OwnedSemaphorePermit, watch};
 
 use crate::messages::{Reply, refused};

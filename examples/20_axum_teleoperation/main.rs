@@ -23,7 +23,8 @@ use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::response::Response;
 use axum::routing::get;
 use clap::Parser;
-use franka_async::{CancellationToken, Robot};
+use franka_async::Robot;
+use franka_async::connection::CancellationToken;
 use franka_examples::{Serving, serve_until_told};
 use tokio::sync::Semaphore;
 use tokio::time::{MissedTickBehavior, interval, timeout};
@@ -125,7 +126,10 @@ impl Service {
         };
         held.keep_alive();
         match request {
-            Request::Target(target) => held.head_for(target.into()),
+            Request::Target(target) => match target.pose() {
+                Some(pose) => held.head_for(pose),
+                None => return Some(refused("the quaternion is no rotation")),
+            },
             Request::Take | Request::Alive => {}
             Request::Release => {
                 *lease = None;

@@ -1,7 +1,6 @@
 //! What goes over a socket, as JSON.
 
-use franka_async::nalgebra::{Quaternion, UnitQuaternion};
-use franka_async::{Pose, Robot};
+use franka_async::{Pose, Robot, pose};
 use serde::{Deserialize, Serialize};
 
 /// From a client.
@@ -53,23 +52,23 @@ pub(crate) fn refused(why: impl ToString) -> Reply {
 impl Reply {
     /// The newest state.
     pub(crate) fn state(robot: &Robot) -> Self {
-        let (state, pose) = (robot.state(), robot.pose());
+        let state = robot.state();
+        let (position, quaternion) = pose::to_xyzw(&robot.pose());
         Self::State {
             time: state.message_id,
             mode: state.robot_mode.to_string(),
             q: state.q,
             pose: Placement {
-                position: pose.translation.vector.into(),
-                quaternion: pose.rotation.coords.into(),
+                position,
+                quaternion,
             },
         }
     }
 }
 
-impl From<Placement> for Pose {
-    fn from(placement: Placement) -> Self {
-        let [x, y, z, w] = placement.quaternion;
-        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
-        Self::from_parts(placement.position.into(), rotation)
+impl Placement {
+    /// `None` if the quaternion is no rotation.
+    pub(crate) fn pose(&self) -> Option<Pose> {
+        pose::from_xyzw(self.position, self.quaternion)
     }
 }

@@ -7,8 +7,9 @@ use std::pin::Pin;
 use std::time::Duration;
 
 use clap::Parser;
+use franka_async::Robot;
+use franka_async::connection::CancellationToken;
 use franka_async::goal::{Lead, OnTimeout};
-use franka_async::{CancellationToken, Robot};
 use franka_examples::{Serving, serve_until_told};
 use tokio::sync::{mpsc, watch};
 use tokio_stream::wrappers::{ReceiverStream, TcpListenerStream};

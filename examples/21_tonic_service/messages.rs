@@ -1,7 +1,8 @@
 //! The messages of the service, and what they are made of.
 
-use franka_async::nalgebra::{Quaternion, UnitQuaternion};
-use franka_async::{Diagnose, MotionError, Robot, RobotState};
+use franka_async::diagnosis::Diagnose;
+use franka_async::state::RobotState;
+use franka_async::{MotionError, Robot, pose};
 use prost::Message;
 use tonic::{Code, Status};
 
@@ -15,14 +16,14 @@ pub(crate) mod proto {
 
 /// The newest state.
 pub(crate) fn state(robot: &Robot, state: &RobotState) -> State {
-    let pose = robot.pose_at(state.q);
+    let (position, quaternion) = pose::to_xyzw(&robot.pose_at(state.q));
     State {
         time: state.message_id,
         mode: state.robot_mode.to_string(),
         q: state.q.to_vec(),
         pose: Some(Pose {
-            position: pose.translation.vector.as_slice().to_vec(),
-            quaternion: pose.rotation.coords.as_slice().to_vec(),
+            position: position.to_vec(),
+            quaternion: quaternion.to_vec(),
         }),
         errors: state.errors.iter().map(|error| error.to_string()).collect(),
     }
@@ -34,19 +35,17 @@ impl Pose {
         &self,
         start: &franka_async::Pose,
     ) -> Result<franka_async::Pose, Status> {
-        let mut pose = *start;
-        match self.position[..] {
-            [x, y, z] => pose.translation = [x, y, z].into(),
-            _ => return Err(Status::invalid_argument("a position has three numbers")),
-        }
-        match self.quaternion[..] {
-            [] => {}
-            [x, y, z, w] => {
-                pose.rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
-            }
-            _ => return Err(Status::invalid_argument("a quaternion has four numbers")),
-        }
-        Ok(pose)
+        let (position, quaternion) = (&self.position[..], &self.quaternion[..]);
+        let three = || Status::invalid_argument("a position has three numbers");
+        let position = position.try_into().map_err(|_| three())?;
+        let quaternion = match quaternion {
+            [] => start.rotation.coords.into(),
+            _ => quaternion
+                .try_into()
+                .map_err(|_| Status::invalid_argument("a quaternion has four numbers"))?,
+        };
+        let none = || Status::invalid_argument("the quaternion is no rotation");
+        pose::from_xyzw(position, quaternion).ok_or_else(none)
     }
 }
 

@@ -20,7 +20,8 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Parser;
-use franka_async::{Diagnose, MotionError, Pose};
+use franka_async::diagnosis::Diagnose;
+use franka_async::{MotionError, Pose};
 use franka_examples::{Connection, Summary};
 use tokio::sync::watch;
 

@@ -1,9 +1,9 @@
 //! A stream of targets without a generator, as programs do it that know no better.
 
-use franka_async::control::{CartesianPose, Finish};
+use franka_async::control::slot::Read;
+use franka_async::control::{CartesianPose, Finish, slot};
 use franka_async::nalgebra::Vector3;
 use franka_async::{MotionError, MotionReport, Pose, Robot};
-use franka_rt::slot::{self, Read};
 use tokio::sync::watch;
 
 /// Steps towards the newest target with a bound on the velocity, and none on acceleration and jerk.

@@ -1,8 +1,8 @@
 //! The quantities of the model that a torque law needs.
 
-use franka_async::model::Model;
-use franka_async::{RobotState, Version};
-use franka_model::{Dynamics, EndEffector, Load};
+use franka_async::connection::Version;
+use franka_async::model::{Dynamics, EndEffector, Load, Model};
+use franka_async::state::RobotState;
 
 /// The model at a state: pose, Jacobian, mass, Coriolis and gravity torques, with the end effector
 /// and the load that are set on the robot. One pass over the arm without allocation, so it can be

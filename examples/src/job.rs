@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use franka_async::{Motion, MotionError, MotionHandle};
+use franka_async::motion::MotionHandle;
+use franka_async::{Motion, MotionError};
 use serde_json::{Value, json};
 use tokio::sync::watch;
 use tokio_stream::wrappers::WatchStream;

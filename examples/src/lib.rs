@@ -18,10 +18,12 @@ use std::time::Duration;
 
 use anyhow::{Context, ensure};
 use clap::{Args, Parser, ValueEnum};
+use franka_async::connection::Builder;
+use franka_async::gripper::Gripper;
+use franka_async::model::Wrench;
+use franka_async::realtime::Scheduling;
 use franka_async::settings::CollisionBehavior;
-use franka_async::{Builder, Gripper, MotionReport, Robot};
-use franka_model::{READY, Wrench};
-use franka_rt::sched::Scheduling;
+use franka_async::{MotionReport, READY, Robot};
 use franka_sim::{Fingers, Running, Sim, Tool};
 use tokio::task::JoinHandle;
 
@@ -211,7 +213,7 @@ pub async fn make_ready(robot: &Robot) -> anyhow::Result<()> {
     robot
         .set_collision_behavior(CollisionBehavior::compliant())
         .await?;
-    let moving = robot.move_joints(READY.into()).speed(0.5);
+    let moving = robot.move_to(READY).speed(0.5);
     moving.await.context("moving to the ready pose")?;
     Ok(())
 }

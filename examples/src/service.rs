@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use anyhow::{Context, anyhow, ensure};
 use clap::Parser;
-use franka_async::{CancellationToken, Robot};
+use franka_async::Robot;
+use franka_async::connection::CancellationToken;
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::time::{Instant, timeout_at};

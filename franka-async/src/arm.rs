@@ -16,7 +16,7 @@ use tokio_stream::{Stream, StreamExt};
 use crate::destination::{Destination, Offset};
 use crate::follow::{Follow, Targets, watched};
 use crate::input::{Beginning, EndReply, Input, Replies};
-use crate::motion::Motion;
+use crate::move_to::Motion;
 use crate::options::{GoalOptions, goal_options};
 use crate::progress::Reference;
 use crate::robot::Robot;

@@ -192,7 +192,7 @@ impl Builder {
     }
 
     /// Asks `agrees` before each recovery that the policy allows, with the reflex and, if it ended
-    /// a motion of this program, its log and [diagnosis](crate::Diagnose). Implies
+    /// a motion of this program, its log and [diagnosis](crate::diagnosis::Diagnose). Implies
     /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). It runs in the task that
     /// supervises, and holds it up: one that asks a person leaves this away, waits for
     /// [`Unready::AgreementAwaited`](crate::error::Unready::AgreementAwaited) and calls

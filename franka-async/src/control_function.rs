@@ -14,7 +14,7 @@ use franka_rt::shaping::DEFAULT_CUTOFF_FREQUENCY;
 use franka_rt::together::StartTicket;
 
 use crate::cancel::Canceller;
-use crate::motion::Moving;
+use crate::move_to::Moving;
 use crate::robot::Robot;
 
 impl Robot {

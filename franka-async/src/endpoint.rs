@@ -21,8 +21,8 @@ use std::str::FromStr;
 /// know at once, `parse` it.
 ///
 /// ```
+/// use franka_async::connection::Endpoint;
 /// use franka_async::error::EndpointError;
-/// use franka_async::Endpoint;
 ///
 /// let endpoint: Endpoint = "[fe80::2%eth0]:40123".parse()?;
 /// let refused: Result<Endpoint, _> = "robot.lan:http".parse();

@@ -17,7 +17,7 @@ use tokio_stream::{Stream, StreamExt};
 
 use crate::cancel::Canceller;
 use crate::input::Input;
-use crate::motion::Moving;
+use crate::move_to::Moving;
 use crate::options::{GoalOptions, goal_options};
 use crate::robot::Robot;
 use crate::session::Session;

@@ -1,5 +1,5 @@
 //! What an arm takes beside its model, measured by a minute of small motions: see
-//! [`Robot::identify`] and [`Builder::known`](crate::Builder::known).
+//! [`Robot::identify`] and [`Builder::known`](crate::connection::Builder::known).
 
 use std::future::IntoFuture;
 use std::pin::pin;
@@ -70,7 +70,7 @@ impl Identify {
 
     /// Moves the arm and returns what it is like. Nothing is changed at the robot and in this
     /// connection, which learns in any motion: pass it to
-    /// [`Builder::known`](crate::Builder::known) of later ones, and declare the load by
+    /// [`Builder::known`](crate::connection::Builder::known) of later ones, and declare the load by
     /// [`Robot::set_load`] if you like.
     ///
     /// # Errors

@@ -37,9 +37,9 @@ pub type Pose = nalgebra::Isometry3<f64>;
 ///
 /// A connection that is lost ends everything that belongs to it, control thread included; the
 /// handles that are left then say why, and those of a robot that is
-/// [supervised](crate::Builder::supervise) go on with the next one. If the runtime ends first, the
-/// arm is not braked: the robot misses its commands and stops by itself, with a reflex. Await
-/// [`Robot::shutdown`] before the program ends.
+/// [supervised](crate::connection::Builder::supervise) go on with the next one. If the runtime ends
+/// first, the arm is not braked: the robot misses its commands and stops by itself, with a reflex.
+/// Await [`Robot::shutdown`] before the program ends.
 ///
 /// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
 #[derive(Clone)]
@@ -142,9 +142,10 @@ impl Robot {
 
     /// The model of the connected arm, which control computes with. A Franka Research 3 describes
     /// itself: its masses and limits are those of the description ([`Robot::urdf`]), unless the
-    /// feature `urdf` is off or [`Builder::nominal_model`](crate::Builder::nominal_model) is
-    /// chosen. A Franka Emika Robot does not: it has the constants that its own library is known to
-    /// compute with, [`Model::fer`].
+    /// feature `urdf` is off or
+    /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) is chosen. A Franka
+    /// Emika Robot does not: it has the constants that its own library is known to compute with,
+    /// [`Model::fer`].
     pub fn model(&self) -> &Model {
         &self.shared.model
     }

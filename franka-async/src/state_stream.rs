@@ -43,7 +43,7 @@ impl Robot {
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::error::ReadError> {
     /// use std::ops::ControlFlow;
     ///
-    /// let touched = |state: &franka_async::RobotState| match state.tau_ext_hat_filtered[1] {
+    /// let touched = |state: &franka_async::state::RobotState| match state.tau_ext_hat_filtered[1] {
     ///     torque if torque.abs() > 5.0 => ControlFlow::Break(torque),
     ///     _ => ControlFlow::Continue(()),
     /// };

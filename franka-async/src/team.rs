@@ -40,9 +40,9 @@ pub use franka_rt::team::{MEMBERS_MAX, MemberFault, SILENCE, START_TIMEOUT, Team
 
 use crate::arm::{Arm, Engage};
 use crate::destination::Destination;
-use crate::error::Error;
-use crate::follow::Follow;
-use crate::motion::Motion;
+use crate::error::any::Error;
+use crate::motion::Follow;
+use crate::move_to::Motion;
 use crate::robot::Robot;
 
 /// How the motion of one member has ended.

@@ -9,8 +9,8 @@ use crate::error::{ConnectError, VacuumGripperError};
 use crate::states::States;
 use franka_proto::vacuum::{Request, State, Vacuum, Version};
 
-/// A connected vacuum gripper. What [`Gripper`](crate::Gripper) says of handles, actions and their
-/// ends holds for it as well.
+/// A connected vacuum gripper. What [`Gripper`](crate::gripper::Gripper) says of handles, actions
+/// and their ends holds for it as well.
 #[derive(Clone, Debug)]
 pub struct VacuumGripper {
     connection: DeviceConnection<Version>,

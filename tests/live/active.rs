@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
-use franka_async::control::{Finish, JointVelocities, Torques};
+use franka_async::control::{Active, Finish, JointVelocities, Torques};
 use franka_async::error::ActiveError;
-use franka_async::{Active, MotionError, Pose, Robot, RobotMode};
+use franka_async::state::RobotMode;
+use franka_async::{MotionError, Pose, Robot};
 use franka_proto::{MoveControllerMode, RobotError};
 use franka_rt::driver::LinkTimeout;
 

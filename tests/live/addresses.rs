@@ -3,8 +3,10 @@
 use std::net::{Ipv6Addr, SocketAddr, SocketAddrV6};
 use std::time::Duration;
 
+use franka_async::connection::Endpoint;
 use franka_async::error::{ConnectError, Party};
-use franka_async::{Endpoint, Gripper, Pose, Realtime, Robot};
+use franka_async::gripper::Gripper;
+use franka_async::{Pose, Realtime, Robot};
 use franka_sim::{Fingers, Sim, Tool};
 use franka_tests::PATIENCE;
 

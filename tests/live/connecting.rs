@@ -13,7 +13,7 @@ use tokio::net::{TcpListener, TcpStream};
 
 use crate::{SOON, alone, simulated};
 
-async fn refused(endpoint: impl Into<franka_async::Endpoint>) -> ConnectError {
+async fn refused(endpoint: impl Into<franka_async::connection::Endpoint>) -> ConnectError {
     let begun = Instant::now();
     let connecting = Robot::builder(endpoint)
         .realtime(Realtime::Ignore)

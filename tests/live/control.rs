@@ -5,10 +5,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use franka_async::control::{
-    AbortReason, CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next,
-    TargetStatus, Torques,
+    AbortReason, AsynchronousOptions, CartesianPose, CartesianVelocities, Finish, JointPositions,
+    JointVelocities, Next, TargetStatus, Torques,
 };
-use franka_async::{AsynchronousOptions, MotionError, Pose, Robot, RobotMode, RobotState};
+use franka_async::state::{RobotMode, RobotState};
+use franka_async::{MotionError, Pose, Robot};
 use franka_proto::{MoveControllerMode, RequestError, RobotError};
 use franka_sim::{Running, Sim, Tool};
 

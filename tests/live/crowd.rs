@@ -17,8 +17,10 @@
 use std::future::IntoFuture;
 use std::time::{Duration, Instant};
 
+use franka_async::connection::Version;
 use franka_async::settings::Load;
-use franka_async::{MotionError, MotionReport, Pose, Robot, RobotError, RobotState, Version};
+use franka_async::state::{RobotError, RobotState};
+use franka_async::{MotionError, MotionReport, Pose, Robot};
 use franka_model::READY;
 use franka_sim::{Running, Sim, Tool};
 use franka_tests::PATIENCE;

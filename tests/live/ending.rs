@@ -2,8 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use franka_async::connection::{CancellationToken, Version};
 use franka_async::error::{CloseReason, Party};
-use franka_async::{CancellationToken, MotionError, Pose, Realtime, Robot, RobotMode, Version};
+use franka_async::state::RobotMode;
+use franka_async::{MotionError, Pose, Realtime, Robot};
 use franka_proto::framing::next_message;
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, Request, client};
 use franka_sim::Sim;

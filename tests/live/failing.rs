@@ -2,8 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use franka_async::MotionError;
 use franka_async::error::CommandError;
-use franka_async::{MotionError, RobotMode};
+use franka_async::state::RobotMode;
 use franka_proto::RobotError;
 
 use crate::{SOON, alone, connect, long_way, simulated, under_way, until};

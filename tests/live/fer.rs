@@ -1,8 +1,9 @@
 //! The Franka Emika Robot: the same programs, over the protocol that negotiation finds.
 
+use franka_async::connection::{Version, VersionPolicy};
 use franka_async::error::{CommandError, ConnectError, PoseError};
 use franka_async::settings::Filters;
-use franka_async::{Pose, Realtime, Robot, Version, VersionPolicy};
+use franka_async::{Pose, Realtime, Robot};
 use franka_model::RobotKind;
 use franka_proto::RequestError;
 use franka_sim::{Running, Sim, Tool};

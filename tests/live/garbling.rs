@@ -3,8 +3,10 @@
 use std::net::UdpSocket;
 use std::time::Duration;
 
+use franka_async::MotionError;
+use franka_async::connection::Version;
 use franka_async::error::CommandError;
-use franka_async::{MotionError, RobotState, Version};
+use franka_async::state::RobotState;
 use franka_proto::framing::Header;
 use franka_proto::{Command, Violation};
 use tokio::time::{sleep, timeout};

@@ -4,10 +4,10 @@ use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
+use franka_async::Pose;
 use franka_async::error::{ActionError, ConnectError};
-use franka_async::gripper::{Grasp, State as GripperState};
-use franka_async::vacuum::{Profile, Vacuum};
-use franka_async::{Gripper, Pose, VacuumGripper};
+use franka_async::gripper::{Grasp, Gripper, State as GripperState};
+use franka_async::vacuum::{Profile, Vacuum, VacuumGripper};
 use franka_proto::{gripper, server, vacuum};
 use franka_sim::{Fingers, Running, Sim, Suction};
 use franka_tests::PATIENCE;

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use franka_async::error::PoseError;
-use franka_async::goal::{Destination, Offset, Target};
+use franka_async::goal::{Destination, Target};
 use franka_async::nalgebra::{Translation3, UnitQuaternion};
-use franka_async::{Engage, MotionError, Pose};
+use franka_async::{Engage, MotionError, Offset, Pose};
 use franka_sim::{Sim, Tool};
 
 use crate::{alone, at_the_clients_pace, robot_time, simulated, under_way};

@@ -39,7 +39,8 @@ mod together;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use franka_async::{Motion, Pose, Realtime, Robot, RobotState};
+use franka_async::state::RobotState;
+use franka_async::{Motion, Pose, Realtime, Robot};
 use franka_sim::{Running, Sim, Tool};
 use franka_tests::PATIENCE;
 use tokio::sync::watch;

@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use franka_async::control::{Finish, JointVelocities};
 use franka_async::metrics::Exporter;
+use franka_async::state::{RobotError, RobotMode};
 use franka_async::supervision::Policy;
-use franka_async::{MotionError, Realtime, Robot, RobotError, RobotMode};
+use franka_async::{MotionError, Realtime, Robot};
 use franka_sim::{Sim, Tool};
 use franka_tests::PATIENCE;
 

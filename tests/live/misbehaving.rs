@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use franka_async::error::CommandError;
 use franka_async::settings::Load;
-use franka_async::{MotionError, Pose, RobotState};
+use franka_async::state::RobotState;
+use franka_async::{MotionError, Pose};
 use franka_proto::Command;
 use franka_proto::framing::Header;
 use tokio::task::JoinSet;

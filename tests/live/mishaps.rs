@@ -7,7 +7,8 @@
 use std::future::IntoFuture;
 use std::time::Duration;
 
-use franka_async::{MotionError, Robot, RobotError};
+use franka_async::state::RobotError;
+use franka_async::{MotionError, Robot};
 use franka_sim::{Network, Running, Sim, Tool};
 use franka_tests::mishaps;
 use tokio::time::timeout;

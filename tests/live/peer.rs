@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicU16, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
-use franka_async::{Realtime, Robot, Version};
+use franka_async::connection::Version;
+use franka_async::{Realtime, Robot};
 use franka_proto::framing::{Header, next_message};
 use franka_proto::{Command, RobotCommand};
 use franka_sim::Config;

@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use franka_async::control::{Finish, Torques};
 use franka_async::error::ReadError;
-use franka_async::{MotionError, Pose, Reading, Robot};
+use franka_async::state::Reading;
+use franka_async::{MotionError, Pose, Robot};
 use franka_proto::RobotError;
 use franka_sim::{Running, Sim, Tool};
 use futures::StreamExt;

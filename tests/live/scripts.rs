@@ -4,9 +4,8 @@ use std::time::Duration;
 
 use franka_async::blocking::Wait;
 use franka_async::error::{GoalError, PoseError};
-use franka_async::goal::Offset;
 use franka_async::nalgebra::Translation3;
-use franka_async::{Engage, MotionError, Pose};
+use franka_async::{Engage, MotionError, Offset, Pose};
 
 use crate::{alone, long_way, simulated};
 

@@ -10,11 +10,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use franka_async::diagnosis::Diagnose;
 use franka_async::error::{CloseReason, Unready};
+use franka_async::state::{RobotError, RobotMode};
 use franka_async::supervision::{
     Backoff, Condition, EventKind, Events, NotRecovered, Notification, Policy,
 };
-use franka_async::{Diagnose, Engage, MotionError, Pose, Realtime, Robot, RobotError, RobotMode};
+use franka_async::{Engage, MotionError, Pose, Realtime, Robot};
 use franka_sim::{Running, Sim, Tool};
 use franka_tests::PATIENCE;
 use tokio::time::{sleep, timeout};

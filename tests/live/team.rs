@@ -6,9 +6,8 @@ use std::pin::pin;
 use std::task::Poll;
 
 use franka_async::error::Lapse;
-use franka_async::goal::Offset;
 use franka_async::team::{MemberFault, MemberMotion, Team, TeamStop};
-use franka_async::{Engage, MotionError, Pose, Robot};
+use franka_async::{Engage, MotionError, Offset, Pose, Robot};
 use franka_sim::{Running, Sim};
 use franka_tests::PATIENCE;
 use tokio::sync::watch;

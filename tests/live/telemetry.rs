@@ -8,10 +8,11 @@ use std::time::{Duration, Instant};
 
 use franka_async::control::{Finish, Torques};
 use franka_async::goal::Gains;
+use franka_async::realtime::Phase;
 use franka_async::settings::CollisionBehavior;
-use franka_async::stats::Phase;
+use franka_async::state::RobotError;
 use franka_async::supervision::{Condition, Policy};
-use franka_async::{MotionReport, Pose, Realtime, Robot, RobotError};
+use franka_async::{MotionReport, Pose, Realtime, Robot};
 use franka_sim::{Sim, Tool};
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};

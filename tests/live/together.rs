@@ -5,9 +5,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use franka_async::control::{Finish, JointVelocities};
+use franka_async::control::{Control, Finish, JointVelocities};
 use franka_async::error::StartFault;
-use franka_async::{Control, MotionError, Pose, Robot, RobotState, StartBarrier};
+use franka_async::motion::StartBarrier;
+use franka_async::state::RobotState;
+use franka_async::{MotionError, Pose, Robot};
 use franka_sim::{Running, Sim};
 use tokio::sync::watch;
 

@@ -51,6 +51,12 @@ mod programs {
     #[doc = include_str!("../../docs/src/identify.md")]
     struct Identify;
 
+    #[doc = include_str!("../../docs/src/reactions.md")]
+    struct Reactions;
+
+    #[doc = include_str!("../../docs/src/realtime.md")]
+    struct Realtime;
+
     #[doc = include_str!("../../docs/src/services.md")]
     struct Services;
 
@@ -62,4 +68,7 @@ mod programs {
 
     #[doc = include_str!("../../docs/src/simulator.md")]
     struct Simulator;
+
+    #[doc = include_str!("../../docs/src/supervision.md")]
+    struct Supervision;
 }

@@ -10,14 +10,13 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use franka_async::control::{
-    CartesianPose, CartesianVelocities, Finish, JointPositions, JointVelocities, Next, Torques,
+    Active, AsynchronousOptions, CartesianPose, CartesianVelocities, Control, Finish,
+    JointPositions, JointVelocities, Next, Torques,
 };
 use franka_async::error::Lapse;
 use franka_async::goal::{Backend, Chunk, Deadman, Free, Gains, OnTimeout, Setpoints, Tuning};
-use franka_async::{
-    Active, Arm, AsynchronousOptions, Control, Engage, Motion, MotionError, Pose, Realtime, Robot,
-    RobotState,
-};
+use franka_async::state::RobotState;
+use franka_async::{Arm, Engage, Motion, MotionError, Pose, Realtime, Robot};
 use franka_proto::{MoveControllerMode, RobotError, Version};
 use franka_rt::driver::Driver;
 use franka_rt::exchange;

@@ -5,9 +5,10 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::{Duration, Instant};
 
+use franka_async::READY;
+use franka_async::model::{EndEffector, Frame, JointVector, Load, Model, Wrench};
 use franka_async::nalgebra::Vector3;
-use franka_async::{RobotError, RobotMode, RobotState};
-use franka_model::{EndEffector, Frame, JointVector, Load, Model, READY, Wrench};
+use franka_async::state::{RobotError, RobotMode, RobotState};
 use franka_sim::{Robot, Running, Sim, Tool, Touch};
 use tokio::runtime::{self, Runtime};
 

@@ -1,9 +1,9 @@
 //! The motion of the arm under each example of control at 1 kHz, as recorded by the simulator in
 //! the test.
 
+use franka_async::READY;
 use franka_async::identify::Identified;
-use franka_async::{RobotError, RobotMode};
-use franka_model::READY;
+use franka_async::state::{RobotError, RobotMode};
 
 use crate::arm::{Arm, Event, MeasuredPath, SAMPLE, Scene};
 use crate::program::{ROBOTS, Said, on_both, run};

@@ -98,7 +98,7 @@ fn text(answer: Response<Body>) -> String {
 }
 
 /// How far the hand of a state is above that of another, `[m]`.
-fn above(state: &franka_async::RobotState, start: &franka_async::RobotState) -> f64 {
+fn above(state: &franka_async::state::RobotState, start: &franka_async::state::RobotState) -> f64 {
     state.O_T_EE[14] - start.O_T_EE[14]
 }
 
@@ -192,9 +192,9 @@ fn a_job_that_cannot_begin_is_refused_with_the_reason() {
     let (status, why) = refusal(json!({ "by": [0.0, 0.0, 0.1], "speed": -1.0 }));
     assert_eq!(status, 422, "{why}");
     assert_eq!(refusal(json!({ "by": "a lot" })).0, 422);
-    arm.trip(franka_async::RobotError::CartesianReflex);
+    arm.trip(franka_async::state::RobotError::CartesianReflex);
     arm.wait_for("stopped", |state| {
-        state.robot_mode == franka_async::RobotMode::Reflex
+        state.robot_mode == franka_async::state::RobotMode::Reflex
     });
     let (status, why) = refusal(json!({ "by": [0.0, 0.0, 0.01] }));
     assert_eq!(status, 409, "{why}");

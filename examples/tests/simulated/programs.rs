@@ -1,6 +1,6 @@
 //! The programs for the shell: what they say, what they leave behind, their exit codes.
 
-use franka_async::{RobotError, RobotMode};
+use franka_async::state::{RobotError, RobotMode};
 
 use crate::arm::{Arm, Scene};
 use crate::program::{ROBOTS, run};

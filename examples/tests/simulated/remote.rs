@@ -1,6 +1,6 @@
 //! The gRPC service, with a client in this process and ones that are killed.
 
-use franka_async::{RobotError, RobotMode};
+use franka_async::state::{RobotError, RobotMode};
 use nix::sys::signal::Signal;
 use prost::Message;
 use tokio::sync::mpsc;

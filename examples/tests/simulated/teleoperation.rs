@@ -3,7 +3,7 @@
 use std::net::TcpStream;
 use std::time::Instant;
 
-use franka_async::{RobotError, RobotMode};
+use franka_async::state::{RobotError, RobotMode};
 use nix::sys::signal::Signal;
 use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;

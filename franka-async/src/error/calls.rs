@@ -206,7 +206,7 @@ impl ModelLibraryError {
 #[cfg(all(test, feature = "model-library", target_os = "linux"))]
 mod tests {
     use super::*;
-    use crate::error::Error;
+    use crate::error::any::Error;
 
     #[test]
     fn an_architecture_without_a_library_is_this_computers() {

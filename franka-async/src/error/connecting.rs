@@ -23,18 +23,18 @@ use crate::endpoint::EndpointError;
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
     /// Host: it does not grant what real-time control needs, see
-    /// [`Builder::realtime`](crate::Builder::realtime).
+    /// [`Builder::realtime`](crate::connection::Builder::realtime).
     #[error(transparent)]
     Realtime(#[from] SchedError),
     /// Caller: the text that was given as the place of the device names none. Nothing was sent.
     #[error(transparent)]
     Endpoint(#[from] EndpointError),
     /// Caller: the silence after which the link counts as lost is out of range, see
-    /// [`Builder::link_timeout`](crate::Builder::link_timeout).
+    /// [`Builder::link_timeout`](crate::connection::Builder::link_timeout).
     #[error(transparent)]
     LinkTimeout(#[from] LinkTimeoutError),
     /// Caller: the log of a motion is to hold more cycles than there is memory for, see
-    /// [`Builder::log_size`](crate::Builder::log_size). Nothing was sent.
+    /// [`Builder::log_size`](crate::connection::Builder::log_size). Nothing was sent.
     #[error(
         "a log of {got} cycles is too long: expected {} at most",
         ControlLog::CAPACITY_MAX
@@ -44,7 +44,7 @@ pub enum ConnectError<P: Protocol = Version> {
         got: usize,
     },
     /// Caller: what was given as known of the arm is of another kind of robot, or has numbers that
-    /// no arm has, see [`Builder::known`](crate::Builder::known).
+    /// no arm has, see [`Builder::known`](crate::connection::Builder::known).
     #[error(transparent)]
     Known(#[from] KnownError),
     /// Host: no thread, socket or descriptor.
@@ -101,7 +101,7 @@ pub enum ConnectError<P: Protocol = Version> {
     #[error("libfranka: UDP receive: Timeout")]
     NoState,
     /// Robot, link or peer: there is no model of the arm. See
-    /// [`Builder::nominal_model`](crate::Builder::nominal_model).
+    /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model).
     #[cfg(feature = "urdf")]
     #[error(transparent)]
     Model(#[from] ModelError),
@@ -170,7 +170,7 @@ impl From<LinkFault> for ConnectError {
 }
 
 /// Why there is no model of the connected arm.
-/// [`Builder::nominal_model`](crate::Builder::nominal_model) does without its description.
+/// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) does without its description.
 #[cfg(feature = "urdf")]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -199,7 +199,7 @@ mod tests {
     use franka_model::Model;
 
     use super::*;
-    use crate::error::Error;
+    use crate::error::any::Error;
 
     #[test]
     fn a_description_that_cannot_be_read_is_the_peers_fault() {

@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use franka_model::limits::JointLimits;
-use franka_model::{Twist, rotation};
+use franka_model::{JointVector, Twist, rotation};
 use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
@@ -58,6 +58,12 @@ impl From<Isometry3<f64>> for Target {
 impl From<[f64; 7]> for Target {
     fn from(q: [f64; 7]) -> Self {
         Self::Joints(q)
+    }
+}
+
+impl From<JointVector> for Target {
+    fn from(q: JointVector) -> Self {
+        Self::Joints(q.into())
     }
 }
 

@@ -5,7 +5,9 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use franka_async::{Gripper, Pose, Realtime, Robot, VacuumGripper};
+use franka_async::gripper::Gripper;
+use franka_async::vacuum::VacuumGripper;
+use franka_async::{Pose, Realtime, Robot};
 use tokio::runtime::{Builder, Runtime};
 
 use crate::binary::Binary;

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use franka_async::control::{Finish as _, Next, Torques};
-use franka_async::gripper::Grasp;
-use franka_async::{Gripper, Realtime, Robot};
+use franka_async::gripper::{Grasp, Gripper};
+use franka_async::{Realtime, Robot};
 use franka_proto::RobotError;
 use franka_sim::{Fingers, Running, Sim, Tool};
 

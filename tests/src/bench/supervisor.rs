@@ -7,8 +7,9 @@
 use std::net::SocketAddr;
 use std::time::Duration;
 
+use franka_async::state::RobotError;
 use franka_async::supervision::{EventKind, Events, Policy};
-use franka_async::{Realtime, Robot, RobotError};
+use franka_async::{Realtime, Robot};
 use franka_sim::{Running, Sim};
 
 use super::{Benchmark, Statistic};

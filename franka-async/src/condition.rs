@@ -1,0 +1,11 @@
+//! Conditions that a motion goes on [until](crate::Motion::until), and what was seen when one
+//! became true.
+//!
+//! The control thread looks at the condition in every cycle: however busy the program is, the arm
+//! brakes within the next millisecond.
+
+pub use franka_rt::session::condition::{
+    Axis, Condition, Quantity, cartesian_contact, collision, contact, elapsed, force, force_x,
+    force_y, force_z, joint_contact, joint_torques, torque,
+};
+pub use franka_rt::session::{Reacted, Reaction};

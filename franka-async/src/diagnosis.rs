@@ -1,0 +1,19 @@
+//! Why the robot ended a motion: the limit that was exceeded, what led up to it, what to change.
+//!
+//! ```no_run
+//! # use franka_async::{MotionError, Robot};
+//! use franka_async::diagnosis::Diagnose;
+//!
+//! # async fn run(robot: Robot) {
+//! if let Err(error) = robot.move_joints([0.0; 7]).await
+//!     && let Some(diagnosis) = error.diagnose()
+//! {
+//!     println!("{diagnosis}");
+//! }
+//! # }
+//! ```
+
+pub use franka_diagnosis::{
+    Advice, Axis, Bound, Case, Cause, Commander, Diagnose, Diagnosis, Finding, Origin, Quantity,
+    Subject,
+};

@@ -1,0 +1,168 @@
+//! One error for all calls.
+
+use franka_proto::{gripper, vacuum};
+use franka_rt::lifecycle::{ControlError, MotionError, Party};
+
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+use super::ModelLibraryError;
+use super::{ActionError, ActiveError, CommandError, ConnectError, IdentifyError, ReadError};
+
+/// Anything that can go wrong with a robot or its end effectors: what a program with many kinds of
+/// calls returns. Every error of this crate converts into it, so that `?` does, and `Display` is
+/// that of the error inside.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// There is no connection to the robot.
+    #[error(transparent)]
+    Connect(#[from] ConnectError),
+    /// A command other than a motion was not carried out.
+    #[error(transparent)]
+    Command(#[from] CommandError),
+    /// The robot ended a motion: a reflex, a stop. The error has the log of the motion's last
+    /// cycles.
+    #[error(transparent)]
+    Control(Box<ControlError>),
+    /// A motion ended short of its goal for another reason.
+    #[error(transparent)]
+    Motion(MotionError),
+    /// Active control could not go on.
+    #[error(transparent)]
+    Active(ActiveError),
+    /// An arm was not identified, for another reason than a motion.
+    #[error(transparent)]
+    Identify(IdentifyError),
+    /// States could not be read any further.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// There is no connection to the Franka Hand.
+    #[error(transparent)]
+    ConnectGripper(#[from] ConnectError<gripper::Version>),
+    /// The Franka Hand did not do it.
+    #[error(transparent)]
+    Gripper(#[from] ActionError<gripper::Command>),
+    /// There is no connection to the vacuum gripper.
+    #[error(transparent)]
+    ConnectVacuumGripper(#[from] ConnectError<vacuum::Version>),
+    /// The vacuum gripper did not do it.
+    #[error(transparent)]
+    VacuumGripper(#[from] ActionError<vacuum::Command>),
+    /// The robot's model library cannot be used.
+    #[cfg(all(feature = "model-library", target_os = "linux"))]
+    #[error(transparent)]
+    ModelLibrary(#[from] ModelLibraryError),
+}
+
+impl From<MotionError> for Error {
+    fn from(error: MotionError) -> Self {
+        match error {
+            MotionError::Control(error) => Self::Control(error),
+            other => Self::Motion(other),
+        }
+    }
+}
+
+impl From<ActiveError> for Error {
+    fn from(error: ActiveError) -> Self {
+        match error {
+            ActiveError::Motion(error) => error.into(),
+            other => Self::Active(other),
+        }
+    }
+}
+
+impl From<IdentifyError> for Error {
+    fn from(error: IdentifyError) -> Self {
+        match error {
+            IdentifyError::Motion(error) => error.into(),
+            other => Self::Identify(other),
+        }
+    }
+}
+
+impl Error {
+    /// Returns the party that can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Connect(error) => error.party(),
+            Self::Command(error) => error.party(),
+            Self::Control(_) => Party::Robot,
+            Self::Motion(error) => error.party(),
+            Self::Active(error) => error.party(),
+            Self::Identify(error) => error.party(),
+            Self::Read(error) => error.party(),
+            Self::ConnectGripper(error) => error.party(),
+            Self::Gripper(error) => error.party(),
+            Self::ConnectVacuumGripper(error) => error.party(),
+            Self::VacuumGripper(error) => error.party(),
+            #[cfg(all(feature = "model-library", target_os = "linux"))]
+            Self::ModelLibrary(error) => error.party(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use franka_proto::Version;
+    use franka_rt::lifecycle::CloseReason;
+
+    use super::*;
+    use crate::error::VacuumGripperError;
+
+    #[test]
+    fn every_error_converts_and_keeps_its_text_and_party() {
+        fn check(error: impl Into<Error>, text: &str, party: Party) {
+            let error = error.into();
+            assert_eq!(error.to_string(), text);
+            assert_eq!(error.party(), party, "{error:?}");
+        }
+        check(
+            ConnectError::<Version>::Refused,
+            "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk.",
+            Party::Robot,
+        );
+        check(
+            ConnectError::<gripper::Version>::HandshakeTimeout,
+            "libfranka: TCP receive: Timeout",
+            Party::Link,
+        );
+        check(
+            MotionError::Superseded,
+            "superseded by a newer goal",
+            Party::Caller,
+        );
+        check(
+            IdentifyError::from(MotionError::Superseded),
+            "superseded by a newer goal",
+            Party::Caller,
+        );
+        check(
+            IdentifyError::Moved {
+                joint: 2,
+                got: 0.1,
+                expected: -0.5,
+            },
+            "joint 2 is no longer where the motions were planned from: got 0.100 rad, expected -0.500 rad",
+            Party::Caller,
+        );
+        let reason = CloseReason::ClosedByPeer;
+        let text = "libfranka: server closed connection";
+        check(
+            CommandError::ConnectionClosed {
+                reason: reason.clone(),
+            },
+            text,
+            Party::Link,
+        );
+        check(
+            VacuumGripperError::ConnectionClosed {
+                reason: reason.clone(),
+            },
+            text,
+            Party::Link,
+        );
+        check(ReadError::ConnectionClosed { reason }, text, Party::Link);
+        let what = "nothing";
+        check(MotionError::Protocol { what }, what, Party::Peer);
+    }
+}

@@ -1,0 +1,30 @@
+//! The model of an arm: kinematics, dynamics, limits, inverse kinematics, distances.
+//!
+//! [`Robot::model`](crate::Robot::model) is that of the connected arm, from its own description
+//! (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] are there without a robot.
+//! Nothing here allocates or waits: control functions may call all of it.
+//!
+//! ```
+//! use franka_async::READY;
+//! use franka_async::model::{EndEffector, Frame, Model};
+//! use franka_async::pose;
+//!
+//! let flange = Model::fr3().pose(Frame::Flange, &READY, &EndEffector::default());
+//! let flange = pose::from_matrix(&flange).expect("a model's poses are rigid");
+//! assert!((flange.translation.z - 0.590_282_052).abs() < 1e-9);
+//! ```
+//!
+//! Feature `model-library` (off by default): [`load_model_library`], the code that a Franka Emika
+//! Robot hands out.
+//!
+//! [`load_model_library`]: crate::Robot::load_model_library
+
+#[cfg(all(feature = "model-library", target_os = "linux"))]
+pub use franka_model::model_library::ModelLibrary;
+pub use franka_model::{
+    AsBuilt, CYCLE, Dynamics, EndEffector, Frame, GRAVITY_EARTH, Jacobian, JointMargins,
+    JointVector, Load, MassMatrix, Model, OperationalSpace, RigidBody, RobotKind, Symmetric3,
+    Twist, Wrench, analytic_ik, collision, differential_ik, elbow, geometry, inverse_kinematics,
+    joint_vector, layout, limits, manipulability,
+};
+pub use franka_proto::{Architecture, System};

@@ -1,0 +1,272 @@
+//! Motions to one target, and [`Moving`], the future of these, of followed targets and of control
+//! functions. What dropping it does to the arm: `cancel`.
+
+use std::future::IntoFuture;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll};
+
+use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
+use franka_rt::session::{Goal, GoalError, GoalId, OnArrival};
+use franka_rt::team::Round;
+use franka_rt::together::StartTicket;
+use tokio::sync::oneshot;
+
+use crate::cancel::Canceller;
+use crate::destination::{Destination, Offset};
+use crate::input::unserved;
+use crate::input::{Beginning, Input};
+use crate::options::{GoalOptions, goal_options};
+use crate::progress::Progress;
+use crate::robot::Robot;
+use crate::session::Session;
+
+/// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a
+/// motion of its own, with its own [`handle`](Self::handle) and without the
+/// [`start_with`](Self::start_with) of the original.
+#[derive(Debug)]
+#[must_use = "a motion does nothing until it is awaited or detached"]
+pub struct Motion {
+    canceller: Canceller,
+    session: Option<Arc<Session>>,
+    destination: Destination,
+    on_arrival: OnArrival,
+    options: GoalOptions,
+    ticket: Option<StartTicket>,
+}
+
+impl Robot {
+    /// A motion to a pose of the end effector in the base frame, or to joint positions, `[rad]`. To
+    /// a pose it is a straight line and a rotation about one axis if it begins at rest, and the arm
+    /// is compliant on the way, see [`Motion::stiffness`]; of joints all arrive together.
+    pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
+        Motion::of_robot(self, destination.into())
+    }
+
+    /// A motion of the joints to `q`, `[rad]`; all joints arrive together.
+    pub fn move_joints(&self, q: [f64; 7]) -> Motion {
+        self.move_to(q)
+    }
+
+    /// A motion of the end effector away from where it is, or from the target if a motion is under
+    /// way; otherwise like [`Self::move_to`]. Where several follow each other,
+    /// [engage](Self::engage) the arm: it moves a little when it is let go in between.
+    pub fn move_by(&self, offset: Offset) -> Motion {
+        self.move_to(offset)
+    }
+}
+
+impl Motion {
+    fn of_robot(robot: &Robot, destination: Destination) -> Self {
+        Self {
+            canceller: Canceller::new(robot.clone(), robot.next_goal()),
+            session: None,
+            destination,
+            on_arrival: OnArrival::ReportAndFinish,
+            options: GoalOptions::default(),
+            ticket: None,
+        }
+    }
+
+    /// A motion within a session, which holds the arm at the target.
+    pub(crate) fn within(session: &Arc<Session>, destination: Destination) -> Self {
+        Self {
+            session: Some(session.clone()),
+            on_arrival: OnArrival::ReportAndHold,
+            options: GoalOptions::of_session(*session.tuning()),
+            ..Self::of_robot(session.robot(), destination)
+        }
+    }
+
+    goal_options!(target);
+
+    /// Begins together with the motions of other robots: the robot starts the motion, and holds the
+    /// arm until all that have a ticket of the same [`StartBarrier`](crate::motion::StartBarrier)
+    /// are there; then they begin within a millisecond of each other. Such a motion supersedes
+    /// nothing: it is refused as [`MotionError::Busy`] while anything controls the arm. If the
+    /// others do not all come, it resolves as [`MotionError::Start`], and the arm has not moved.
+    ///
+    /// # Cancel safety
+    /// Dropped, stopped or superseded before the start, it releases the others, which resolve as
+    /// [`MotionError::Start`].
+    pub fn start_with(mut self, ticket: StartTicket) -> Self {
+        self.ticket = Some(ticket);
+        self
+    }
+
+    /// Makes it part of a joint motion.
+    pub(crate) fn in_round(mut self, round: Round) -> Self {
+        self.options.round = Some(round);
+        self
+    }
+
+    pub(crate) fn session(&self) -> Option<&Arc<Session>> {
+        self.session.as_ref()
+    }
+
+    /// Begins the motion without a future: it runs on, and its outcome is only logged. It does not
+    /// count as a handle: dropping the last handle of its session or robot still brakes it.
+    pub fn detach(mut self) {
+        match self.begin() {
+            Ok(motion) => drop(self.canceller.begin(motion)),
+            Err(error) => tracing::info!(goal = self.canceller.id().0, %error, "motion ended"),
+        }
+    }
+
+    /// Returns a handle that says from elsewhere how far the motion is, and pauses or brakes it.
+    pub fn handle(&self) -> MotionHandle {
+        MotionHandle(self.canceller.clone())
+    }
+
+    fn begin(&mut self) -> Result<Beginning, GoalError> {
+        let (id, model) = (self.canceller.id(), self.canceller.robot().model());
+        let kind = self.destination.kind();
+        let goal = Goal::new(id, kind, self.on_arrival, model.joint_limits());
+        let motion = NewMotion::Goal {
+            goal: Box::new(self.options.apply(goal, model)?),
+            ticket: self.ticket.take(),
+            session: self.session.as_deref().map(Session::id),
+        };
+        let destination = Some(Box::new(self.destination));
+        Ok(Beginning {
+            motion,
+            destination,
+        })
+    }
+}
+
+impl Clone for Motion {
+    fn clone(&self) -> Self {
+        let robot = self.canceller.robot();
+        Self {
+            session: self.session.clone(),
+            on_arrival: self.on_arrival,
+            options: self.options,
+            ..Self::of_robot(robot, self.destination)
+        }
+    }
+}
+
+impl IntoFuture for Motion {
+    type Output = Outcome;
+    type IntoFuture = Moving;
+
+    fn into_future(mut self) -> Moving {
+        let motion = self.begin();
+        Moving::new(self.canceller, self.session, motion)
+    }
+}
+
+/// A motion from elsewhere: how far it is, and pausing or braking it. Clones are about the same
+/// motion; none of them counts as a handle of the robot's session or keeps the motion going.
+#[derive(Clone, Debug)]
+pub struct MotionHandle(Canceller);
+
+impl MotionHandle {
+    /// Brakes the motion for good: see [`Canceller::cancel`].
+    pub fn cancel(&self) {
+        self.0.cancel();
+    }
+
+    /// Stops the motion on its way, within its limits and on its line if it goes along one, until
+    /// [`Self::resume`]. The arm is held there meanwhile. Without effect before the motion has
+    /// begun, after its end and once a newer goal has come.
+    pub fn pause(&self) {
+        self.set_paused(true);
+    }
+
+    /// Lets the motion go on.
+    pub fn resume(&self) {
+        self.set_paused(false);
+    }
+
+    fn set_paused(&self, paused: bool) {
+        let goal = self.0.id();
+        self.0.robot().send(Input::Pause { goal, paused });
+    }
+
+    /// How far the motion has come; `None` before it has begun and after its end.
+    pub fn progress(&self) -> Option<Progress> {
+        self.0.robot().link().course.progress(self.0.id())
+    }
+}
+
+/// A motion as a future. It begins with the first poll and resolves when the arm has arrived,
+/// rests, and is no longer controlled; or with the reason why not.
+///
+/// # Cancel safety
+/// Dropping it brakes the arm, in the background: within about a quarter of a second and the
+/// robot's limits.
+///
+/// # Panics
+/// When polled after it has resolved, as futures may.
+#[derive(Debug)]
+#[must_use = "futures do nothing unless polled"]
+pub struct Moving {
+    canceller: Canceller,
+    /// Keeps the session of the goal.
+    session: Option<Arc<Session>>,
+    stage: Stage,
+}
+
+#[derive(Debug)]
+enum Stage {
+    /// Or options that are not accepted.
+    Ready(Result<Beginning, GoalError>),
+    Begun(oneshot::Receiver<Outcome>),
+    Over,
+}
+
+impl Moving {
+    /// `motion`, which has the name of the canceller, as a future.
+    pub(crate) fn new(
+        canceller: Canceller,
+        session: Option<Arc<Session>>,
+        motion: Result<Beginning, GoalError>,
+    ) -> Self {
+        let named = |motion: &Beginning| motion.motion.id() == canceller.id();
+        debug_assert!(motion.as_ref().ok().is_none_or(named));
+        Self {
+            canceller,
+            session,
+            stage: Stage::Ready(motion),
+        }
+    }
+
+    pub(crate) fn id(&self) -> GoalId {
+        self.canceller.id()
+    }
+}
+
+impl Future for Moving {
+    type Output = Outcome;
+
+    fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Outcome> {
+        let mut outcome = match std::mem::replace(&mut self.stage, Stage::Over) {
+            Stage::Ready(Err(error)) => return Poll::Ready(Err(error.into())),
+            Stage::Ready(Ok(motion)) => match self.canceller.begin(motion) {
+                Some(outcome) => outcome,
+                None => return Poll::Ready(Err(MotionError::Stopped)),
+            },
+            Stage::Begun(outcome) => outcome,
+            Stage::Over => panic!("a motion is not polled after it has resolved"),
+        };
+        let Poll::Ready(outcome) = Pin::new(&mut outcome).poll(context) else {
+            self.stage = Stage::Begun(outcome);
+            return Poll::Pending;
+        };
+        let outcome = outcome.unwrap_or_else(unserved);
+        Poll::Ready(match &self.session {
+            Some(session) => outcome.map_err(|error| session.explain(error)),
+            None => outcome,
+        })
+    }
+}
+
+impl Drop for Moving {
+    fn drop(&mut self) {
+        if matches!(self.stage, Stage::Begun(_)) {
+            self.canceller.cancel();
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Poses as other programs have them, and turned poses.
+//!
+//! A [`Pose`] is an [`Isometry3`](crate::nalgebra::Isometry3) of `nalgebra`, so that
+//! products of poses do most of the work. `start` is a pose of the end effector in the base frame:
+//!
+//! | wanted | written |
+//! |---|---|
+//! | `start`, 5 cm up in the base frame | `Pose::translation(0.0, 0.0, 0.05) * start` |
+//! | `start`, 5 cm along the z axis of the end effector | `start * Pose::translation(0.0, 0.0, 0.05)` |
+//! | turned by `turn` about axes of the end effector | `start * turn` |
+//! | turned by `turn` about axes of the base through the end effector | [`rotated`]`(&start, turn)` |
+//! | the position, the orientation | `start.translation.vector`, `start.rotation` |
+//! | the way from `start` to `goal`, in axes of `start` | `start.inv_mul(&goal)` |
+//!
+//! `turn` is a [`UnitQuaternion`]. The state has its poses as column-major arrays: [`from_array`].
+//! A policy or a planner has positions and quaternions: [`from_xyzw`]. The model has matrices:
+//! [`from_matrix`].
+//!
+//! ```
+//! use franka_async::nalgebra::{UnitQuaternion, Vector3};
+//! use franka_async::pose;
+//!
+//! let start = pose::from_xyzw([0.4, 0.0, 0.3], [1.0, 0.0, 0.0, 0.0]).expect("a rotation");
+//! let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * 0.5);
+//! let (position, [x, y, _, _]) = pose::to_xyzw(&pose::rotated(&start, turn));
+//! assert_eq!(position, [0.4, 0.0, 0.3]);
+//! assert!((2.0 * y.atan2(x) - 0.5).abs() < 1e-12);
+//! ```
+
+pub use franka_model::rotation;
+pub use franka_model::transform::{
+    array as to_array, isometry as from_matrix, isometry_from_array as from_array,
+};
+
+use nalgebra::{Quaternion, Translation3, UnitQuaternion};
+
+use crate::robot::Pose;
+
+/// The pose with this position, `[m]`, and this quaternion, `[x, y, z, w]`, which is normalised.
+///
+/// `None` if a number is not finite, or the quaternion is shorter than 1e-6 and so has no
+/// direction.
+pub fn from_xyzw(position: [f64; 3], [x, y, z, w]: [f64; 4]) -> Option<Pose> {
+    let rotation = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), SHORTEST)?;
+    let pose = Pose::from_parts(Translation3::from(position), rotation);
+    let (position, quaternion) = to_xyzw(&pose);
+    let is_finite = position.iter().chain(&quaternion).all(|x| x.is_finite());
+    is_finite.then_some(pose)
+}
+
+/// The position, `[m]`, and the quaternion, `[x, y, z, w]`, of length 1.
+pub fn to_xyzw(pose: &Pose) -> ([f64; 3], [f64; 4]) {
+    (pose.translation.vector.into(), pose.rotation.coords.into())
+}
+
+/// The pose turned in place: by `turn` about the axes of the base, through the position of `pose`,
+/// which stays.
+pub fn rotated(pose: &Pose, turn: UnitQuaternion<f64>) -> Pose {
+    Pose::from_parts(pose.translation, turn * pose.rotation)
+}
+
+/// Length of a quaternion below which it is taken for zero.
+const SHORTEST: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Vector3, Vector4};
+
+    use super::*;
+
+    #[test]
+    fn a_quaternion_is_normalised_and_comes_back() {
+        let pose = from_xyzw([0.1, 0.2, 0.3], [0.0, 0.0, 3.0, 4.0]).expect("a pose");
+        let (position, quaternion) = to_xyzw(&pose);
+        assert_eq!(position, [0.1, 0.2, 0.3]);
+        let off = Vector4::from(quaternion) - Vector4::new(0.0, 0.0, 0.6, 0.8);
+        assert!(off.amax() < 1e-15, "{quaternion:?}");
+    }
+
+    #[test]
+    fn what_is_no_pose_is_refused() {
+        let (there, upright) = ([0.1, 0.2, 0.3], [0.0, 0.0, 0.0, 1.0]);
+        assert!(from_xyzw(there, upright).is_some());
+        assert_eq!(from_xyzw(there, [0.0; 4]), None);
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(from_xyzw([0.1, bad, 0.3], upright), None, "{bad}");
+            assert_eq!(from_xyzw(there, [0.0, bad, 0.0, 1.0]), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_turn_is_about_axes_of_the_base_and_keeps_the_position() {
+        let about = |axis: Vector3<f64>| UnitQuaternion::from_scaled_axis(axis);
+        let start = Pose::from_parts([0.4, 0.1, 0.3].into(), about(Vector3::x() * 1.0));
+        let turned = rotated(&start, about(Vector3::z() * 0.5));
+        assert_eq!(turned.translation, start.translation);
+        // The x axis of the pose is that of the base: it turns in the plane.
+        let x = turned * Vector3::x();
+        assert!((x - Vector3::new(0.5_f64.cos(), 0.5_f64.sin(), 0.0)).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,8 @@
+//! States of the robot, whatever moves: the newest as it changes ([`States`]), or every one
+//! ([`StateStream`]).
+
+pub use crate::state_stream::{Reading, StateStream};
+pub use crate::states::States;
+pub use franka_proto::{
+    ControllerMode, Errors, MotionGeneratorMode, RobotError, RobotMode, RobotState,
+};
