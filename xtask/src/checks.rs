@@ -8,7 +8,7 @@ use clap::ValueEnum;
 
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
-use crate::{circles, mujoco, peers, realtime, tidy};
+use crate::{circles, mujoco, names, peers, realtime, tidy};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -17,6 +17,8 @@ pub(crate) enum Check {
     Fmt,
     /// No imports in a circle between the modules of a crate.
     Circles,
+    /// Few names at the root of the driver, none of them in two places.
+    Names,
     /// The native library of the simulator's MuJoCo plant, which the next three steps build with.
     Mujoco,
     /// Lints, warnings denied.
@@ -51,6 +53,7 @@ impl Check {
         match self {
             Self::Fmt => ("fmt", "formatting, and comments as wide as code"),
             Self::Circles => ("circles", "imports between the modules of a crate"),
+            Self::Names => ("names", "what programs name, and where it is"),
             Self::Mujoco => ("mujoco", "the native library of the MuJoCo plant"),
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
@@ -72,6 +75,7 @@ impl Check {
                 tidy::check(workspace)?;
             }
             Self::Circles => circles::check(workspace)?,
+            Self::Names => names::check(workspace)?,
             Self::Mujoco => {
                 if let Err(why) = mujoco::prepare(workspace)? {
                     return Outcome::without(why);

@@ -8,6 +8,7 @@
 //! | [`fuzz`] | the fuzz targets |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
+//! | [`names`] | the step that counts the names of the driver's root |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | virtual environments, for these two |
 //! | [`realtime`] | the right to real-time scheduling |
@@ -20,6 +21,7 @@ mod circles;
 mod fuzz;
 mod live;
 mod mujoco;
+mod names;
 mod peers;
 mod python;
 mod realtime;
