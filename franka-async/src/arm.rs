@@ -8,7 +8,7 @@ use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 use franka_rt::driver::{Observer, Record, ReferenceState};
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, NewMotion, Tuning};
-use franka_rt::session::{Backend, Chunk, DeadmanMonitor, Free, Goal, OnArrival, Target};
+use franka_rt::session::{Backend, Chunk, DeadmanMonitor, Free, Goal, OnArrival, Target, Waypoint};
 use franka_rt::team::Member;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
@@ -156,6 +156,15 @@ impl Arm {
     /// [`Self::move_to`].
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
+    }
+
+    /// A motion through several poses, or several joint positions, without stops where they are
+    /// [rounded](Waypoint::blend); otherwise like [`Self::move_to`]. See [`Robot::move_through`].
+    pub fn move_through<W: Into<Waypoint>>(
+        &self,
+        waypoints: impl IntoIterator<Item = W>,
+    ) -> Motion {
+        self.move_to(Target::Rest).along(waypoints)
     }
 
     /// Brakes, whatever the arm is doing, and resolves when it rests; it is then held there.
@@ -393,6 +402,7 @@ impl Arm {
                 session: Some(self.session.id()),
             },
             destination: Some(Box::new(destination)),
+            path: None,
         }
     }
 

@@ -14,7 +14,7 @@ use franka_rt::event_fd::EventFd;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, NewMotion, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
-use franka_rt::session::{ForceCap, GoalId, Margin, Target};
+use franka_rt::session::{Chunk, ForceCap, GoalId, Margin, Target};
 use franka_rt::supervision::Seen;
 use franka_rt::thread::{Handle, Notice, Thread};
 use tokio::io::Interest;
@@ -401,16 +401,13 @@ impl Bridge {
         self.take_notices();
         match input {
             Input::Begin { motion, replies } => {
-                let state = &self.publisher.state();
-                let motion = self.with_target(motion, state);
-                let id = motion.id();
-                let compliant = motion.compliant_goal();
+                let id = motion.motion.id();
+                let compliant = motion.motion.compliant_goal();
                 let gains = compliant.map(|goal| goal.gains);
                 let force_cap = compliant.map(|goal| goal.force_cap);
-                let begun = self.lifecycle.begin(motion, state, now);
-                match begun {
+                match self.begin(motion) {
                     Ok(()) => {
-                        self.warn_of_margin(id, gains, state);
+                        self.warn_of_margin(id, gains, &self.publisher.state());
                         self.warn_of_thresholds(id, force_cap);
                         let span = tracing::info_span!("motion", goal = id.0);
                         self.replies.insert(id, (replies, span));
@@ -428,9 +425,7 @@ impl Bridge {
                 let _ = taken.send(updated);
             }
             Input::Set { motion, taken } => {
-                let state = &self.publisher.state();
-                let motion = self.with_target(motion, state);
-                let begun = self.lifecycle.begin(motion, state, now);
+                let begun = self.begin(motion);
                 self.course.head_for(self.lifecycle.heading());
                 let _ = taken.send(begun);
             }
@@ -438,10 +433,8 @@ impl Bridge {
                 let Some(motion) = waiting.take() else {
                     return;
                 };
-                let state = &self.publisher.state();
-                let motion = self.with_target(motion, state);
-                let id = motion.id();
-                if let Err(error) = self.lifecycle.begin(motion, state, now) {
+                let id = motion.motion.id();
+                if let Err(error) = self.begin(motion) {
                     log(id, &Err(error));
                 }
             }
@@ -482,16 +475,27 @@ impl Bridge {
         }
     }
 
-    /// The motion with its target, for a robot in `state`.
-    fn with_target(&self, beginning: Beginning, state: &RobotState) -> NewMotion {
+    /// Completes a motion by where the robot is, and begins it.
+    fn begin(&mut self, beginning: Beginning) -> Result<(), MotionError> {
+        let (now, state) = (self.now(), &self.publisher.state());
         let Beginning {
             mut motion,
             destination,
+            path,
         } = beginning;
-        if let (Some(destination), NewMotion::Goal { goal, .. }) = (destination, &mut motion) {
+        let NewMotion::Goal { goal, .. } = &mut motion else {
+            return self.lifecycle.begin(motion, state, now);
+        };
+        if let Some(destination) = destination {
             goal.target = destination.seen_from(&self.poses(state));
         }
-        motion
+        let Some(path) = path else {
+            return self.lifecycle.begin(motion, state, now);
+        };
+        let reference = self.course.reference();
+        let q = reference.map_or(state.q, |reference| reference.q);
+        let path = Chunk::through(&path, &q, &goal.budget, self.lifecycle.model(), state)?;
+        self.lifecycle.begin_along(path, motion, state, now)
     }
 
     /// The poses that a destination may be relative to.

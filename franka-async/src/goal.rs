@@ -8,5 +8,5 @@ pub use franka_rt::session::{
     Backend, Budget, Chunk, Deadman, DeadmanMonitor, ForceCap, Free, JOINT_DEVIATION, JOINT_LEASH,
     KEEP_OUT_MAX, KEEP_OUT_STOP, Lead, Margin, OnTimeout, ROTATION_DEVIATION, ROTATION_LEASH,
     SELF_STOP, SLOW_ZONE, STALL_TIMEOUT, Setpoints, TRANSLATION_DEVIATION, TRANSLATION_LEASH,
-    Target, Tolerance, VELOCITY_BARRIER_ONSET,
+    Target, Tolerance, VELOCITY_BARRIER_ONSET, Waypoint,
 };

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome, Tuning};
-use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target};
+use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target, Waypoint};
 use tokio::sync::{mpsc, oneshot, watch};
 
 use crate::destination::Destination;
@@ -77,14 +77,17 @@ pub(crate) struct Beginning {
     pub(crate) motion: NewMotion,
     /// Where its goal leads, if that takes the poses of now.
     pub(crate) destination: Option<Box<Destination>>,
+    /// What it goes through on the way there.
+    pub(crate) path: Option<Arc<[Waypoint]>>,
 }
 
 impl From<NewMotion> for Beginning {
     fn from(motion: NewMotion) -> Self {
-        let destination = None;
+        let (destination, path) = (None, None);
         Self {
             motion,
             destination,
+            path,
         }
     }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
-use franka_rt::session::{Goal, GoalError, GoalId, OnArrival};
+use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Target, Waypoint};
 use franka_rt::team::Round;
 use franka_rt::together::StartTicket;
 use tokio::sync::oneshot;
@@ -30,6 +30,7 @@ pub struct Motion {
     canceller: Canceller,
     session: Option<Arc<Session>>,
     destination: Destination,
+    path: Option<Arc<[Waypoint]>>,
     on_arrival: OnArrival,
     options: GoalOptions,
     ticket: Option<StartTicket>,
@@ -41,6 +42,31 @@ impl Robot {
     /// is compliant on the way, see [`Motion::stiffness`]; of joints all arrive together.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::of_robot(self, destination.into())
+    }
+
+    /// A motion through several poses, or several joint positions, to the last of them: as fast as
+    /// the limits allow, on straight lines between them, and without a stop where the corner is
+    /// [rounded](Waypoint::blend). It has one outcome. A waypoint that the arm cannot reach is
+    /// refused before anything moves, as [`MotionError::Path`]. Whatever holds the arm back holds
+    /// the path up: no waypoint is left out.
+    ///
+    /// ```no_run
+    /// # use franka_async::{Error, Robot};
+    /// use franka_async::{Pose, goal::Waypoint};
+    ///
+    /// # async fn run(robot: Robot) -> Result<(), Error> {
+    /// let here = robot.pose();
+    /// let above = Pose::translation(0.1, 0.0, 0.1) * here;
+    /// let there = Pose::translation(0.1, 0.0, 0.0) * here;
+    /// robot.move_through([Waypoint::new(above).blend(0.03), there.into()]).await?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn move_through<W: Into<Waypoint>>(
+        &self,
+        waypoints: impl IntoIterator<Item = W>,
+    ) -> Motion {
+        self.move_to(Target::Rest).along(waypoints)
     }
 
     /// A motion of the joints to `q`, `[rad]`; all joints arrive together.
@@ -62,6 +88,7 @@ impl Motion {
             canceller: Canceller::new(robot.clone(), robot.next_goal()),
             session: None,
             destination,
+            path: None,
             on_arrival: OnArrival::ReportAndFinish,
             options: GoalOptions::default(),
             ticket: None,
@@ -75,6 +102,17 @@ impl Motion {
             on_arrival: OnArrival::ReportAndHold,
             options: GoalOptions::of_session(*session.tuning()),
             ..Self::of_robot(session.robot(), destination)
+        }
+    }
+
+    /// Leads through `waypoints` to the last of them.
+    pub(crate) fn along<W: Into<Waypoint>>(self, waypoints: impl IntoIterator<Item = W>) -> Self {
+        let path: Arc<[Waypoint]> = waypoints.into_iter().map(Into::into).collect();
+        let last = path.last().map(|last| Destination::Target(*last.target()));
+        Self {
+            destination: last.unwrap_or(self.destination),
+            path: Some(path),
+            ..self
         }
     }
 
@@ -131,6 +169,7 @@ impl Motion {
         Ok(Beginning {
             motion,
             destination,
+            path: self.path.clone(),
         })
     }
 }
@@ -140,6 +179,7 @@ impl Clone for Motion {
         let robot = self.canceller.robot();
         Self {
             session: self.session.clone(),
+            path: self.path.clone(),
             on_arrival: self.on_arrival,
             options: self.options,
             ..Self::of_robot(robot, self.destination)

@@ -25,7 +25,14 @@ const ROOT_MAX: usize = 40;
 const PRELUDE: &str = "prelude";
 
 /// Names of different items in different modules.
-const NAMESAKES: [&str; 6] = ["Axis", "Condition", "Load", "Quantity", "State", "collision"];
+const NAMESAKES: [&str; 6] = [
+    "Axis",
+    "Condition",
+    "Load",
+    "Quantity",
+    "State",
+    "collision",
+];
 
 /// Crates of ours that programs depend on.
 const FOR_PROGRAMS: [&str; 3] = ["franka-async", "franka-sim", "franka-examples"];

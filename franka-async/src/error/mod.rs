@@ -31,7 +31,9 @@ pub use franka_rt::law::GainError;
 pub use franka_rt::lifecycle::{CloseReason, ControlError, Party, Stage, Unready};
 pub use franka_rt::sched::SchedError;
 pub use franka_rt::session::condition::ConditionError;
-pub use franka_rt::session::{ChunkError, GoalError, Lapse, PoseError, Shortfall, TooManyChunks};
+pub use franka_rt::session::{
+    ChunkError, GoalError, Lapse, PathError, PoseError, Shortfall, TooManyChunks,
+};
 pub use franka_rt::shaping::InvalidCommand;
 pub use franka_rt::thread::{BorrowError, LinkFault, WriteFault};
 pub use franka_rt::together::StartFault;

@@ -290,10 +290,11 @@ impl Inner {
                         Beginning {
                             motion: NewMotion::Goal { goal: waiting, .. },
                             destination,
+                            path,
                         },
                     ..
                 }) if waiting.id == goal => {
-                    (waiting.target, *destination) = (target, None);
+                    (waiting.target, *destination, *path) = (target, None, None);
                     // Its receiver may have been dropped.
                     let _ = taken.send(Ok(true));
                     return;

@@ -10,7 +10,6 @@ use crate::law::Gains;
 use crate::session::check::{check_keep_out, check_silence};
 use crate::session::{
     Backend, Budget, Chunk, DeadmanMonitor, ForceCap, Goal, GoalError, GoalId, OnArrival, Target,
-    TooManyChunks,
 };
 use crate::team::Member;
 
@@ -129,21 +128,15 @@ impl Lifecycle {
             target: chunk.target(),
             ..goal
         })?;
-        let Some(chunks) = goals.chunks.as_mut().filter(|_| !ending) else {
+        if ending {
             // The session has ended, and says so when it is known how.
             goals.after_end.push(goal.id);
             return Ok(());
-        };
-        while let Some(done) = chunks.collect() {
-            drop(done);
         }
         // One that was taken back is on its way to rest, and belongs to no caller any more.
         let goes_on = goals.current.id == goals.chunk_goal && !goals.cancelled;
         let of = if goes_on { goals.chunk_goal } else { goal.id };
-        chunks
-            .send(of, chunk)
-            .map_err(|_| GoalError::from(TooManyChunks))?;
-        goals.chunk_goal = of;
+        goals.send(of, chunk).map_err(GoalError::from)?;
         if !goes_on {
             self.replace(goal, MotionError::Superseded);
         }

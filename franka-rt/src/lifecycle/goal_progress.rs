@@ -7,7 +7,8 @@ use super::outcome::{Counted, Outcome};
 use super::{MotionError, MotionReport};
 use crate::driver::{Ended, Ending, Program};
 use crate::session::{
-    Backend, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Reacted, Settlement, Target,
+    Backend, Chunk, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Reacted, Settlement, Target,
+    TooManyChunks,
 };
 use crate::slot::SlotWriter;
 
@@ -25,8 +26,8 @@ pub(super) struct Goals {
     pub(super) engaged: Option<Engaged>,
     /// What turns setpoints into torques.
     pub(super) backend: Backend,
-    /// The way of chunks to that session.
-    pub(super) chunks: Option<ChunkWriter>,
+    /// The way of chunks to the session.
+    pub(super) chunks: ChunkWriter,
     /// The goal that its newest chunk belongs to.
     pub(super) chunk_goal: GoalId,
     /// Goals that came for that session after it had ended and before its outcome was known.
@@ -57,7 +58,7 @@ pub(super) struct Settled {
 
 impl Goals {
     /// A motion of its own to `goal`, which `slot` holds already.
-    pub(super) fn new(goal: Goal, slot: SlotWriter<Goal>) -> Self {
+    pub(super) fn new(goal: Goal, slot: SlotWriter<Goal>, chunks: ChunkWriter) -> Self {
         Self {
             slot,
             current: goal,
@@ -66,10 +67,28 @@ impl Goals {
             bad_tool: false,
             engaged: None,
             backend: Backend::default(),
-            chunks: None,
+            chunks,
             chunk_goal: GoalId::default(),
             after_end: Vec::new(),
         }
+    }
+
+    /// Whether a chunk or a path can be sent. Frees those that the session is done with.
+    pub(super) fn has_room(&mut self) -> bool {
+        while let Some(done) = self.chunks.collect() {
+            drop(done);
+        }
+        self.chunks.has_room()
+    }
+
+    /// Sends a chunk, or the path of a goal that is about to begin.
+    pub(super) fn send(&mut self, goal: GoalId, chunk: Chunk) -> Result<(), TooManyChunks> {
+        if !self.has_room() {
+            return Err(TooManyChunks);
+        }
+        self.chunks.send(goal, chunk).map_err(|_| TooManyChunks)?;
+        self.chunk_goal = goal;
+        Ok(())
     }
 
     /// Brakes, and ends the motion at rest.

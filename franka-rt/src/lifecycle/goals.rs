@@ -143,8 +143,16 @@ impl Lifecycle {
     /// way if that takes goals, or else in one that waits for its end.
     pub(super) fn replace(&mut self, goal: Goal, reason: MotionError) {
         let is_ending = self.is_ending();
+        let goes_on = !is_ending && self.goals().is_some();
+        let path = self.path.take_if(|(of, _)| *of == goal.id && goes_on);
         let previous = match self.goals_mut() {
-            Some(goals) if !is_ending => goals.supersede(goal, reason.clone()),
+            Some(goals) if !is_ending => {
+                if let Some((_, path)) = path {
+                    // There was room where it was accepted.
+                    let _ = goals.send(goal.id, path);
+                }
+                goals.supersede(goal, reason.clone())
+            }
             _ => return self.wait(NewMotion::to(goal), reason),
         };
         self.resolve_next(reason);

@@ -12,7 +12,9 @@ use super::{Engagement, Lifecycle, LifecyclePhase, MotionError, Output, START_TI
 use crate::control::Modes;
 use crate::driver::{ControlLog, MotionId, Observer, Order, Program};
 use crate::session::check::check_keep_out;
-use crate::session::{self, Backend, Goal, GoalId, OnArrival, Target, TargetSession};
+use crate::session::{
+    self, Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target, TargetSession, TooManyChunks,
+};
 use crate::slot;
 use crate::stats::MotionTimes;
 use crate::together::StartTicket;
@@ -170,6 +172,28 @@ impl Lifecycle {
         Ok(())
     }
 
+    /// As [`Self::begin`], for a goal that goes to its target along `path`.
+    ///
+    /// # Errors
+    /// As [`Self::begin`], and [`GoalError::Chunks`].
+    pub fn begin_along(
+        &mut self,
+        path: Chunk,
+        motion: NewMotion,
+        state: &RobotState,
+        now: Duration,
+    ) -> Result<(), MotionError> {
+        if let Some(goals) = self.goals_mut()
+            && !goals.has_room()
+        {
+            return Err(GoalError::from(TooManyChunks).into());
+        }
+        // A goal that waits keeps its own if this one is refused.
+        let before = self.path.replace((motion.id(), path));
+        self.begin(motion, state, now)
+            .inspect_err(|_| self.path = before)
+    }
+
     /// Checks that what moves, or waits to, gives way to `motion`.
     fn check_turn(&self, motion: &NewMotion) -> Result<(), MotionError> {
         let current_gives_way = match &self.phase {
@@ -246,20 +270,22 @@ impl Lifecycle {
         let mut session = TargetSession::new(self.model.clone(), self.version, reader)
             .out_of(self.keep_out)
             .knowing(self.learned);
-        let mut goals = Goals::new(goal, slot);
+        let (writer, reader) = session::chunk_ring();
+        session = session.with_chunks(reader);
+        let mut goals = Goals::new(goal, slot, writer);
+        if let Some((_, path)) = self.path.take_if(|(of, _)| *of == goal.id) {
+            // The ring is new.
+            let _ = goals.send(goal.id, path);
+        }
         let mut observer = None;
         if let Some(engagement) = engagement {
-            let (writer, reader) = session::chunk_ring();
             goals.engaged = Some(Engaged {
                 id: goal.id,
                 disengaged: false,
             });
-            (goals.backend, goals.chunks) = (engagement.backend, Some(writer));
+            goals.backend = engagement.backend;
             observer = engagement.observer;
-            session = session
-                .with_backend(goals.backend)
-                .with_chunks(reader)
-                .going_on();
+            session = session.with_backend(goals.backend).going_on();
             if let Some(regions) = engagement.keep_out {
                 // Checked where the session was asked for.
                 session = session.out_of(check_keep_out(&regions).unwrap_or(self.keep_out));

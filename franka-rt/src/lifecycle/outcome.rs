@@ -9,7 +9,7 @@ use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, St
 
 use super::{CloseReason, Unready};
 use crate::driver::{Commander, ControlLog, Ended};
-use crate::session::{GoalError, Lapse, PoseError, Reacted, Shortfall};
+use crate::session::{GoalError, Lapse, PathError, PoseError, Reacted, Shortfall};
 use crate::shaping::InvalidCommand;
 use crate::stats::{CycleTimes, MotionStatistics, MotionTimes, Quantiles, Slack};
 use crate::together::StartFault;
@@ -109,6 +109,9 @@ pub enum MotionError {
     /// Caller: the goal was not accepted; the robot was not asked.
     #[error(transparent)]
     Goal(#[from] GoalError),
+    /// Caller: the path was not accepted; the robot was not asked.
+    #[error(transparent)]
+    Path(#[from] PathError),
     /// Caller: a newer goal took over.
     #[error("superseded by a newer goal")]
     Superseded,
@@ -214,6 +217,7 @@ impl MotionError {
         matches!(
             self,
             Self::Goal(_)
+                | Self::Path(_)
                 | Self::Superseded
                 | Self::Stopped
                 | Self::Held(_)
@@ -238,6 +242,7 @@ impl MotionError {
     pub fn party(&self) -> Party {
         match self {
             Self::Goal(_)
+            | Self::Path(_)
             | Self::Superseded
             | Self::Stopped
             | Self::Held(_)

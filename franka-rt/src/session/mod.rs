@@ -61,7 +61,10 @@ use crate::together::{Gate, StartFault};
 pub use backend::{Backend, Setpoints};
 pub use budget::Budget;
 pub use check::{GoalError, TooManyChunks};
-pub use chunk::{Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
+pub use chunk::{
+    Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, PathError, Returned, Waypoint,
+    chunk_ring,
+};
 pub use goal::{Free, Goal, GoalId, OnArrival, Target};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub use guard::deadman::{Deadman, DeadmanMonitor};

@@ -97,7 +97,10 @@ impl Route {
     fn head_for(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
         let paced = self.paced(goal);
         match &mut self.course {
-            Course::Chunk(chunk) => chunk.keep_to(model, reference, paced.budget),
+            Course::Chunk(chunk) => {
+                chunk.keep_to(model, reference, paced.budget);
+                chunk.set_paused(paced.paused);
+            }
             _ => self.plan(model, ee, reference, &paced),
         }
     }

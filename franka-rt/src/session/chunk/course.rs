@@ -5,14 +5,14 @@ use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
 use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Translation3, vector};
 
-use super::curve_state::{JointExtent, stacked};
+use super::curve_state::{CurveState, JointExtent, stacked};
 use super::player::Player;
 use super::quintic::PointState;
 use super::ring::{ChunkReader, Fate};
 use super::servo;
 use super::value::{Chunk, Points};
 use crate::session::course::{CourseStep, limits_of_joint};
-use crate::session::guard::joint_bounds::{BRAKING, BoundsReached};
+use crate::session::guard::joint_bounds::BRAKING;
 use crate::session::guard::leash;
 use crate::session::kinematics::{self, Drift};
 use crate::session::pose::PoseState;
@@ -24,6 +24,8 @@ use crate::session::{Budget, GoalId, Target, approach, rigid};
 pub(in crate::session) struct ChunkCourse {
     goal: GoalId,
     budget: Budget,
+    /// How far the reference is behind, in units of what it may be.
+    lag: f64,
     play: Play,
 }
 
@@ -74,16 +76,18 @@ impl ChunkCourse {
             points,
             origin,
             blend,
+            pace,
         } = chunk;
+        let asked = (origin, blend, pace);
         let play = match points {
             Points::Joints(curve) => Play::Joints {
                 limits: joint_limits(model.joint_limits(), curve.extent(), reference, &budget),
-                player: Player::new(curve, origin, blend, reference, now),
+                player: Player::new(curve, asked, reference, now),
             },
             Points::Poses(curve) => {
                 let limits = pose_limits(model, &pose, &budget);
                 Play::Poses {
-                    player: Player::new(curve, origin, blend, &pose, now),
+                    player: Player::new(curve, asked, &pose, now),
                     state: pose,
                     drift,
                     translation: limits.translation,
@@ -91,7 +95,12 @@ impl ChunkCourse {
                 }
             }
         };
-        Self { goal, budget, play }
+        Self {
+            goal,
+            budget,
+            lag: 0.0,
+            play,
+        }
     }
 
     /// Goes on from `reference` within another budget. The chunk keeps its times: what a slower
@@ -120,6 +129,14 @@ impl ChunkCourse {
         }
     }
 
+    /// Stops on a path, or goes on.
+    pub(in crate::session) fn set_paused(&mut self, paused: bool) {
+        match &mut self.play {
+            Play::Joints { player, .. } => player.set_paused(paused),
+            Play::Poses { player, .. } => player.set_paused(paused),
+        }
+    }
+
     /// Goes on from `reference`, and the `pose` of its end effector, which something else has
     /// moved.
     pub(in crate::session) fn begin_again(
@@ -144,13 +161,13 @@ impl ChunkCourse {
         now: u64,
     ) -> CourseStep {
         match &mut self.play {
-            Play::Joints { player, limits } => CourseStep {
-                reference: follow_joints(model.joint_limits(), limits, reference, &player.at(now)),
-                bounds: BoundsReached::default(),
-                held: false,
-                leashed: false,
-                failed: false,
-            },
+            Play::Joints { player, limits } => {
+                player.step(self.lag);
+                let there = player.at(now);
+                let next = follow_joints(model.joint_limits(), limits, reference, &there);
+                self.lag = next.lag(&there);
+                CourseStep::free(next)
+            }
             Play::Poses {
                 player,
                 state,
@@ -158,7 +175,9 @@ impl ChunkCourse {
                 translation,
                 rotation,
             } => {
-                *state = follow_pose(translation, rotation, state, &player.at(now));
+                player.step(self.lag);
+                let there = player.at(now);
+                *state = follow_pose(translation, rotation, state, &there);
                 let next = state.moving();
                 let (reference, bounds) =
                     kinematics::follow(model, ee, posture, drift, reference, &next, &self.budget);
@@ -170,6 +189,7 @@ impl ChunkCourse {
                         held = true;
                     }
                 }
+                self.lag = state.lag(&there);
                 CourseStep {
                     reference,
                     bounds,

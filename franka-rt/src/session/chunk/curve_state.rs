@@ -10,6 +10,12 @@ use super::value::Points;
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 
+/// How far the reference may be behind on a path: from there on the path waits for it. `[m]`
+const LAG_TRANSLATION: f64 = 0.005;
+
+/// The same of the end effector's rotation, and of each joint, `[rad]`.
+const LAG_ROTATION: f64 = 0.01;
+
 /// A state with its first two derivatives that chunks can be made of.
 pub(super) trait CurveState: Copy {
     /// How far one state is from another, with derivatives.
@@ -26,6 +32,12 @@ pub(super) trait CurveState: Copy {
 
     /// This state, as far off as `gap` still is at `t` if it closes within `duration`.
     fn displaced(&self, gap: &Self::Gap, duration: f64, t: f64) -> Self;
+
+    /// In the same place, with the time slowed down to `rate`, which changes by `change`, `[1/s]`.
+    fn paced(&self, rate: f64, change: f64) -> Self;
+
+    /// How far it is from `other`, in units of what an arm on a path may be behind.
+    fn lag(&self, other: &Self) -> f64;
 
     /// At rest in the same place.
     fn resting(&self) -> Self;
@@ -67,6 +79,18 @@ impl CurveState for Reference {
             dq: self.dq + gap.v,
             ddq: self.ddq + gap.a,
         }
+    }
+
+    fn paced(&self, rate: f64, change: f64) -> Self {
+        Self {
+            q: self.q,
+            dq: self.dq * rate,
+            ddq: self.ddq * (rate * rate) + self.dq * change,
+        }
+    }
+
+    fn lag(&self, other: &Self) -> f64 {
+        (self.q - other.q).amax() / LAG_ROTATION
     }
 
     fn resting(&self) -> Self {
@@ -173,6 +197,20 @@ impl CurveState for PoseState {
             twist: stacked(&(here.v + off.v), &w),
             acceleration: stacked(&(here.a + off.a), &dw),
         }
+    }
+
+    fn paced(&self, rate: f64, change: f64) -> Self {
+        Self {
+            pose: self.pose,
+            twist: self.twist * rate,
+            acceleration: self.acceleration * (rate * rate) + self.twist * change,
+        }
+    }
+
+    fn lag(&self, other: &Self) -> f64 {
+        let way = self.pose.translation.vector - other.pose.translation.vector;
+        let turn = self.pose.rotation.angle_to(&other.pose.rotation);
+        (way.norm() / LAG_TRANSLATION).max(turn / LAG_ROTATION)
     }
 
     fn resting(&self) -> Self {

@@ -12,6 +12,8 @@
 //! * `ring`: across threads and back.
 //! * `player`: what is wanted at a time of the robot. Lost states need no more: the time jumps, and
 //!   the servo makes up for the distance.
+//! * `path`, `timing`, `pace`: places without times are timed outside the thread, and then followed
+//!   as a chunk whose time can wait.
 //! * `servo`: what the limits allow of it. `course`: both, for joints and for poses.
 
 mod course;
@@ -19,15 +21,19 @@ mod curve;
 mod curve_state;
 mod derivatives;
 mod error;
+mod pace;
+mod path;
 mod player;
 mod quintic;
 mod ring;
 mod servo;
 #[cfg(test)]
 mod tests;
+mod timing;
 mod value;
 
 pub(super) use course::{ChunkCourse, ChunkStart};
 pub use error::ChunkError;
+pub use path::{PathError, Waypoint};
 pub use ring::{ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
 pub use value::Chunk;

@@ -4,6 +4,7 @@ use core::time::Duration;
 
 use super::curve::Curve;
 use super::curve_state::CurveState;
+use super::pace::{Pace, PathTime};
 use super::value::{Chunk, Origin, milliseconds};
 use crate::shaping::CYCLE;
 
@@ -18,7 +19,9 @@ pub(super) struct Player<M: CurveState> {
     /// Time of the robot that the curve's times count from, `message_id`.
     origin: u64,
     /// As the chunk had it, to give it back with.
-    asked: (Origin, Duration),
+    asked: (Origin, Duration, Option<Pace>),
+    /// The time of a path.
+    own: Option<PathTime>,
     entry: Entry<M>,
 }
 
@@ -42,8 +45,7 @@ impl<M: CurveState> Player<M> {
     /// at `last` in the answer before.
     pub(super) fn new(
         curve: Curve<M>,
-        origin: Origin,
-        blend: Duration,
+        (origin, blend, pace): (Origin, Duration, Option<Pace>),
         last: &M,
         now: u64,
     ) -> Self {
@@ -66,15 +68,16 @@ impl<M: CurveState> Player<M> {
         Self {
             curve,
             origin: counted_from,
-            asked: (origin, blend),
+            asked: (origin, blend, pace),
+            own: pace.and_then(PathTime::new),
             entry,
         }
     }
 
     /// Where to be in the answer to the state `now`.
     pub(super) fn at(&self, now: u64) -> M {
-        let t = milliseconds(now, self.origin);
-        match &self.entry {
+        let t = self.time(now);
+        let there = match &self.entry {
             Entry::Approach { from, since } if t < self.curve.begin() => approach(
                 from,
                 self.curve.first(),
@@ -87,12 +90,39 @@ impl<M: CurveState> Player<M> {
                 duration,
             } if t - since < *duration => self.curve.at(t).displaced(gap, *duration, t - since),
             _ => self.curve.at(t),
+        };
+        match &self.own {
+            Some(own) => there.paced(own.rate(), own.change()),
+            None => there,
+        }
+    }
+
+    /// Lets the time of a path go on by one cycle, for an arm that is behind by `lag` in units of
+    /// what it may be.
+    pub(super) fn step(&mut self, lag: f64) {
+        if let Some(own) = &mut self.own {
+            own.step(lag);
+        }
+    }
+
+    /// Stops the time of a path, or lets it go on. Points that have times do not wait.
+    pub(super) fn set_paused(&mut self, paused: bool) {
+        if let Some(own) = &mut self.own {
+            own.set_paused(paused);
+        }
+    }
+
+    /// Seconds from the curve's origin.
+    fn time(&self, now: u64) -> f64 {
+        match &self.own {
+            Some(own) => own.time,
+            None => milliseconds(now, self.origin),
         }
     }
 
     /// Whether nothing moves any more from `now` on.
     pub(super) fn is_over(&self, now: u64) -> bool {
-        let t = milliseconds(now, self.origin);
+        let t = self.time(now);
         let entered = match self.entry {
             Entry::Blend {
                 since, duration, ..
@@ -104,7 +134,7 @@ impl<M: CurveState> Player<M> {
 
     /// Time from `now` to the last point, `[s]`.
     pub(super) fn remaining(&self, now: u64) -> f64 {
-        (self.curve.end() - milliseconds(now, self.origin)).max(0.0)
+        (self.curve.end() - self.time(now)).max(0.0)
     }
 
     pub(super) fn curve(&self) -> &Curve<M> {
@@ -113,11 +143,12 @@ impl<M: CurveState> Player<M> {
 
     /// The chunk as it came.
     pub(super) fn into_chunk(self) -> Chunk {
-        let (origin, blend) = self.asked;
+        let (origin, blend, pace) = self.asked;
         Chunk {
             points: M::points(self.curve),
             origin,
             blend,
+            pace,
         }
     }
 }
@@ -159,7 +190,9 @@ mod tests {
 
     fn play(chunk: Chunk, last: &Reference, now: u64) -> Player<Reference> {
         match chunk.points {
-            Points::Joints(curve) => Player::new(curve, chunk.origin, chunk.blend, last, now),
+            Points::Joints(curve) => {
+                Player::new(curve, (chunk.origin, chunk.blend, chunk.pace), last, now)
+            }
             Points::Poses(_) => panic!("these are joints"),
         }
     }

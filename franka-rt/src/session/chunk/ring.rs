@@ -103,7 +103,7 @@ impl ChunkWriter {
         reason = "once per chunk, outside the thread; the chunk goes back to its owner"
     )]
     pub fn send(&mut self, goal: GoalId, chunk: Chunk) -> Result<(), Full> {
-        if self.under_way >= Chunk::UNDER_WAY_MAX {
+        if !self.has_room() {
             return Err(Full(chunk));
         }
         match self.chunks.push(Sent { goal, chunk }) {
@@ -113,6 +113,11 @@ impl ChunkWriter {
             }
             Err(queue::Full(sent)) => Err(Full(sent.chunk)),
         }
+    }
+
+    /// Whether another chunk may be sent.
+    pub fn has_room(&self) -> bool {
+        self.under_way < Chunk::UNDER_WAY_MAX
     }
 
     /// The next chunk that the thread is done with, if there is one.

@@ -10,6 +10,7 @@ use super::curve::Curve;
 use super::curve_state::stacked;
 use super::derivatives;
 use super::error::ChunkError;
+use super::pace::Pace;
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{GoalError, Target, check};
@@ -22,7 +23,7 @@ const SPACING_MIN: f64 = 1e-3 - 1e-9;
 const NUMBER_MAX: f64 = 1e6;
 
 /// The largest angle between two points, `[rad]`.
-const TURN_MAX: f64 = 170.0 * core::f64::consts::PI / 180.0;
+pub(super) const TURN_MAX: f64 = 170.0 * core::f64::consts::PI / 180.0;
 
 /// Where the times of a chunk count from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +69,8 @@ pub struct Chunk {
     pub(super) points: Points,
     pub(super) origin: Origin,
     pub(super) blend: Duration,
+    /// How a path waits and pauses; `None` for points that have times.
+    pub(super) pace: Option<Pace>,
 }
 
 /// What the points are.
@@ -296,6 +299,7 @@ impl Chunk {
             points,
             origin: Origin::TakeUp,
             blend: Self::BLEND,
+            pace: None,
         }
     }
 }

@@ -1,0 +1,80 @@
+//! The pace of a path: a time of its own, which stops while the path is paused and waits while the
+//! arm is held back.
+
+use franka_otg::{AxisLimits, Generator, Limits, State};
+
+use crate::shaping::CYCLE;
+
+/// How fast the time of a path may stop and go on, in parts of the robot's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pace(AxisLimits);
+
+impl Pace {
+    /// For motions that are this fast at most and have these limits: stopping the time takes half
+    /// of them.
+    pub(super) fn of(motions: impl Iterator<Item = (f64, AxisLimits)>) -> Self {
+        let gentle = AxisLimits {
+            velocity: 1.0 / STOP_MIN,
+            acceleration: 4.0 / (STOP_MIN * STOP_MIN),
+            jerk: 0.0,
+        };
+        let moving = motions.filter(|(speed, _)| *speed > 0.0);
+        let pace = moving.fold(gentle, |pace, (speed, limits)| AxisLimits {
+            velocity: pace.velocity.min(0.5 * limits.acceleration / speed),
+            acceleration: pace.acceleration.min(0.5 * limits.jerk / speed),
+            jerk: 0.0,
+        });
+        // The change of the pace has reached its most within a tenth of the time that it may take.
+        let jerk = 10.0 * pace.acceleration * pace.velocity.max(pace.acceleration / pace.velocity);
+        Self(AxisLimits { jerk, ..pace })
+    }
+}
+
+/// Shortest time in which the time of a path stops, `[s]`.
+const STOP_MIN: f64 = 0.05;
+
+/// The time of a path.
+#[derive(Debug)]
+pub(super) struct PathTime {
+    /// Seconds of the path.
+    pub(super) time: f64,
+    /// 1 at full pace, 0 when paused.
+    axis: Generator<1>,
+    /// What is left of the pace where the arm lags.
+    share: f64,
+}
+
+impl PathTime {
+    /// From the begin of a path on.
+    pub(super) fn new(pace: Pace) -> Option<Self> {
+        let limits = Limits::per_axis([pace.0]).ok()?;
+        Some(Self {
+            time: -CYCLE,
+            axis: Generator::towards(State::at_rest([1.0]), limits, Some(&[1.0])).ok()?,
+            share: 1.0,
+        })
+    }
+
+    pub(super) fn set_paused(&mut self, paused: bool) {
+        let wanted = if paused { 0.0 } else { 1.0 };
+        // Both are in the range that was checked with the limits.
+        let _ = self.axis.set_target(&[wanted]);
+    }
+
+    /// One cycle on, of an arm that is behind by `lag` in units of what it may be.
+    pub(super) fn step(&mut self, lag: f64) {
+        self.share = (1.0 - (lag - 0.1) / 0.9).clamp(0.0, 1.0);
+        self.axis.step();
+        self.time += CYCLE * self.rate();
+    }
+
+    /// Seconds of the path in one of the robot.
+    pub(super) fn rate(&self) -> f64 {
+        self.axis.state().position[0].clamp(0.0, 1.0) * self.share
+    }
+
+    /// Its derivative, `[1/s]`, but for that of the lag.
+    pub(super) fn change(&self) -> f64 {
+        self.axis.state().velocity[0] * self.share
+    }
+}
