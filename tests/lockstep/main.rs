@@ -15,6 +15,7 @@ mod identify;
 mod laws;
 mod mishaps;
 mod moving_targets;
+mod paths;
 mod random_targets;
 mod reactions;
 mod reflex_log;

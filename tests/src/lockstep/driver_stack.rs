@@ -12,7 +12,7 @@ use franka_proto::{
 };
 use franka_rt::driver::{Driver, MotionId, Program, Record};
 use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, NewMotion, Outcome, Output};
-use franka_rt::session::GoalId;
+use franka_rt::session::{Chunk, GoalId, Waypoint};
 use franka_rt::stats::{Arrival, CycleTimes};
 
 /// The driver without its sockets and its clock: bytes and time go in, bytes come out.
@@ -241,6 +241,34 @@ impl DriverStack {
     pub fn begin(&mut self, motion: NewMotion) -> Result<GoalId, MotionError> {
         let id = motion.id();
         let begun = self.lifecycle.begin(motion, &self.state, self.now);
+        self.carry_out();
+        begun.map(|()| id)
+    }
+
+    /// Begins a motion along `waypoints` to the last of them, from the reference if target control
+    /// runs, and returns its name.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn begin_along(
+        &mut self,
+        waypoints: &[Waypoint],
+        motion: NewMotion,
+    ) -> Result<GoalId, MotionError> {
+        let NewMotion::Goal { goal, .. } = &motion else {
+            panic!("a goal goes along a path");
+        };
+        let (id, model) = (goal.id, self.lifecycle.model());
+        let moved = self.record.goal != GoalId::default().0;
+        let q = if moved {
+            self.record.q_ref
+        } else {
+            self.state.q
+        };
+        let path = Chunk::through(waypoints, &q, &goal.budget, model, &self.state)?;
+        let begun = self
+            .lifecycle
+            .begin_along(path, motion, &self.state, self.now);
         self.carry_out();
         begun.map(|()| id)
     }

@@ -1,7 +1,7 @@
 //! Sessions that go from goal to goal.
 
 use franka_rt::lifecycle::{Engagement, MotionError, NewMotion, Tuning};
-use franka_rt::session::{Backend, Chunk, Goal, GoalId, OnArrival, Target};
+use franka_rt::session::{Backend, Chunk, Goal, GoalId, OnArrival, Target, Waypoint};
 
 use super::Lockstep;
 use super::guard::CommandGuard;
@@ -78,6 +78,28 @@ impl Lockstep {
             ticket: None,
             session: Some(engaged),
         })
+    }
+
+    /// Goes through `waypoints`, in a motion of its own or within the session `engaged`.
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn through(
+        &mut self,
+        engaged: Option<GoalId>,
+        waypoints: &[Waypoint],
+    ) -> Result<GoalId, MotionError> {
+        let on_arrival = match engaged {
+            Some(_) => OnArrival::ReportAndHold,
+            None => OnArrival::ReportAndFinish,
+        };
+        let last = waypoints.last().map_or(Target::Rest, |last| *last.target());
+        let motion = NewMotion::Goal {
+            goal: Box::new(self.goal(last, on_arrival)),
+            ticket: None,
+            session: engaged,
+        };
+        self.client.begin_along(waypoints, motion)
     }
 
     /// Sends a chunk to the session.

@@ -2,7 +2,7 @@
 //! how the distance between two is let go.
 
 use franka_model::{JointVector, Twist, rotation};
-use nalgebra::{Isometry3, Translation3, Vector3};
+use nalgebra::{Isometry3, SVector, Translation3, Vector3};
 
 use super::curve::Curve;
 use super::quintic::{self, PointState};
@@ -36,8 +36,9 @@ pub(super) trait CurveState: Copy {
     /// In the same place, with the time slowed down to `rate`, which changes by `change`, `[1/s]`.
     fn paced(&self, rate: f64, change: f64) -> Self;
 
-    /// How far it is from `other`, in units of what an arm on a path may be behind.
-    fn lag(&self, other: &Self) -> f64;
+    /// How far it is behind `target`, or beside the way of that, in units of what an arm on a path
+    /// may be.
+    fn lag(&self, target: &Self) -> f64;
 
     /// At rest in the same place.
     fn resting(&self) -> Self;
@@ -47,6 +48,18 @@ pub(super) trait CurveState: Copy {
 
     /// A curve of such states as the points of a chunk.
     fn points(curve: Curve<Self>) -> Points;
+}
+
+/// The length of `gap` to something that moves at `velocity`, without what lies ahead of that: a
+/// path that waited for who is ahead of it would drive it further ahead.
+fn behind<const D: usize>(gap: &SVector<f64, D>, velocity: &SVector<f64, D>) -> f64 {
+    let along = gap.dot(velocity);
+    let ahead = if along < 0.0 {
+        along / velocity.norm_squared()
+    } else {
+        0.0
+    };
+    (gap - velocity * ahead).norm()
 }
 
 /// The least and the greatest position of each joint, `[rad]`.
@@ -89,8 +102,8 @@ impl CurveState for Reference {
         }
     }
 
-    fn lag(&self, other: &Self) -> f64 {
-        (self.q - other.q).amax() / LAG_ROTATION
+    fn lag(&self, target: &Self) -> f64 {
+        behind(&(target.q - self.q), &target.dq) / LAG_ROTATION
     }
 
     fn resting(&self) -> Self {
@@ -207,10 +220,12 @@ impl CurveState for PoseState {
         }
     }
 
-    fn lag(&self, other: &Self) -> f64 {
-        let way = self.pose.translation.vector - other.pose.translation.vector;
-        let turn = self.pose.rotation.angle_to(&other.pose.rotation);
-        (way.norm() / LAG_TRANSLATION).max(turn / LAG_ROTATION)
+    fn lag(&self, target: &Self) -> f64 {
+        let (ours, theirs) = (self.translation(), target.translation());
+        let way = behind(&(theirs.p - ours.p), &theirs.v);
+        let turn = rotation::error(&target.pose.rotation, &self.pose.rotation);
+        let turn = behind(&turn, &target.rotation().v);
+        (way / LAG_TRANSLATION).max(turn / LAG_ROTATION)
     }
 
     fn resting(&self) -> Self {

@@ -357,3 +357,96 @@ fn moved(way: &Twist) -> Vector3<f64> {
 fn turned(way: &Twist) -> Vector3<f64> {
     way.fixed_rows::<3>(3).into_owned()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use franka_model::READY;
+    use rand::rngs::SmallRng;
+    use rand::{Rng, SeedableRng};
+
+    const STEP: f64 = 1e-4;
+
+    fn state() -> RobotState {
+        RobotState {
+            q: READY.into(),
+            ..RobotState::default()
+        }
+    }
+
+    /// Times from 0 to the end.
+    fn times(end: f64) -> impl Iterator<Item = f64> {
+        (0..=(end / STEP) as u32).map(|step| f64::from(step) * STEP)
+    }
+
+    #[test]
+    fn joints_keep_their_limits_and_the_size_of_corners_on_random_paths() {
+        let mut random = SmallRng::seed_from_u64(17);
+        let model = Model::fr3();
+        for case in 0..40 {
+            let budget = Budget::of(model.joint_limits()).scaled(random.random_range(0.3..2.0));
+            let count = random.random_range(1..8);
+            let mut places = vec![(READY, 0.0)];
+            for _ in 0..count {
+                let near = JointVector::from_fn(|_, _| random.random_range(-0.3..0.3_f64).powi(3));
+                let blend: f64 = random.random_range(-0.1..0.2);
+                places.push((READY + near * 8.0, blend.max(0.0)));
+            }
+            let waypoints: Vec<_> = places[1..]
+                .iter()
+                .map(|(q, blend)| Waypoint::new(<[f64; 7]>::from(*q)).blend(*blend))
+                .collect();
+            let q = READY.into();
+            let chunk = Chunk::through(&waypoints, &q, &budget, model, &state()).unwrap();
+            let Points::Joints(curve) = &chunk.points else {
+                panic!("joints");
+            };
+            let mut least = vec![f64::INFINITY; places.len()];
+            let mut before = *curve.first();
+            for t in times(curve.end()) {
+                let now = curve.at(t);
+                for (least, (place, _)) in least.iter_mut().zip(&places) {
+                    *least = least.min((now.q - place).norm());
+                }
+                for i in 0..7 {
+                    let AxisLimits {
+                        velocity,
+                        acceleration,
+                        jerk,
+                    } = budget.joints[i];
+                    let jump = (now.ddq[i] - before.ddq[i]).abs() / STEP;
+                    assert!(now.dq[i].abs() < velocity, "case {case}, {t}: {now:?}");
+                    assert!(now.ddq[i].abs() < acceleration, "case {case}, {t}: {now:?}");
+                    assert!(jump < jerk, "case {case}, {t}: {jump}");
+                    let moved = (now.q[i] - before.q[i]).abs();
+                    assert!(moved < velocity * STEP, "case {case}, {t}: {moved}");
+                }
+                before = now;
+            }
+            for (least, (_, blend)) in least.iter().zip(&places) {
+                assert!(*least <= blend + 1e-4, "case {case}: {least} of {blend}");
+            }
+            let off = (curve.last().q - places[places.len() - 1].0).amax();
+            assert!(off < 1e-12, "case {case}: {off}");
+        }
+    }
+
+    #[test]
+    fn a_path_of_one_straight_line_takes_as_long_as_the_plan_of_a_goal() {
+        let model = Model::fr3();
+        let budget = Budget::of(model.joint_limits());
+        let there = READY + JointVector::repeat(0.2);
+        let middle = READY + JointVector::repeat(0.1);
+        let waypoints = [middle, there].map(|q| Waypoint::new(<[f64; 7]>::from(q)).blend(0.05));
+        let chunk = Chunk::through(&waypoints, &READY.into(), &budget, model, &state()).unwrap();
+        let limits = budget.joints.map(share);
+        let limits = franka_otg::Limits::per_axis(limits).unwrap();
+        let start = franka_otg::State::at_rest(READY.into());
+        let plan = franka_otg::Generator::towards(start, limits, Some(&there.into())).unwrap();
+        let (got, expected) = (chunk.end(), plan.duration());
+        assert!(
+            (got - expected).abs() < 1e-6 * expected,
+            "{got} s, {expected} s"
+        );
+    }
+}

@@ -1,0 +1,307 @@
+//! Motions through several places.
+
+use std::time::Duration;
+
+use franka_model::{READY, Wrench};
+use franka_proto::{CollisionBehavior, Request};
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::{GoalError, GoalId, PathError, Target, Waypoint};
+use franka_tests::bench::follow::realistic;
+use franka_tests::lockstep::Lockstep;
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+/// Along three sides of a box, with turns, from `start`.
+fn corners(start: &Isometry3<f64>) -> [Isometry3<f64>; 3] {
+    let turn = |angle: f64| UnitQuaternion::from_euler_angles(0.0, 0.2 * angle, angle);
+    let place = |x: f64, y: f64, z: f64, angle: f64| {
+        let moved = Translation3::new(x, y, z) * start;
+        Isometry3::from_parts(moved.translation, turn(angle) * start.rotation)
+    };
+    [
+        place(0.0, 0.2, 0.0, 0.3),
+        place(0.0, 0.2, -0.15, 0.3),
+        place(0.1, 0.0, -0.15, 0.0),
+    ]
+}
+
+fn rounded(poses: &[Isometry3<f64>], blend: f64) -> Vec<Waypoint> {
+    let waypoint = |pose: &Isometry3<f64>| Waypoint::new(*pose).blend(blend);
+    poses.iter().map(waypoint).collect()
+}
+
+/// What a motion was like.
+#[derive(Debug)]
+struct Way {
+    /// Its duration, or why it has none.
+    outcome: Result<Duration, String>,
+    /// Greatest distance of the reference from the straight lines, `[m]`.
+    aside: f64,
+    /// Least distance of the reference from each place, `[m]`.
+    from_places: Vec<f64>,
+    /// Greatest speed and acceleration of the reference, `[m/s]`, `[m/s^2]`.
+    fastest: (f64, f64),
+    /// Cycles in which the reference rests between the first and the last in which it moves.
+    rests: u64,
+}
+
+/// Watches the motion `id` through these poses; `act` is called in each of its cycles.
+fn watch(
+    lockstep: &mut Lockstep,
+    id: GoalId,
+    poses: &[Isometry3<f64>],
+    mut act: impl FnMut(&mut Lockstep, u64),
+) -> Way {
+    let mut places = vec![lockstep.arm_pose().translation.vector];
+    places.extend(poses.iter().map(|pose| pose.translation.vector));
+    let mut way = Way {
+        outcome: Err(String::new()),
+        aside: 0.0,
+        from_places: vec![f64::INFINITY; places.len()],
+        fastest: (0.0, 0.0),
+        rests: 0,
+    };
+    let (mut last, mut resting): (Vec<Vector3<f64>>, u64) = (Vec::new(), 0);
+    for cycle in 0..40_000 {
+        if let Some(outcome) = lockstep.client.outcome(id) {
+            let duration = outcome.as_ref().map(|report| report.duration);
+            way.outcome = duration.map_err(ToString::to_string);
+            return way;
+        }
+        lockstep.tick();
+        act(lockstep, cycle);
+        let record = &lockstep.client.record;
+        if record.goal != id.0 || record.remaining.is_zero() {
+            continue;
+        }
+        let at = lockstep.reference_pose().translation.vector;
+        for (place, least) in places.iter().zip(&mut way.from_places) {
+            *least = least.min((at - place).norm());
+        }
+        let beside = places.windows(2).map(|ends| {
+            let line = ends[1] - ends[0];
+            let along = (at - ends[0]).dot(&line) / line.norm_squared();
+            (at - ends[0] - line * along.clamp(0.0, 1.0)).norm()
+        });
+        way.aside = way.aside.max(beside.fold(f64::INFINITY, f64::min));
+        last.push(at);
+        if let [.., a, b, c] = &last[..] {
+            let (v, before) = ((c - b) * 1e3, (b - a) * 1e3);
+            let (speed, acceleration) = &mut way.fastest;
+            *speed = speed.max(v.norm());
+            *acceleration = acceleration.max((v - before).norm() * 1e3);
+            if v.norm() < 1e-6 {
+                resting += 1;
+            } else {
+                way.rests += if *speed > 0.01 { resting } else { 0 };
+                resting = 0;
+            }
+        }
+    }
+    panic!("the path has no end: {way:?}");
+}
+
+fn through(blend: f64) -> Way {
+    let mut lockstep = realistic();
+    let poses = corners(&lockstep.arm_pose());
+    let id = lockstep
+        .through(None, &rounded(&poses, blend))
+        .expect("within reach");
+    watch(&mut lockstep, id, &poses, |_, _| {})
+}
+
+#[test]
+fn corners_are_stopped_at_or_rounded_within_their_distance() {
+    let [stopping, rounding] = [0.0, 0.05].map(through);
+    let durations = [&stopping, &rounding].map(|way| {
+        // The limits of the default budget, and what a millimetre at the begin is worth.
+        let (speed, acceleration) = way.fastest;
+        assert!(speed < 0.301, "{way:?}");
+        assert!(acceleration < 0.6, "{way:?}");
+        way.outcome.as_ref().expect("it arrives").as_secs_f64()
+    });
+    println!("{durations:?} s");
+    assert!(stopping.aside < 5e-4, "{stopping:?}");
+    assert!(
+        stopping.from_places.iter().all(|off| *off < 5e-4),
+        "{stopping:?}"
+    );
+    // Each corner is cut, and by no more than it may be.
+    assert!(rounding.aside < 0.05, "{rounding:?}");
+    for off in &rounding.from_places[1..3] {
+        assert!((0.003..0.05).contains(off), "{rounding:?}");
+    }
+    assert_eq!(rounding.rests, 0, "{rounding:?}");
+    assert!(durations[1] < durations[0] - 0.3, "{durations:?}");
+}
+
+#[test]
+fn joints_go_through_positions() {
+    let mut lockstep = realistic();
+    let position = |i: usize, by: f64| {
+        let mut q: [f64; 7] = READY.into();
+        q[i] += by;
+        q
+    };
+    let places = [position(0, 0.4), position(3, 0.3), position(5, -0.3)];
+    let waypoints = places.map(|q| Waypoint::new(q).blend(0.1));
+    let session = lockstep.engage();
+    let id = lockstep
+        .through(Some(session), &waypoints)
+        .expect("in range");
+    let mut least = [f64::INFINITY; 3];
+    let outcome = loop {
+        if let Some(outcome) = lockstep.client.outcome(id) {
+            break outcome.clone();
+        }
+        lockstep.tick();
+        let q = lockstep.client.record.q_ref;
+        for (least, place) in least.iter_mut().zip(&places) {
+            let off = (0..7).map(|i| (q[i] - place[i]).powi(2)).sum::<f64>();
+            *least = least.min(off.sqrt());
+        }
+    };
+    outcome.expect("it arrives");
+    for off in &least[..2] {
+        assert!((0.005..0.1).contains(off), "{least:?}");
+    }
+    assert!(least[2] < 1e-9, "{least:?}");
+}
+
+#[test]
+fn a_path_pauses_on_its_way_and_goes_on() {
+    let mut lockstep = realistic();
+    let poses = corners(&lockstep.arm_pose());
+    let id = lockstep
+        .through(None, &rounded(&poses, 0.04))
+        .expect("within reach");
+    let mut at = Vec::new();
+    let way = watch(&mut lockstep, id, &poses, |lockstep, cycle| match cycle {
+        // In the first corner.
+        700 => lockstep.client.lifecycle.pause(id, true),
+        2400 | 2699 => at.push(lockstep.reference_pose()),
+        2700 => lockstep.client.lifecycle.pause(id, false),
+        _ => {}
+    });
+    let duration = way.outcome.as_ref().expect("it arrives");
+    assert!(*duration > Duration::from_secs(5), "{way:?}");
+    let moved = (at[0].translation.vector - at[1].translation.vector).norm();
+    assert!(moved < 1e-5, "{moved} m while it is paused");
+    assert!(way.aside < 0.04, "{way:?}");
+    assert!(way.fastest.1 < 0.8, "{way:?}");
+}
+
+#[test]
+fn an_arm_that_is_held_back_leaves_no_waypoint_out() {
+    let mut lockstep = realistic();
+    let tolerant = CollisionBehavior::insensitive();
+    lockstep.request(&Request::SetCollisionBehavior(tolerant));
+    let poses = corners(&lockstep.arm_pose());
+    let id = lockstep
+        .through(None, &rounded(&poses, 0.02))
+        .expect("within reach");
+    let way = watch(&mut lockstep, id, &poses, |lockstep, cycle| {
+        // More than the arm pushes with, against its way.
+        if cycle == 600 {
+            let hand = Wrench::new(0.0, -33.0, 0.0, 0.0, 0.0, 0.0);
+            lockstep.robot.push_end_effector(hand, 1200);
+        }
+    });
+    assert!(way.outcome.is_ok(), "{way:?}");
+    assert!(way.from_places[1] < 0.025, "{way:?}");
+    assert!(way.from_places[2] < 0.025, "{way:?}");
+}
+
+#[test]
+fn a_path_that_comes_while_the_arm_moves_goes_on_from_there() {
+    let mut lockstep = realistic();
+    let session = lockstep.engage();
+    let poses = corners(&lockstep.arm_pose());
+    let ahead = Translation3::new(0.0, -0.2, 0.0) * lockstep.arm_pose();
+    lockstep
+        .within(session, ahead.into(), franka_rt::session::OnArrival::Hold)
+        .expect("within reach");
+    lockstep.run(600);
+    let id = lockstep
+        .through(Some(session), &rounded(&poses, 0.03))
+        .expect("within reach");
+    let way = watch(&mut lockstep, id, &poses, |_, _| {});
+    assert!(way.outcome.is_ok(), "{way:?}");
+    assert!(way.fastest.1 < 3.0, "{way:?}");
+    assert!(way.from_places[2] < 0.03, "{way:?}");
+}
+
+#[test]
+fn a_path_that_waits_for_the_end_of_a_motion_is_gone_along_all_the_same() {
+    let mut lockstep = realistic();
+    let poses = corners(&lockstep.arm_pose());
+    let before = Translation3::new(0.0, 0.03, 0.0) * lockstep.arm_pose();
+    let before = lockstep.begin(before.into());
+    lockstep.run(400);
+    lockstep.cancel(before);
+    let id = lockstep
+        .through(None, &rounded(&poses, 0.03))
+        .expect("it waits");
+    let way = watch(&mut lockstep, id, &poses, |_, _| {});
+    assert!(way.outcome.is_ok(), "{way:?}");
+    assert!(
+        way.from_places[1] < 0.03 && way.from_places[2] < 0.03,
+        "{way:?}"
+    );
+}
+
+#[test]
+fn a_path_that_cannot_be_gone_is_refused_before_anything_moves() {
+    let mut lockstep = realistic();
+    let here = lockstep.arm_pose();
+    let near = Translation3::new(0.0, 0.05, 0.0) * here;
+    let far = Translation3::new(2.0, 0.0, 0.0) * here;
+    let over = here * UnitQuaternion::from_euler_angles(0.0, 0.0, 3.1);
+    let q: [f64; 7] = READY.into();
+    let refused = |lockstep: &mut Lockstep, waypoints: &[Waypoint]| match lockstep
+        .through(None, waypoints)
+        .expect_err("it is refused")
+    {
+        MotionError::Path(error) => error,
+        other => panic!("{other:?}"),
+    };
+    let lockstep = &mut lockstep;
+    assert_eq!(refused(lockstep, &[]), PathError::Empty);
+    assert_eq!(refused(lockstep, &[near.into(); 101]), PathError::TooMany);
+    assert!(matches!(
+        refused(lockstep, &[near.into(), far.into()]),
+        PathError::Waypoint {
+            waypoint: 2,
+            error: GoalError::Unreachable { .. }
+        }
+    ));
+    assert_eq!(
+        refused(lockstep, &[near.into(), q.into()]),
+        PathError::Kind { waypoint: 2 }
+    );
+    assert_eq!(
+        refused(lockstep, &[Target::Rest.into()]),
+        PathError::Kind { waypoint: 1 }
+    );
+    let blend = refused(lockstep, &[Waypoint::new(near).blend(-0.1)]);
+    assert_eq!(
+        blend.to_string(),
+        "waypoint 1 is to be rounded within -0.1, expected 0 or more"
+    );
+    assert!(matches!(
+        refused(lockstep, &[over.into()]),
+        PathError::Turn { waypoint: 1, .. } | PathError::Waypoint { .. }
+    ));
+    lockstep.run(500);
+    assert!(lockstep.client.driver.is_watching());
+}
+
+#[test]
+fn the_place_where_the_arm_is_already_is_reached_at_once() {
+    let mut lockstep = realistic();
+    let here = lockstep.arm_pose();
+    let id = lockstep
+        .through(None, &[here.into(), here.into()])
+        .expect("it is there");
+    let outcome = lockstep.until_resolved(id, 3000);
+    outcome.expect("it arrives");
+}
