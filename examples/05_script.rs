@@ -1,55 +1,28 @@
-//! A script without async: waits for motions on its own thread, then draws a circle by setting a
-//! goal every 20 ms, which never waits.
+//! A script without async: waits for motions, then draws a circle by a goal every 20 ms.
 //!
-//! `cargo run --release --example script -- [ADDRESS] [--turns N]`
+//! `cargo run --release --example script ADDRESS`
 
 use std::f64::consts::TAU;
-use std::thread::sleep;
 use std::time::Duration;
 
-use clap::Parser;
 use franka_async::blocking::Wait;
-use franka_async::nalgebra::{Translation3, Vector6};
-use franka_async::{Engage, Offset, Pose};
-use franka_examples::{Connection, Summary};
+use franka_async::prelude::*;
 
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    connection: Connection,
-    /// How many circles.
-    #[arg(long, default_value_t = 2)]
-    turns: u32,
-}
-
-const RADIUS: f64 = 0.05;
-
-/// Seconds per circle.
-const TIME: f64 = 4.0;
-
-/// Goals per second.
-const RATE: u32 = 50;
-
-fn main() -> anyhow::Result<()> {
-    let Arguments { connection, turns } = Arguments::parse();
-    let (robot, _sim) = connection.open().wait()?;
-    connection.ask("rises by 3 cm and draws circles of 10 cm")?;
-    let up = Offset::base(Translation3::new(0.0, 0.0, 0.03));
-    println!("{}", Summary(&robot.move_by(up).wait()?));
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let address = std::env::args().nth(1).ok_or("no address of a robot")?;
+    // For a simulator. Without this line a real-time kernel is required, as a robot needs it.
+    let builder = Robot::builder(&address).realtime(Realtime::Ignore);
+    let robot = builder.connect().wait()?;
+    robot.move_to(READY).speed(0.5).wait()?;
 
     let start = robot.pose();
     let arm = robot.engage(Engage::default()).wait()?;
-    for step in 0..=turns * RATE * TIME as u32 {
-        let angle = TAU * f64::from(step) / (f64::from(RATE) * TIME);
-        let (sin, cos) = angle.sin_cos();
-        let there = Pose::translation(0.0, RADIUS * sin, RADIUS * (1.0 - cos)) * start;
-        // With its velocity, a target that moves is followed without a lag.
-        let speed = RADIUS * TAU / TIME;
-        let twist = Vector6::new(0.0, speed * cos, speed * sin, 0.0, 0.0, 0.0);
-        arm.try_set((there, twist))?;
-        sleep(Duration::from_secs(1) / RATE);
+    for step in 0..=200 {
+        let (sin, cos) = (TAU * f64::from(step) / 200.0).sin_cos();
+        let way = Pose::translation(0.0, 0.05 * sin, 0.05 - 0.05 * cos);
+        arm.try_set(way * start)?; // never waits
+        std::thread::sleep(Duration::from_millis(20));
     }
-    arm.set(start).wait()?;
     arm.at_rest().wait()?;
     let off = (robot.pose().translation.vector - start.translation.vector).norm();
     println!("back, {:.2} mm off", off * 1e3);

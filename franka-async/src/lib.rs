@@ -1,6 +1,304 @@
 //! Async driver for Franka robots: motions are futures, states are a `watch`, control stays on a
 //! real-time thread.
 //!
+//! A program sets goals at its own rate. A thread of its own, one per robot, answers the robot every
+//! millisecond; no task of the runtime is on that path, so a busy or blocked program delays new goals
+//! and nothing else. This page is all that a first program needs. The book has whole programs in its
+//! first chapter: a service with a queue of jobs, a policy at 10 Hz, a guarded move, a script.
+//!
+//! # Connect
+//!
+//! ```toml
+//! [dependencies] # ours are not published yet: the path is that of a clone
+//! franka-async = { path = "../franka-async/franka-async" }
+//! tokio = { version = "1", features = ["full"] }
+//!
+//! [dev-dependencies] # a simulated robot, for tests
+//! franka-sim = { path = "../franka-async/franka-sim" }
+//! ```
+//!
+//! ```no_run
+//! use franka_async::prelude::*;
+//!
+//! #[tokio::main]
+//! async fn main() -> Result<(), franka_async::Error> {
+//!     let robot = Robot::connect("172.16.0.2").await?;
+//!     println!("hand at {}", robot.pose().translation);
+//!     robot.shutdown().await; // brakes what moves, and closes the connection
+//!     Ok(())
+//! }
+//! ```
+//!
+//! A [`Robot`] is a cheap handle: clone it into every task and request. A robot needs a host with a
+//! real-time kernel. Where there is none, connecting fails; against a simulator,
+//! `Robot::builder(address).realtime(Realtime::Ignore).connect()` does without. Every error of this
+//! crate converts into [`Error`].
+//!
+//! # Move
+//!
+//! ```no_run
+//! # use franka_async::prelude::*;
+//! # async fn run(robot: Robot) -> Result<(), MotionError> {
+//! robot.move_to(READY).speed(0.5).await?;                            // joint positions, rad
+//! let start = robot.pose();
+//! robot.move_by(Offset::base([0.0, 0.0, 0.05])).await?;              // 5 cm up
+//! robot.move_by(Offset::tool([0.0, 0.0, 0.05])).await?;              // 5 cm along the hand
+//! let report = robot.move_to(Pose::translation(0.0, 0.1, 0.0) * start).await?;
+//! println!("arrived after {:?}", report.duration);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Units are metres, radians, seconds and newtons. A [`Pose`] is that of the end effector in the frame
+//! of the base; it is an isometry of [`nalgebra`]. [`pose`] makes them of quaternions and arrays.
+//!
+//! # What a motion is
+//!
+//! `move_to` returns a [`Motion`]. It has options, and **nothing is sent before it is awaited**. Then
+//!
+//! * it resolves as `Ok` when the arm has arrived, rests and is let go, and otherwise as a
+//!   [`MotionError`] that says why not;
+//! * **dropping the future brakes the arm** within the robot's limits: it is still moving when `drop`
+//!   returns, and rests about a quarter of a second later. So a time limit, a `select!` and a request
+//!   whose client has gone stop the arm;
+//! * a newer motion of the same robot takes over without a stop, and the older one resolves as
+//!   [`MotionError::Superseded`].
+//!
+//! A motion that is to outlive its caller belongs to a task of its own. Its handle pauses or cancels
+//! it from elsewhere:
+//!
+//! ```no_run
+//! # use std::time::Duration;
+//! # use franka_async::prelude::*;
+//! # async fn run(robot: Robot, pose: Pose) {
+//! let motion = robot.move_to(pose);
+//! let handle = motion.handle();
+//! let job = tokio::spawn(motion.into_future());
+//! tokio::time::sleep(Duration::from_secs(1)).await;
+//! if let Some(progress) = handle.progress() {
+//!     println!("{:.0} %, {:.1?} left", 100.0 * progress.fraction(), progress.remaining);
+//! }
+//! handle.cancel(); // brakes; the job resolves as stopped
+//! let outcome = job.await.expect("no panic");
+//! # drop(outcome);
+//! # }
+//! ```
+//!
+//! A queue of jobs is a task that awaits one motion after the other, whoever sends them:
+//!
+//! ```no_run
+//! # use franka_async::prelude::*;
+//! # async fn run(robot: Robot) {
+//! let (queue, mut jobs) = tokio::sync::mpsc::unbounded_channel::<Pose>();
+//! tokio::spawn(async move {
+//!     while let Some(pose) = jobs.recv().await {
+//!         match robot.move_to(pose).await {
+//!             Ok(report) => println!("arrived after {:?}", report.duration),
+//!             Err(error) => println!("{error}"),
+//!         }
+//!     }
+//! });
+//! # drop(queue);
+//! # }
+//! ```
+//!
+//! Between two motions of a robot the arm is let go. An [`Arm`] is held throughout, and goes from goal
+//! to goal without a stop:
+//!
+//! ```no_run
+//! # use franka_async::prelude::*;
+//! # async fn run(robot: Robot, pose: Pose) -> Result<(), MotionError> {
+//! let arm = robot.engage(Engage::default()).await?;
+//! arm.move_to(READY).await?; // arrives, and is held there
+//! arm.set(pose).await?;      // heads for the pose; returns at once
+//! arm.at_rest().await?;
+//! arm.disengage().await?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # States
+//!
+//! [`Robot::state`] is the newest state, whatever moves. [`Robot::states`] waits for changes, and
+//! [`Robot::state_stream`] has every one of a thousand per second.
+//!
+//! ```no_run
+//! # use franka_async::prelude::*;
+//! # async fn run(robot: Robot) -> Result<(), franka_async::Error> {
+//! let mut states = robot.states();
+//! let pushed = states.wait_for(|state| state.O_F_ext_hat_K[2].abs() > 15.0).await?;
+//! println!("{:?} N m at {} ms", pushed.tau_ext_hat_filtered, pushed.message_id);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Follow a policy
+//!
+//! Targets come at any rate, through a `watch`. The arm follows the newest one, smoothly, at 1 kHz:
+//!
+//! ```no_run
+//! # use std::time::Duration;
+//! # use franka_async::prelude::*;
+//! use tokio::sync::watch;
+//!
+//! # fn policy(state: &RobotState) -> Option<Pose> { None }
+//! # async fn run(robot: Robot) -> Result<(), MotionError> {
+//! let (sender, targets) = watch::channel(robot.pose());
+//! let silence = Duration::from_millis(500);
+//! let following = robot.follow(targets).watchdog(silence, OnTimeout::Brake);
+//! let policy = async {
+//!     let mut clock = tokio::time::interval(Duration::from_millis(100));
+//!     loop {
+//!         clock.tick().await;
+//!         let Some(target) = policy(&robot.state()) else { break };
+//!         if sender.send(target).is_err() {
+//!             break; // the motion has ended
+//!         }
+//!     }
+//!     drop(sender); // the motion then ends at the last target
+//! };
+//! let (outcome, ()) = tokio::join!(following.into_future(), policy);
+//! outcome?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The watchdog is counted by the control thread: it brakes the arm even if the program hangs. A target
+//! may be a [`Pose`], joint positions, or either with its velocity. Policies that predict several
+//! steps at once have [`Arm::chunk`].
+//!
+//! # Move until contact
+//!
+//! ```no_run
+//! # use std::time::Duration;
+//! use franka_async::condition::{elapsed, force_z};
+//! use franka_async::goal::Budget;
+//! # use franka_async::prelude::*;
+//!
+//! # async fn run(robot: Robot) -> Result<(), MotionError> {
+//! let mut slow = Budget::of(robot.model().joint_limits());
+//! slow.translation.velocity = 0.05; // m/s
+//! let touched = force_z(8.0).relative() & elapsed(Duration::from_millis(200));
+//! let down = robot.move_by(Offset::base([0.0, 0.0, -0.2]));
+//! match down.limits(slow).until(touched).await?.reacted {
+//!     Some(contact) => println!("contact at {:.3} m", contact.pose.translation.z),
+//!     None => println!("nothing there"),
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The control thread looks at the condition in every cycle. `touched.then(pose)` goes elsewhere at
+//! once instead of stopping; [`condition`] has the others.
+//!
+//! # Errors and recovery
+//!
+//! A robot that stops itself (a *reflex*, for instance by a collision) takes no motion before it has
+//! been recovered. The error has the log of the last cycles, and its diagnosis says what to change.
+//! [`MotionError::party`] says who can act: robot, link, peer, caller or host.
+//!
+//! ```no_run
+//! # use franka_async::prelude::*;
+//! # async fn run(robot: Robot, pose: Pose) -> Result<(), franka_async::Error> {
+//! if let Err(error) = robot.move_to(pose).await {
+//!     println!("{error}");
+//!     if let Some(diagnosis) = error.diagnose() {
+//!         println!("{diagnosis}");
+//!     }
+//!     robot.recover().await?; // once its cause is gone; moves nothing
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A supervised robot connects again when the link was lost, and recovers by a policy; its motions
+//! still end, and the program decides on the next one:
+//!
+//! ```no_run
+//! # use std::time::Duration;
+//! # use franka_async::prelude::*;
+//! # async fn run() -> Result<(), franka_async::Error> {
+//! let policy = Policy::default().recover(3, Duration::from_secs(60));
+//! let robot = Robot::builder("172.16.0.2").supervise(policy).connect().await?;
+//! let mut events = robot.events();
+//! while let Some(notification) = events.next().await {
+//!     println!("{notification:?}");
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Without async
+//!
+//! With the feature `blocking`, `.wait()` stands for `.await`, on any thread and without a runtime:
+//!
+//! ```no_run
+//! # #[cfg(feature = "blocking")]
+//! # fn run() -> Result<(), franka_async::Error> {
+//! use franka_async::blocking::Wait;
+//! use franka_async::prelude::*;
+//!
+//! let robot = Robot::connect("172.16.0.2").wait()?;
+//! robot.move_to(READY).wait()?;
+//! let arm = robot.engage(Engage::default()).wait()?;
+//! arm.try_set(Pose::translation(0.0, 0.0, 0.05) * robot.pose())?; // never waits: for loops
+//! arm.at_rest().wait()?;
+//! arm.disengage().wait()?;
+//! robot.shutdown().wait();
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Test without a robot
+//!
+//! `franka-sim` is a robot on sockets, in the process of the test. Its arm sticks, flexes and lags as
+//! published measurements of real ones say.
+//!
+//! ```
+//! use std::time::Duration;
+//!
+//! use franka_async::prelude::*;
+//! use franka_sim::Sim;
+//!
+//! #[tokio::main] // in a test: #[tokio::test]
+//! async fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     // The robot's next millisecond begins with the command: a busy machine changes nothing.
+//!     let sim = Sim::fr3().virtual_time(Duration::from_millis(500)).start().await?;
+//!     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+//!     let robot = builder.connect().await?;
+//!     let height = robot.pose().translation.z;
+//!     robot.move_by(Offset::base([0.0, 0.0, 0.05])).await?;
+//!     assert!((robot.pose().translation.z - height - 0.05).abs() < 2e-3);
+//!     robot.shutdown().await;
+//!     Ok(())
+//! }
+//! ```
+//!
+//! The program `franka-sim` is the same for everything else: start it, and connect to `127.0.0.1`.
+//!
+//! # Where to go next
+//!
+//! | module | content |
+//! |---|---|
+//! | [`prelude`] | what a first program needs |
+//! | [`pose`] | poses from quaternions, arrays and matrices, and back |
+//! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; what a motion goes on until |
+//! | [`motion`] | futures, handles and progress of motions |
+//! | [`team`] | several arms as one, with one stop; motions that begin together |
+//! | [`state`] | every state, or the newest as it changes |
+//! | [`error`], [`diagnosis`] | what can go wrong, by who can act on it; why the robot ended a motion |
+//! | [`supervision`] | connections that are made again, recovery by a policy, events and health |
+//! | [`control`] | control at 1 kHz by functions of the program |
+//! | [`gripper`], [`vacuum`] | the end effectors, each with a connection of its own |
+//! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
+//! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
+//! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
+//! | [`record`] | what every cycle saw and did |
+//! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
+//! | `blocking` | programs without async (feature `blocking`) |
+//!
+//! # How it works
+//!
 //! ```text
 //!  Robot (Clone) --goals, stop--> bridge task --orders, goal slot--> real-time thread --UDP 1 kHz--> robot
 //!      |  ^                         |   ^  ^                              |
@@ -8,50 +306,16 @@
 //!      +--- setters, recovery ----> channel task <------- TCP, replies matched by id ------> robot
 //! ```
 //!
-//! | module | content |
-//! |---|---|
-//! | [`prelude`] | what a first program needs |
-//! | [`pose`] | poses from quaternions, arrays and matrices, and back |
-//! | [`goal`] | targets, limits, gains, chunks, guards |
-//! | [`condition`] | what a motion goes on until: forces, positions, time |
-//! | [`motion`] | futures, handles and progress of motions; motions of several robots that begin together |
-//! | [`team`] | several arms as one, with one stop |
-//! | [`state`] | every state, or the newest as it changes |
-//! | [`error`], [`diagnosis`] | what can go wrong, by the party that can act on it; why the robot ended a motion |
-//! | [`supervision`] | connections that are made again, recovery by a policy, events and health |
-//! | [`control`] | control at 1 kHz by functions of the program |
-//! | [`gripper`], [`vacuum`] | the end effectors, each with a connection of its own |
-//! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
-//! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
-//! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
-//! | [`record`], `metrics` | what every cycle saw and did; statistics as OpenMetrics text (feature `metrics`) |
-//! | `blocking` | for programs without async (feature `blocking`) |
-//!
-//! ```no_run
-//! use franka_async::{Pose, Robot};
-//!
-//! # async fn run() -> Result<(), Box<dyn std::error::Error>> {
-//! let robot = Robot::connect("172.16.0.2").await?;
-//! let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
-//! let report = robot.move_to(up).speed(0.5).await?;
-//! println!("arrived after {:?}", report.duration);
-//! robot.shutdown().await;
-//! # Ok(())
-//! # }
-//! ```
-//!
 //! # Cancel safety
 //!
 //! Every future of this crate may be dropped at any point. A request that was sent is carried out
-//! by the robot all the same; its answer is then discarded. **Dropping a motion brakes it** within
-//! the robot's limits: the arm is still moving when `drop` returns, and rests soon after. Methods
-//! that differ have a section of their own.
+//! by the robot all the same; its answer is then discarded. Dropping a motion brakes it. Methods that
+//! differ have a section of their own.
 //!
 //! # What it does not do
 //!
-//! It holds no control loop: no task of the runtime is on the path from a state to its command, so
-//! a blocked worker delays new goals and nothing else. It neither reconnects nor recovers unless it
-//! is told to supervise, and moves nothing by itself. It has not been run against a real arm yet.
+//! It neither reconnects nor recovers unless it is told to supervise, and moves nothing by itself. It
+//! is no safety function. It has not been run against a real arm yet.
 
 mod active_control;
 mod arm;

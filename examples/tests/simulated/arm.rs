@@ -31,6 +31,11 @@ pub(crate) struct Scene {
     /// Whether the robot keeps the clock on the wall, and waits for late commands. In virtual time
     /// otherwise, so that no command is late.
     pub(crate) on_the_wall: bool,
+    /// Whether the arm sticks, flexes and lags as real ones do; an ideal one otherwise.
+    pub(crate) realistic: bool,
+    /// How long each of the robot's milliseconds takes at least: a program that has a rate of its
+    /// own is then punctual for the robot, however busy the machine is.
+    pub(crate) slow: Duration,
 }
 
 /// Whether the next event is due, from the state and the milliseconds since the motion began.
@@ -56,6 +61,8 @@ impl Default for Scene {
             q: READY,
             events: Vec::new(),
             on_the_wall: false,
+            realistic: false,
+            slow: Duration::ZERO,
         }
     }
 }
@@ -98,10 +105,11 @@ impl Arm {
     /// Starts the robot of this name, which calls `meet` every millisecond.
     fn start_with(robot: &str, scene: Scene, mut meet: impl FnMut() + Send + 'static) -> Self {
         let sim = match robot {
-            "fr3" => Sim::fr3().ideal(),
-            "fer" => Sim::fer().ideal(),
+            "fr3" => Sim::fr3(),
+            "fer" => Sim::fer(),
             other => panic!("no robot is called {other}"),
         };
+        let sim = if scene.realistic { sim } else { sim.ideal() };
         let sim = sim
             .tool(Tool::hand())
             .configure(|config| config.q = scene.q);
@@ -117,6 +125,7 @@ impl Arm {
         let seen = watch.clone();
         let sim = sim.every_millisecond(move |robot| {
             meet();
+            std::thread::sleep(scene.slow);
             seen.lock().expect("no panic").see(robot);
         });
         let mut runtime = runtime::Builder::new_multi_thread();

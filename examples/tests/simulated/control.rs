@@ -9,7 +9,7 @@ use crate::arm::{Arm, Event, MeasuredPath, SAMPLE, Scene};
 use crate::program::{ROBOTS, Said, on_both, run};
 
 /// Asserts that a program has succeeded, and that the robot has not stopped itself meanwhile.
-fn succeeded(robot: &str, said: &Said, path: &MeasuredPath) {
+pub(crate) fn succeeded(robot: &str, said: &Said, path: &MeasuredPath) {
     assert_eq!(said.code, Some(0), "{robot}: {said:?}");
     let erred = path.first(|state| !state.errors.is_empty());
     assert!(erred.is_none(), "{robot}: {said:?}");
@@ -202,39 +202,6 @@ fn virtual_floor_stops_the_hand_releases_it_and_keeps_the_elbow() {
             "{robot}: the elbow is {left} rad from its posture"
         );
     });
-}
-
-#[test]
-fn guarded_move_touches_the_table_rests_on_it_and_leaves_it_again() {
-    // The way to the ready pose, where it is already, is the first motion.
-    let scene = Scene {
-        events: vec![(|_, time| time > 0, Event::LayTable(0.06))],
-        ..Scene::default()
-    };
-    on_both("guarded_move", &[], &scene, |robot, said, path| {
-        succeeded(robot, said, path);
-        assert_eq!(said.stdout.matches("contact at").count(), 3, "{said:?}");
-        assert!(said.stdout.contains("rests on it"), "{robot}: {said:?}");
-        let (lowest, _, last) = path.hand(2);
-        assert!((-0.064..-0.059).contains(&lowest), "{robot}: {lowest}");
-        assert!(last.abs() < 2e-3, "{robot}: {last}");
-        is_about(robot, path.hand(1), (-0.04, 0.04, 0.0), 3e-3);
-        let (pressed, _) = path.extent(|state| state.O_F_ext_hat_K[2]);
-        assert!((-30.0..-8.0).contains(&pressed), "{robot}: {pressed} N");
-    });
-    // Without a table it goes as far as it may.
-    let reach = ["--reach", "0.05"];
-    on_both(
-        "guarded_move",
-        &reach,
-        &Scene::default(),
-        |robot, said, path| {
-            succeeded(robot, said, path);
-            assert_eq!(said.stdout.matches("nothing there").count(), 3, "{said:?}");
-            let (lowest, _, _) = path.hand(2);
-            assert!((lowest + 0.05).abs() < 2e-3, "{robot}: {lowest}");
-        },
-    );
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 mod arm;
 mod control;
+mod first_programs;
 mod jobs;
 mod program;
 mod programs;
@@ -27,36 +28,11 @@ fn quickstart_arrives() {
 }
 
 #[test]
-fn follow_watch_follows_to_the_end() {
-    for robot in ROBOTS {
-        let said = run("follow_watch", robot);
-        assert!(said.contains("followed for "), "{robot}: {said}");
-    }
-}
-
-#[test]
 fn engage_goes_from_goal_to_goal_and_back() {
     for robot in ROBOTS {
         let said = run("engage", robot);
         assert!(said.contains("held: no target came"), "{robot}: {said}");
         assert!(said.contains("back after "), "{robot}: {said}");
-    }
-}
-
-#[test]
-fn script_draws_its_circle_and_comes_back() {
-    for robot in ROBOTS {
-        let said = program::run("script", &["--sim", robot, "--turns", "1"], "");
-        assert_eq!(said.code, Some(0), "{robot}: {said:?}");
-        assert!(said.stdout.contains("\nback, 0."), "{robot}: {said:?}");
-    }
-}
-
-#[test]
-fn guarded_move_finds_the_table_of_its_own_simulator() {
-    for robot in ROBOTS {
-        let said = run("guarded_move", robot);
-        assert_eq!(said.matches("contact at").count(), 3, "{robot}: {said}");
     }
 }
 

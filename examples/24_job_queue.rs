@@ -1,0 +1,39 @@
+//! A service that takes jobs at any time and does one after the other.
+//!
+//! `cargo run --release --example job_queue ADDRESS`; then, where it listens, for 5 cm up,
+//! `curl localhost:8080/jobs --json '[0, 0, 0.05]'`, and `curl localhost:8080/jobs` for the outcomes
+
+use axum::{Json, Router, routing::post};
+use franka_async::prelude::*;
+use tokio::sync::{mpsc, watch};
+
+#[tokio::main]
+async fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let address = std::env::args().nth(1).ok_or("no address of a robot")?;
+    // For a simulator. Without this line a real-time kernel is required, as a robot needs it.
+    let builder = Robot::builder(&address).realtime(Realtime::Ignore);
+    let robot = builder.connect().await?;
+
+    let (queue, mut jobs) = mpsc::unbounded_channel::<[f64; 3]>();
+    let (done, outcomes) = watch::channel(Vec::new());
+    let (mover, stopped) = (robot.clone(), robot.clone());
+    tokio::spawn(async move {
+        while let Some(by) = jobs.recv().await {
+            let outcome = mover.move_by(Offset::base(by)).speed(0.5).await;
+            let text = outcome.map_or_else(|error| error.to_string(), |_| "arrived".to_owned());
+            done.send_modify(|outcomes| outcomes.push(text));
+        }
+    });
+
+    let take = async move |Json(by)| queue.send(by).map_err(|error| error.to_string());
+    let list = async move || Json(outcomes.borrow().clone());
+    let recover = async move || stopped.recover().await.map_err(|error| error.to_string());
+    let jobs = Router::new().route("/jobs", post(take).get(list));
+    let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await?;
+    println!("listening on {}", listener.local_addr()?);
+    axum::serve(listener, jobs.route("/recover", post(recover)))
+        .with_graceful_shutdown(async { drop(tokio::signal::ctrl_c().await) })
+        .await?;
+    robot.shutdown().await; // brakes if a job is under way
+    Ok(())
+}
