@@ -1,10 +1,11 @@
 //! Async driver for Franka robots: motions are futures, states are a `watch`, control stays on a
 //! real-time thread.
 //!
-//! A program sets goals at its own rate. A thread of its own, one per robot, answers the robot every
-//! millisecond; no task of the runtime is on that path, so a busy or blocked program delays new goals
-//! and nothing else. This page is all that a first program needs. The book has whole programs in its
-//! first chapter: a service with a queue of jobs, a policy at 10 Hz, a guarded move, a script.
+//! A program sets goals at its own rate. A thread of its own, one per robot, answers the robot
+//! every millisecond; no task of the runtime is on that path, so a busy or blocked program delays
+//! new goals and nothing else. This page is all that a first program needs. The book has whole
+//! programs in its first chapter: a service with a queue of jobs, a policy at 10 Hz, a guarded
+//! move, a script.
 //!
 //! # Connect
 //!
@@ -49,23 +50,25 @@
 //! # }
 //! ```
 //!
-//! Units are metres, radians, seconds and newtons. A [`Pose`] is that of the end effector in the frame
-//! of the base; it is an isometry of [`nalgebra`]. [`pose`] makes them of quaternions and arrays.
+//! Units are metres, radians, seconds and newtons. A [`Pose`] is that of the end effector in the
+//! frame of the base; it is an isometry of [`nalgebra`]. [`pose`] makes them of quaternions and
+//! arrays.
 //!
 //! # What a motion is
 //!
-//! `move_to` returns a [`Motion`]. It has options, and **nothing is sent before it is awaited**. Then
+//! `move_to` returns a [`Motion`]. It has options, and **nothing is sent before it is awaited**.
+//! Then
 //!
 //! * it resolves as `Ok` when the arm has arrived, rests and is let go, and otherwise as a
 //!   [`MotionError`] that says why not;
-//! * **dropping the future brakes the arm** within the robot's limits: it is still moving when `drop`
-//!   returns, and rests about a quarter of a second later. So a time limit, a `select!` and a request
-//!   whose client has gone stop the arm;
+//! * **dropping the future brakes the arm** within the robot's limits: it is still moving when
+//!   `drop` returns, and rests about a quarter of a second later. So a time limit, a `select!` and
+//!   a request whose client has gone stop the arm;
 //! * a newer motion of the same robot takes over without a stop, and the older one resolves as
 //!   [`MotionError::Superseded`].
 //!
-//! A motion that is to outlive its caller belongs to a task of its own. Its handle pauses or cancels
-//! it from elsewhere:
+//! A motion that is to outlive its caller belongs to a task of its own. Its handle pauses or
+//! cancels it from elsewhere:
 //!
 //! ```no_run
 //! # use std::time::Duration;
@@ -102,8 +105,8 @@
 //! # }
 //! ```
 //!
-//! Between two motions of a robot the arm is let go. An [`Arm`] is held throughout, and goes from goal
-//! to goal without a stop:
+//! Between two motions of a robot the arm is let go. An [`Arm`] is held throughout, and goes from
+//! goal to goal without a stop:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -163,9 +166,9 @@
 //! # }
 //! ```
 //!
-//! The watchdog is counted by the control thread: it brakes the arm even if the program hangs. A target
-//! may be a [`Pose`], joint positions, or either with its velocity. Policies that predict several
-//! steps at once have [`Arm::chunk`].
+//! The watchdog is counted by the control thread: it brakes the arm even if the program hangs. A
+//! target may be a [`Pose`], joint positions, or either with its velocity. Policies that predict
+//! several steps at once have [`Arm::chunk`].
 //!
 //! # Move until contact
 //!
@@ -193,9 +196,9 @@
 //!
 //! # Errors and recovery
 //!
-//! A robot that stops itself (a *reflex*, for instance by a collision) takes no motion before it has
-//! been recovered. The error has the log of the last cycles, and its diagnosis says what to change.
-//! [`MotionError::party`] says who can act: robot, link, peer, caller or host.
+//! A robot that stops itself (a *reflex*, for instance by a collision) takes no motion before it
+//! has been recovered. The error has the log of the last cycles, and its diagnosis says what to
+//! change. [`MotionError::party`] says who can act: robot, link, peer, caller or host.
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -251,8 +254,8 @@
 //!
 //! # Test without a robot
 //!
-//! `franka-sim` is a robot on sockets, in the process of the test. Its arm sticks, flexes and lags as
-//! published measurements of real ones say.
+//! `franka-sim` is a robot on sockets, in the process of the test. Its arm sticks, flexes and lags
+//! as published measurements of real ones say.
 //!
 //! ```
 //! use std::time::Duration;
@@ -309,13 +312,13 @@
 //! # Cancel safety
 //!
 //! Every future of this crate may be dropped at any point. A request that was sent is carried out
-//! by the robot all the same; its answer is then discarded. Dropping a motion brakes it. Methods that
-//! differ have a section of their own.
+//! by the robot all the same; its answer is then discarded. Dropping a motion brakes it. Methods
+//! that differ have a section of their own.
 //!
 //! # What it does not do
 //!
-//! It neither reconnects nor recovers unless it is told to supervise, and moves nothing by itself. It
-//! is no safety function. It has not been run against a real arm yet.
+//! It neither reconnects nor recovers unless it is told to supervise, and moves nothing by itself.
+//! It is no safety function. It has not been run against a real arm yet.
 
 mod active_control;
 mod arm;
