@@ -40,10 +40,10 @@
 //! ```no_run
 //! # use franka_async::prelude::*;
 //! # async fn run(robot: Robot) -> Result<(), MotionError> {
-//! robot.move_to(READY).speed(0.5).await?;                            // joint positions, rad
+//! robot.move_to(READY).speed(0.5).await?; // joint positions, rad
 //! let start = robot.pose();
-//! robot.move_by(Offset::base([0.0, 0.0, 0.05])).await?;              // 5 cm up
-//! robot.move_by(Offset::tool([0.0, 0.0, 0.05])).await?;              // 5 cm along the hand
+//! robot.move_by(Offset::base([0.0, 0.0, 0.05])).await?; // 5 cm up
+//! robot.move_by(Offset::tool([0.0, 0.0, 0.05])).await?; // 5 cm along the hand
 //! let report = robot.move_to(Pose::translation(0.0, 0.1, 0.0) * start).await?;
 //! println!("arrived after {:?}", report.duration);
 //! # Ok(())
@@ -71,7 +71,8 @@
 //! cancels it from elsewhere:
 //!
 //! ```no_run
-//! # use std::time::Duration;
+//! use std::time::Duration;
+//!
 //! # use franka_async::prelude::*;
 //! # async fn run(robot: Robot, pose: Pose) {
 //! let motion = robot.move_to(pose);
@@ -113,7 +114,7 @@
 //! # async fn run(robot: Robot, pose: Pose) -> Result<(), MotionError> {
 //! let arm = robot.engage(Engage::default()).await?;
 //! arm.move_to(READY).await?; // arrives, and is held there
-//! arm.set(pose).await?;      // heads for the pose; returns at once
+//! arm.set(pose).await?; // heads for the pose; returns at once
 //! arm.at_rest().await?;
 //! arm.disengage().await?;
 //! # Ok(())
@@ -140,7 +141,8 @@
 //! Targets come at any rate, through a `watch`. The arm follows the newest one, smoothly, at 1 kHz:
 //!
 //! ```no_run
-//! # use std::time::Duration;
+//! use std::time::Duration;
+//!
 //! # use franka_async::prelude::*;
 //! use tokio::sync::watch;
 //!
@@ -173,7 +175,8 @@
 //! # Move until contact
 //!
 //! ```no_run
-//! # use std::time::Duration;
+//! use std::time::Duration;
+//!
 //! use franka_async::condition::{elapsed, force_z};
 //! use franka_async::goal::Budget;
 //! # use franka_async::prelude::*;
@@ -218,7 +221,8 @@
 //! still end, and the program decides on the next one:
 //!
 //! ```no_run
-//! # use std::time::Duration;
+//! use std::time::Duration;
+//!
 //! # use franka_async::prelude::*;
 //! # async fn run() -> Result<(), franka_async::Error> {
 //! let policy = Policy::default().recover(3, Duration::from_secs(60));

@@ -7,11 +7,17 @@
 //! `Error` and the conditions of [`condition`](crate::condition) are not in it, for their names are
 //! common words.
 
+#[doc(no_inline)]
 pub use crate::connection::Builder;
+#[doc(no_inline)]
 pub use crate::diagnosis::Diagnose;
+#[doc(no_inline)]
 pub use crate::goal::OnTimeout;
+#[doc(no_inline)]
 pub use crate::state::{RobotMode, RobotState};
+#[doc(no_inline)]
 pub use crate::supervision::Policy;
+#[doc(no_inline)]
 pub use crate::{
     Arm, Engage, Motion, MotionError, MotionReport, Offset, Pose, READY, Realtime, Robot,
 };

@@ -1,7 +1,7 @@
 //! Scheduling of the control thread ([`Realtime`](crate::Realtime) and the options of a
 //! [`Builder`](crate::connection::Builder)), and how punctual it is.
 
-pub use franka_rt::sched::{Granted, Scheduling};
+pub use franka_rt::sched::{Granted, Kernel, Scheduling};
 pub use franka_rt::stats::{
     Counter, CycleTimes, Histogram, MotionStatistics, Phase, Phases, Quantiles, Slack, Stats,
 };

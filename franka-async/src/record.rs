@@ -1,5 +1,6 @@
 //! What every cycle saw and did ([`Robot::records`](crate::Robot::records),
 //! [`Engage::observer`](crate::Engage::observer)), and the log that an error carries.
 
+pub use franka_proto::RobotCommand;
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::session::{Bindings, Guard};

@@ -4,5 +4,5 @@
 pub use crate::state_stream::{Reading, StateStream};
 pub use crate::states::States;
 pub use franka_proto::{
-    ControllerMode, Errors, MotionGeneratorMode, RobotError, RobotMode, RobotState,
+    ControllerMode, Errors, MotionGeneratorMode, RobotError, RobotMode, RobotState, TotalLoad,
 };

@@ -21,11 +21,15 @@ pub use franka_model::model_library::LibraryError;
 #[cfg(feature = "urdf")]
 pub use franka_model::urdf::UrdfError;
 pub use franka_proto::framing::FrameError;
+pub use franka_proto::gripper::Failure as ActionFailure;
 pub use franka_proto::{
-    Command, ControlFailure, IncompatibleVersion, MoveStatus, Refusal, RequestError, SetterStatus,
-    Status, SuccessRate, Violation,
+    Command, ControlFailure, DecodeError, IncompatibleVersion, LibraryStatus, ModelStatus,
+    MoveStatus, RecoveryStatus, Refusal, RequestError, SetterStatus, Status, StopStatus,
+    SuccessRate, Violation,
 };
+pub use franka_rt::control::WriteError;
 pub use franka_rt::driver::LinkTimeoutError;
+pub use franka_rt::exchange::SendError;
 pub use franka_rt::identify::{FitError, KnownError};
 pub use franka_rt::law::GainError;
 pub use franka_rt::lifecycle::{CloseReason, ControlError, Party, Stage, Unready};
@@ -34,7 +38,7 @@ pub use franka_rt::session::condition::ConditionError;
 pub use franka_rt::session::{
     ChunkError, GoalError, Lapse, PathError, PoseError, Shortfall, TooManyChunks,
 };
-pub use franka_rt::shaping::InvalidCommand;
+pub use franka_rt::shaping::{FilterFault, InvalidCommand, Signal};
 pub use franka_rt::thread::{BorrowError, LinkFault, WriteFault};
 pub use franka_rt::together::StartFault;
 
