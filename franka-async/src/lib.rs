@@ -307,10 +307,10 @@
 //! # How it works
 //!
 //! ```text
-//!  Robot (Clone) --goals, stop--> bridge task --orders, goal slot--> real-time thread --UDP 1 kHz--> robot
-//!      |  ^                         |   ^  ^                              |
-//!      |  +------ watch: states ----+   |  +--- newest state, events -----+   (eventfd)
-//!      +--- setters, recovery ----> channel task <------- TCP, replies matched by id ------> robot
+//! Robot --goals--> bridge task --orders, goals--> control thread --UDP, 1 kHz--> robot
+//!   |  ^              |   ^                              |                         ^
+//!   |  +----states----+   +--------states, events--------+                         |
+//!   +----settings, recovery----> channel task <------TCP, replies matched by id----+
 //! ```
 //!
 //! # Cancel safety
