@@ -290,8 +290,8 @@
 //! | [`prelude`] | what a first program needs |
 //! | [`pose`] | poses from quaternions, arrays and matrices, and back |
 //! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; what a motion goes on until |
-//! | [`motion`] | futures, handles and progress of motions |
-//! | [`team`] | several arms as one, with one stop; motions that begin together |
+//! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
+//! | [`team`] | several arms as one, with one stop |
 //! | [`state`] | every state, or the newest as it changes |
 //! | [`error`], [`diagnosis`] | what can go wrong, by who can act on it; why the robot ended a motion |
 //! | [`supervision`] | connections that are made again, recovery by a policy, events and health |

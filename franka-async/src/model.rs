@@ -2,8 +2,8 @@
 //!
 //! [`Robot::model`](crate::Robot::model) is that of the connected arm, from its own description
 //! (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] are there without a robot.
-//! Control functions may call what is computed here: it neither allocates nor waits. Models that are
-//! read from a description, or loaded, are made beforehand.
+//! Control functions may call what is computed here: it neither allocates nor waits. Models that
+//! are read from a description, or loaded, are made beforehand.
 //!
 //! ```
 //! use franka_async::READY;
