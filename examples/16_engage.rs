@@ -8,7 +8,7 @@ use std::time::Duration;
 use clap::Parser;
 use franka_async::diagnosis::Diagnose;
 use franka_async::error::PoseError;
-use franka_async::goal::{Chunk, Deadman, Free, Gains, OnTimeout, Tuning};
+use franka_async::goal::{Chunk, Deadman, Free, Gains, OnTimeout, Tuning, Waypoint};
 use franka_async::state::RobotState;
 use franka_async::{Engage, MotionError, Pose, Robot};
 use franka_examples::Arguments;
@@ -50,6 +50,10 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
     arm.set(Pose::translation(0.0, 0.1, 0.05) * start).await?;
     tokio::time::sleep(Duration::from_millis(300)).await;
     arm.move_joints(ready).await?;
+    // Along two sides of a square without a stop at the corner.
+    let corner = Waypoint::new(Pose::translation(0.0, 0.05, 0.0) * start).blend(0.02);
+    let end = Pose::translation(0.0, 0.05, 0.05) * start;
+    arm.move_through([corner, end.into()]).await?;
 
     let soft = [300.0, 300.0, 300.0, 15.0, 15.0, 15.0];
     let gains = Gains::cartesian().with_cartesian_stiffness(soft);

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use franka_async::error::PoseError;
-use franka_async::goal::{Destination, Target};
+use franka_async::error::{PathError, PoseError};
+use franka_async::goal::{Destination, Target, Waypoint};
 use franka_async::nalgebra::{Translation3, UnitQuaternion};
 use franka_async::{Engage, MotionError, Offset, Pose};
 use franka_sim::{Sim, Tool};
@@ -124,4 +124,41 @@ async fn a_handle_tells_how_far_a_motion_is_and_pauses_it() {
     moving.await.unwrap().unwrap();
     assert_eq!(handle.progress(), None, "over");
     robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_motion_goes_through_several_places_with_one_outcome() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let start = robot.pose();
+    let over = |y: f64, z: f64| Translation3::new(0.0, y, z) * start;
+    let corner = Waypoint::new(over(0.05, 0.0)).blend(0.02);
+    let report = robot.move_through([corner, over(0.05, 0.05).into()]).await;
+    let off = report.unwrap().final_error.expect("it went to a pose");
+    assert!(off.translation < 1e-3, "{off:?}");
+
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    let [near, far] = [over(0.0, 0.05), Translation3::new(2.0, 0.0, 0.0) * start];
+    let refused = arm.move_through([near, far]).await.unwrap_err();
+    let MotionError::Path(PathError::Waypoint { waypoint: 2, .. }) = refused else {
+        panic!("{refused:?}");
+    };
+    let motion = arm.move_through([corner, near.into()]);
+    let handle = motion.handle();
+    let moving = tokio::spawn(motion.into_future());
+    under_way(&robot).await;
+    let remaining = || handle.progress().map(|progress| progress.remaining);
+    while remaining().is_none_or(|left| left.is_zero()) {
+        robot_time(&robot, 5).await;
+    }
+    assert_eq!(arm.target(), Some(Target::Pose(near)));
+    moving.await.unwrap().unwrap();
+    // Dropped on its way, it brakes, and the arm is held.
+    tokio::select! {
+        ended = arm.move_through([corner, over(0.05, 0.1).into()]).into_future() => {
+            panic!("{ended:?}")
+        }
+        _ = robot_time(&robot, 300) => {}
+    }
+    arm.move_to(start).await.unwrap();
 }

@@ -143,7 +143,7 @@ async fn joint_motions_may_be_dropped_at_every_poll() {
     let start = two.robots.each_ref().map(Robot::pose);
     let mut polls = 0_u64;
     loop {
-        let way = if polls % 2 == 0 { 0.01 } else { 0.0 };
+        let way = if polls.is_multiple_of(2) { 0.01 } else { 0.0 };
         let mut motion = pin!(two.team.move_to(start.map(|start| up(way) * start)));
         let mut left = polls;
         let ended = poll_fn(|context| {

@@ -13,7 +13,7 @@ use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, Tuning};
 use franka_rt::session::{
     Backend, Chunk, Deadman, Fate, Free, Goal, GoalId, Guard, OnArrival, OnTimeout, Setpoints,
-    Target, Watchdog,
+    Target, Watchdog, Waypoint,
 };
 use franka_tests::lockstep::{Guarded, Lockstep, Part, Workload};
 use nalgebra::Translation3;
@@ -178,6 +178,16 @@ fn sessions_under_every_order_of_their_owners_allocate_and_free_nothing() {
                 engaged.run(300);
             }
             engaged.run(1500);
+            let waypoint = |way: f64| Waypoint::new(q.map(|q| q + way)).blend(0.02);
+            let through = [0.03, -0.03, 0.0].map(waypoint);
+            let path = engaged.lockstep.through(Some(engaged.id), &through);
+            let path = path.expect("in range");
+            for paused in [true, false] {
+                engaged.run(200);
+                engaged.lockstep.client.lifecycle.pause(path, paused);
+            }
+            engaged.run(2500);
+            assert!(matches!(engaged.lockstep.client.outcome(path), Some(Ok(_))));
         }
         // Tuned in mid-motion.
         engaged.go(up, OnArrival::Hold);
