@@ -131,6 +131,15 @@ pub struct Coordinator {
     shared: Arc<Shared>,
 }
 
+/// How far a member is with an object that the team carries.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Carrying {
+    /// The way that its reference has to go, `[m]`, turns included.
+    pub remaining: f64,
+    /// Whether its arm is held back from its reference.
+    pub lags: bool,
+}
+
 /// The part of one session in a team. Dropping it, unless it has left, is a fault.
 #[derive(Debug)]
 #[must_use = "dropping a member stops the team"]
@@ -165,6 +174,7 @@ pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Memb
     const { assert!(N <= MEMBERS_MAX, "so many members fit") };
     let shared = Arc::new(Shared {
         word: AtomicU64::new(Word::default().0),
+        carrying: (0..N).map(|_| AtomicU64::new(0)).collect(),
         members: N as u8,
         silence,
     });
@@ -279,6 +289,29 @@ impl Member {
         self.shared.stop(self.number, Cause::Member(fault));
     }
 
+    /// Tells the others how far it is in `round`.
+    pub fn tell(&self, round: Round, carrying: Carrying) {
+        let micrometres = (carrying.remaining.max(0.0) * 1e6) as u64;
+        let way = micrometres.min(WAY_MAX);
+        let word = Round::to_word(Some(round)) << 32 | u64::from(carrying.lags) << 31 | way;
+        // Each has a word of its own, which says everything by itself.
+        self.shared.carrying[usize::from(self.number)].store(word, Ordering::Relaxed);
+    }
+
+    /// The others of `round` together: the longest way that one of them has to go, and whether one
+    /// lags. Those that have not said how far they are do not count.
+    pub fn others(&self, round: Round) -> Carrying {
+        let mut all = Carrying::default();
+        for (number, word) in self.shared.carrying.iter().enumerate() {
+            let word = word.load(Ordering::Relaxed);
+            if number != self.number() && Round::from_word(word >> 32) == Some(round) {
+                all.remaining = all.remaining.max((word & WAY_MAX) as f64 * 1e-6);
+                all.lags |= word >> 31 & 1 == 1;
+            }
+        }
+        all
+    }
+
     /// Leaves the team, which goes on for as long as it needs no goal of this member.
     pub fn leave(&mut self) {
         self.has_left = true;
@@ -296,6 +329,9 @@ impl Drop for Member {
 #[derive(Debug)]
 struct Shared {
     word: AtomicU64,
+    /// What each member says of its [`Carrying`]: bits 0 to 30 the remaining way in micrometres, 31
+    /// whether it lags, 32 to 63 the round.
+    carrying: Box<[AtomicU64]>,
     members: u8,
     silence: Duration,
 }
@@ -395,6 +431,9 @@ impl Word {
         Self(self.0 | u64::from(member) << 8 | u64::from(cause) << 16)
     }
 }
+
+/// The longest way that is told, `[um]`.
+const WAY_MAX: u64 = (1 << 31) - 1;
 
 /// Stands for the caller in the place of a member.
 const CALLER: u8 = u8::MAX;

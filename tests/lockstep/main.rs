@@ -2,6 +2,8 @@
 
 mod awkward_poses;
 mod cancelling;
+#[cfg(feature = "mujoco")]
+mod carrying;
 mod clearance;
 mod diagnosis;
 mod endings;

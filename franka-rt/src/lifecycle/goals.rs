@@ -114,7 +114,7 @@ impl Lifecycle {
             Some(NewMotion::Goal { goal, .. }) => goal,
             _ => &self.goals()?.current,
         };
-        Some((goal.id, goal.target))
+        Some((goal.id, goal.hand_target()))
     }
 
     /// The goals of the motion under way, if target control runs it.

@@ -114,6 +114,7 @@ impl Backend {
             (Self::Torques, _) => return Ok(()),
             (_, Target::Guide(_)) => "takes no guiding hand",
             (Self::RobotController(Setpoints::Poses), _) if to_joints => "takes poses only",
+            _ if goal.grasp.is_some() => "carries no object: its springs act at the end effector",
             _ if matches!(goal.force_cap, ForceCap::Newtons(_)) => {
                 "keeps no force cap: its stiffness is set on the robot"
             }

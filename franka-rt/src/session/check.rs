@@ -126,6 +126,9 @@ pub enum GoalError {
         /// The value given, `[N]`.
         got: f64,
     },
+    /// An object that is held is to go somewhere else than to a pose.
+    #[error("an object that is held can only be taken to a pose")]
+    Grasp,
     /// The robot's state names an end effector that is not a rigid transformation, or a load that
     /// is not finite.
     #[error("the robot's state names an end effector or a load that cannot be")]
@@ -174,7 +177,16 @@ impl Goal {
         }
         // What is finite with masses in single precision is finite in every version.
         super::load_of(state, Version::V10).ok_or(GoalError::Tool)?;
-        target(&self.target, model, state)
+        if let Some(grasp) = &self.grasp {
+            let finite = grasp.to_homogeneous().iter().all(|x| x.is_finite());
+            if !finite {
+                return Err(GoalError::NotFinite);
+            }
+            if !matches!(self.target, Target::Pose(_) | Target::Rest) {
+                return Err(GoalError::Grasp);
+            }
+        }
+        target(&self.hand_target(), model, state)
     }
 }
 

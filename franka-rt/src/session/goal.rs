@@ -201,6 +201,10 @@ pub struct Goal {
     ///
     /// [`Member`]: crate::team::Member
     pub round: Option<Round>,
+    /// The object that the hand holds, in the frame of the end effector: the target is a pose of the
+    /// object, which moves on its line. Springs and force cap act at the hand. In a round the
+    /// reference waits for the arms of the other members.
+    pub grasp: Option<Isometry3<f64>>,
     /// Incremented by each new target and each new end, not by tuning. Only a new revision feeds
     /// the watchdog.
     pub revision: u64,
@@ -230,7 +234,16 @@ impl Goal {
             paused: false,
             reaction: None,
             round: None,
+            grasp: None,
             revision: 0,
+        }
+    }
+
+    /// The target of the end effector itself.
+    pub(crate) fn hand_target(&self) -> Target {
+        match (self.target, &self.grasp) {
+            (Target::Pose(object), Some(grasp)) => Target::Pose(object * grasp.inverse()),
+            (target, _) => target,
         }
     }
 
@@ -253,15 +266,23 @@ impl Goal {
     }
 }
 
+fn numbers_of(pose: &Isometry3<f64>) -> [f64; 7] {
+    let (p, r) = (pose.translation.vector, pose.rotation.coords);
+    [p.x, p.y, p.z, r.x, r.y, r.z, r.w]
+}
+
+fn pose_of([x, y, z, i, j, k, w]: [f64; 7]) -> Isometry3<f64> {
+    Isometry3::from_parts(
+        Translation3::new(x, y, z),
+        UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
+    )
+}
+
 /// The kind of target, 7 numbers, and 7 of its velocity.
 impl Words for Target {
     const WORDS: usize = 1 + 7 + 7;
 
     fn store(&self, words: &mut [u64]) {
-        let numbers_of = |pose: &Isometry3<f64>| {
-            let (p, r) = (pose.translation.vector, pose.rotation.coords);
-            [p.x, p.y, p.z, r.x, r.y, r.z, r.w]
-        };
         let (kind, place, velocity) = match self {
             Self::Rest => (0, [0.0; 7], [0.0; 7]),
             Self::Joints(q) => (1, *q, [0.0; 7]),
@@ -281,13 +302,7 @@ impl Words for Target {
     fn load(words: &[u64]) -> Self {
         let place = <[f64; 7]>::load(&words[1..8]);
         let velocity = <[f64; 7]>::load(&words[8..]);
-        let pose = || {
-            let [x, y, z, i, j, k, w] = place;
-            Isometry3::from_parts(
-                Translation3::new(x, y, z),
-                UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
-            )
-        };
+        let pose = || pose_of(place);
         match words[0] & 7 {
             1 => Self::Joints(place),
             2 => Self::Pose(pose()),
@@ -306,7 +321,7 @@ impl Words for Target {
 }
 
 /// Name, revision, what follows and whether it is paused, the round, 2 of the watchdog; then 27 numbers of
-/// budget, the gains, 2 of tolerance, the force cap, 3 of the lead, which are zero without one;
+/// budget, the gains, 2 of tolerance, the force cap, 3 of the lead and 7 of the grasp, which are zero without one;
 /// then the target and the reaction.
 ///
 /// Written by hand: generated code needs an implementation for the type of each field, which comes
@@ -341,7 +356,8 @@ impl Words for Goal {
             .chain([self.force_cap.to_number()])
             .chain(self.lead.map_or([0.0; 3], |lead| {
                 [lead.translation, lead.rotation, lead.joints]
-            }));
+            }))
+            .chain(self.grasp.as_ref().map_or([0.0; 7], numbers_of));
         let on_arrival = self.on_arrival.to_word() | u64::from(self.paused) << 2;
         let round = Round::to_word(self.round);
         let all = [
@@ -406,6 +422,8 @@ impl Words for Goal {
                 joints: number(),
             })
             .filter(|lead| lead.translation > 0.0),
+            grasp: Some(pose_of(core::array::from_fn(|_| number())))
+                .filter(|grasp| grasp.rotation.coords.norm() > 0.0),
             reaction: Words::load(reaction),
             round: Round::from_word(round),
             revision,
@@ -414,7 +432,7 @@ impl Words for Goal {
 }
 
 /// Words of a goal before those of its target.
-const NUMBERS: usize = 6 + 27 + Gains::NUMBERS + 2 + 1 + 3;
+const NUMBERS: usize = 6 + 27 + Gains::NUMBERS + 2 + 1 + 3 + 7;
 
 impl OnArrival {
     fn to_word(self) -> u64 {
@@ -534,6 +552,7 @@ mod tests {
                 paused: lead.is_some(),
                 reaction,
                 round: Round::from_word(if lead.is_some() { 7 } else { 0 }),
+                grasp: lead.map(|_| pose),
                 revision: 5,
             };
             let mut words = [u64::MAX; Goal::WORDS];

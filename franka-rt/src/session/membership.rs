@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use super::running::RunningSession;
 use super::{Goal, GoalId, OnArrival, SessionEvent, Settlement, Target};
-use crate::team::{Member, MemberFault, Passage, Round, TeamStop};
+use crate::team::{Carrying, Member, MemberFault, Passage, Round, TeamStop};
 
 /// What a session knows of its team.
 #[derive(Debug)]
@@ -17,6 +17,8 @@ pub(super) struct Membership {
     pursued: Option<Pursued>,
     /// Whether the team has been told that the session has a fault, since its newest state.
     has_failed: bool,
+    /// How far it is with an object that the team carries, if it does.
+    carrying: Option<Carrying>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +29,9 @@ struct Pursued {
     is_done: bool,
 }
 
+/// How far the reference may be ahead of those of the others, `[m]`.
+const AHEAD: f64 = 0.002;
+
 impl Membership {
     pub(super) fn new(member: Member) -> Self {
         Self {
@@ -34,6 +39,7 @@ impl Membership {
             waiting: None,
             pursued: None,
             has_failed: false,
+            carrying: None,
         }
     }
 
@@ -103,8 +109,22 @@ impl Membership {
         true
     }
 
-    /// Stops the round if its goal has been given up.
-    pub(super) fn watch(&mut self, session: &RunningSession) {
+    /// Whether the reference has to wait for the arms that carry the same object, this one
+    /// included.
+    pub(super) fn waits(&self) -> bool {
+        let (Some(pursued), Some(own)) = (self.pursued, self.carrying) else {
+            return false;
+        };
+        let others = self.member.others(pursued.round);
+        own.lags || others.lags || others.remaining > own.remaining + AHEAD
+    }
+
+    /// Stops the round if its goal has been given up. Tells the others how far it is.
+    pub(super) fn watch(&mut self, session: &mut RunningSession) {
+        self.carrying = session.carrying();
+        if let (Some(pursued), Some(own)) = (self.pursued, self.carrying) {
+            self.member.tell(pursued.round, own);
+        }
         if let Some(pursued) = self.pursued
             && session.goal.id == pursued.goal
             && session.has_braked()

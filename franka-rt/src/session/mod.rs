@@ -447,7 +447,9 @@ impl TargetSession {
         let alive = |monitor: &mut DeadmanMonitor| monitor.is_alive(now);
         let alive = self.deadman.as_mut().is_none_or(alive);
         if let Some(active) = &mut self.active {
-            active.prepare(&self.model, newer, (alive, stop), self.chunks.as_mut(), now);
+            let waits = self.team.as_ref().is_some_and(Membership::waits);
+            let watched = (alive, stop, waits);
+            active.prepare(&self.model, newer, watched, self.chunks.as_mut(), now);
             if let Some(team) = &mut self.team {
                 team.watch(active);
             }

@@ -31,6 +31,7 @@ impl Arm {
                 time: 1000,
                 q: q.into(),
                 pose: Isometry3::translation(0.3, -0.1, 0.5),
+                object: Isometry3::translation(0.3, -0.1, 0.5),
                 jacobian,
             },
         }

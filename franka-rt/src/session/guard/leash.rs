@@ -49,7 +49,7 @@ pub(crate) fn hold(course: &Course, reference: &mut Reference, arm: &Measured) -
         Course::Rest | Course::Joints(_) | Course::Guide(_) => None,
     };
     let pose =
-        followed.and_then(|pose| within(&pose, &arm.pose, TRANSLATION_LEASH, ROTATION_LEASH));
+        followed.and_then(|pose| within(&pose, &arm.object, TRANSLATION_LEASH, ROTATION_LEASH));
     (moved || pose.is_some()).then_some(Held { q, pose })
 }
 

@@ -3,6 +3,7 @@
 //! What needs the newest state answers it: the law, the leash, the judgement of the arrival. All
 //! that does not is prepared after the answer before: goals, plans and the reference's next step.
 
+mod carry;
 mod chunks;
 mod react;
 mod stages;
@@ -40,7 +41,11 @@ use stages::GoalStage;
 /// The part of a session that exists from its first state on.
 #[derive(Debug)]
 pub(super) struct RunningSession {
+    /// As the robot's state has it. Springs and dampers act there.
+    hand: EndEffector,
+    /// What goals lead somewhere: the hand, or an object in it.
     ee: EndEffector,
+    grasp: Option<Isometry3<f64>>,
     load: Load,
     posture: JointVector,
     pub(super) goal: Goal,
@@ -72,6 +77,10 @@ pub(super) struct RunningSession {
     yields: bool,
     /// Grows by 1 in a cycle in which the course is held back, and falls by 1 in any other.
     held_back: u64,
+    /// Whether the reference waits for the others that carry the same object.
+    waits: bool,
+    /// Whether the arm is held back from the reference of an object that is carried.
+    lags: bool,
 }
 
 /// How the goal stands.
@@ -115,6 +124,8 @@ pub(super) struct Measured {
     pub(super) q: JointVector,
     /// `O_T_EE`.
     pub(super) pose: Isometry3<f64>,
+    /// The pose of what goals lead somewhere: the object in the hand, or the same.
+    pub(super) object: Isometry3<f64>,
     /// Of the end effector in the base frame.
     pub(super) jacobian: Jacobian,
 }
@@ -159,6 +170,7 @@ impl RunningSession {
                 time: state.message_id,
                 q: measured,
                 pose: rigid(&pose),
+                object: rigid(&pose),
                 jacobian,
             },
             // The first answer holds the arm without torques.
@@ -176,8 +188,13 @@ impl RunningSession {
             reference,
             goal,
             load,
+            hand: ee,
             ee,
+            grasp: None,
+            waits: false,
+            lags: false,
         };
+        this.take_hold();
         this.set_out();
         Some(this)
     }
@@ -238,6 +255,7 @@ impl RunningSession {
             self.reacting = reacting;
         }
         self.goal = goal;
+        self.take_hold();
         self.fade_gains();
         self.standing = if named && taken_back {
             Standing::TakenBack
@@ -305,12 +323,12 @@ impl RunningSession {
     /// Prepares the answer to the state `now`, `message_id`: takes up a `newer` goal, if there is
     /// one, plans, and moves the reference by one step. `alive` is false once the deadman of the
     /// session is silent or dropped; `stop` is there in the cycle that sees that its team has
-    /// stopped.
+    /// stopped, and the reference `waits` for others that carry the same object.
     pub(super) fn prepare(
         &mut self,
         model: &Model,
         newer: Option<Goal>,
-        (alive, stop): (bool, Option<TeamStop>),
+        (alive, stop, waits): (bool, Option<TeamStop>, bool),
         chunks: Option<&mut ChunkReader>,
         now: u64,
     ) {
@@ -329,6 +347,7 @@ impl RunningSession {
         }
         self.watch(alive, now);
         self.stop_with_team(stop);
+        self.wait_for_team(waits);
         bindings.set(Guard::Deadman, !alive);
         bindings.set(Guard::Team, self.has_stopped_with_team());
         let silent = matches!(
@@ -392,10 +411,13 @@ impl RunningSession {
         let mut aim = Goal {
             target: self.aim.after(since),
             // A stop is not to be paused.
-            paused: self.goal.paused && self.aim != Target::Rest || self.halted,
+            paused: (self.goal.paused || self.waits) && self.aim != Target::Rest || self.halted,
             reaction: None,
             ..self.goal
         };
+        if self.waits {
+            aim.budget = carry::quick_to_halt(aim.budget);
+        }
         if self.has_reacted() {
             let default = Budget::of(model.joint_limits());
             aim.budget = aim.budget.as_brisk_as(&default);
@@ -407,11 +429,13 @@ impl RunningSession {
     pub(super) fn answer(&mut self, model: &Model, state: &RobotState) -> SessionStep {
         let q = JointVector::from(state.q);
         let dq = JointVector::from(state.dq);
-        let dynamics = model.dynamics(&q, &dq, &self.ee, &self.load, &GRAVITY_EARTH);
+        let dynamics = model.dynamics(&q, &dq, &self.hand, &self.load, &GRAVITY_EARTH);
+        let hand = rigid(&dynamics.pose);
         self.arm = Measured {
             time: state.message_id,
             q,
-            pose: rigid(&dynamics.pose),
+            pose: hand,
+            object: hand * self.grasp.unwrap_or_default(),
             jacobian: dynamics.jacobian,
         };
         let Next { step, mut bindings } = self.next.take().unwrap_or_default();
@@ -433,7 +457,7 @@ impl RunningSession {
         }
         let leashed = self.held.is_some();
         bindings.set(Guard::Leash, leashed || step.leashed);
-        self.held_back = if leashed || step.held || self.route.is_hindered() {
+        self.held_back = if leashed || step.held || self.lags || self.route.is_hindered() {
             self.held_back + 1
         } else {
             self.held_back.saturating_sub(1)

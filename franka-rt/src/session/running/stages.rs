@@ -48,7 +48,9 @@ impl RunningSession {
             }
             GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                let waits = self.goal.paused && heading != Target::Rest && !self.is_given_up();
+                let waits = (self.goal.paused || self.waits && !self.lags)
+                    && heading != Target::Rest
+                    && !self.is_given_up();
                 let ends = self.goal.on_arrival != OnArrival::Hold && !waits;
                 if ends && (self.route.is_done() || stalled) {
                     if stalled && self.route.is_hindered() {
@@ -60,7 +62,10 @@ impl RunningSession {
                         // It counts as held at any place.
                         _ if self.is_given_up() => None,
                         Target::Rest | Target::Guide(_) => None,
-                        Target::Pose(pose) | Target::MovingPose { pose, .. } => Some(pose),
+                        Target::Pose(pose) | Target::MovingPose { pose, .. } => {
+                            // Where the hand has to be: at an object its lever would not count.
+                            Some(pose * self.grasp.unwrap_or_default().inverse())
+                        }
                         Target::Joints(q) | Target::MovingJoints { q, .. } => {
                             Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
                         }

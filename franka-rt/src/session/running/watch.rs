@@ -25,7 +25,7 @@ impl RunningSession {
         if now.saturating_sub(self.heard) <= Lead::FRESH_MS {
             let since = now.saturating_sub(self.heard);
             let place = self.goal.target.after(since).place();
-            let drawn = lead.drawn(&place, &self.arm.q, &self.arm.pose);
+            let drawn = lead.drawn(&place, &self.arm.q, &self.arm.object);
             let target = drawn.unwrap_or(self.goal.target);
             if target != self.aim {
                 self.turn_to(target);
@@ -94,7 +94,7 @@ impl RunningSession {
         let aim = self.aim(model, arm.time).target.place();
         let exceeded = self
             .deviation
-            .is_exceeded(model, &self.ee, &arm.q, &arm.pose, &aim);
+            .is_exceeded(model, &self.ee, &arm.q, &arm.object, &aim);
         let follows = matches!(
             self.stage,
             GoalStage::UnderWay | GoalStage::Landing(_) | GoalStage::Staying

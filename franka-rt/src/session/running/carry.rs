@@ -1,0 +1,106 @@
+//! An object that the hand holds, alone or with the arms of a team.
+
+use franka_model::{rotation, transform};
+use franka_otg::AxisLimits;
+use nalgebra::Isometry3;
+
+use super::{GoalStage, RunningSession};
+use crate::session::course::Course;
+use crate::session::reference::Reference;
+use crate::session::{Budget, Target};
+use crate::team::Carrying;
+
+/// Distance of the arm from its reference, `[m]`, from which on it lags. A realistic arm that
+/// nothing holds stays within half of it.
+const LAG: f64 = 0.015;
+
+/// Distance within which it no longer does, `[m]`: an arm that sticks may stop 9 mm short.
+const CAUGHT_UP: f64 = 0.012;
+
+/// Joint velocity, `[rad/s]`, that a reference may be put to rest from at once: 0.1 rad/s^2 in one
+/// cycle.
+const AT_REST: f64 = 1e-4;
+
+/// Deceleration of a reference that halts for another arm, `[m/s^2]` and `[rad/s^2]`: a quarter of
+/// what either robot allows.
+const HALT: [f64; 2] = [2.5, 4.0];
+
+/// Time in which it is built up, `[s]`.
+const RAMP: f64 = 0.025;
+
+/// What a turn counts, `[m/rad]`.
+const LEVER: f64 = 0.2;
+
+impl RunningSession {
+    /// Goes on from the object that the goal names, or from the hand: the joint reference stays as
+    /// it is, and where the goal leads is planned from there.
+    pub(super) fn take_hold(&mut self) {
+        let grasp = self.goal.grasp;
+        if grasp == self.grasp {
+            return;
+        }
+        let object = grasp.unwrap_or_default();
+        self.arm.object = self.arm.pose * object;
+        self.ee.f_t_ee = self.hand.f_t_ee * transform::matrix(&object);
+        self.grasp = grasp;
+        self.lags = false;
+        // Arms at rest plan the same way of the same object. What rounding has left of a motion would
+        // give it another direction, and limits of its own, on each.
+        if self.reference.dq.amax() < AT_REST {
+            self.reference = Reference::at_rest(self.reference.q);
+        }
+        // Its plan is one for the other frame.
+        if matches!(self.route.course, Course::Pose(..)) {
+            self.route.course = Course::Rest;
+        }
+    }
+
+    /// Halts the reference on its line, or lets it go on.
+    pub(super) fn wait_for_team(&mut self, waits: bool) {
+        if waits != self.waits {
+            self.waits = waits;
+            self.route.outdate();
+        }
+    }
+
+    /// How far it is with the object that it carries; `None` if it carries none.
+    pub(in crate::session) fn carrying(&mut self) -> Option<Carrying> {
+        self.grasp?;
+        let (Course::Pose(generator, _), Target::Pose(target)) =
+            (&self.route.course, self.heading())
+        else {
+            self.lags = false;
+            return Some(Carrying::default());
+        };
+        let pose = generator.pose();
+        let most = if self.lags { CAUGHT_UP } else { LAG };
+        let under_way = matches!(self.stage, GoalStage::UnderWay);
+        self.lags = under_way && apart(&pose, &self.arm.object) > most;
+        Some(Carrying {
+            remaining: apart(&target, &pose),
+            lags: self.lags,
+        })
+    }
+}
+
+/// The budget of a reference that halts for another arm: it is to be ahead of that one by as little
+/// as the joints take without a jolt. At 0.3 m/s it rests after 25 mm, with the default budget after
+/// 90.
+pub(super) fn quick_to_halt(budget: Budget) -> Budget {
+    let raised = |limits: AxisLimits, acceleration: f64| AxisLimits {
+        acceleration: limits.acceleration.max(acceleration),
+        jerk: limits.jerk.max(acceleration / RAMP),
+        ..limits
+    };
+    Budget {
+        translation: raised(budget.translation, HALT[0]),
+        rotation: raised(budget.rotation, HALT[1]),
+        ..budget
+    }
+}
+
+/// Distance of two poses, `[m]`.
+fn apart(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+    let way = a.translation.vector - b.translation.vector;
+    way.norm() + LEVER * rotation::error(&a.rotation, &b.rotation).norm()
+}
