@@ -10,6 +10,7 @@ use franka_rt::driver::{Observer, Record, ReferenceState};
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport, NewMotion, Tuning};
 use franka_rt::session::{Backend, Chunk, DeadmanMonitor, Free, Goal, OnArrival, Target, Waypoint};
 use franka_rt::team::Member;
+use nalgebra::Isometry3;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::{Stream, StreamExt};
 
@@ -384,6 +385,16 @@ impl Arm {
     /// Whether the session of a motion is that of this arm.
     pub(crate) fn owns(&self, session: Option<&Arc<Session>>) -> bool {
         session.is_some_and(|session| Arc::ptr_eq(session, &self.session))
+    }
+
+    /// Where the end effector is to be now.
+    ///
+    /// # Errors
+    /// What ended the session.
+    pub(crate) fn held_pose(&self) -> Result<Isometry3<f64>, MotionError> {
+        self.session.check()?;
+        let reference = self.reference().ok_or(MotionError::Disengaged)?;
+        Ok(reference.pose)
     }
 
     /// A goal that is set and then held.

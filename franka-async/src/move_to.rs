@@ -10,6 +10,7 @@ use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
 use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Target, Waypoint};
 use franka_rt::team::Round;
 use franka_rt::together::StartTicket;
+use nalgebra::Isometry3;
 use tokio::sync::oneshot;
 
 use crate::cancel::Canceller;
@@ -135,6 +136,13 @@ impl Motion {
     /// Makes it part of a joint motion.
     pub(crate) fn in_round(mut self, round: Round) -> Self {
         self.options.round = Some(round);
+        self
+    }
+
+    /// Makes the target one of an object in the hand, which is there in the frame of the end
+    /// effector.
+    pub(crate) fn of_object(mut self, grasp: Isometry3<f64>) -> Self {
+        self.options.grasp = Some(grasp);
         self
     }
 

@@ -4,6 +4,7 @@ use franka_model::Model;
 use franka_rt::lifecycle::Tuning;
 use franka_rt::session::{Budget, Goal, GoalError, Reaction, Tolerance};
 use franka_rt::team::Round;
+use nalgebra::Isometry3;
 
 /// Options of one goal or of many. What is `None` is left to the goal, whose kind decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,6 +16,8 @@ pub(crate) struct GoalOptions {
     pub(crate) reaction: Option<Reaction>,
     /// The joint motion of a team that it is part of.
     pub(crate) round: Option<Round>,
+    /// The object in the hand that the goal is for, in the frame of the end effector.
+    pub(crate) grasp: Option<Isometry3<f64>>,
 }
 
 impl GoalOptions {
@@ -39,6 +42,7 @@ impl GoalOptions {
             tolerance: self.tolerance.or(goal.tolerance),
             reaction: self.reaction.or(goal.reaction),
             round: self.round.or(goal.round),
+            grasp: self.grasp.or(goal.grasp),
             ..goal
         })
     }

@@ -26,6 +26,8 @@
 //! # }
 //! ```
 
+mod grasp;
+
 use std::future::{Future, IntoFuture};
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -35,6 +37,8 @@ use std::time::Duration;
 use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::team::{Coordinator, Member, Round, team_tolerating};
 use futures::future::join_all;
+
+pub use grasp::Grasp;
 
 pub use franka_rt::team::{MEMBERS_MAX, MemberFault, SILENCE, START_TIMEOUT, TeamStop};
 

@@ -1,0 +1,111 @@
+//! Two arms that face each other carry one bar, then put it back. When one of them has to stop, the
+//! other one does, too.
+//!
+//! `cargo run --release --features mujoco --example carry`
+//!
+//! Both arms are simulated, in one world of MuJoCo. On real robots the grasp would come first, and
+//! the bases would have been measured.
+
+use clap::Parser;
+use franka_async::team::Team;
+use franka_async::{Engage, Pose, Realtime, Robot};
+use franka_examples::Summary;
+use franka_model::{EndEffector, Frame, Model, READY, RobotKind, transform};
+use franka_sim::plant::{Mount, Scene, SharedArm, shared_world};
+use franka_sim::{Running, Sim};
+use nalgebra::{Translation3, UnitQuaternion};
+
+#[derive(Parser)]
+struct Arguments {
+    /// How fast, as a share of the default limits.
+    #[arg(long, default_value_t = 0.7)]
+    speed: f64,
+    /// With how much force each arm may press or pull, `[N]`.
+    #[arg(long, default_value_t = 20.0)]
+    force_cap: f64,
+}
+
+/// Distance of the bases, `[m]`.
+const APART: f64 = 1.2;
+
+#[tokio::main]
+async fn main() -> anyhow::Result<()> {
+    let Arguments { speed, force_cap } = Arguments::parse();
+    let bases = [
+        Pose::identity(),
+        Pose::from_parts(
+            Translation3::new(APART, 0.0, 0.0),
+            UnitQuaternion::from_euler_angles(0.0, 0.0, std::f64::consts::PI),
+        ),
+    ];
+    let hand = transform::isometry(&Model::fr3().pose(
+        Frame::EndEffector,
+        &READY,
+        &EndEffector::default(),
+    ));
+    let hand = hand.expect("the model's poses are rigid");
+    // In the middle between the hands.
+    let bar = Pose::translation(APART / 2.0, 0.0, hand.translation.z);
+
+    let [left, right] = shared_world(scene(&bases, &hand, &bar), mounts(&bases))?;
+    let ((left, _one), (right, _other)) = tokio::try_join!(simulated(left), simulated(right))?;
+    let members = [(&left, Engage::default()), (&right, Engage::default())];
+    let team = Team::engage(members).await?;
+    let grasp = team.grasp(bases, bar)?;
+    let turned = UnitQuaternion::from_euler_angles(0.0, 0.1, 0.2);
+    let up = Pose::from_parts(Translation3::new(APART / 2.0, 0.05, 0.7), turned);
+    for (what, to) in [("up", up), ("back", bar)] {
+        let carrying = grasp.move_with(to, |motion| motion.speed(speed).force_cap(force_cap));
+        // One outcome for each arm: where one failed, the other says which it was.
+        let [one, other] = carrying.await;
+        println!("{what}: {}; {}", Summary(&one?), Summary(&other?));
+        let off = grasp.measured().map(|bar| {
+            let off = bar.translation.vector - to.translation.vector;
+            format!("{:.1} mm", off.norm() * 1e3)
+        });
+        println!("      the bar is off by {off:?}, as either arm measures it");
+    }
+    for ended in team.disengage().await {
+        ended?;
+    }
+    tokio::join!(left.shutdown(), right.shutdown());
+    Ok(())
+}
+
+/// A simulator of its own for each arm of the world, and a connection to it.
+async fn simulated(arm: SharedArm) -> anyhow::Result<(Robot, Running)> {
+    let sim = Sim::fr3().plant(arm).start().await?;
+    let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    Ok((robot.connect().await?, sim))
+}
+
+fn mounts([left, right]: &[Pose; 2]) -> [Mount; 2] {
+    [("left", left), ("right", right)].map(|(name, base)| Mount {
+        kind: RobotKind::Fr3,
+        name: name.into(),
+        base: *base,
+    })
+}
+
+/// A bar whose ends are held by the flanges.
+fn scene(bases: &[Pose; 2], hand: &Pose, bar: &Pose) -> Scene {
+    let half = APART / 2.0 - hand.translation.x;
+    let [left, right] = [(bases[0], -half), (bases[1], half)].map(|(base, end)| {
+        let end = bar * Translation3::new(end, 0.0, 0.0);
+        let Pose {
+            rotation: r,
+            translation: p,
+        } = (base * hand).inverse() * end;
+        format!("{} {} {} {} {} {} {}", p.x, p.y, p.z, r.w, r.i, r.j, r.k)
+    });
+    let (x, z) = (bar.translation.x, bar.translation.z);
+    Scene::mjcf(format!(
+        "<mujoco><worldbody><body name='bar' pos='{x} 0 {z}'><freejoint/>
+           <geom type='box' size='{half} 0.01 0.01' mass='0.6' contype='0' conaffinity='0'/>
+           <body name='left_end' pos='-{half} 0 0'/><body name='right_end' pos='{half} 0 0'/>
+         </body></worldbody><equality>
+           <weld body1='left_flange' body2='left_end' relpose='{left}' solref='0.01 1'/>
+           <weld body1='right_flange' body2='right_end' relpose='{right}' solref='0.01 1'/>
+         </equality></mujoco>"
+    ))
+}

@@ -1,0 +1,102 @@
+//! An object that all arms of a team hold.
+
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::Budget;
+use nalgebra::Isometry3;
+
+use super::{Team, TeamMotion};
+use crate::move_to::Motion;
+use crate::robot::Pose;
+
+/// An object that all arms of a team hold, each in its hand: what they are asked for is a pose of
+/// the object, and the poses of the hands relative to each other stay. Made by [`Team::grasp`].
+///
+/// Every real-time thread plans the same way of the object, with the same limits, and follows it
+/// with its own arm. The springs and the [force cap](Motion::force_cap) of each arm act at its hand,
+/// so what an arm presses or pulls at the object with is bounded by its cap, but for inertia, and so
+/// is what two arms pull at each other with.
+///
+/// An arm that is held back, by an obstacle or by its own limits, holds up the others: once it is
+/// 15 mm behind its reference, turns counted as 0.2 m per radian, the references of all halt on
+/// their line, with 2.5 m/s^2, and go on when it has caught up. They halt, too, where one is more
+/// than 2 mm ahead of another. After 5 s the motion ends with an error for each.
+#[derive(Clone, Copy, Debug)]
+pub struct Grasp<'a, const N: usize> {
+    team: &'a Team<N>,
+    bases: [Pose; N],
+    /// The object in the frame of each end effector.
+    hands: [Pose; N],
+}
+
+impl<const N: usize> Team<N> {
+    /// Takes an object as held by all arms from now on, where it is: `bases` are the robots' base
+    /// frames and `object` is the object's frame, all in one frame of the program's choice. Where
+    /// the object is in each hand follows from where the arms are held now. Nothing moves.
+    ///
+    /// Weight that the robots are not told of ([`Robot::set_load`](crate::Robot::set_load)) is
+    /// carried by the springs: each arm's share of it, for a load that several hold.
+    ///
+    /// # Errors
+    /// What ended the session of an arm.
+    pub fn grasp(&self, bases: [Pose; N], object: Pose) -> Result<Grasp<'_, N>, MotionError> {
+        let mut hands = [Pose::identity(); N];
+        for ((hand, arm), base) in hands.iter_mut().zip(&self.arms).zip(&bases) {
+            *hand = (base * arm.held_pose()?).inverse() * object;
+        }
+        let team = self;
+        Ok(Grasp { team, bases, hands })
+    }
+}
+
+impl<const N: usize> Grasp<'_, N> {
+    /// A motion of the object to this pose, in the frame of the bases: a straight line and a
+    /// rotation about one axis, if it begins at rest. See [`Team::run`] for how it begins and ends.
+    pub fn move_to(&self, object: Pose) -> TeamMotion<N> {
+        self.move_with(object, |motion| motion)
+    }
+
+    /// [`Self::move_to`] with options, which have to be the same for each arm:
+    /// `grasp.move_with(pose, |motion| motion.speed(0.3).force_cap(15.0))`. The limits of the
+    /// translation and the rotation, at the origin of the object, are the least of all arms.
+    pub fn move_with(&self, object: Pose, options: impl Fn(Motion) -> Motion) -> TeamMotion<N> {
+        let budgets = self.team.arms.each_ref().map(|arm| {
+            let limits = arm.robot().model().joint_limits();
+            Budget::of(limits)
+        });
+        let slowest = slowest(&budgets);
+        self.team.run(|member, arm| {
+            let target: Isometry3<f64> = self.bases[member].inverse() * object;
+            let budget = Budget {
+                joints: budgets[member].joints,
+                ..slowest
+            };
+            let motion = arm.move_to(target).limits(budget);
+            options(motion).of_object(self.hands[member])
+        })
+    }
+
+    /// Where the object is by the newest state of each arm, in the frame of the bases. They differ
+    /// by what the arms and the grasps give way.
+    pub fn measured(&self) -> [Pose; N] {
+        core::array::from_fn(|member| {
+            let hand = self.team.arms[member].robot().pose();
+            self.bases[member] * hand * self.hands[member]
+        })
+    }
+}
+
+/// The least limits of translation and rotation.
+fn slowest<const N: usize>(budgets: &[Budget; N]) -> Budget {
+    let mut least = budgets[0];
+    for budget in budgets {
+        for (least, of) in [
+            (&mut least.translation, budget.translation),
+            (&mut least.rotation, budget.rotation),
+        ] {
+            least.velocity = least.velocity.min(of.velocity);
+            least.acceleration = least.acceleration.min(of.acceleration);
+            least.jerk = least.jerk.min(of.jerk);
+        }
+    }
+    least
+}
