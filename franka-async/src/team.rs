@@ -56,8 +56,8 @@ type Outcome = Result<MotionReport, MotionError>;
 /// were given.
 ///
 /// The [`arms`](Self::arms) can also be moved by themselves: such a motion waits for no other and
-/// its end concerns no other. But every motion of a member, joint or not, brakes when the session of
-/// another one ends otherwise than by [`Arm::disengage`], or when the team is stopped. A motion
+/// its end concerns no other. But every motion of a member, joint or not, brakes when the session
+/// of another one ends otherwise than by [`Arm::disengage`], or when the team is stopped. A motion
 /// that comes after that begins as usual.
 ///
 /// Dropping it brakes all arms and ends their sessions, in the background, unless other handles of

@@ -16,8 +16,8 @@
 //! within two of its cycles after the fault was seen by the thread of the member that has it. The
 //! first fault of a round stays.
 //!
-//! [`together`](crate::together) has common starts of motions that end by themselves; here a session
-//! goes from goal to goal.
+//! [`together`](crate::together) has common starts of motions that end by themselves; here a
+//! session goes from goal to goal.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -36,8 +36,9 @@ use core::time::Duration;
 /// The most members of a team.
 pub const MEMBERS_MAX: usize = 254;
 
-/// Silence of a member's robot after which the others brake, unless said otherwise. A robot that misses as many commands
-/// stops by itself. Noticed late by one wait of the member's thread at most, 20 ms.
+/// Silence of a member's robot after which the others brake, unless said otherwise. A robot that
+/// misses as many commands stops by itself. Noticed late by one wait of the member's thread at
+/// most, 20 ms.
 pub const SILENCE: Duration = Duration::from_millis(20);
 
 /// How long a goal of a joint motion waits for those of the other members, by the clock of its

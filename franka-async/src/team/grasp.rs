@@ -12,9 +12,9 @@ use crate::robot::Pose;
 /// the object, and the poses of the hands relative to each other stay. Made by [`Team::grasp`].
 ///
 /// Every real-time thread plans the same way of the object, with the same limits, and follows it
-/// with its own arm. The springs and the [force cap](Motion::force_cap) of each arm act at its hand,
-/// so what an arm presses or pulls at the object with is bounded by its cap, but for inertia, and so
-/// is what two arms pull at each other with.
+/// with its own arm. The springs and the [force cap](Motion::force_cap) of each arm act at its
+/// hand, so what an arm presses or pulls at the object with is bounded by its cap, but for inertia,
+/// and so is what two arms pull at each other with.
 ///
 /// An arm that is held back, by an obstacle or by its own limits, holds up the others: once it is
 /// 15 mm behind its reference, turns counted as 0.2 m per radian, the references of all halt on

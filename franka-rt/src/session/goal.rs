@@ -201,8 +201,8 @@ pub struct Goal {
     ///
     /// [`Member`]: crate::team::Member
     pub round: Option<Round>,
-    /// The object that the hand holds, in the frame of the end effector: the target is a pose of the
-    /// object, which moves on its line. Springs and force cap act at the hand. In a round the
+    /// The object that the hand holds, in the frame of the end effector: the target is a pose of
+    /// the object, which moves on its line. Springs and force cap act at the hand. In a round the
     /// reference waits for the arms of the other members.
     pub grasp: Option<Isometry3<f64>>,
     /// Incremented by each new target and each new end, not by tuning. Only a new revision feeds
@@ -247,8 +247,8 @@ impl Goal {
         }
     }
 
-    /// Returns the goal with rest as its target, without a reaction or a team. Gains for guiding are replaced
-    /// by gains that hold.
+    /// Returns the goal with rest as its target, without a reaction or a team. Gains for guiding
+    /// are replaced by gains that hold.
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),
@@ -320,9 +320,9 @@ impl Words for Target {
     }
 }
 
-/// Name, revision, what follows and whether it is paused, the round, 2 of the watchdog; then 27 numbers of
-/// budget, the gains, 2 of tolerance, the force cap, 3 of the lead and 7 of the grasp, which are zero without one;
-/// then the target and the reaction.
+/// Name, revision, what follows and whether it is paused, the round, 2 of the watchdog; then 27
+/// numbers of budget, the gains, 2 of tolerance, the force cap, 3 of the lead and 7 of the grasp,
+/// which are zero without one; then the target and the reaction.
 ///
 /// Written by hand: generated code needs an implementation for the type of each field, which comes
 /// to as many lines. The test below fails if a field is left out.

@@ -44,8 +44,8 @@ impl RunningSession {
         self.ee.f_t_ee = self.hand.f_t_ee * transform::matrix(&object);
         self.grasp = grasp;
         self.lags = false;
-        // Arms at rest plan the same way of the same object. What rounding has left of a motion would
-        // give it another direction, and limits of its own, on each.
+        // Arms at rest plan the same way of the same object. What rounding has left of a motion
+        // would give it another direction, and limits of its own, on each.
         if self.reference.dq.amax() < AT_REST {
             self.reference = Reference::at_rest(self.reference.q);
         }
@@ -84,7 +84,8 @@ impl RunningSession {
 }
 
 /// The budget of a reference that halts for another arm: it is to be ahead of that one by as little
-/// as the joints take without a jolt. At 0.3 m/s it rests after 25 mm, with the default budget after
+/// as the joints take without a jolt. At 0.3 m/s it rests after 25 mm, with the default budget
+/// after
 /// 90.
 pub(super) fn quick_to_halt(budget: Budget) -> Budget {
     let raised = |limits: AxisLimits, acceleration: f64| AxisLimits {
