@@ -1,5 +1,7 @@
 //! The constant description of one kind of robot, and the questions it answers.
 
+use core::fmt;
+
 use nalgebra::{Matrix4, Vector3};
 
 use crate::chain::Chain;
@@ -23,13 +25,21 @@ use crate::{Jacobian, JointVector, MassMatrix};
 /// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in the
 /// base frame `[m/s²]` ([`GRAVITY_EARTH`](crate::GRAVITY_EARTH) for an upright robot). Non-finite
 /// numbers give non-finite results.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Model {
     pub(crate) kind: RobotKind,
     pub(crate) base: RigidBody,
     pub(crate) links: [RigidBody; 7],
     pub(crate) merge: Merge,
     pub(crate) joints: JointLimits,
+}
+
+/// The kind alone: errors hold a model, and its numbers would bury their text.
+impl fmt::Debug for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut model = f.debug_struct("Model");
+        model.field("kind", &self.kind).finish_non_exhaustive()
+    }
 }
 
 impl Model {
