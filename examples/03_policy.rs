@@ -1,6 +1,6 @@
 //! A policy at 10 Hz says where the hand is to be; the arm follows at 1 kHz, smoothly.
 //!
-//! `cargo run --release --example policy ADDRESS`
+//! `cargo run --release --example policy [ADDRESS]`
 
 use std::f64::consts::TAU;
 use std::time::Duration;
@@ -9,11 +9,11 @@ use franka_async::prelude::*;
 use tokio::sync::watch;
 
 #[tokio::main]
-async fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let address = std::env::args().nth(1).ok_or("no address of a robot")?;
-    // For a simulator. Without this line a real-time kernel is required, as a robot needs it.
-    let builder = Robot::builder(&address).realtime(Realtime::Ignore);
-    let robot = builder.connect().await?;
+async fn main() -> anyhow::Result<()> {
+    let address = std::env::args().nth(1);
+    let builder = Robot::builder(address.as_deref().unwrap_or("127.0.0.1"));
+    // `Ignore` is for simulators. Without it a real-time kernel is required, as a robot needs it.
+    let robot = builder.realtime(Realtime::Ignore).connect().await?;
     let start = robot.pose();
     let (sender, targets) = watch::channel(start);
 

@@ -1,6 +1,6 @@
 //! A script without async: waits for motions, then draws a circle by a goal every 20 ms.
 //!
-//! `cargo run --release --example script ADDRESS`
+//! `cargo run --release --example script [ADDRESS]`
 
 use std::f64::consts::TAU;
 use std::time::Duration;
@@ -8,11 +8,11 @@ use std::time::Duration;
 use franka_async::blocking::Wait;
 use franka_async::prelude::*;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let address = std::env::args().nth(1).ok_or("no address of a robot")?;
-    // For a simulator. Without this line a real-time kernel is required, as a robot needs it.
-    let builder = Robot::builder(&address).realtime(Realtime::Ignore);
-    let robot = builder.connect().wait()?;
+fn main() -> anyhow::Result<()> {
+    let address = std::env::args().nth(1);
+    let builder = Robot::builder(address.as_deref().unwrap_or("127.0.0.1"));
+    // `Ignore` is for simulators. Without it a real-time kernel is required, as a robot needs it.
+    let robot = builder.realtime(Realtime::Ignore).connect().wait()?;
     robot.move_to(READY).speed(0.5).wait()?;
 
     let start = robot.pose();

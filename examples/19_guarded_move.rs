@@ -1,6 +1,6 @@
 //! A guarded move: down until the hand touches something, and up again.
 //!
-//! `cargo run --release --example guarded_move ADDRESS`
+//! `cargo run --release --example guarded_move [ADDRESS]`
 
 use std::time::Duration;
 
@@ -9,11 +9,11 @@ use franka_async::goal::Budget;
 use franka_async::prelude::*;
 
 #[tokio::main]
-async fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let address = std::env::args().nth(1).ok_or("no address of a robot")?;
-    // For a simulator. Without this line a real-time kernel is required, as a robot needs it.
-    let builder = Robot::builder(&address).realtime(Realtime::Ignore);
-    let robot = builder.connect().await?;
+async fn main() -> anyhow::Result<()> {
+    let address = std::env::args().nth(1);
+    let builder = Robot::builder(address.as_deref().unwrap_or("127.0.0.1"));
+    // `Ignore` is for simulators. Without it a real-time kernel is required, as a robot needs it.
+    let robot = builder.realtime(Realtime::Ignore).connect().await?;
     robot.move_to(READY).speed(0.5).await?;
     let start = robot.pose();
 

@@ -1,6 +1,6 @@
 //! A service that takes jobs at any time and does one after the other.
 //!
-//! `cargo run --release --example job_queue ADDRESS`; then, where it listens, for 5 cm up
+//! `cargo run --release --example job_queue [ADDRESS]`; then, where it listens, for 5 cm up
 //! `curl localhost:8080/jobs --json '[0, 0, 0.05]'`; `curl localhost:8080/jobs` has the outcomes
 
 use axum::{Json, Router, routing::post};
@@ -8,11 +8,11 @@ use franka_async::prelude::*;
 use tokio::sync::{mpsc, watch};
 
 #[tokio::main]
-async fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let address = std::env::args().nth(1).ok_or("no address of a robot")?;
-    // For a simulator. Without this line a real-time kernel is required, as a robot needs it.
-    let builder = Robot::builder(&address).realtime(Realtime::Ignore);
-    let robot = builder.connect().await?;
+async fn main() -> anyhow::Result<()> {
+    let address = std::env::args().nth(1);
+    let builder = Robot::builder(address.as_deref().unwrap_or("127.0.0.1"));
+    // `Ignore` is for simulators. Without it a real-time kernel is required, as a robot needs it.
+    let robot = builder.realtime(Realtime::Ignore).connect().await?;
 
     let (queue, mut jobs) = mpsc::unbounded_channel::<[f64; 3]>();
     let (done, outcomes) = watch::channel(Vec::new());

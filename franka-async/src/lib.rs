@@ -11,6 +11,7 @@
 //!
 //! ```toml
 //! [dependencies] # ours are not published yet: the path is that of a clone
+//! anyhow = "1"
 //! franka-async = { path = "../franka-async/franka-async" }
 //! tokio = { version = "1", features = ["full"] }
 //!
@@ -22,7 +23,7 @@
 //! use franka_async::prelude::*;
 //!
 //! #[tokio::main]
-//! async fn main() -> Result<(), franka_async::Error> {
+//! async fn main() -> anyhow::Result<()> {
 //!     let robot = Robot::connect("172.16.0.2").await?;
 //!     println!("hand at {}", robot.pose().translation);
 //!     robot.shutdown().await; // brakes what moves, and closes the connection
@@ -33,7 +34,7 @@
 //! A [`Robot`] is a cheap handle: clone it into every task and request. A robot needs a host with a
 //! real-time kernel. Where there is none, connecting fails; against a simulator,
 //! `Robot::builder(address).realtime(Realtime::Ignore).connect()` does without. Every error of this
-//! crate converts into [`Error`].
+//! crate converts into [`Error`]; `anyhow` prints its text when `main` returns it.
 //!
 //! # Move
 //!
@@ -268,7 +269,7 @@
 //! use franka_sim::Sim;
 //!
 //! #[tokio::main] // in a test: #[tokio::test]
-//! async fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! async fn main() -> anyhow::Result<()> {
 //!     // The robot's next millisecond begins with the command: a busy machine changes nothing.
 //!     let sim = Sim::fr3().virtual_time(Duration::from_millis(500)).start().await?;
 //!     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
