@@ -7,10 +7,11 @@
 //! the bases would have been measured.
 
 use clap::Parser;
+use franka_async::model::{EndEffector, Frame, Model, RobotKind};
 use franka_async::team::Team;
 use franka_async::{Engage, Pose, Realtime, Robot};
+use franka_async::{READY, pose};
 use franka_examples::Summary;
-use franka_model::{EndEffector, Frame, Model, READY, RobotKind, transform};
 use franka_sim::plant::{Mount, Scene, SharedArm, shared_world};
 use franka_sim::{Running, Sim};
 use nalgebra::{Translation3, UnitQuaternion};
@@ -38,11 +39,8 @@ async fn main() -> anyhow::Result<()> {
             UnitQuaternion::from_euler_angles(0.0, 0.0, std::f64::consts::PI),
         ),
     ];
-    let hand = transform::isometry(&Model::fr3().pose(
-        Frame::EndEffector,
-        &READY,
-        &EndEffector::default(),
-    ));
+    let hand =
+        pose::from_matrix(&Model::fr3().pose(Frame::EndEffector, &READY, &EndEffector::default()));
     let hand = hand.expect("the model's poses are rigid");
     // In the middle between the hands.
     let bar = Pose::translation(APART / 2.0, 0.0, hand.translation.z);

@@ -25,9 +25,10 @@ const ROOT_MAX: usize = 40;
 const PRELUDE: &str = "prelude";
 
 /// Names of different items in different modules.
-const NAMESAKES: [&str; 6] = [
+const NAMESAKES: [&str; 7] = [
     "Axis",
     "Condition",
+    "Grasp",
     "Load",
     "Quantity",
     "State",
