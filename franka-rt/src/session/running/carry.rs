@@ -84,9 +84,8 @@ impl RunningSession {
 }
 
 /// The budget of a reference that halts for another arm: it is to be ahead of that one by as little
-/// as the joints take without a jolt. At 0.3 m/s it rests after 25 mm, with the default budget
-/// after
-/// 90.
+/// as the joints take without a jolt. From 0.3 m/s it rests after about 25 mm, with the default
+/// budget after about 90 mm.
 pub(super) fn quick_to_halt(budget: Budget) -> Budget {
     let raised = |limits: AxisLimits, acceleration: f64| AxisLimits {
         acceleration: limits.acceleration.max(acceleration),
