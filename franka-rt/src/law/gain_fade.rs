@@ -24,27 +24,34 @@ pub(crate) struct BlendedGains {
     /// One over the force cap, `[1/N]`: 0 without one, which no other number continues to.
     pub(crate) inverse_force_cap: f64,
     pub(crate) compensation: [f64; 7],
+    pub(crate) torque_limits: [f64; 7],
+    /// Share of the newest torque in the filtered one; 1 where the filter is off.
+    pub(crate) torque_share: f64,
 }
 
 impl BlendedGains {
     pub(crate) fn new(gains: &Gains, force_cap: Option<f64>) -> Self {
         let operational = gains.law == Law::OperationalSpace;
-        let filtered = gains.feedforward_cutoff < MAX_CUTOFF_FREQUENCY;
+        let share = |cutoff: f64| {
+            if cutoff < MAX_CUTOFF_FREQUENCY {
+                filter::gain(CYCLE, cutoff)
+            } else {
+                1.0
+            }
+        };
         Self {
             cartesian_stiffness: gains.cartesian_stiffness,
             cartesian_damping: gains.cartesian_damping,
             joint_stiffness: gains.joint_stiffness,
             joint_damping: gains.joint_damping,
             feedforward: gains.feedforward,
-            feedforward_share: if filtered {
-                filter::gain(CYCLE, gains.feedforward_cutoff)
-            } else {
-                1.0
-            },
+            feedforward_share: share(gains.feedforward_cutoff),
             projection: f64::from(u8::from(operational || gains.project_joint_gains)),
             operational: f64::from(u8::from(operational)),
             inverse_force_cap: force_cap.map_or(0.0, f64::recip),
             compensation: gains.compensation,
+            torque_limits: gains.torque_limits,
+            torque_share: share(gains.torque_cutoff),
         }
     }
 
@@ -77,6 +84,8 @@ impl BlendedGains {
             operational: mix(self.operational, other.operational),
             inverse_force_cap: mix(self.inverse_force_cap, other.inverse_force_cap),
             compensation: each!(compensation),
+            torque_limits: each!(torque_limits),
+            torque_share: mix(self.torque_share, other.torque_share),
         }
     }
 }
@@ -178,6 +187,11 @@ mod tests {
 
     #[test]
     fn a_filter_at_the_greatest_cutoff_is_off() {
+        assert_eq!(
+            soft().torque_share,
+            0.385_869_545_095_037_5,
+            "libfranka's at 100 Hz"
+        );
         assert_eq!(soft().feedforward_share, 1.0);
         assert_eq!(other().feedforward_share, filter::gain(CYCLE, 20.0));
         assert_eq!(soft().force_cap(), None);

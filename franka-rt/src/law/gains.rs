@@ -1,6 +1,6 @@
 //! Which law the arm runs, and its stiffness and damping.
 
-use crate::shaping::MAX_CUTOFF_FREQUENCY;
+use crate::shaping::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
 
 /// How the springs and dampers of [`Gains`] become torques.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -46,6 +46,13 @@ pub struct Gains {
     /// The most that friction and bias of a joint are compensated by, `[N m]`; zero for none. The
     /// springs alone leave an arm that sticks millimetres from its target.
     pub compensation: [f64; 7],
+    /// The most that springs, dampers and compensation may come to at each joint, `[N m]`, and what
+    /// the motion itself takes on top of them: the torque of a command, beside gravity, stays below
+    /// it. Only the brake of a joint that is too fast may use more.
+    pub torque_limits: [f64; 7],
+    /// Cutoff frequency of the first-order low-pass on the torques, `[Hz]`; at 1000 it is off. A
+    /// lower one is quieter, and takes from the [`Margin`](crate::session::Margin).
+    pub torque_cutoff: f64,
 }
 
 /// A gain out of its bounds.
@@ -77,13 +84,16 @@ impl Gains {
         feedforward_cutoff: 1.0,
         project_joint_gains: false,
         compensation: [0.0; 7],
+        torque_limits: [1.0; 7],
+        torque_cutoff: 20.0,
     };
 
     /// The most of each number that [`check`](Self::check) accepts.
     ///
     /// Stiffness at the end effector: the bounds of the robot's own impedance commands, 3000 N/m
     /// and 300 N m/rad. Joints and damping: ten times the stiff preset. All of it on every axis at
-    /// once has not been tried on hardware. Compensation: twice the default and more.
+    /// once has not been tried on hardware. Compensation: twice the default and more. Torques: the
+    /// default.
     pub const MOST: Self = Self {
         law: Law::OperationalSpace,
         cartesian_stiffness: [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0],
@@ -94,6 +104,8 @@ impl Gains {
         feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
         project_joint_gains: true,
         compensation: [10.0, 10.0, 10.0, 10.0, 5.0, 5.0, 5.0],
+        torque_limits: Self::TORQUE_LIMITS,
+        torque_cutoff: MAX_CUTOFF_FREQUENCY,
     };
 
     /// The default of [`compensation`](Self::compensation): the friction of the worst simulated
@@ -101,8 +113,12 @@ impl Gains {
     /// and their torque sensors take.
     pub const COMPENSATION: [f64; 7] = [5.0, 6.0, 5.0, 7.0, 4.0, 4.0, 2.0];
 
+    /// The default of [`torque_limits`](Self::torque_limits), `[N m]`: just inside the 87 and 12 N m
+    /// that the joints can give.
+    pub const TORQUE_LIMITS: [f64; 7] = [86.0, 86.0, 86.0, 86.0, 11.5, 11.5, 11.5];
+
     /// How many numbers [`to_array`](Self::to_array) gives.
-    pub(crate) const NUMBERS: usize = 37;
+    pub(crate) const NUMBERS: usize = 45;
 
     /// Compliant at the end effector: 750 N/m and 60 N m/rad, with light joint springs that keep
     /// the elbow. A softer wrist slips by several milliradians when it breaks away.
@@ -117,6 +133,8 @@ impl Gains {
             feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
             project_joint_gains: false,
             compensation: Self::COMPENSATION,
+            torque_limits: Self::TORQUE_LIMITS,
+            torque_cutoff: DEFAULT_CUTOFF_FREQUENCY,
         }
     }
 
@@ -145,6 +163,8 @@ impl Gains {
             feedforward_cutoff: MAX_CUTOFF_FREQUENCY,
             project_joint_gains: false,
             compensation: Self::COMPENSATION,
+            torque_limits: Self::TORQUE_LIMITS,
+            torque_cutoff: DEFAULT_CUTOFF_FREQUENCY,
         }
     }
 
@@ -193,7 +213,9 @@ impl Gains {
                     12..19 => ("joint stiffness", i - 12),
                     19..26 => ("joint damping", i - 19),
                     26 => ("feedforward weight", 0),
-                    30.. => ("compensation", i - 30),
+                    30..37 => ("compensation", i - 30),
+                    37..44 => ("torque limit", i - 37),
+                    44.. => ("torque cutoff frequency", 0),
                     _ => ("feedforward cutoff frequency", 0),
                 };
                 return Err(GainError {
@@ -208,7 +230,8 @@ impl Gains {
         Ok(())
     }
 
-    /// Everything as numbers, springs and dampers first, then choices and compensation.
+    /// Everything as numbers, springs and dampers first, then choices, compensation and what the
+    /// torques pass through.
     pub(crate) fn to_array(self) -> [f64; Self::NUMBERS] {
         let mut all = [0.0; Self::NUMBERS];
         all[..6].copy_from_slice(&self.cartesian_stiffness);
@@ -219,7 +242,9 @@ impl Gains {
         all[27] = self.feedforward_cutoff;
         all[28] = f64::from(u8::from(self.project_joint_gains));
         all[29] = f64::from(u8::from(self.law == Law::OperationalSpace));
-        all[30..].copy_from_slice(&self.compensation);
+        all[30..37].copy_from_slice(&self.compensation);
+        all[37..44].copy_from_slice(&self.torque_limits);
+        all[44] = self.torque_cutoff;
         all
     }
 
@@ -238,6 +263,8 @@ impl Gains {
                 Law::OperationalSpace
             },
             compensation: core::array::from_fn(|i| all[30 + i]),
+            torque_limits: core::array::from_fn(|i| all[37 + i]),
+            torque_cutoff: all[44],
         }
     }
 }

@@ -2,7 +2,7 @@
 //! accepts.
 //!
 //! ```text
-//! springs, dampers, compensation -> clamp -> force cap -> + coriolis + M ddq_ref -> velocity barrier -> robot's range -> low-pass -> rate
+//! springs, dampers, compensation -> clamp -> force cap -> + coriolis + M ddq_ref -> clamp -> velocity barrier -> robot's range -> low-pass -> rate
 //! ```
 
 use franka_model::limits::JointLimits;
@@ -10,16 +10,17 @@ use franka_model::{Dynamics, Jacobian, JointVector, MassMatrix, Wrench};
 use franka_proto::RobotState;
 use nalgebra::Matrix6;
 
+use crate::law::Gains;
 use crate::law::compensation::{Compensation, Demand, Learned};
 use crate::law::gain_fade::{BlendedGains, GainFade};
 use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
-use crate::session::guard::torque_clamp::{TORQUE_CLAMP, clamp};
+use crate::session::guard::torque_clamp::clamp;
 use crate::session::guard::torque_rate::limit_rate;
 use crate::session::guard::{force_cap, velocity_barrier};
 use crate::session::reference::Reference;
 use crate::session::{Bindings, Goal, Guard};
-use crate::shaping::{CYCLE, DEFAULT_CUTOFF_FREQUENCY, filter};
+use crate::shaping::filter;
 
 /// What the law remembers between cycles.
 #[derive(Debug)]
@@ -151,8 +152,8 @@ impl Effort {
     ) -> JointVector {
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
         let last = JointVector::from(state.tau_J_d);
-        let most = JointVector::from(TORQUE_CLAMP);
         let tuning = self.fade.step();
+        let most = JointVector::from(tuning.torque_limits);
         self.feedforward = reference.dq.zip_map(&self.feedforward, |newest, filtered| {
             filter::mix(tuning.feedforward_share, newest, filtered)
         });
@@ -193,10 +194,11 @@ impl Effort {
         let acceleration = self.inertia.step(&reference.ddq, leashed);
         let mass = dynamics.mass + MassMatrix::from_diagonal(&ROTORS.into());
         let inertial = mass * (acceleration * tuning.feedforward);
-        let tau = tau + dynamics.coriolis + inertial;
-        let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &most);
-        let (tau, full) = clamp(&tau, &limits.torque);
-        let filtered = low_pass(&tau, &last);
+        let (tau, full) = clamp(&(tau + dynamics.coriolis + inertial), &most);
+        let brake = JointVector::from(Gains::TORQUE_LIMITS);
+        let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &brake);
+        let (tau, _) = clamp(&tau, &limits.torque);
+        let filtered = low_pass(tuning.torque_share, &tau, &last);
         let (tau, slowed) = limit_rate(&filtered, &last, &limits.torque_rate);
 
         bindings.set(Guard::TorqueClamp, clamped || full);
@@ -207,25 +209,15 @@ impl Effort {
     }
 }
 
-/// Low-passes `tau` against the torques that the robot last took, `tau_J_d` of its state.
-pub(super) fn low_pass(tau: &JointVector, last: &JointVector) -> JointVector {
-    tau.zip_map(last, |tau, last| filter::mix(FILTER_GAIN, tau, last))
+/// Low-passes `tau`, of which `share` counts, against the torques that the robot last took,
+/// `tau_J_d` of its state.
+pub(super) fn low_pass(share: f64, tau: &JointVector, last: &JointVector) -> JointVector {
+    tau.zip_map(last, |tau, last| filter::mix(share, tau, last))
 }
-
-/// Share of the new value in the low-pass filter, which has the cutoff frequency of libfranka's
-/// control loops.
-const FILTER_GAIN: f64 = filter::gain(CYCLE, DEFAULT_CUTOFF_FREQUENCY);
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_filter_has_the_gain_of_libfranka_at_100_hz() {
-        assert!((FILTER_GAIN - 0.385_869_545_095_037_5).abs() < 1e-16);
-        let one = low_pass(&JointVector::repeat(1.0), &JointVector::zeros());
-        assert_eq!(one[0], FILTER_GAIN);
-    }
 
     #[test]
     fn the_acceleration_of_a_leashed_reference_fades_and_comes_back_without_a_step() {

@@ -8,10 +8,12 @@
 //! m s^2 + (d s + k) exp(-s DELAY) / ((1 + s LAG) (1 + s FILTER)) = 0
 //! ```
 //!
-//! to first order. A damper alone drives a mode once `d / m` exceeds [`DAMPED`], where the phases
-//! of delay and lags add up to a quarter of a turn. A slow spring needs `d > k (DELAY + LAG +
+//! to first order. A damper alone drives a mode from that `d / m` on at which the phases of
+//! delay and lags add up to a quarter of a turn. A slow spring needs `d > k (DELAY + LAG +
 //! FILTER)`. Friction, which helps, and the elasticity of the joints, which does not, are left out;
 //! the margins were compared with what simulated arms do (`cargo xtask arms --gain`).
+
+use core::f64::consts::{FRAC_PI_2, TAU};
 
 use franka_model::{GRAVITY_EARTH, JointVector, MassMatrix, Model};
 use franka_proto::{RobotState, Version};
@@ -21,6 +23,7 @@ use crate::law::Gains;
 use crate::law::gain_fade::BlendedGains;
 use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
+use crate::shaping::MAX_CUTOFF_FREQUENCY;
 
 /// How far gains are from the first oscillation of an arm that delays and lags like the slowest
 /// realistic one that is simulated (`franka_sim::arm::Family::realistic`). Bad arms have less: they
@@ -50,6 +53,7 @@ impl Margin {
         let (ee, load) = (end_effector_of(state)?, load_of(state, version)?);
         let (q, rest) = (JointVector::from(state.q), JointVector::zeros());
         let dynamics = model.dynamics(&q, &rest, &ee, &load, &GRAVITY_EARTH);
+        let late = Lateness::of(gains.torque_cutoff);
         let gains = BlendedGains::new(gains, ForceCap::Off.newtons());
         let space = gains.needs_task_space().then(|| TaskSpace::of(&dynamics));
         let matrix = |of: Interaction<'_>| {
@@ -66,8 +70,8 @@ impl Margin {
         let dampers = matrix(Interaction::dampers(&gains, jacobian, space.as_ref()));
         let inertia = dynamics.mass + MassMatrix::from_diagonal(&ROTORS.into());
         Some(Self {
-            damping: DAMPED / greatest_ratio(dampers, inertia),
-            stiffness: 1.0 / (LATE * greatest_ratio(springs, dampers)),
+            damping: late.damped() / greatest_ratio(dampers, inertia),
+            stiffness: 1.0 / (late.sum() * greatest_ratio(springs, dampers)),
         })
     }
 }
@@ -82,13 +86,57 @@ fn greatest_ratio(of: MassMatrix, over: MassMatrix) -> f64 {
     ratio.map_or(f64::INFINITY, |ratio| ratio.symmetric_eigenvalues().max())
 }
 
-/// Ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`: at 182 rad/s the phases
-/// of 3 ms of delay (the client's cycle and two of the robot), of 5 ms of lag and of a low-pass of
-/// 100 Hz add up to a quarter of a turn, and the two lags let pass `182 / 257` there.
-const DAMPED: f64 = 257.0;
+/// What lies between a torque that is wanted and one that acts.
+struct Lateness {
+    /// Time constants of the torque loop and of the low-pass of the commands, `[s]`.
+    lags: [f64; 2],
+}
 
-/// Delay and lags together, `[s]`.
-const LATE: f64 = 9.6e-3;
+impl Lateness {
+    /// The client's cycle and two of the robot, `[s]`.
+    const DELAY: f64 = 3e-3;
+
+    /// Of the robot's torque loop, `[s]`.
+    const LAG: f64 = 5e-3;
+
+    /// With a low-pass of this cutoff frequency, `[Hz]`.
+    fn of(cutoff: f64) -> Self {
+        let filter = if cutoff < MAX_CUTOFF_FREQUENCY {
+            1.0 / (TAU * cutoff)
+        } else {
+            0.0
+        };
+        Self {
+            lags: [Self::LAG, filter],
+        }
+    }
+
+    /// Delay and lags together, `[s]`.
+    fn sum(&self) -> f64 {
+        self.lags.iter().fold(Self::DELAY, |sum, lag| sum + lag)
+    }
+
+    /// Ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`: where the phases
+    /// add up to a quarter of a turn, over what the lags let pass there. With the default low-pass
+    /// 257, at 182 rad/s.
+    fn damped(&self) -> f64 {
+        let phase = |frequency: f64| {
+            let lags = self.lags.iter().map(|lag| (frequency * lag).atan());
+            frequency * Self::DELAY + lags.sum::<f64>()
+        };
+        let (mut low, mut high) = (0.0, FRAC_PI_2 / Self::DELAY);
+        while high - low > 1e-3 {
+            let middle = 0.5 * (low + high);
+            if phase(middle) < FRAC_PI_2 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let passed = |lag: &f64| (low * lag).hypot(1.0);
+        low * self.lags.iter().map(passed).product::<f64>()
+    }
+}
 
 #[cfg(test)]
 mod tests {
@@ -135,6 +183,24 @@ mod tests {
         assert!((2.4..3.0).contains(&margin), "{margin}");
         let margin = of(Gains::cartesian()).damping;
         assert!(margin > 4.0, "{margin}");
+    }
+
+    #[test]
+    fn a_lower_cutoff_takes_from_it() {
+        let with = |torque_cutoff| {
+            of(Gains {
+                torque_cutoff,
+                ..Gains::joint()
+            })
+        };
+        let [off, default, least] = [1000.0, 100.0, Gains::LEAST.torque_cutoff].map(with);
+        for (more, less) in [(off, default), (default, least)] {
+            assert!(more.damping > less.damping && more.stiffness > less.stiffness);
+        }
+        // The softest filter that is accepted takes a third of the presets' margin.
+        assert!(default.is_wanted() && !least.is_wanted());
+        assert!(least.damping > 1.5 && least.stiffness > 1.5, "{least:?}");
+        assert!((Lateness::of(100.0).damped() - 257.0).abs() < 1.0);
     }
 
     #[test]

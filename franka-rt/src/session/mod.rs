@@ -72,7 +72,6 @@ pub use guard::deviation::{JOINT_DEVIATION, ROTATION_DEVIATION, TRANSLATION_DEVI
 pub use guard::force_cap::ForceCap;
 pub use guard::lead::Lead;
 pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
-pub use guard::torque_clamp::TORQUE_CLAMP;
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};

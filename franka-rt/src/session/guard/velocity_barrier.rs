@@ -49,8 +49,9 @@ pub(crate) fn brake(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::Gains;
+    use crate::law::gain_fade::BlendedGains;
     use crate::session::effort::low_pass;
-    use crate::session::guard::torque_clamp::TORQUE_CLAMP;
     use crate::session::guard::torque_rate::limit_rate;
     use franka_model::{CYCLE, Model};
     use proptest::prelude::*;
@@ -104,15 +105,19 @@ mod tests {
     #[test]
     fn a_joint_that_is_driven_on_and_on_stays_under_the_limit() {
         let limits = Model::fr3().joint_limits();
-        let most = JointVector::from(TORQUE_CLAMP);
+        let most = JointVector::from(Gains::TORQUE_LIMITS);
         let inertia = [1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.1];
         let driving = JointVector::from([25.0, 25.0, 25.0, 25.0, 8.0, 8.0, 8.0]);
-        for side in [1.0, -1.0] {
+        let gains = [Gains::cartesian(), Gains::LEAST].map(|gains| BlendedGains::new(&gains, None));
+        for (side, gains) in [1.0, -1.0]
+            .into_iter()
+            .flat_map(|side| gains.map(|of| (side, of)))
+        {
             let (mut dq, mut last) = (JointVector::zeros(), JointVector::zeros());
             let mut fastest = JointVector::zeros();
             for _ in 0..5000 {
                 let (tau, _) = brake(&(driving * side), &dq, &limits.velocity, &most);
-                let filtered = low_pass(&tau, &last);
+                let filtered = low_pass(gains.torque_share, &tau, &last);
                 let (tau, _) = limit_rate(&filtered, &last, &limits.torque_rate);
                 for i in 0..7 {
                     dq[i] += last[i] / inertia[i] * CYCLE;
