@@ -2,7 +2,7 @@
 
 use franka_model::Model;
 use franka_rt::lifecycle::Tuning;
-use franka_rt::session::{Budget, Goal, GoalError, Reaction, Tolerance};
+use franka_rt::session::{Budget, Goal, GoalError, Reaction, Settling, Tolerance};
 use franka_rt::team::Round;
 use nalgebra::Isometry3;
 
@@ -13,6 +13,7 @@ pub(crate) struct GoalOptions {
     pub(crate) speed: Option<f64>,
     pub(crate) stiffness: Option<[f64; 6]>,
     pub(crate) tolerance: Option<Tolerance>,
+    pub(crate) settling: Option<Settling>,
     pub(crate) reaction: Option<Reaction>,
     /// The joint motion of a team that it is part of.
     pub(crate) round: Option<Round>,
@@ -40,6 +41,7 @@ impl GoalOptions {
             gains: self.stiffness.map_or(goal.gains, softened),
             budget: self.at_speed(goal.budget, model)?,
             tolerance: self.tolerance.or(goal.tolerance),
+            settling: self.settling.unwrap_or(goal.settling),
             reaction: self.reaction.or(goal.reaction),
             round: self.round.or(goal.round),
             grasp: self.grasp.or(goal.grasp),
@@ -119,6 +121,36 @@ macro_rules! goal_options {
             self.options.tuning.force_cap = Some(crate::goal::ForceCap::Off);
             self
         }
+
+        /// Sets how far the reference may be ahead of the arm, between
+        /// [`Leash::LEAST`](crate::goal::Leash::LEAST) and
+        /// [`Leash::MOST`](crate::goal::Leash::MOST); by default 25 mm, 0.15 rad, and 0.1 rad of
+        /// each joint. An arm that is held feels its springs at that length. Without effect under
+        /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
+        pub fn leash(mut self, leash: crate::goal::Leash) -> Self {
+            self.options.tuning.leash = Some(leash);
+            self
+        }
+
+        /// Sets how far the arm may be pushed off its way before the motion is given up as
+        /// [`Lapse::Displaced`](crate::error::Lapse::Displaced); by default 30 cm, 0.5 rad, and
+        /// 1 rad of a joint. Without effect under
+        /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
+        pub fn deviation(mut self, deviation: crate::goal::Deviation) -> Self {
+            self.options.tuning.deviation = Some(deviation);
+            self
+        }
+
+        /// Sets the posture, joint positions in `[rad]`, that the arm takes as far as the pose of
+        /// its end effector leaves it free (its null space), on the way to poses and while it holds
+        /// them. The elbow moves at no more than half of the joints' budget, and a motion that is
+        /// awaited arrives when it rests. By default the elbow is kept near where the motion or the
+        /// session began. Positions out of range are refused as
+        /// [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
+        pub fn posture(mut self, posture: impl Into<[f64; 7]>) -> Self {
+            self.options.tuning.posture = Some(posture.into());
+            self
+        }
     };
     (target) => {
         goal_options!();
@@ -136,6 +168,13 @@ macro_rules! goal_options {
         /// [`Tolerance::under`](crate::goal::Tolerance::under).
         pub fn tolerance(mut self, tolerance: crate::goal::Tolerance) -> Self {
             self.options.tolerance = Some(tolerance);
+            self
+        }
+
+        /// Sets how long the arm has to rest at the target to have arrived, and the longest that it
+        /// gets for that; by default 250 ms and 5 s.
+        pub fn settling(mut self, settling: crate::goal::Settling) -> Self {
+            self.options.settling = Some(settling);
             self
         }
 

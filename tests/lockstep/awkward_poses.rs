@@ -6,7 +6,7 @@ use franka_model::{EndEffector, JointVector, Model, READY, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{
-    GoalError, Guard, Lapse, OnArrival, SELF_STOP, SETTLE_TIMEOUT, STALL_TIMEOUT, Target,
+    GoalError, Guard, Lapse, OnArrival, SELF_STOP, STALL_TIMEOUT, Settling, Target,
 };
 use franka_tests::lockstep::{Lockstep, pose_of, self_distance};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -127,7 +127,7 @@ fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
             .push_end_effector(Wrench::new(0.0, 0.0, -3000.0 * pressed, 0.0, 0.0, 0.0), 2);
         lockstep.tick();
         leashed += u64::from(lockstep.client.record.bindings.contains(Guard::Leash));
-        let most = STALL_TIMEOUT + SETTLE_TIMEOUT + Duration::from_secs(3);
+        let most = STALL_TIMEOUT + Settling::default().timeout + Duration::from_secs(3);
         assert!(lockstep.now() < most.as_millis() as u64, "{leashed}");
     }
     assert!(leashed > 3000, "{leashed}");

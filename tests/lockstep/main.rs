@@ -10,6 +10,7 @@ mod endings;
 mod engaged;
 mod faults;
 mod force;
+mod goal_options;
 mod goals;
 mod guards;
 mod holds;

@@ -12,8 +12,8 @@ use franka_rt::driver::Observer;
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, Tuning};
 use franka_rt::session::{
-    Backend, Chunk, Deadman, Fate, Free, Goal, GoalId, Guard, OnArrival, OnTimeout, Setpoints,
-    Target, Watchdog, Waypoint,
+    Backend, Chunk, Deadman, Deviation, Fate, Free, Goal, GoalId, Guard, Leash, OnArrival,
+    OnTimeout, Setpoints, Target, Watchdog, Waypoint,
 };
 use franka_tests::lockstep::{Guarded, Lockstep, Part, Workload};
 use nalgebra::Translation3;
@@ -190,14 +190,20 @@ fn sessions_under_every_order_of_their_owners_allocate_and_free_nothing() {
             assert!(matches!(engaged.lockstep.client.outcome(path), Some(Ok(_))));
         }
         // Tuned in mid-motion.
+        let mut elbow_out = engaged.lockstep.client.record.q;
+        elbow_out[2] -= 0.2;
         engaged.go(up, OnArrival::Hold);
         engaged.run(100);
         let tuning = Tuning {
             gains: Some(Gains {
                 law: Law::OperationalSpace,
+                torque_cutoff: 1000.0,
                 ..Gains::cartesian()
             }),
             budget: None,
+            leash: Some(Leash::LEAST),
+            deviation: Some(Deviation::default()),
+            posture: Some(elbow_out),
             ..Tuning::default()
         };
         let tuned = engaged.lockstep.tune(engaged.id, tuning);

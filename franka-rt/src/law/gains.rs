@@ -113,8 +113,8 @@ impl Gains {
     /// and their torque sensors take.
     pub const COMPENSATION: [f64; 7] = [5.0, 6.0, 5.0, 7.0, 4.0, 4.0, 2.0];
 
-    /// The default of [`torque_limits`](Self::torque_limits), `[N m]`: just inside the 87 and 12 N m
-    /// that the joints can give.
+    /// The default of [`torque_limits`](Self::torque_limits), `[N m]`: just inside the 87 and 12 N
+    /// m that the joints can give.
     pub const TORQUE_LIMITS: [f64; 7] = [86.0, 86.0, 86.0, 86.0, 11.5, 11.5, 11.5];
 
     /// How many numbers [`to_array`](Self::to_array) gives.

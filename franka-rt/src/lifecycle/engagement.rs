@@ -9,7 +9,8 @@ use crate::driver::Observer;
 use crate::law::Gains;
 use crate::session::check::{check_keep_out, check_silence};
 use crate::session::{
-    Backend, Budget, Chunk, DeadmanMonitor, ForceCap, Goal, GoalError, GoalId, OnArrival, Target,
+    Backend, Budget, Chunk, DeadmanMonitor, Deviation, ForceCap, Goal, GoalError, GoalId, Leash,
+    OnArrival, Target,
 };
 use crate::team::Member;
 
@@ -53,6 +54,12 @@ pub struct Tuning {
     pub budget: Option<Budget>,
     /// With how much force springs and dampers may press. It fades as the gains do.
     pub force_cap: Option<ForceCap>,
+    /// How far the reference may be ahead of the arm.
+    pub leash: Option<Leash>,
+    /// How far the arm may be pushed off its way.
+    pub deviation: Option<Deviation>,
+    /// Where the arm's free direction goes, joint positions in `[rad]`: see [`Goal::posture`].
+    pub posture: Option<[f64; 7]>,
 }
 
 impl Tuning {
@@ -67,6 +74,9 @@ impl Tuning {
             },
             budget: self.budget.unwrap_or(goal.budget),
             force_cap: self.force_cap.unwrap_or(goal.force_cap),
+            leash: self.leash.unwrap_or(goal.leash),
+            deviation: self.deviation.unwrap_or(goal.deviation),
+            posture: self.posture.or(goal.posture),
             ..goal
         }
     }

@@ -11,7 +11,7 @@ use franka_proto::{RobotState, Version};
 use crate::law::{GainError, Law};
 use crate::session::condition::ConditionError;
 use crate::session::{
-    Budget, Chunk, ForceCap, Goal, KeepOut, OnArrival, Target, Watchdog, approach,
+    Budget, Chunk, ForceCap, Goal, KeepOut, Leash, OnArrival, Settling, Target, Watchdog, approach,
 };
 
 /// Why a goal is not accepted. Nothing has moved.
@@ -76,11 +76,19 @@ pub enum GoalError {
     /// the end effector: nothing would take the arm to its target.
     #[error("no spring at the end effector, and those of the joints act in its null space only")]
     Unheld,
-    /// A tolerance is not positive.
-    #[error("tolerance {got}, expected above 0")]
-    Tolerance {
+    /// A number of the goal is outside what is accepted.
+    #[error("{what} is {got} {unit}, expected between {least} and {most}")]
+    Number {
+        /// Which number.
+        what: &'static str,
         /// The value given.
         got: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The least that is accepted.
+        least: f64,
+        /// The most that is accepted.
+        most: f64,
     },
     /// The last point of a chunk has passed: the arm has nothing left to follow of it.
     #[error("the last point of the chunk passed {} ms ago", .by.as_millis())]
@@ -105,12 +113,6 @@ pub enum GoalError {
         /// What is wrong with it.
         why: &'static str,
     },
-    /// A lead is not positive.
-    #[error("lead {got}, expected above 0")]
-    Lead {
-        /// The value given.
-        got: f64,
-    },
     /// The condition of a reaction is not accepted, or what follows it.
     #[error(transparent)]
     Condition(#[from] ConditionError),
@@ -119,12 +121,6 @@ pub enum GoalError {
     Silence {
         /// The time given.
         got: Duration,
-    },
-    /// The force cap is out of bounds.
-    #[error("force cap {got} N, expected between 5 and 200")]
-    ForceCap {
-        /// The value given, `[N]`.
-        got: f64,
     },
     /// An object that is held is to go somewhere else than to a pose.
     #[error("an object that is held can only be taken to a pose")]
@@ -148,26 +144,12 @@ impl Goal {
         if projected && !guided && self.gains.cartesian_stiffness == [0.0; 6] {
             return Err(GoalError::Unheld);
         }
-        let tolerance = self.tolerance.unwrap_or_default();
-        for got in [tolerance.translation, tolerance.rotation] {
-            if got.is_nan() || got <= 0.0 {
-                return Err(GoalError::Tolerance { got });
-            }
-        }
-        if let Some(lead) = self.lead {
-            for got in [lead.translation, lead.rotation, lead.joints] {
-                if got.is_nan() || got <= 0.0 {
-                    return Err(GoalError::Lead { got });
-                }
-            }
-        }
+        self.check_numbers()?;
         if let Some(Watchdog { silence, .. }) = self.watchdog {
             check_silence(silence)?;
         }
-        if let ForceCap::Newtons(got) = self.force_cap
-            && !ForceCap::RANGE.contains(&got)
-        {
-            return Err(GoalError::ForceCap { got });
+        if let Some(posture) = self.posture {
+            check_joints(&posture, model, state)?;
         }
         if self.target.moves() && self.on_arrival != OnArrival::Hold {
             return Err(GoalError::Moves);
@@ -187,6 +169,70 @@ impl Goal {
             }
         }
         target(&self.hand_target(), model, state)
+    }
+
+    /// Checks tolerance, lead, leash, deviation, settling and force cap.
+    fn check_numbers(&self) -> Result<(), GoalError> {
+        const POSITIVE: [f64; 2] = [1e-6, f64::INFINITY];
+        let (least, most) = (Leash::LEAST, Leash::MOST);
+        let (leash, deviation, settling) = (self.leash, self.deviation, self.settling);
+        let hold = settling.hold.as_secs_f64();
+        let longest = Settling::TIMEOUT_MAX.as_secs_f64();
+        let mut numbers = vec![
+            (
+                "leash",
+                leash.translation,
+                "m",
+                [least.translation, most.translation],
+            ),
+            (
+                "leash",
+                leash.rotation,
+                "rad",
+                [least.rotation, most.rotation],
+            ),
+            (
+                "leash of the joints",
+                leash.joints,
+                "rad",
+                [least.joints, most.joints],
+            ),
+            ("deviation", deviation.translation, "m", POSITIVE),
+            ("deviation", deviation.rotation, "rad", POSITIVE),
+            ("deviation of the joints", deviation.joints, "rad", POSITIVE),
+            ("time to hold the target", hold, "s", [1e-3, longest]),
+            (
+                "timeout of settling",
+                settling.timeout.as_secs_f64(),
+                "s",
+                [hold, longest],
+            ),
+        ];
+        if let Some(tolerance) = self.tolerance {
+            numbers.push(("tolerance", tolerance.translation, "m", POSITIVE));
+            numbers.push(("tolerance", tolerance.rotation, "rad", POSITIVE));
+        }
+        if let Some(lead) = self.lead {
+            numbers.push(("lead", lead.translation, "m", POSITIVE));
+            numbers.push(("lead", lead.rotation, "rad", POSITIVE));
+            numbers.push(("lead of the joints", lead.joints, "rad", POSITIVE));
+        }
+        if let ForceCap::Newtons(cap) = self.force_cap {
+            let (least, most) = (*ForceCap::RANGE.start(), *ForceCap::RANGE.end());
+            numbers.push(("force cap", cap, "N", [least, most]));
+        }
+        for (what, got, unit, [least, most]) in numbers {
+            if !(least..=most).contains(&got) {
+                return Err(GoalError::Number {
+                    what,
+                    got,
+                    unit,
+                    least,
+                    most,
+                });
+            }
+        }
+        Ok(())
     }
 }
 

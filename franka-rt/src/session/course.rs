@@ -9,7 +9,7 @@ use crate::session::guard::joint_bounds::BoundsReached;
 use crate::session::guard::leash;
 use crate::session::guide::Guide;
 use crate::session::joints::{JointGenerator, MovingJoints};
-use crate::session::kinematics::{self, Drift};
+use crate::session::kinematics::{self, Drift, Posture};
 use crate::session::pose::{MovingPose, PoseGenerator, PoseState};
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
@@ -90,10 +90,10 @@ impl Course {
                 self.over_pose(model, ee, reference, MovingPose { pose, twist }, goal)?;
             }
             Target::Guide(free) => match self {
-                Self::Guide(guide) => guide.free(free),
+                Self::Guide(guide) => guide.free(free, goal.leash),
                 Self::Rest | Self::Joints(_) | Self::Pose(..) | Self::Chunk(_) => {
                     let brake = JointGenerator::new(robot, reference, None, &goal.budget)?;
-                    *self = Self::Guide(Guide::new(free, brake));
+                    *self = Self::Guide(Guide::new(free, goal.leash, brake));
                 }
             },
         }
@@ -178,7 +178,7 @@ impl Course {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        posture: &JointVector,
+        posture: &Posture,
         reference: &Reference,
         arm: &Measured,
         now: u64,

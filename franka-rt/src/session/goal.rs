@@ -8,7 +8,9 @@ use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use crate::law::Gains;
-use crate::session::{Budget, ForceCap, Lead, OnTimeout, Reaction, Tolerance, Watchdog};
+use crate::session::{
+    Budget, Deviation, ForceCap, Lead, Leash, OnTimeout, Reaction, Settling, Tolerance, Watchdog,
+};
 use crate::slot::Words;
 use crate::team::Round;
 
@@ -190,6 +192,17 @@ pub struct Goal {
     pub force_cap: ForceCap,
     /// How far ahead of the arm its target may be.
     pub lead: Option<Lead>,
+    /// How far ahead of the arm the reference may be.
+    pub leash: Leash,
+    /// How far the arm may be pushed off its way.
+    pub deviation: Deviation,
+    /// How the arm has to settle.
+    pub settling: Settling,
+    /// Where the arm's free direction goes while the end effector goes to a pose, joint positions
+    /// in `[rad]`: as near to them as the pose lets it. With one the elbow also moves while the end
+    /// effector rests, and a goal arrives when both rest. `None` keeps the elbow, while the end
+    /// effector moves, near where the session began.
+    pub posture: Option<[f64; 7]>,
     /// Whether the arm is to stop on its way, within the budget, and to stay there until this is
     /// taken back.
     pub paused: bool,
@@ -231,6 +244,10 @@ impl Goal {
             watchdog: None,
             force_cap: ForceCap::Default,
             lead: None,
+            leash: Leash::default(),
+            deviation: Deviation::default(),
+            settling: Settling::default(),
+            posture: None,
             paused: false,
             reaction: None,
             round: None,
@@ -321,8 +338,9 @@ impl Words for Target {
 }
 
 /// Name, revision, what follows and whether it is paused, the round, 2 of the watchdog; then 27
-/// numbers of budget, the gains, 2 of tolerance, the force cap, 3 of the lead and 7 of the grasp,
-/// which are zero without one; then the target and the reaction.
+/// numbers of budget, the gains, 2 of tolerance, the force cap, 3 of the lead, 7 of the grasp and 7
+/// of the posture, which are zero or no numbers without one, 3 of the leash, 3 of the deviation and
+/// 2 of the settling; then the target and the reaction.
 ///
 /// Written by hand: generated code needs an implementation for the type of each field, which comes
 /// to as many lines. The test below fails if a field is left out.
@@ -357,7 +375,19 @@ impl Words for Goal {
             .chain(self.lead.map_or([0.0; 3], |lead| {
                 [lead.translation, lead.rotation, lead.joints]
             }))
-            .chain(self.grasp.as_ref().map_or([0.0; 7], numbers_of));
+            .chain(self.grasp.as_ref().map_or([0.0; 7], numbers_of))
+            .chain(self.posture.unwrap_or([f64::NAN; 7]))
+            .chain([
+                self.leash.translation,
+                self.leash.rotation,
+                self.leash.joints,
+            ])
+            .chain([
+                self.deviation.translation,
+                self.deviation.rotation,
+                self.deviation.joints,
+            ])
+            .chain([self.settling.hold, self.settling.timeout].map(|time| time.as_millis() as f64));
         let on_arrival = self.on_arrival.to_word() | u64::from(self.paused) << 2;
         let round = Round::to_word(self.round);
         let all = [
@@ -424,6 +454,21 @@ impl Words for Goal {
             .filter(|lead| lead.translation > 0.0),
             grasp: Some(pose_of(core::array::from_fn(|_| number())))
                 .filter(|grasp| grasp.rotation.coords.norm() > 0.0),
+            posture: Some(core::array::from_fn(|_| number())).filter(|q: &[f64; 7]| !q[0].is_nan()),
+            leash: Leash {
+                translation: number(),
+                rotation: number(),
+                joints: number(),
+            },
+            deviation: Deviation {
+                translation: number(),
+                rotation: number(),
+                joints: number(),
+            },
+            settling: Settling {
+                hold: Duration::from_millis(number() as u64),
+                timeout: Duration::from_millis(number() as u64),
+            },
             reaction: Words::load(reaction),
             round: Round::from_word(round),
             revision,
@@ -432,7 +477,7 @@ impl Words for Goal {
 }
 
 /// Words of a goal before those of its target.
-const NUMBERS: usize = 6 + 27 + Gains::NUMBERS + 2 + 1 + 3 + 7;
+const NUMBERS: usize = 6 + 27 + Gains::NUMBERS + 2 + 1 + 3 + 7 + 7 + 3 + 3 + 2;
 
 impl OnArrival {
     fn to_word(self) -> u64 {
@@ -553,6 +598,16 @@ mod tests {
                 reaction,
                 round: Round::from_word(if lead.is_some() { 7 } else { 0 }),
                 grasp: lead.map(|_| pose),
+                leash: Leash::MOST,
+                deviation: Deviation {
+                    joints: f64::INFINITY,
+                    ..Deviation::default()
+                },
+                settling: Settling {
+                    hold: Duration::from_millis(1),
+                    timeout: Duration::from_millis(4321),
+                },
+                posture: lead.map(|_| [0.1, -0.2, 0.3, -2.0, 0.5, 1.6, 0.7]),
                 revision: 5,
             };
             let mut words = [u64::MAX; Goal::WORDS];

@@ -4,7 +4,7 @@ use franka_model::{JointVector, Twist, rotation};
 use nalgebra::{Isometry3, Matrix6, Vector3};
 
 use super::goal::Free;
-use super::guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
+use super::guard::leash::Leash;
 use super::running::Measured;
 use crate::law::Gains;
 use crate::session::joints::JointGenerator;
@@ -38,6 +38,7 @@ impl Gains {
 #[derive(Debug)]
 pub(super) struct Guide {
     free: Free,
+    leash: Leash,
     stage: GuideStage,
 }
 
@@ -66,15 +67,17 @@ struct Floating {
 
 impl Guide {
     /// Begins by braking over `brake`.
-    pub(super) fn new(free: Free, brake: JointGenerator) -> Self {
+    pub(super) fn new(free: Free, leash: Leash, brake: JointGenerator) -> Self {
         Self {
             free,
+            leash,
             stage: GuideStage::Braking(brake),
         }
     }
 
-    /// Frees other axes. The rest is held where the arm is now.
-    pub(super) fn free(&mut self, free: Free) {
+    /// Frees other axes, with another leash. The rest is held where the arm is now.
+    pub(super) fn free(&mut self, free: Free, leash: Leash) {
+        self.leash = leash;
         if free != self.free {
             self.free = free;
             if let GuideStage::Floating(floating) = &mut self.stage {
@@ -91,11 +94,11 @@ impl Guide {
                 return (generator.step(), false);
             }
             GuideStage::Floating(floating) if floating.cycle < u32::MAX => {
-                floating.step(self.free, arm)
+                floating.step(self.free, &self.leash, arm)
             }
             GuideStage::Braking(_) | GuideStage::Floating(_) => {
                 let mut floating = Floating::begin(reference, arm);
-                let stepped = floating.step(self.free, arm);
+                let stepped = floating.step(self.free, &self.leash, arm);
                 self.stage = GuideStage::Floating(floating);
                 stepped
             }
@@ -123,17 +126,17 @@ impl Floating {
     }
 
     /// The distance of the reference from the arm, and whether the leash held it.
-    fn step(&mut self, free: Free, arm: &Measured) -> (JointVector, bool) {
+    fn step(&mut self, free: Free, leash: &Leash, arm: &Measured) -> (JointVector, bool) {
         let remaining = 1.0 - f64::from(self.cycle.min(LET_GO)) / f64::from(LET_GO);
         self.cycle = (self.cycle + 1).min(LET_GO);
-        let (at_ee, mut leashed) = self.at_end_effector(free, arm, remaining);
+        let (at_ee, mut leashed) = self.at_end_effector(free, leash, arm, remaining);
         let inverse = Inverse::of(arm);
         let along = inverse.solve(arm, &at_ee);
         let elbow = if free.elbow {
             self.offset * remaining
         } else {
             let away = self.q - arm.q;
-            let held = away.map(|away| away.clamp(-JOINT_LEASH, JOINT_LEASH));
+            let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
             // Like the leash: pushed further, the elbow stays where it has been pushed.
             self.q = arm.q + held;
             leashed |= held != away;
@@ -141,12 +144,18 @@ impl Floating {
         };
         let away = along + elbow - inverse.solve(arm, &(arm.jacobian * elbow));
         // Near a singular posture a small way of the end effector is a long one of the joints.
-        let held = away.map(|away| away.clamp(-JOINT_LEASH, JOINT_LEASH));
+        let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
         (held, leashed || held != away)
     }
 
     /// The same at the end effector. Axes that stay are held as by the leash.
-    fn at_end_effector(&mut self, free: Free, arm: &Measured, remaining: f64) -> (Twist, bool) {
+    fn at_end_effector(
+        &mut self,
+        free: Free,
+        leash: &Leash,
+        arm: &Measured,
+        remaining: f64,
+    ) -> (Twist, bool) {
         let away = self.pose.translation.vector - arm.pose.translation.vector;
         let turned = rotation::error(&self.pose.rotation, &arm.pose.rotation);
         let mut offset = Twist::zeros();
@@ -158,7 +167,7 @@ impl Floating {
             };
         }
         let mut leashed = false;
-        for (part, most) in [(0, TRANSLATION_LEASH), (3, ROTATION_LEASH)] {
+        for (part, most) in [(0, leash.translation), (3, leash.rotation)] {
             let length = offset.fixed_rows::<3>(part).norm();
             if length > most {
                 leashed = true;

@@ -2,7 +2,8 @@
 //! joints' bounds.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox, Side};
-use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation};
+use franka_model::{EndEffector, Frame, Jacobian, JointVector, Model, Twist, rotation};
+use nalgebra::Matrix6;
 
 use crate::session::guard::joint_bounds::{BoundsReached, Cause, OpenVelocities};
 use crate::session::pose::MovingPose;
@@ -14,30 +15,108 @@ use crate::shaping::CYCLE;
 /// is fed only by rounding and by bounds that bound; a faster rate would turn those into jerks.
 const FEEDBACK: f64 = 100.0;
 
-/// Rate, `[1/s]`, at which the free direction of the arm returns to the posture where the motion
-/// began.
-const POSTURE: f64 = 1.0;
+/// Where the arm's free direction goes, which a pose says nothing about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Posture {
+    q: JointVector,
+    /// Whether a goal asks for it. If not, it is only kept while the end effector moves: the rate
+    /// fades with the speed, so that an arm at its target rests.
+    asked: bool,
+}
 
-/// Speed of the end effector, `[m/s]`, from which on the posture is followed at the full rate. It
-/// fades with the speed, so that an arm at its target rests.
-const POSTURE_SPEED: f64 = 0.1;
+impl Posture {
+    /// Rate, `[1/s]`, at which the free direction goes back to a posture that is kept.
+    const KEPT: f64 = 1.0;
+
+    /// Speed of the end effector, `[m/s]`, from which on that rate is the full one.
+    const SPEED: f64 = 0.1;
+
+    /// Rate, `[1/s]`, at which it goes to a posture that is asked for, near its end.
+    const ASKED: f64 = 4.0;
+
+    /// Share of the joints' budget that it takes at most on the way there.
+    const SHARE: f64 = 0.5;
+
+    /// The posture where a session began, `[rad]`.
+    pub(super) fn kept(q: JointVector) -> Self {
+        Self { q, asked: false }
+    }
+
+    /// The posture that a goal asks for, `[rad]`.
+    pub(super) fn asked(q: JointVector) -> Self {
+        Self { q, asked: true }
+    }
+
+    /// The velocity, `[rad/s]`, of joints that are `away` from it, and whose hand moves at `speed`,
+    /// `[m/s]`; so much of it counts as `asked` for.
+    fn velocity(
+        away: &JointVector,
+        speed: f64,
+        asked: f64,
+        jacobian: &Jacobian,
+        budget: &Budget,
+    ) -> JointVector {
+        let kept = away * (Self::KEPT * (speed / Self::SPEED).min(1.0));
+        if asked < NEGLIGIBLE {
+            return kept;
+        }
+        let free = in_null_space(away, jacobian);
+        let joints = free.iter().zip(&budget.joints);
+        let longest = joints
+            .map(|(free, limits)| free.abs() / (Self::SHARE * limits.velocity))
+            .fold(0.0, f64::max);
+        // As fast as it may be far away, at the rate near its end, smoothly from one to the other.
+        let time = longest.hypot(1.0 / Self::ASKED);
+        kept + (free / time - kept) * asked
+    }
+}
+
+/// Share of a posture below which it does not count as asked for.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// The part of a motion of the joints that does not move the end effector.
+fn in_null_space(motion: &JointVector, jacobian: &Jacobian) -> JointVector {
+    let damped = jacobian * jacobian.transpose() + Matrix6::identity() * SQUARED_DAMPING;
+    let moving = damped
+        .cholesky()
+        .map(|factor| factor.solve(&(jacobian * motion)));
+    moving.map_or_else(JointVector::zeros, |moving| {
+        motion - jacobian.tr_mul(&moving)
+    })
+}
+
+/// Square of the damping in the inverse of the Jacobian, for singular postures.
+const SQUARED_DAMPING: f64 = 1e-6;
 
 /// Time, `[s]`, in which a motion of the arm's free direction fades that a pose takes over from
 /// joints.
 const FADE: f64 = 0.3;
 
-/// What is left of a motion over the joints that a pose has taken over: its part in the arm's free
-/// direction, which the pose says nothing about. It fades; dropped at once it would step.
+/// Share of the way to its new value that each stage of [`Drift::ease`] goes in a cycle: another
+/// posture sets the elbow going within some 100 ms.
+const EASE: f64 = 0.02;
+
+/// The motion of the arm's free direction, which the pose says nothing about: what is left of a
+/// motion over the joints that a pose has taken over, which fades, and the way to the posture.
+/// Either would step if it were changed at once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drift {
     velocity: JointVector,
     cycle: u32,
+    /// How far the posture is away, `[rad]`, and whether it is asked for, behind two low-passes.
+    away: [JointVector; 2],
+    asked: [f64; 2],
 }
 
 impl Drift {
     /// Of joints that move at `velocity`, `[rad/s]`.
     pub(super) fn of(velocity: JointVector) -> Self {
-        Self { velocity, cycle: 0 }
+        Self {
+            velocity,
+            cycle: 0,
+            away: [JointVector::zeros(); 2],
+            asked: [0.0; 2],
+        }
     }
 
     /// The share that remains in the next cycle: from 1 to 0, at either end without a slope.
@@ -46,6 +125,32 @@ impl Drift {
         let gone = (f64::from(self.cycle) * CYCLE / FADE).min(1.0);
         1.0 - gone * gone * (3.0 - 2.0 * gone)
     }
+
+    /// How far `posture` is from `q`, and how much of it counts as asked for, in the next cycle.
+    fn ease(&mut self, posture: &Posture, q: &JointVector) -> (JointVector, f64) {
+        let [away, smooth] = &mut self.away;
+        *away += (posture.q - q - *away) * EASE;
+        *smooth += (*away - *smooth) * EASE;
+        let [asked, weight] = &mut self.asked;
+        *asked += (f64::from(u8::from(posture.asked)) - *asked) * EASE;
+        *weight += (*asked - *weight) * EASE;
+        (*smooth, *weight)
+    }
+
+    /// Velocity of the joints in the next cycle, `[rad/s]`, as far as the pose leaves them free.
+    fn step(
+        &mut self,
+        posture: &Posture,
+        q: &JointVector,
+        speed: f64,
+        jacobian: &Jacobian,
+        budget: &Budget,
+    ) -> JointVector {
+        let remaining = self.share();
+        let (away, asked) = self.ease(posture, q);
+        let there = Posture::velocity(&away, speed, asked, jacobian, budget);
+        self.velocity * remaining + there * (1.0 - remaining)
+    }
 }
 
 /// Moves the joints of `reference` towards `pose` for one cycle. Returns also which bounds held
@@ -53,7 +158,7 @@ impl Drift {
 pub(super) fn follow(
     model: &Model,
     ee: &EndEffector,
-    posture: &JointVector,
+    posture: &Posture,
     drift: &mut Drift,
     reference: &Reference,
     pose: &MovingPose,
@@ -69,10 +174,8 @@ pub(super) fn follow(
         Twist::new(offset.x, offset.y, offset.z, turn.x, turn.y, turn.z) - pose.twist * CYCLE;
     let twist = pose.twist + error * FEEDBACK;
 
-    let fade = (pose.twist.fixed_rows::<3>(0).norm() / POSTURE_SPEED).min(1.0);
-    let back = (posture - reference.q) * (POSTURE * fade);
-    let remaining = drift.share();
-    let free = drift.velocity * remaining + back * (1.0 - remaining);
+    let speed = pose.twist.fixed_rows::<3>(0).norm();
+    let free = drift.step(posture, &reference.q, speed, &jacobian, budget);
     let open: [OpenVelocities; 7] =
         core::array::from_fn(|i| OpenVelocities::of(i, model.joint_limits(), reference, budget));
     let bounds = JointBox::new(
@@ -139,7 +242,15 @@ mod tests {
             };
             let pose = taken_up(model, &ee, &moving);
             let mut drift = Drift::of(moving.dq);
-            let (next, held) = follow(model, &ee, &READY, &mut drift, &moving, &pose, &budget);
+            let (next, held) = follow(
+                model,
+                &ee,
+                &Posture::kept(READY),
+                &mut drift,
+                &moving,
+                &pose,
+                &budget,
+            );
             assert!(!held.any(), "{held:?}");
             // What is left is the fading drift, and the curvature of the way.
             assert!(next.ddq.amax() < 0.3, "{}", next.ddq);

@@ -10,15 +10,33 @@ use crate::session::{Settlement, Tolerance};
 /// Joint velocity below which the arm counts as resting, `[rad/s]`.
 pub(super) const REST_VELOCITY: f64 = 0.01;
 
-/// Longest time that the arm gets to settle once its reference has arrived. One that makes no
-/// progress is given up earlier.
-pub const SETTLE_TIMEOUT: Duration = Duration::from_secs(5);
+/// How an arm has to settle at its target once its reference has arrived there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settling {
+    /// How long it has to stay within the tolerance and at rest, whole milliseconds from 1 on: a
+    /// swing through the target does not count.
+    pub hold: Duration,
+    /// The longest that it gets for that, from `hold` to [`Self::TIMEOUT_MAX`]. One that makes no
+    /// progress is given up earlier.
+    pub timeout: Duration,
+}
 
-/// Cycles that the arm has to stay at the target and at rest: a swing through the target does not
-/// count.
-const HOLD_AT_TARGET: u64 = 250;
+impl Default for Settling {
+    /// 250 ms and 5 s.
+    fn default() -> Self {
+        Self {
+            hold: Duration::from_millis(250),
+            timeout: Duration::from_secs(5),
+        }
+    }
+}
 
-/// The same for coming to rest without a target.
+impl Settling {
+    /// The longest timeout that is accepted.
+    pub const TIMEOUT_MAX: Duration = Duration::from_secs(60);
+}
+
+/// Cycles that an arm has to rest that comes to rest without a target.
 const HOLD_AT_REST: u64 = 100;
 
 /// Cycles without progress after which an arm at rest is short of its target for certain.
@@ -102,6 +120,7 @@ impl core::fmt::Display for Shortfall {
 pub(super) struct Landing {
     target: Option<Isometry3<f64>>,
     tolerance: Tolerance,
+    settling: Settling,
     cycles: u64,
     held: u64,
     /// The least error so far, in parts of the tolerance, and the cycles since then in which
@@ -118,10 +137,15 @@ pub(super) enum Verdict {
 
 impl Landing {
     /// For a target of the end effector; without one, coming to rest is enough.
-    pub(super) fn new(target: Option<Isometry3<f64>>, tolerance: Tolerance) -> Self {
+    pub(super) fn new(
+        target: Option<Isometry3<f64>>,
+        tolerance: Tolerance,
+        settling: Settling,
+    ) -> Self {
         Self {
             target,
             tolerance,
+            settling,
             cycles: 0,
             held: 0,
             nearest: f64::INFINITY,
@@ -151,10 +175,11 @@ impl Landing {
         self.nearest = if nearer { parts } else { self.nearest };
         let changing = nearer || working || !at_rest || there;
         self.stuck = if changing { 0 } else { self.stuck + 1 };
-        let given_up = self.stuck >= STUCK || u128::from(self.cycles) >= SETTLE_TIMEOUT.as_millis();
+        let Settling { hold, timeout } = self.settling;
+        let given_up = self.stuck >= STUCK || u128::from(self.cycles) >= timeout.as_millis();
         let settlement = match error {
             None if self.held >= HOLD_AT_REST => Settlement::AtRest,
-            Some(error) if self.held >= HOLD_AT_TARGET => Settlement::Arrived(error),
+            Some(error) if u128::from(self.held) >= hold.as_millis() => Settlement::Arrived(error),
             _ if !given_up => return Verdict::Settling,
             // An arm that does not rest after all this time is being moved from outside; the
             // reference rests.
@@ -213,6 +238,10 @@ impl Release {
 mod tests {
     use super::*;
 
+    fn landing(settling: Settling) -> Landing {
+        Landing::new(Some(Isometry3::identity()), Tolerance::default(), settling)
+    }
+
     fn judge_for(
         landing: &mut Landing,
         cycles: u64,
@@ -229,16 +258,13 @@ mod tests {
 
     #[test]
     fn a_swing_through_the_target_is_no_arrival() {
-        let mut landing = Landing::new(Some(Isometry3::identity()), Tolerance::default());
+        let mut landing = landing(Settling::default());
         let there = Isometry3::translation(0.0, 0.0, 0.9e-3);
         let away = Isometry3::translation(0.0, 0.0, 1.1e-3);
-        assert_eq!(
-            judge_for(&mut landing, HOLD_AT_TARGET - 1, &there, RESTS),
-            None
-        );
+        assert_eq!(judge_for(&mut landing, 249, &there, RESTS), None);
         assert_eq!(judge_for(&mut landing, 1, &away, RESTS), None);
         assert_eq!(judge_for(&mut landing, 1000, &there, MOVES), None);
-        let arrived = judge_for(&mut landing, HOLD_AT_TARGET, &there, RESTS);
+        let arrived = judge_for(&mut landing, 250, &there, RESTS);
         assert!(matches!(arrived, Some(Settlement::Arrived(error)) if error.translation == 0.9e-3));
     }
 
@@ -248,7 +274,7 @@ mod tests {
 
     #[test]
     fn an_arm_without_progress_is_short_of_its_target_after_half_a_second() {
-        let mut landing = Landing::new(Some(Isometry3::identity()), Tolerance::default());
+        let mut landing = landing(Settling::default());
         let at = |x: f64| Isometry3::translation(x, 0.0, 0.0);
         // It creeps, moves, and the law works on it.
         for i in 0..20 {
@@ -266,14 +292,34 @@ mod tests {
 
     #[test]
     fn an_arm_that_goes_on_moving_is_short_of_its_target_after_the_timeout() {
-        let mut landing = Landing::new(Some(Isometry3::identity()), Tolerance::default());
+        let mut landing = landing(Settling::default());
         let away = Isometry3::translation(0.02, 0.0, 0.0);
-        let cycles = SETTLE_TIMEOUT.as_millis() as u64;
+        let cycles = 5000;
         assert_eq!(judge_for(&mut landing, cycles - 1, &away, MOVES), None);
         let short = judge_for(&mut landing, 1, &away, MOVES);
         assert!(
             matches!(short, Some(Settlement::TargetNotReached(short)) if short.error.translation == 0.02)
         );
+    }
+
+    #[test]
+    fn settling_is_as_long_as_it_is_asked_for() {
+        let settling = Settling {
+            hold: Duration::from_millis(1200),
+            timeout: Duration::from_secs(2),
+        };
+        let (there, away) = (
+            Isometry3::identity(),
+            Isometry3::translation(0.02, 0.0, 0.0),
+        );
+        let mut long = landing(settling);
+        assert_eq!(judge_for(&mut long, 1199, &there, RESTS), None);
+        let arrived = judge_for(&mut long, 1, &there, RESTS);
+        assert!(matches!(arrived, Some(Settlement::Arrived(_))));
+        let mut short = landing(settling);
+        assert_eq!(judge_for(&mut short, 1999, &away, MOVES), None);
+        let given_up = judge_for(&mut short, 1, &away, MOVES);
+        assert!(matches!(given_up, Some(Settlement::TargetNotReached(_))));
     }
 
     #[test]

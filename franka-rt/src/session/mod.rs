@@ -68,14 +68,14 @@ pub use chunk::{
 pub use goal::{Free, Goal, GoalId, OnArrival, Target};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub use guard::deadman::{Deadman, DeadmanMonitor};
-pub use guard::deviation::{JOINT_DEVIATION, ROTATION_DEVIATION, TRANSLATION_DEVIATION};
+pub use guard::deviation::Deviation;
 pub use guard::force_cap::ForceCap;
 pub use guard::lead::Lead;
-pub use guard::leash::{JOINT_LEASH, ROTATION_LEASH, TRANSLATION_LEASH};
+pub use guard::leash::Leash;
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
-pub use landing::{PoseError, RELEASE_TIMEOUT, SETTLE_TIMEOUT, Shortfall};
+pub use landing::{PoseError, RELEASE_TIMEOUT, Settling, Shortfall};
 pub use margin::Margin;
 pub use reaction::{Reacted, Reaction};
 pub use tolerance::Tolerance;
@@ -86,7 +86,7 @@ use running::RunningSession;
 
 /// Time for which something may hold the course back: an obstacle by the leash, or the joints'
 /// bounds. A goal that is to finish and has not got on by then is braked, and lands where it is.
-pub const STALL_TIMEOUT: Duration = SETTLE_TIMEOUT;
+pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// What a session reports to the lifecycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,7 +148,7 @@ pub enum Lapse {
     /// The [`Deadman`] that the session is bound to fell silent, or was dropped.
     Deadman,
     /// Something pushed the arm further from its path than it may swing back by itself:
-    /// [`TRANSLATION_DEVIATION`], [`ROTATION_DEVIATION`], [`JOINT_DEVIATION`].
+    /// [`Deviation`].
     Displaced,
     /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`]
     /// and [`KEEP_OUT_STOP`].

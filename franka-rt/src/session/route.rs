@@ -1,11 +1,12 @@
 //! A course that keeps clear of the arm itself and of the regions to keep out of.
 
-use franka_model::{EndEffector, JointVector, Model};
+use franka_model::{EndEffector, Model};
 use franka_otg::AxisLimits;
 
 use crate::session::chunk::{ChunkCourse, ChunkStart};
 use crate::session::course::{self, Course};
 use crate::session::guard::clearance::{Ahead, Clearance};
+use crate::session::kinematics::Posture;
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
 use crate::session::{Budget, Chunk, Goal, Target};
@@ -227,7 +228,7 @@ impl Route {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        posture: &JointVector,
+        posture: &Posture,
         reference: &Reference,
         arm: &Measured,
         goal: &Goal,

@@ -102,7 +102,13 @@ fn a_force_cap_is_tuned_within_its_bounds() {
         for refused in [4.9, 201.0, f64::NAN] {
             let outcome = lockstep.tune(engaged, cap(ForceCap::Newtons(refused)));
             assert!(
-                matches!(outcome, Err(MotionError::Goal(GoalError::ForceCap { .. }))),
+                matches!(
+                    outcome,
+                    Err(MotionError::Goal(GoalError::Number {
+                        what: "force cap",
+                        ..
+                    }))
+                ),
                 "{outcome:?}"
             );
         }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use franka_model::READY;
 use franka_rt::law::{Gains, Law};
-use franka_rt::session::{Chunk, Target};
+use franka_rt::session::{Chunk, Leash, Target};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::Rng;
 use rand::rngs::SmallRng;
@@ -43,7 +43,28 @@ pub(super) fn gains(random: &mut SmallRng) -> Gains {
     let damping = factor.sqrt();
     gains.cartesian_stiffness = gains.cartesian_stiffness.map(|k| k * factor);
     gains.cartesian_damping = gains.cartesian_damping.map(|d| d * damping);
+    gains.torque_cutoff = [100.0, 100.0, 50.0, 1000.0][random.random_range(0..4)];
     gains
+}
+
+/// A leash of any length, some of the time.
+pub(super) fn leash(random: &mut SmallRng) -> Option<Leash> {
+    let share = random
+        .random_bool(0.3)
+        .then(|| random.random_range(0.0..1.0))?;
+    let length = |least: f64, most: f64| least + share * (most - least);
+    let (least, most) = (Leash::LEAST, Leash::MOST);
+    Some(Leash {
+        translation: length(least.translation, most.translation),
+        rotation: length(least.rotation, most.rotation),
+        joints: length(least.joints, most.joints),
+    })
+}
+
+/// A posture near these joint positions, some of the time.
+pub(super) fn posture(random: &mut SmallRng, q: &[f64; 7]) -> Option<[f64; 7]> {
+    let drawn = random.random_bool(0.3);
+    drawn.then(|| q.map(|q| q + random.random_range(-0.3..0.3)))
 }
 
 /// A chunk of either kind, from about the present position to a target nearby.

@@ -1,7 +1,7 @@
 //! The course of a reference that follows chunks.
 
 use franka_model::limits::JointLimits;
-use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
+use franka_model::{EndEffector, Frame, Model, rotation};
 use franka_otg::AxisLimits;
 use nalgebra::{Isometry3, Translation3, vector};
 
@@ -14,7 +14,7 @@ use super::value::{Chunk, Points};
 use crate::session::course::{CourseStep, limits_of_joint};
 use crate::session::guard::joint_bounds::BRAKING;
 use crate::session::guard::leash;
-use crate::session::kinematics::{self, Drift};
+use crate::session::kinematics::{self, Drift, Posture};
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{Budget, GoalId, Target, approach, rigid};
@@ -156,7 +156,7 @@ impl ChunkCourse {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        posture: &JointVector,
+        posture: &Posture,
         reference: &Reference,
         now: u64,
     ) -> CourseStep {

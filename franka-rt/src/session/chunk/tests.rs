@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use super::course::{ChunkCourse, ChunkStart};
 use super::curve_state::stacked;
 use super::{Chunk, ChunkReader, ChunkWriter, Fate, chunk_ring};
-use crate::session::kinematics::Drift;
+use crate::session::kinematics::{Drift, Posture};
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{
@@ -73,7 +73,13 @@ impl Arm {
         }
         if let Some(course) = &mut self.course {
             let ee = EndEffector::default();
-            let step = course.step(self.model, &ee, &READY, &self.reference, self.now);
+            let step = course.step(
+                self.model,
+                &ee,
+                &Posture::kept(READY),
+                &self.reference,
+                self.now,
+            );
             self.reference = step.reference;
         }
         while self.writer.collect().is_some() {}

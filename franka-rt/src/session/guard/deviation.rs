@@ -9,23 +9,38 @@ use nalgebra::{Isometry3, Vector3};
 
 use crate::session::{Target, rigid};
 
-/// How far the end effector may be displaced, `[m]`.
-pub const TRANSLATION_DEVIATION: f64 = 0.30;
+/// How far the arm may be pushed off its way, measured from where the reference was last free and
+/// the way from there to the target. A motion whose arm is further off is given up. Infinite
+/// numbers switch it off; what is within the [`Leash`](crate::session::Leash) is never a deviation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Of the end effector, `[m]`.
+    pub translation: f64,
+    /// Of the end effector, `[rad]`.
+    pub rotation: f64,
+    /// Of each joint, `[rad]`.
+    pub joints: f64,
+}
 
-/// How far it may be turned away, `[rad]`.
-pub const ROTATION_DEVIATION: f64 = 0.5;
-
-/// How far a joint may be displaced, `[rad]`.
-pub const JOINT_DEVIATION: f64 = 1.0;
+impl Default for Deviation {
+    /// 30 cm, 0.5 rad and 1 rad.
+    fn default() -> Self {
+        Self {
+            translation: 0.3,
+            rotation: 0.5,
+            joints: 1.0,
+        }
+    }
+}
 
 /// Remembers where the reference was before the leash took it along.
 #[derive(Debug)]
-pub(crate) struct Deviation {
+pub(crate) struct Displacement {
     /// Joint positions of the reference when it was last free, `[rad]`.
     anchor: JointVector,
 }
 
-impl Deviation {
+impl Displacement {
     /// Of a reference at `anchor`, `[rad]`.
     pub(crate) fn at(anchor: JointVector) -> Self {
         Self { anchor }
@@ -36,7 +51,7 @@ impl Deviation {
         self.anchor = *reference;
     }
 
-    /// Whether the arm, at `q` and `measured`, is further than it may be from the way between where
+    /// Whether the arm, at `q` and `measured`, is further than `most` from the way between where
     /// the reference was last free and the target: an arm that comes along slowly is on its way,
     /// and not displaced.
     pub(crate) fn is_exceeded(
@@ -46,6 +61,7 @@ impl Deviation {
         q: &JointVector,
         measured: &Isometry3<f64>,
         target: &Target,
+        most: &Deviation,
     ) -> bool {
         let pose_at = |q: &JointVector| rigid(&model.pose(Frame::EndEffector, q, ee));
         let way = match target {
@@ -69,9 +85,7 @@ impl Deviation {
             &rotation::error(&measured.rotation, &anchor.rotation),
             &rotation::error(&end.rotation, &anchor.rotation),
         );
-        aside > TRANSLATION_DEVIATION
-            || turned > ROTATION_DEVIATION
-            || (q - way).amax() > JOINT_DEVIATION
+        aside > most.translation || turned > most.rotation || (q - way).amax() > most.joints
     }
 }
 
@@ -88,8 +102,8 @@ mod tests {
     use nalgebra::{Translation3, UnitQuaternion};
 
     fn exceeded(q: &JointVector, measured: &Isometry3<f64>, target: &Target) -> bool {
-        let deviation = Deviation::at(READY);
-        deviation.is_exceeded(Model::fr3(), &EndEffector::default(), q, measured, target)
+        let (ee, most) = (EndEffector::default(), Deviation::default());
+        Displacement::at(READY).is_exceeded(Model::fr3(), &ee, q, measured, target, &most)
     }
 
     fn ready() -> Isometry3<f64> {

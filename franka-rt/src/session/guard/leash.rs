@@ -10,14 +10,44 @@ use crate::session::pose::PoseGenerator;
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
 
-/// Longest distance from the measured end effector to its reference, `[m]`.
-pub const TRANSLATION_LEASH: f64 = 0.025;
+/// How far the reference may be ahead of the measured arm: what holds the arm back feels the
+/// springs at that length, and no more. A shorter one than the arm lags behind by slows the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leash {
+    /// Of the end effector, where the reference follows poses, `[m]`.
+    pub translation: f64,
+    /// Of the end effector, where the reference follows poses, `[rad]`.
+    pub rotation: f64,
+    /// Of each joint, `[rad]`.
+    pub joints: f64,
+}
 
-/// Largest angle from the measured end effector to its reference, `[rad]`.
-pub const ROTATION_LEASH: f64 = 0.15;
+impl Default for Leash {
+    /// 25 mm, 0.15 rad and 0.1 rad.
+    fn default() -> Self {
+        Self {
+            translation: 0.025,
+            rotation: 0.15,
+            joints: 0.1,
+        }
+    }
+}
 
-/// Largest distance of a joint from its reference, `[rad]`.
-pub const JOINT_LEASH: f64 = 0.1;
+impl Leash {
+    /// The shortest that is accepted: arms that stick still come to their targets.
+    pub const LEAST: Self = Self {
+        translation: 5e-3,
+        rotation: 0.03,
+        joints: 0.03,
+    };
+
+    /// The longest that is accepted.
+    pub const MOST: Self = Self {
+        translation: 0.1,
+        rotation: 0.6,
+        joints: 0.4,
+    };
+}
 
 /// Longest distance from the joint reference's end effector to the pose that it follows, `[m]`.
 /// Half a millimetre to five make little difference; this is the tolerance of a goal.
@@ -37,9 +67,14 @@ pub(crate) struct Held {
 
 /// Holds the reference within the leash of the measured arm. Returns what it held, from which the
 /// course has to go on; `None` if it held nothing.
-pub(crate) fn hold(course: &Course, reference: &mut Reference, arm: &Measured) -> Option<Held> {
+pub(crate) fn hold(
+    leash: &Leash,
+    course: &Course,
+    reference: &mut Reference,
+    arm: &Measured,
+) -> Option<Held> {
     let q = reference.q.zip_map(&arm.q, |reference, q| {
-        reference.clamp(q - JOINT_LEASH, q + JOINT_LEASH)
+        reference.clamp(q - leash.joints, q + leash.joints)
     });
     let moved = q != reference.q;
     reference.q = q;
@@ -49,7 +84,7 @@ pub(crate) fn hold(course: &Course, reference: &mut Reference, arm: &Measured) -
         Course::Rest | Course::Joints(_) | Course::Guide(_) => None,
     };
     let pose =
-        followed.and_then(|pose| within(&pose, &arm.object, TRANSLATION_LEASH, ROTATION_LEASH));
+        followed.and_then(|pose| within(&pose, &arm.object, leash.translation, leash.rotation));
     (moved || pose.is_some()).then_some(Held { q, pose })
 }
 
@@ -131,19 +166,20 @@ mod tests {
             Translation3::new(0.3, 0.1, 0.5),
             UnitQuaternion::from_euler_angles(3.0, 0.1, 0.2),
         );
+        let leash = Leash::default();
         let way = Vector3::new(0.03, -0.04, 0.0);
         let turn = Vector3::new(0.0, 0.3, 0.0);
         let pose = Isometry3::from_parts(
             Translation3::from(measured.translation.vector + way),
             rotation::exp(&turn) * measured.rotation,
         );
-        let held = within(&pose, &measured, TRANSLATION_LEASH, ROTATION_LEASH)
+        let held = within(&pose, &measured, leash.translation, leash.rotation)
             .expect("50 mm is longer than the leash");
         assert!((held.translation.vector - measured.translation.vector - way / 2.0).norm() < 1e-15);
         let turned = rotation::error(&held.rotation, &measured.rotation);
         assert!((turned - turn / 2.0).norm() < 1e-12);
         assert_eq!(
-            within(&measured, &measured, TRANSLATION_LEASH, ROTATION_LEASH),
+            within(&measured, &measured, leash.translation, leash.rotation),
             None
         );
     }

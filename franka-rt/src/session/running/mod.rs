@@ -27,10 +27,11 @@ use super::course::{Course, CourseStep};
 use super::effort::{Effort, Resistance};
 use super::goal::{Goal, OnArrival, Target};
 use super::guard::clearance::{Clearance, KeepOut};
-use super::guard::deviation::Deviation;
+use super::guard::deviation::Displacement;
 use super::guard::leash::{self, Held};
 use super::guard::watchdog::OnTimeout;
 use super::guard::{Bindings, Guard};
+use super::kinematics::Posture;
 use super::landing::{self, PoseError};
 use super::route::Route;
 use super::setpoint_stream::SetpointStream;
@@ -47,6 +48,7 @@ pub(super) struct RunningSession {
     ee: EndEffector,
     grasp: Option<Isometry3<f64>>,
     load: Load,
+    /// The joint positions that it began with, `[rad]`: the posture of goals without one.
     posture: JointVector,
     pub(super) goal: Goal,
     /// The arm in the newest state that was answered.
@@ -64,7 +66,7 @@ pub(super) struct RunningSession {
     route: Route,
     reference: Reference,
     drive: Drive,
-    deviation: Deviation,
+    displacement: Displacement,
     /// What follows a goal that is held and has to be given up.
     afterwards: OnArrival,
     stage: GoalStage,
@@ -162,7 +164,7 @@ impl RunningSession {
                 Clearance::new(model.kind(), state.m_ee > 0.0, keep_out),
                 goal.budget,
             ),
-            deviation: Deviation::at(q),
+            displacement: Displacement::at(q),
             afterwards,
             stage: GoalStage::UnderWay,
             held_back: 0,
@@ -291,7 +293,9 @@ impl RunningSession {
             },
         );
         self.fade_gains();
-        let changed = goal.budget != before.budget || goal.paused != before.paused;
+        let changed = goal.budget != before.budget
+            || goal.paused != before.paused
+            || goal.leash != before.leash;
         if changed && !matches!(self.stage, GoalStage::Releasing(_)) {
             self.route.outdate();
         }
@@ -377,10 +381,14 @@ impl RunningSession {
         now: u64,
         bindings: &mut Bindings,
     ) -> CourseStep {
+        let posture = match self.goal.posture {
+            Some(q) => Posture::asked(q.into()),
+            None => Posture::kept(self.posture),
+        };
         let step = self.route.step(
             model,
             &self.ee,
-            &self.posture,
+            &posture,
             &self.reference,
             &self.arm,
             aim,
@@ -453,7 +461,12 @@ impl RunningSession {
         self.observe(state);
         // Under the robot's own controller the reference is anchored on that one's setpoint.
         if let Drive::Torques(_) = self.drive {
-            self.held = leash::hold(&self.route.course, &mut self.reference, &self.arm);
+            self.held = leash::hold(
+                &self.goal.leash,
+                &self.route.course,
+                &mut self.reference,
+                &self.arm,
+            );
         }
         let leashed = self.held.is_some();
         bindings.set(Guard::Leash, leashed || step.leashed);

@@ -3,7 +3,7 @@
 use franka_model::{Frame, Model};
 
 use super::{Drive, RunningSession, Standing};
-use crate::session::landing::{Landing, PoseError, Release, Verdict};
+use crate::session::landing::{self, Landing, PoseError, Release, Verdict};
 use crate::session::reference::Reference;
 use crate::session::{
     Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, Tolerance, rigid,
@@ -51,8 +51,11 @@ impl RunningSession {
                 let waits = (self.goal.paused || self.waits && !self.lags)
                     && heading != Target::Rest
                     && !self.is_given_up();
+                // The hand may have come to its target before the elbow has.
+                let turns = self.goal.posture.is_some()
+                    && self.reference.dq.amax() > landing::REST_VELOCITY;
                 let ends = self.goal.on_arrival != OnArrival::Hold && !waits;
-                if ends && (self.route.is_done() || stalled) {
+                if ends && (self.route.is_done() && !turns || stalled) {
                     if stalled && self.route.is_hindered() {
                         self.give_up(Lapse::Blocked);
                     } else if stalled && heading != Target::Rest {
@@ -74,7 +77,8 @@ impl RunningSession {
                         Drive::Torques(_) => Tolerance::of(&self.goal.gains),
                         Drive::Setpoints(stream) => Tolerance::under(stream.setpoints()),
                     });
-                    self.stage = GoalStage::Landing(Landing::new(target, tolerance));
+                    self.stage =
+                        GoalStage::Landing(Landing::new(target, tolerance, self.goal.settling));
                 }
                 None
             }

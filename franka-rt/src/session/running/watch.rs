@@ -78,7 +78,7 @@ impl RunningSession {
     /// Gives up a goal whose arm is displaced. Returns whether it is.
     pub(super) fn watch_deviation(&mut self, model: &Model, leashed: bool) -> bool {
         if !leashed {
-            self.deviation.set_free(&self.reference.q);
+            self.displacement.set_free(&self.reference.q);
             return false;
         }
         if matches!(self.heading(), Target::Rest | Target::Guide(_)) {
@@ -92,9 +92,10 @@ impl RunningSession {
         }
         let arm = &self.arm;
         let aim = self.aim(model, arm.time).target.place();
-        let exceeded = self
-            .deviation
-            .is_exceeded(model, &self.ee, &arm.q, &arm.object, &aim);
+        let most = &self.goal.deviation;
+        let exceeded =
+            self.displacement
+                .is_exceeded(model, &self.ee, &arm.q, &arm.object, &aim, most);
         let follows = matches!(
             self.stage,
             GoalStage::UnderWay | GoalStage::Landing(_) | GoalStage::Staying

@@ -138,7 +138,8 @@ impl Sessions<'_> {
                 .random
                 .random_bool(0.7)
                 .then(|| draw::gains(&mut self.random)),
-            budget: None,
+            leash: draw::leash(&mut self.random),
+            posture: draw::posture(&mut self.random, &self.lockstep.client.record.q),
             ..Tuning::default()
         };
         let budget = self.random.random_bool(0.5).then(|| self.budget());
