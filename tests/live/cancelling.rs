@@ -6,7 +6,7 @@ use std::pin::{Pin, pin};
 use std::task::Poll;
 use std::time::Duration;
 
-use franka_async::goal::{Chunk, Free, Tuning};
+use franka_async::goal::{Chunk, Free, Tuning, Waypoint};
 use franka_async::{Arm, Engage, MotionError, Pose, Robot};
 use tokio::sync::watch;
 
@@ -87,6 +87,12 @@ async fn motions_of_a_robot_may_be_dropped_at_every_poll() {
         Box::pin(async { robot.move_joints(q).await.map(drop) })
     })
     .await;
+    drop_at_every_poll(&robot, "move_through", || {
+        let way = [start, up(&robot)].map(|pose| Waypoint::new(pose).blend(0.002));
+        let motion = robot.move_through(way);
+        Box::pin(async move { motion.await.map(drop) })
+    })
+    .await;
     drop_at_every_poll(&robot, "follow", || {
         let (sender, targets) = watch::channel(start);
         drop(sender);
@@ -123,6 +129,11 @@ async fn goals_of_an_engaged_arm_may_be_dropped_at_every_poll() {
         ),
         ("move_joints", |arm, _, q| {
             Box::pin(async move { arm.move_joints(q).await.map(drop) })
+        }),
+        ("move_through", |arm, start, _| {
+            let up = Pose::translation(0.0, 0.0, 0.01) * start;
+            let way = [Waypoint::new(up), Waypoint::new(start)];
+            Box::pin(async move { arm.move_through(way).await.map(drop) })
         }),
         ("hold", |arm, _, _| {
             Box::pin(async move { arm.hold().await.map(drop) })

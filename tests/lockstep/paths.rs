@@ -5,7 +5,7 @@ use std::time::Duration;
 use franka_model::{READY, Wrench};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalError, GoalId, PathError, Target, Waypoint};
+use franka_rt::session::{Chunk, GoalError, GoalId, PathError, Target, Waypoint};
 use franka_tests::bench::follow::realistic;
 use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -304,4 +304,24 @@ fn the_place_where_the_arm_is_already_is_reached_at_once() {
         .expect("it is there");
     let outcome = lockstep.until_resolved(id, 3000);
     outcome.expect("it arrives");
+}
+
+#[test]
+fn a_chunk_supersedes_a_path_that_is_under_way() {
+    let mut lockstep = realistic();
+    let engaged = lockstep.engage();
+    let places = corners(&lockstep.arm_pose());
+    let path = lockstep.through(Some(engaged), &rounded(&places, 0.02));
+    let path = path.expect("within reach");
+    lockstep.run(500);
+    assert_eq!(lockstep.client.outcome(path), None);
+    let q = lockstep.client.record.q_ref;
+    let points = (1..=5).map(|k| (Duration::from_millis(100) * k, q));
+    let chunk = Chunk::joints(points).expect("finite points");
+    lockstep.chunk(engaged, chunk).expect("within the limits");
+    let superseded = Some(&Err(MotionError::Superseded));
+    assert_eq!(lockstep.client.outcome(path), superseded);
+    lockstep.run(1500);
+    let away = franka_model::JointVector::from(q) - lockstep.robot.q();
+    assert!(away.amax() < 0.05, "{away}");
 }

@@ -147,6 +147,7 @@ impl Lifecycle {
         let goes_on = goals.current.id == goals.chunk_goal && !goals.cancelled;
         let of = if goes_on { goals.chunk_goal } else { goal.id };
         goals.send(of, chunk).map_err(GoalError::from)?;
+        goals.chunk_goal = of;
         if !goes_on {
             self.replace(goal, MotionError::Superseded);
         }

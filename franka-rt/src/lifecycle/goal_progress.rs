@@ -28,7 +28,8 @@ pub(super) struct Goals {
     pub(super) backend: Backend,
     /// The way of chunks to the session.
     pub(super) chunks: ChunkWriter,
-    /// The goal that its newest chunk belongs to.
+    /// The goal that its newest chunk belongs to, if that is no path: what comes next goes on with
+    /// a chunk, and supersedes a path.
     pub(super) chunk_goal: GoalId,
     /// Goals that came for that session after it had ended and before its outcome was known.
     pub(super) after_end: Vec<GoalId>,
@@ -86,9 +87,7 @@ impl Goals {
         if !self.has_room() {
             return Err(TooManyChunks);
         }
-        self.chunks.send(goal, chunk).map_err(|_| TooManyChunks)?;
-        self.chunk_goal = goal;
-        Ok(())
+        self.chunks.send(goal, chunk).map_err(|_| TooManyChunks)
     }
 
     /// Brakes, and ends the motion at rest.

@@ -1,8 +1,8 @@
 //! Goals that are submitted, changed and cancelled.
 
-use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::lifecycle::{MotionError, NewMotion, Tuning};
 use franka_rt::session::{
-    Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target, Tolerance,
+    Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target, Tolerance, Waypoint,
 };
 use franka_tests::lockstep::set_in_motion;
 use rand::Rng;
@@ -34,6 +34,40 @@ impl Sessions<'_> {
             _ => OnArrival::Hold,
         };
         self.submit(target, on_arrival);
+    }
+
+    /// Goes through some places, rounded or with a stop at each.
+    pub(super) fn go_through(&mut self) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        let (id, joints) = (session.id, session.backend == Backend::Torques);
+        let joints = joints && self.random.random_bool(0.5);
+        let waypoints: Vec<Waypoint> = (0..self.random.random_range(1..5))
+            .map(|_| {
+                let target = if joints {
+                    Target::Joints(draw::joints(&mut self.random, 0.3))
+                } else {
+                    draw::pose(&mut self.random, &self.home, 0.1, 0.3)
+                };
+                let blend = [0.0, 0.02, 0.1][self.random.random_range(0..3)];
+                Waypoint::new(target).blend(blend)
+            })
+            .collect();
+        let last = waypoints.last().map_or(Target::Rest, |last| *last.target());
+        let on_arrival = match self.random.random_range(0..20) {
+            0 => OnArrival::ReportAndFinish,
+            _ => OnArrival::ReportAndHold,
+        };
+        let mut goal = self.lockstep.goal(last, on_arrival);
+        goal.budget = self.budget();
+        let motion = NewMotion::Goal {
+            goal: Box::new(goal),
+            ticket: None,
+            session: Some(id),
+        };
+        let taken = self.lockstep.client.begin_along(&waypoints, motion);
+        self.note(goal, Work::Goal(last), false, taken);
     }
 
     /// Submits a goal with random options. Returns whether it was accepted.
@@ -106,7 +140,7 @@ impl Sessions<'_> {
                 true
             }
             // From the arm's position, the search may find no path to a pose.
-            Err(MotionError::Goal(_)) => false,
+            Err(MotionError::Goal(_) | MotionError::Path(_)) => false,
             Err(error) => {
                 let ended = self.lockstep.client.outcome(session.id);
                 let fits = match ended {

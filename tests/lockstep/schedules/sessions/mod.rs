@@ -158,7 +158,7 @@ impl<'a> Sessions<'a> {
 
     fn act(&mut self) {
         self.begin_anew();
-        match self.random.random_range(0..if self.calm { 18 } else { 25 }) {
+        match self.random.random_range(0..if self.calm { 20 } else { 27 }) {
             0..=3 => self.give(),
             4 => {
                 // The first of them is superseded before it takes effect.
@@ -174,9 +174,10 @@ impl<'a> Sessions<'a> {
             14..=15 => self.fall_silent(),
             16 => self.end(),
             17 => self.interfere(),
-            18..=20 => self.lose(),
-            21..=22 => self.push(),
-            23 => self.trip(),
+            18..=19 => self.go_through(),
+            20..=22 => self.lose(),
+            23..=24 => self.push(),
+            25 => self.trip(),
             _ => self.press_user_stop(),
         }
     }
