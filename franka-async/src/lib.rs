@@ -51,6 +51,22 @@
 //! # }
 //! ```
 //!
+//! Options say how, and a motion goes through several places without a stop:
+//!
+//! ```no_run
+//! # use franka_async::prelude::*;
+//! use franka_async::goal::{Leash, Waypoint};
+//!
+//! # async fn run(robot: Robot) -> Result<(), MotionError> {
+//! let (start, aside) = (robot.pose(), Pose::translation(0.0, 0.2, 0.0));
+//! let way = [Waypoint::new(aside * start).blend(0.05), Waypoint::new(start)];
+//! robot.move_through(way).speed(0.5).await?; // rounds the corner from 5 cm before it
+//! let gentle = Leash { translation: 0.01, ..Leash::default() };
+//! robot.move_to(start).force_cap(10.0).leash(gentle).await?;
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! Units are metres, radians, seconds and newtons. A [`Pose`] is that of the end effector in the
 //! frame of the base; it is an isometry of [`nalgebra`]. [`pose`] makes them of quaternions and
 //! arrays.
