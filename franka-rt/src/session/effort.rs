@@ -2,7 +2,7 @@
 //! accepts.
 //!
 //! ```text
-//! springs, dampers, compensation -> clamp -> force cap -> + coriolis + M ddq_ref -> clamp -> velocity barrier -> robot's range -> low-pass -> rate
+//! springs, dampers, compensation -> clamp -> force cap -> + coriolis + M ddq_ref -> clamp -> velocity barrier -> low-pass -> rate
 //! ```
 
 use franka_model::limits::JointLimits;
@@ -197,7 +197,6 @@ impl Effort {
         let (tau, full) = clamp(&(tau + dynamics.coriolis + inertial), &most);
         let brake = JointVector::from(Gains::TORQUE_LIMITS);
         let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &brake);
-        let (tau, _) = clamp(&tau, &limits.torque);
         let filtered = low_pass(tuning.torque_share, &tau, &last);
         let (tau, slowed) = limit_rate(&filtered, &last, &limits.torque_rate);
 

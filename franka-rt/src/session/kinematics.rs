@@ -47,27 +47,15 @@ impl Posture {
         Self { q, asked: true }
     }
 
-    /// The velocity, `[rad/s]`, of joints that are `away` from it, and whose hand moves at `speed`,
-    /// `[m/s]`; so much of it counts as `asked` for.
-    fn velocity(
-        away: &JointVector,
-        speed: f64,
-        asked: f64,
-        jacobian: &Jacobian,
-        budget: &Budget,
-    ) -> JointVector {
-        let kept = away * (Self::KEPT * (speed / Self::SPEED).min(1.0));
-        if asked < NEGLIGIBLE {
-            return kept;
-        }
+    /// The velocity, `[rad/s]`, at which joints go to one that is asked for and `away` from them.
+    fn velocity(away: &JointVector, jacobian: &Jacobian, budget: &Budget) -> JointVector {
         let free = in_null_space(away, jacobian);
         let joints = free.iter().zip(&budget.joints);
         let longest = joints
             .map(|(free, limits)| free.abs() / (Self::SHARE * limits.velocity))
             .fold(0.0, f64::max);
         // As fast as it may be far away, at the rate near its end, smoothly from one to the other.
-        let time = longest.hypot(1.0 / Self::ASKED);
-        kept + (free / time - kept) * asked
+        free / longest.hypot(1.0 / Self::ASKED)
     }
 }
 
@@ -146,9 +134,15 @@ impl Drift {
         jacobian: &Jacobian,
         budget: &Budget,
     ) -> JointVector {
+        let kept = (posture.q - q) * (Posture::KEPT * (speed / Posture::SPEED).min(1.0));
+        let there = if posture.asked || self.asked[1] > NEGLIGIBLE {
+            let (away, asked) = self.ease(posture, q);
+            kept + (Posture::velocity(&away, jacobian, budget) - kept) * asked
+        } else {
+            (self.away, self.asked) = Default::default();
+            kept
+        };
         let remaining = self.share();
-        let (away, asked) = self.ease(posture, q);
-        let there = Posture::velocity(&away, speed, asked, jacobian, budget);
         self.velocity * remaining + there * (1.0 - remaining)
     }
 }

@@ -12,6 +12,16 @@ pub(crate) fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool
 mod tests {
     use super::*;
     use crate::law::Gains;
+    use franka_model::Model;
+
+    #[test]
+    fn the_greatest_limits_are_within_what_the_joints_can_give() {
+        for model in [Model::fr3(), Model::fer()] {
+            let robot = model.joint_limits().torque;
+            let most = JointVector::from(Gains::TORQUE_LIMITS);
+            assert!((robot - most).min() > 0.0, "{robot}");
+        }
+    }
 
     #[test]
     fn clamps_each_joint_by_its_own_bound() {
