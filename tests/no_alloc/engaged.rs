@@ -13,7 +13,7 @@ use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, Tuning};
 use franka_rt::session::{
     Backend, Chunk, Deadman, Deviation, Fate, Free, Goal, GoalId, Guard, Leash, OnArrival,
-    OnTimeout, Setpoints, Target, Watchdog, Waypoint,
+    OnTimeout, Target, Watchdog, Waypoint,
 };
 use franka_tests::lockstep::{Guarded, Lockstep, Part, Workload};
 use nalgebra::Translation3;
@@ -28,7 +28,7 @@ fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
     for (workload, seed) in Workload::ALL
         .map(|workload| (workload, 0))
         .into_iter()
-        .chain([(Workload::RobotController, 1)])
+        .chain((1..8).map(|seed| (Workload::RobotController, seed)))
     {
         let mut arm = Guarded::new(workload, seed);
         let (mut cycles, mut calls) = (0, 0);
@@ -136,15 +136,14 @@ fn turned(by: f64) -> Target {
 
 #[test]
 fn sessions_under_every_order_of_their_owners_allocate_and_free_nothing() {
-    for backend in [
-        Backend::Torques,
-        Backend::RobotController(Setpoints::Joints),
-        Backend::RobotController(Setpoints::Poses),
-    ] {
+    for backend in [Backend::Torques]
+        .into_iter()
+        .chain(Backend::ROBOT_CONTROLLERS)
+    {
         let mut engaged = Engaged::with(backend);
         let home = engaged.lockstep.arm_pose();
         let up = Target::Pose(Translation3::new(0.0, 0.0, 0.05) * home);
-        let poses = backend == Backend::RobotController(Setpoints::Poses);
+        let poses = backend.is_cartesian();
         let there = if poses { up } else { turned(0.2) };
 
         // Superseded in mid-motion, then reached.

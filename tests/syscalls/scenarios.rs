@@ -145,7 +145,7 @@ pub(crate) async fn engaged() {
     arm.disengage().await.expect("it ends");
 
     let (engage, _alive) = kept_alive();
-    let backend = Backend::RobotController(Setpoints::Joints);
+    let backend = Backend::joint_impedance(Setpoints::JointPositions);
     let arm = robot.engage(engage.backend(backend)).await;
     let arm = arm.expect("it begins");
     every_kind_of_goal(&robot, &arm).await;

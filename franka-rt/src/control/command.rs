@@ -100,7 +100,7 @@ impl MotionCommand {
     }
 
     /// Passes it through the shaper; `first` of its motion or not.
-    pub(super) fn shaped(
+    pub(crate) fn shaped(
         &self,
         shaper: &Shaper,
         state: &RobotState,

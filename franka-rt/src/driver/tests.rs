@@ -11,7 +11,7 @@ use crate::control::{
     ActiveControl, AsynchronousPositions, AsynchronousTarget, Callback, Modes, Shaper, Torques,
 };
 use crate::law::Gains;
-use crate::session::{Backend, Goal, GoalId, OnArrival, Setpoints, Target, TargetSession};
+use crate::session::{Backend, Goal, GoalId, OnArrival, Target, TargetSession};
 use crate::shaping::InvalidCommand;
 use crate::slot;
 use crate::stats::{Arrival, CycleTimes};
@@ -101,10 +101,9 @@ fn a_state_that_is_not_finite_gets_no_answer_and_does_no_harm() {
 fn a_setpoint_that_is_not_finite_gets_no_answer_either() {
     let pose = Isometry3::translation(0.3, 0.0, 0.5);
     let rigid: [f64; 16] = core::array::from_fn(|i| pose.to_homogeneous().as_slice()[i]);
-    for (setpoints, target) in [
-        (Setpoints::Joints, nearby()),
-        (Setpoints::Poses, Target::Rest),
-    ] {
+    for backend in Backend::ROBOT_CONTROLLERS {
+        let is_cartesian = backend.is_cartesian();
+        let target = if is_cartesian { Target::Rest } else { nearby() };
         for (spoil, read) in [
             (
                 (|state| state.q_d[3] = f64::NAN) as fn(&mut RobotState),
@@ -112,16 +111,9 @@ fn a_setpoint_that_is_not_finite_gets_no_answer_either() {
             ),
             (|state| state.dq_d[0] = f64::INFINITY, true),
             (|state| state.ddq_d[6] = f64::NAN, true),
-            (
-                |state| state.O_T_EE_c[12] = f64::NAN,
-                setpoints == Setpoints::Poses,
-            ),
-            (
-                |state| state.elbow_c[0] = f64::NAN,
-                setpoints == Setpoints::Poses,
-            ),
+            (|state| state.O_T_EE_c[12] = f64::NAN, is_cartesian),
+            (|state| state.elbow_c[0] = f64::NAN, is_cartesian),
         ] {
-            let backend = Backend::RobotController(setpoints);
             let mut driver = armed_with(session(target, backend));
             for step in 0..60 {
                 let mut state = RobotState {
@@ -135,13 +127,11 @@ fn a_setpoint_that_is_not_finite_gets_no_answer_either() {
                     spoil(&mut state);
                 }
                 let command = answer(&mut driver, &state);
-                assert_eq!(command.is_none(), bad && read, "{setpoints:?}, {step}");
+                assert_eq!(command.is_none(), bad && read, "{backend}, {step}");
                 let sent = command.unwrap_or_default();
-                let numbers = sent.q_c.iter().chain(&sent.O_T_EE_c);
-                assert!(
-                    numbers.copied().all(f64::is_finite),
-                    "{setpoints:?}, {step}"
-                );
+                let joints = sent.q_c.iter().chain(&sent.dq_c);
+                let numbers = joints.chain(&sent.O_T_EE_c).chain(&sent.O_dP_EE_c);
+                assert!(numbers.copied().all(f64::is_finite), "{backend}, {step}");
             }
         }
     }

@@ -1,10 +1,16 @@
-//! What turns the setpoints of a session into torques: its own law, or the robot's controller.
+//! What turns the setpoints of a session into torques: its own law, or one of the robot's
+//! controllers.
+
+use core::fmt;
 
 use franka_model::elbow::FLIP_ANGLE;
 use franka_model::{JointVector, Model};
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, RobotState, Version};
 
-use crate::control::{CartesianPose, JointPositions, Torques};
+use crate::control::{
+    CartesianPose, CartesianVelocities, GeneratorCommand, JointPositions, JointVelocities,
+    MotionCommand, Torques,
+};
 use crate::session::guard::backstop::BACKSTOP;
 use crate::session::{ForceCap, Goal, GoalError, Guard, SessionCommand, Target};
 
@@ -27,51 +33,154 @@ pub enum Backend {
     /// The law of the session, on this host.
     #[default]
     Torques,
-    /// The robot's own controller, which gets the setpoints. Its stiffness is the robot's: see
-    /// `set_joint_impedance` and `set_cartesian_impedance`; the gains of goals are without effect,
-    /// and a goal with a force cap is refused.
+    /// One of the robot's own controllers, which gets the setpoints: every controller takes every
+    /// kind. Its stiffness is the robot's: see `set_joint_impedance` and `set_cartesian_impedance`;
+    /// the gains of goals are without effect, and a goal with a force cap is refused.
     ///
     /// Setpoints go on from where the robot itself takes them to be: when commands were lost, and
     /// the robot went on by itself, the reference is put where it went. Its limiter is the
     /// backstop.
-    RobotController(Setpoints),
+    RobotController {
+        /// What follows the setpoints.
+        controller: Controller,
+        /// What it follows.
+        setpoints: Setpoints,
+    },
+}
+
+/// The robot's own controllers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Controller {
+    /// A spring and damper per joint. It comes nearer to its target than the other.
+    JointImpedance,
+    /// Springs and dampers at the end effector. An arm that sticks rests further from its target,
+    /// and its posture is held softly: joint positions are met at the end effector only.
+    CartesianImpedance,
 }
 
 /// What the robot's controller gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Setpoints {
-    /// Joint positions, for its joint impedance controller. Every goal but hand guiding.
-    Joints,
-    /// Poses of the end effector, for its Cartesian impedance controller. Poses only.
+    /// Joint positions. Every goal but hand guiding.
+    JointPositions,
+    /// Joint velocities, which the robot integrates. Every goal but hand guiding.
+    ///
+    /// Each is that of the reference. Where the robot has integrated to another position, the
+    /// difference is made up for slowly if it is small, so that the arm ends at its target and not
+    /// beside it; otherwise the reference goes on from there.
+    JointVelocities,
+    /// Poses of the end effector. Poses only.
     ///
     /// Each goes with its elbow, the angle of joint 3, which leaves the robot's own inverse
     /// kinematics nothing to choose: its joints are those of the reference, and keep their limits.
     /// A stretched arm is refused, and joint 4 stays on its side of [`FLIP_ANGLE`]: the robot takes
     /// the elbow's side for that of the beginning. Where joint 3 rests while the arm moves about
     /// its pose, which takes wide turns of the joints 3 and 5, an elbow says little about the
-    /// others: there only the robot's own check applies, and [`Self::Joints`] is the better choice.
-    Poses,
+    /// others: there only the robot's own check applies, and setpoints of joints are the better
+    /// choice.
+    CartesianPoses,
+    /// Twists of the end effector, which the robot integrates, each with its elbow. What holds for
+    /// [`Self::CartesianPoses`] and [`Self::JointVelocities`] holds here.
+    CartesianVelocities,
+}
+
+impl Setpoints {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [
+        Self::JointPositions,
+        Self::JointVelocities,
+        Self::CartesianPoses,
+        Self::CartesianVelocities,
+    ];
+
+    /// The setpoint that holds the arm: what the robot desires already, or no velocity.
+    pub(super) fn holding(self, state: &RobotState) -> MotionCommand {
+        let elbow = Some(elbow(&state.q_d.into()));
+        match self {
+            Self::JointPositions => JointPositions(state.q_d).into(),
+            Self::JointVelocities => JointVelocities::ZERO.into(),
+            Self::CartesianPoses => CartesianPose {
+                O_T_EE: state.O_T_EE_c,
+                elbow,
+            }
+            .into(),
+            Self::CartesianVelocities => CartesianVelocities {
+                elbow,
+                ..CartesianVelocities::ZERO
+            }
+            .into(),
+        }
+    }
 }
 
 impl Backend {
+    /// Every controller of the robot with every kind of setpoint.
+    pub const ROBOT_CONTROLLERS: [Self; 8] = {
+        let [q, dq, poses, twists] = Setpoints::ALL;
+        [
+            Self::joint_impedance(q),
+            Self::joint_impedance(dq),
+            Self::joint_impedance(poses),
+            Self::joint_impedance(twists),
+            Self::cartesian_impedance(q),
+            Self::cartesian_impedance(dq),
+            Self::cartesian_impedance(poses),
+            Self::cartesian_impedance(twists),
+        ]
+    };
+
+    /// The robot's joint impedance controller, with these setpoints.
+    pub const fn joint_impedance(setpoints: Setpoints) -> Self {
+        Self::RobotController {
+            controller: Controller::JointImpedance,
+            setpoints,
+        }
+    }
+
+    /// The robot's Cartesian impedance controller, with these setpoints.
+    pub const fn cartesian_impedance(setpoints: Setpoints) -> Self {
+        Self::RobotController {
+            controller: Controller::CartesianImpedance,
+            setpoints,
+        }
+    }
+
     /// The motion that it takes.
-    pub(crate) fn request(self, version: Version) -> MoveRequest {
-        let (controller, generator) = match self {
-            Self::Torques => (
-                MoveControllerMode::ExternalController,
-                version.torque_generator(),
-            ),
-            Self::RobotController(Setpoints::Joints) => (
-                MoveControllerMode::JointImpedance,
-                MoveGeneratorMode::JointPosition,
-            ),
-            Self::RobotController(Setpoints::Poses) => (
-                MoveControllerMode::CartesianImpedance,
-                MoveGeneratorMode::CartesianPosition,
-            ),
+    pub fn request(self, version: Version) -> MoveRequest {
+        let Self::RobotController {
+            controller,
+            setpoints,
+        } = self
+        else {
+            let generator = version.torque_generator();
+            return MoveRequest::new(MoveControllerMode::ExternalController, generator);
+        };
+        let controller = match controller {
+            Controller::JointImpedance => MoveControllerMode::JointImpedance,
+            Controller::CartesianImpedance => MoveControllerMode::CartesianImpedance,
+        };
+        let generator = match setpoints {
+            Setpoints::JointPositions => MoveGeneratorMode::JointPosition,
+            Setpoints::JointVelocities => MoveGeneratorMode::JointVelocity,
+            Setpoints::CartesianPoses => MoveGeneratorMode::CartesianPosition,
+            Setpoints::CartesianVelocities => MoveGeneratorMode::CartesianVelocity,
         };
         MoveRequest::new(controller, generator)
+    }
+
+    /// Whether the robot's inverse kinematics stands between its setpoints and the joints: it takes
+    /// poses only.
+    pub fn is_cartesian(self) -> bool {
+        use Setpoints::{CartesianPoses, CartesianVelocities};
+        matches!(
+            self,
+            Self::RobotController {
+                setpoints: CartesianPoses | CartesianVelocities,
+                ..
+            }
+        )
     }
 
     /// Whether commands of a session with this backend pass through `guard`.
@@ -107,20 +216,27 @@ impl Backend {
     /// # Errors
     /// [`GoalError::Backend`].
     pub(crate) fn check(self, goal: &Goal) -> Result<(), GoalError> {
+        if self == Self::Torques {
+            return Ok(());
+        }
         let joints = |target| matches!(target, Target::Joints(_));
-        let to_joints = joints(goal.target.place())
-            || goal.reaction.is_some_and(|reaction| joints(reaction.then));
-        let why = match (self, goal.target.place()) {
-            (Self::Torques, _) => return Ok(()),
-            (_, Target::Guide(_)) => "takes no guiding hand",
-            (Self::RobotController(Setpoints::Poses), _) if to_joints => "takes poses only",
-            _ if goal.grasp.is_some() => "carries no object: its springs act at the end effector",
-            _ if matches!(goal.force_cap, ForceCap::Newtons(_)) => {
-                "keeps no force cap: its stiffness is set on the robot"
-            }
+        let place = goal.target.place();
+        let to_joints =
+            joints(place) || goal.reaction.is_some_and(|reaction| joints(reaction.then));
+        let (got, instead) = match place {
+            Target::Guide(_) => ("a guiding hand", OWN_LAW),
+            _ if to_joints && self.is_cartesian() => (
+                "a target of joint positions",
+                "a pose does, or setpoints of joints, or Backend::Torques",
+            ),
+            _ if goal.grasp.is_some() => ("an object to carry", OWN_LAW),
+            _ if matches!(goal.force_cap, ForceCap::Newtons(_)) => (
+                "a force cap",
+                "the impedance set on the robot does, or Backend::Torques",
+            ),
             _ => return Ok(()),
         };
-        Err(GoalError::Backend { why })
+        Err(self.refuses(got, instead))
     }
 
     /// Checks that this backend can take over an arm at these joint positions.
@@ -128,17 +244,25 @@ impl Backend {
     /// # Errors
     /// [`GoalError::Backend`].
     pub(crate) fn check_start(self, q: &JointVector) -> Result<(), GoalError> {
-        if self == Self::RobotController(Setpoints::Poses) && side(q) > 0.0 {
-            let why = "takes no stretched arm";
-            return Err(GoalError::Backend { why });
+        if self.is_cartesian() && side(q) > 0.0 {
+            let got = "a stretched arm, with joint 4 above -0.467 rad";
+            return Err(self.refuses(got, "setpoints of joints do, or Backend::Torques"));
         }
         Ok(())
+    }
+
+    fn refuses(self, got: &'static str, instead: &'static str) -> GoalError {
+        GoalError::Backend {
+            backend: self,
+            got,
+            instead,
+        }
     }
 
     /// The limits of the joints of `model` under this backend: the elbow that goes with poses has
     /// limits of its own, and no backstop stands between these joints and the robot.
     pub(super) fn limited(self, model: &Model) -> Option<Model> {
-        if self != Self::RobotController(Setpoints::Poses) {
+        if !self.is_cartesian() {
             return None;
         }
         let elbow = &model.cartesian_limits().elbow;
@@ -155,9 +279,9 @@ impl Backend {
     /// Whether the desired state of the robot, which setpoints go on from, is finite where it is
     /// read.
     pub(super) fn can_read(self, state: &RobotState) -> bool {
-        let Self::RobotController(setpoints) = self else {
+        if self == Self::Torques {
             return true;
-        };
+        }
         let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
         let joints = [&state.q_d, &state.dq_d, &state.ddq_d].map(|joints| finite(joints));
         let pose = || {
@@ -168,7 +292,7 @@ impl Backend {
                     .into_iter()
                     .all(|elbow| finite(elbow))
         };
-        joints == [true; 3] && (setpoints == Setpoints::Joints || pose())
+        joints == [true; 3] && (!self.is_cartesian() || pose())
     }
 
     /// The answer that holds the arm: what the robot desires already, or no torques beside its
@@ -176,17 +300,42 @@ impl Backend {
     pub(super) fn holding(self, state: &RobotState) -> SessionCommand {
         match self {
             Self::Torques => SessionCommand::Torques(Torques([0.0; 7])),
-            Self::RobotController(Setpoints::Joints) => {
-                SessionCommand::Setpoint(JointPositions(state.q_d).into())
+            Self::RobotController { setpoints, .. } => {
+                SessionCommand::Setpoint(setpoints.holding(state))
             }
-            Self::RobotController(Setpoints::Poses) => SessionCommand::Setpoint(
-                CartesianPose {
-                    O_T_EE: state.O_T_EE_c,
-                    elbow: Some(elbow(&state.q_d.into())),
-                }
-                .into(),
-            ),
         }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Torques => write!(f, "the session's own law"),
+            Self::RobotController {
+                controller,
+                setpoints,
+            } => write!(f, "the robot's {controller} with {setpoints}"),
+        }
+    }
+}
+
+impl fmt::Display for Controller {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::JointImpedance => "joint impedance controller",
+            Self::CartesianImpedance => "Cartesian impedance controller",
+        })
+    }
+}
+
+impl fmt::Display for Setpoints {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::JointPositions => "joint positions",
+            Self::JointVelocities => "joint velocities",
+            Self::CartesianPoses => "Cartesian poses",
+            Self::CartesianVelocities => "Cartesian velocities",
+        })
     }
 }
 
@@ -200,6 +349,9 @@ pub(super) fn elbow(q: &JointVector) -> [f64; 2] {
 fn side(q: &JointVector) -> f64 {
     if q[3] < FLIP_ANGLE { -1.0 } else { 1.0 }
 }
+
+/// What does what no controller of the robot does.
+const OWN_LAW: &str = "Backend::Torques does";
 
 /// Share of the elbow's velocity that joint 3 may take, where that is less than its own.
 const ELBOW: f64 = 0.95;

@@ -11,7 +11,8 @@ use franka_proto::{RobotState, Version};
 use crate::law::{GainError, Law};
 use crate::session::condition::ConditionError;
 use crate::session::{
-    Budget, Chunk, ForceCap, Goal, KeepOut, Leash, OnArrival, Settling, Target, Watchdog, approach,
+    Backend, Budget, Chunk, ForceCap, Goal, KeepOut, Leash, OnArrival, Settling, Target, Watchdog,
+    approach,
 };
 
 /// Why a goal is not accepted. Nothing has moved.
@@ -99,11 +100,15 @@ pub enum GoalError {
     /// Too many chunks came within a few cycles of the control thread.
     #[error(transparent)]
     Chunks(#[from] TooManyChunks),
-    /// The robot's own controller cannot do what the goal asks for.
-    #[error("the robot's controller, which this session commands, {why}")]
+    /// The backend of the session cannot do what the goal asks for.
+    #[error("{backend} cannot take {got}; {instead}")]
     Backend {
-        /// Why not.
-        why: &'static str,
+        /// The backend.
+        backend: Backend,
+        /// What it cannot do.
+        got: &'static str,
+        /// What can.
+        instead: &'static str,
     },
     /// A region to keep out of is invalid, or one too many.
     #[error("region {region} to keep out of {why}")]

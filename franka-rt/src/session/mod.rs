@@ -58,7 +58,7 @@ use crate::slot::{Read, SlotReader};
 use crate::team::{Member, MemberFault, TeamStop};
 use crate::together::{Gate, StartFault};
 
-pub use backend::{Backend, Setpoints};
+pub use backend::{Backend, Controller, Setpoints};
 pub use budget::Budget;
 pub use check::{GoalError, TooManyChunks};
 pub use chunk::{

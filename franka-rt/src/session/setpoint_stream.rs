@@ -1,29 +1,21 @@
 //! The stream of setpoints to the robot's own controller, and where it goes on after lost commands.
 
-use franka_model::limits::JointLimits;
-use franka_model::{EndEffector, Frame, JointVector, Model, transform};
-use franka_proto::{RobotState, Version};
-use nalgebra::Vector3;
+mod distance;
 
-use crate::control::{CartesianPose, JointPositions, MotionCommand, Shaper};
-use crate::session::backend::{Setpoints, elbow};
+use franka_model::limits::JointLimits;
+use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation, transform};
+use franka_proto::{RobotState, Version};
+use nalgebra::Isometry3;
+
+use crate::control::{
+    CartesianPose, CartesianVelocities, JointPositions, JointVelocities, MotionCommand, Shaper,
+};
+use crate::session::backend::{Controller, Setpoints, elbow};
 use crate::session::guard::backstop;
 use crate::session::reference::Reference;
 use crate::session::rigid;
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY};
-
-/// How far the robot's setpoint may be from the one that it was sent, `[rad]`, for the two to count
-/// as the same: more than its echo is rounded by, and less than any cycle of a motion that matters.
-const ECHO: f64 = 2e-6;
-
-/// The same of a pose and an elbow, `[m, rad]`. No backstop limits the joints behind a pose: what
-/// is overlooked here comes back in them as a jerk, at most a fifth of what the gentlest joint may
-/// have.
-const POSE_ECHO: f64 = 3e-7;
-
-/// How little the limiter may change a pose and an elbow, `[m, rad]`, for them to count as
-/// unchanged: the joints behind them feel some ten times as much, a jerk of 100 rad/s^3.
-const SAME: f64 = 1e-8;
+use distance::{apart, differs, is_off, joint_drift, pose_drift, unchanged};
 
 /// Share that is kept of what the limiter lets pass when joints are held back: it is found along a
 /// straight line.
@@ -32,51 +24,91 @@ const EASE: f64 = 0.95;
 /// Times that joints are held back anew in a cycle.
 const EASINGS: usize = 3;
 
+/// Part of a drift that velocities make up for in a second, `[1/s]`.
+const RETURN: f64 = 10.0;
+
 /// Streams setpoints to the robot's controller.
 #[derive(Debug)]
 pub(super) struct SetpointStream {
+    controller: Controller,
     setpoints: Setpoints,
     shaper: Shaper,
-    /// Whether no setpoint has been sent.
-    first: bool,
+    /// The setpoint of the last reference; `None` before the first.
+    last: Option<MotionCommand>,
+    /// The joint positions that velocities set out from: those of the last reference, or the
+    /// robot's own.
+    from: JointVector,
+    /// What velocities make up for.
+    drift: Drift,
+}
+
+/// How far the robot's integrated position is from the reference, as far as that matters.
+#[derive(Clone, Copy, Debug)]
+enum Drift {
+    /// `[rad]`
+    Joints(JointVector),
+    /// Base axes, `[m, rad]`.
+    Pose(Twist),
+    /// It is at the reference, or is no matter of velocities.
+    None,
 }
 
 impl SetpointStream {
-    pub(super) fn new(setpoints: Setpoints, version: Version, limits: &JointLimits) -> Self {
+    pub(super) fn new(
+        controller: Controller,
+        setpoints: Setpoints,
+        version: Version,
+        limits: &JointLimits,
+    ) -> Self {
         Self {
+            controller,
             setpoints,
             shaper: Shaper::new(version, true, MAX_CUTOFF_FREQUENCY)
                 .with_bounds(backstop::bounds(version))
                 .with_limits_of(limits),
-            first: true,
+            last: None,
+            from: JointVector::zeros(),
+            drift: Drift::None,
         }
     }
 
-    pub(super) fn setpoints(&self) -> Setpoints {
-        self.setpoints
+    pub(super) fn controller(&self) -> Controller {
+        self.controller
     }
 
-    /// Returns the setpoint as the robot has it, if it differs from `reference`. Cartesian
-    /// setpoints are compared as commanded, and the robot's own joints are taken over.
+    /// Returns the setpoint as the robot has it, if it differs from that of `reference`, the last
+    /// one that was sent. Cartesian setpoints are compared as commanded, and the robot's own joints
+    /// are taken over.
+    ///
+    /// What the robot has integrated may differ a little, which the next velocities make up for.
     pub(super) fn echo(
-        &self,
+        &mut self,
         model: &Model,
         ee: &EndEffector,
         reference: &Reference,
         state: &RobotState,
     ) -> Option<Reference> {
-        let differs = match self.setpoints {
-            _ if self.first => true,
-            Setpoints::Joints => (JointVector::from(state.q_d) - reference.q).amax() > ECHO,
-            Setpoints::Poses => {
-                let echo = CartesianPose {
-                    O_T_EE: state.O_T_EE_c,
-                    elbow: Some(state.elbow_c),
-                };
-                apart(&pose_at(model, ee, &reference.q), &echo).amax() > POSE_ECHO
+        (self.from, self.drift) = (reference.q, Drift::None);
+        let mut differs = self.last.is_none_or(|last| differs(&last, state));
+        match self.setpoints {
+            Setpoints::JointVelocities if !differs => {
+                let drift = reference.q - JointVector::from(state.q_d);
+                differs = drift.amax() > is_off::JOINTS;
+                self.drift = Drift::Joints(joint_drift(&drift));
             }
-        };
+            Setpoints::CartesianVelocities if !differs => {
+                let robots = transform::isometry_from_array(&state.O_T_EE_c);
+                let pose = pose_at(model, ee, &reference.q);
+                let drift = robots.map_or(Twist::zeros(), |robots| twist(&pose, &robots));
+                differs = drift.amax() > is_off::POSE;
+                self.drift = Drift::Pose(pose_drift(&drift));
+            }
+            _ => {}
+        }
         let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
+        if differs {
+            (self.from, self.drift) = (q, Drift::None);
+        }
         // The robot's velocity is the mean of its last cycle, the reference's that at the end of
         // it.
         differs.then(|| Reference {
@@ -87,96 +119,130 @@ impl SetpointStream {
     }
 
     /// The command for `reference`, and whether the backstop changed it. A command that cannot be
-    /// shaped, as from a non-finite reference, is the robot's own setpoint.
+    /// shaped, as from a non-finite reference, is the one that holds the arm. The `last` velocity of
+    /// a motion is zero: it is repeated until the robot has ended the motion.
     pub(super) fn command(
         &mut self,
         model: &Model,
         ee: &EndEffector,
         reference: &Reference,
+        last: bool,
         state: &RobotState,
     ) -> (MotionCommand, bool) {
-        let first = core::mem::take(&mut self.first);
-        match self.setpoints {
-            Setpoints::Joints => {
-                let wish = JointPositions(reference.q.into());
-                let shaped = self.shaper.joint_positions(&wish, state, first);
-                let shaped = shaped.unwrap_or(JointPositions(state.q_d));
-                let changed = (JointVector::from(shaped.0) - reference.q).amax() > ECHO;
-                (shaped.into(), changed)
-            }
-            Setpoints::Poses if first => {
+        if last {
+            (self.from, self.drift) = (reference.q, Drift::None);
+        }
+        let from = match self.setpoints {
+            Setpoints::CartesianVelocities => pose_at(model, ee, &self.from),
+            _ => Isometry3::identity(),
+        };
+        let wish = |q: &JointVector| self.setpoint(model, ee, &from, q);
+        let wished = wish(&reference.q);
+        let shape = |asked: &MotionCommand| {
+            let first = self.last.is_none();
+            let shaped = asked.shaped(&self.shaper, state, first);
+            shaped.unwrap_or_else(|_| self.setpoints.holding(state))
+        };
+        let (command, changed) = match (self.setpoints, &wished) {
+            (Setpoints::CartesianPoses, MotionCommand::CartesianPose(pose))
+                if self.last.is_none() =>
+            {
                 let start = CartesianPose {
                     O_T_EE: state.O_T_EE_c,
-                    elbow: Some(elbow(&reference.q)),
+                    ..*pose
                 };
-                let shaped = self.shaper.cartesian_pose(&start, state, true);
-                (shaped.unwrap_or(start).into(), false)
+                (shape(&start.into()), false)
             }
-            Setpoints::Poses => {
-                let pose = |q: &JointVector| pose_at(model, ee, q);
-                let (command, changed) = self.eased(pose, reference, state);
-                (command.into(), changed)
+            (Setpoints::JointPositions | Setpoints::JointVelocities, _) => {
+                let shaped = shape(&wished);
+                (shaped, !unchanged(&shaped, &wished))
             }
-        }
-    }
-
-    /// The pose and elbow of `reference` within the limits of both, and whether that took a change.
-    ///
-    /// A pose changed by the limiter would make the robot find other joints, with no limits
-    /// applied. So the joints are held back instead, towards where they get without a jerk, by as
-    /// much as the limiter held back their pose.
-    fn eased(
-        &self,
-        pose: impl Fn(&JointVector) -> CartesianPose,
-        reference: &Reference,
-        state: &RobotState,
-    ) -> (CartesianPose, bool) {
-        let shape = |asked: &CartesianPose| {
-            let shaped = self.shaper.cartesian_pose(asked, state, false);
-            shaped.unwrap_or(CartesianPose {
-                O_T_EE: state.O_T_EE_c,
-                ..*asked
-            })
+            (Setpoints::CartesianPoses | Setpoints::CartesianVelocities, _) => {
+                eased(wish, shape, reference, state)
+            }
         };
-        let mut asked = pose(&reference.q);
-        let mut shaped = shape(&asked);
-        if apart(&shaped, &asked).amax() <= SAME {
-            return (shaped, false);
-        }
-        let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
-        let coasting = q + (dq + ddq * CYCLE) * CYCLE;
-        let base = pose(&coasting);
-        let mut share = 1.0;
-        for _ in 0..EASINGS {
-            let (left, all) = (apart(&shaped, &base), apart(&asked, &base));
-            share *= EASE * left.zip_map(&all, |left, all| (left / all).min(1.0)).min();
-            asked = pose(&(coasting + (reference.q - coasting) * share));
-            shaped = shape(&asked);
-            if apart(&shaped, &asked).amax() <= SAME {
-                break;
+        self.last = Some(wished);
+        (command, changed)
+    }
+
+    /// The setpoint that leads to the joint positions `q`; velocities set out from the pose `from`.
+    fn setpoint(
+        &self,
+        model: &Model,
+        ee: &EndEffector,
+        from: &Isometry3<f64>,
+        q: &JointVector,
+    ) -> MotionCommand {
+        match self.setpoints {
+            Setpoints::JointPositions => JointPositions((*q).into()).into(),
+            Setpoints::JointVelocities => {
+                let back = match self.drift {
+                    Drift::Joints(drift) => drift * RETURN,
+                    Drift::Pose(_) | Drift::None => JointVector::zeros(),
+                };
+                JointVelocities(((q - self.from) / CYCLE + back).into()).into()
+            }
+            Setpoints::CartesianPoses => CartesianPose {
+                O_T_EE: transform::array(&pose_at(model, ee, q)),
+                elbow: Some(elbow(q)),
+            }
+            .into(),
+            Setpoints::CartesianVelocities => {
+                let back = match self.drift {
+                    Drift::Pose(drift) => drift * RETURN,
+                    Drift::Joints(_) | Drift::None => Twist::zeros(),
+                };
+                let velocity = twist(&pose_at(model, ee, q), from) / CYCLE + back;
+                CartesianVelocities {
+                    O_dP_EE: velocity.into(),
+                    elbow: Some(elbow(q)),
+                }
+                .into()
             }
         }
-        (shaped, true)
     }
 }
 
-/// The pose and the elbow at these joint positions.
-fn pose_at(model: &Model, ee: &EndEffector, q: &JointVector) -> CartesianPose {
-    CartesianPose {
-        O_T_EE: transform::array(&rigid(&model.pose(Frame::EndEffector, q, ee))),
-        elbow: Some(elbow(q)),
+/// The setpoint of `reference` within the limits of pose and elbow, and whether that took a change.
+///
+/// A pose changed by the limiter would make the robot find other joints, with no limits applied. So
+/// the joints are held back instead, towards where they get without a jerk, by as much as the
+/// limiter held back their pose.
+fn eased(
+    wish: impl Fn(&JointVector) -> MotionCommand,
+    shape: impl Fn(&MotionCommand) -> MotionCommand,
+    reference: &Reference,
+    state: &RobotState,
+) -> (MotionCommand, bool) {
+    let mut asked = wish(&reference.q);
+    let mut shaped = shape(&asked);
+    if unchanged(&shaped, &asked) {
+        return (shaped, false);
     }
+    let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
+    let coasting = q + (dq + ddq * CYCLE) * CYCLE;
+    let base = wish(&coasting);
+    let mut share = 1.0;
+    for _ in 0..EASINGS {
+        let (left, all) = (apart(&shaped, &base), apart(&asked, &base));
+        share *= EASE * left.zip_map(&all, |left, all| (left / all).min(1.0)).min();
+        asked = wish(&(coasting + (reference.q - coasting) * share));
+        shaped = shape(&asked);
+        if unchanged(&shaped, &asked) {
+            break;
+        }
+    }
+    (shaped, true)
 }
 
-/// How far two poses are apart: in translation, in the elements of their rotation, in the elbow.
-fn apart(a: &CartesianPose, b: &CartesianPose) -> Vector3<f64> {
-    let squares = |elements: core::ops::Range<usize>| -> f64 {
-        elements.map(|i| (a.O_T_EE[i] - b.O_T_EE[i]).powi(2)).sum()
-    };
-    let [ours, theirs] = [a, b].map(|pose| pose.elbow.map_or(0.0, |[angle, _]| angle));
-    Vector3::new(
-        squares(12..15).sqrt(),
-        squares(0..11).sqrt(),
-        (ours - theirs).abs(),
-    )
+/// The pose at these joint positions.
+fn pose_at(model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
+    rigid(&model.pose(Frame::EndEffector, q, ee))
+}
+
+/// Displacement and rotation vector from one pose to another, base axes, `[m, rad]`.
+fn twist(to: &Isometry3<f64>, from: &Isometry3<f64>) -> Twist {
+    let way = to.translation.vector - from.translation.vector;
+    let turn = rotation::error(&to.rotation, &from.rotation);
+    Twist::new(way.x, way.y, way.z, turn.x, turn.y, turn.z)
 }

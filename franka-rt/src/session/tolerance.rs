@@ -1,7 +1,7 @@
 //! How near an arm comes to its target, and so what counts as arrived.
 
 use crate::law::{Gains, Law};
-use crate::session::Setpoints;
+use crate::session::Controller;
 
 /// How near counts as arrived, measured at the end effector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,14 +66,15 @@ impl Tolerance {
     }
 
     /// What an arm like that keeps under the robot's own controllers, with the impedance that they
-    /// have by default: 2 mm and 5 mrad for joint positions, 5 mm and 15 mrad for poses.
-    pub fn under(setpoints: Setpoints) -> Self {
-        match setpoints {
-            Setpoints::Joints => Self {
+    /// have by default and whatever their setpoints are: 2 mm and 5 mrad under joint impedance, 5 mm
+    /// and 15 mrad under Cartesian impedance.
+    pub fn under(controller: Controller) -> Self {
+        match controller {
+            Controller::JointImpedance => Self {
                 translation: 2e-3,
                 rotation: 5e-3,
             },
-            Setpoints::Poses => Self {
+            Controller::CartesianImpedance => Self {
                 translation: 5e-3,
                 rotation: 15e-3,
             },

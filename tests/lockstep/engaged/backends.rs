@@ -5,87 +5,101 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::{turned, up};
-use franka_model::{READY, RobotKind, Wrench};
+use franka_model::{JointVector, READY, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::driver::Observer;
 use franka_rt::lifecycle::{Engagement, MotionError, NewMotion, Tuning};
 use franka_rt::session::{
-    Backend, ForceCap, Free, Goal, GoalError, Guard, Lead, OnArrival, Setpoints, Target,
+    Backend, ForceCap, Free, Goal, GoalError, GoalId, Guard, Lead, OnArrival, Setpoints, Target,
 };
 use franka_sim::Config;
 use franka_tests::lockstep::{Lockstep, for_each_robot};
-use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+/// Runs `test` for every controller of the robot with every kind of setpoint, on both robots, with
+/// a session under it.
+fn for_each_controller(test: impl Fn(Backend, &mut Lockstep, GoalId)) {
+    for_each_robot(|ready| {
+        for backend in Backend::ROBOT_CONTROLLERS {
+            println!("{backend}");
+            let mut lockstep = ready();
+            let engaged = lockstep.engage_with(Engagement {
+                backend,
+                ..Engagement::default()
+            });
+            test(backend, &mut lockstep, engaged);
+        }
+    });
+}
 
 #[test]
-fn the_robot_controller_follows_joints_through_every_kind_of_goal() {
-    for_each_robot(|ready| {
-        let mut lockstep = ready();
-        let engaged = lockstep.engage_with(Engagement {
-            backend: Backend::RobotController(Setpoints::Joints),
-            ..Engagement::default()
-        });
-        let pose = up(&lockstep, 0.05);
+fn every_controller_follows_every_kind_of_goal_that_it_takes() {
+    for_each_controller(|backend, lockstep, engaged| {
+        let pose = up(lockstep, 0.05);
+        let aside = Translation3::new(0.0, 0.05, -0.05) * pose;
+        let joints = |by, pose: Isometry3<f64>| match backend.is_cartesian() {
+            true => Target::Pose(pose),
+            false => turned(by),
+        };
         for target in [
-            turned(0.2),
-            Target::Pose(pose),
-            turned(-0.1),
-            Target::Pose(pose),
+            joints(0.2, aside),
+            pose.into(),
+            joints(-0.1, aside),
+            pose.into(),
         ] {
             lockstep.within(engaged, target, OnArrival::Hold).unwrap();
             lockstep.run(350);
         }
-        for target in [Target::Pose(pose), turned(0.0), Target::Rest] {
+        for target in [pose.into(), joints(0.0, aside), Target::Rest] {
             let goal = lockstep
                 .within(engaged, target, OnArrival::ReportAndHold)
                 .unwrap();
             lockstep.until_resolved(goal, 6000).unwrap();
         }
+        lockstep.disengage(engaged);
+        lockstep.until_resolved(engaged, 1000).unwrap();
+    });
+}
+
+#[test]
+fn what_no_controller_does_is_refused_with_what_would() {
+    for_each_controller(|backend, lockstep, engaged| {
+        let refused = |got, instead| {
+            Err(MotionError::Goal(GoalError::Backend {
+                backend,
+                got,
+                instead,
+            }))
+        };
         let guide = lockstep.within(engaged, Target::Guide(Free::ALL), OnArrival::Hold);
-        let refused = MotionError::Goal(GoalError::Backend {
-            why: "takes no guiding hand",
-        });
-        assert_eq!(guide, Err(refused));
-        lockstep.disengage(engaged);
-        lockstep.until_resolved(engaged, 1000).unwrap();
-    });
-}
-
-#[test]
-fn the_robot_controller_follows_poses() {
-    for_each_robot(|ready| {
-        let mut lockstep = ready();
-        let engaged = lockstep.engage_with(Engagement {
-            backend: Backend::RobotController(Setpoints::Poses),
-            ..Engagement::default()
-        });
-        let pose = up(&lockstep, 0.05);
-        let goal = lockstep
-            .within(engaged, Target::Pose(pose), OnArrival::ReportAndHold)
-            .unwrap();
-        lockstep.run(500);
-        assert_eq!(lockstep.client.outcome(goal), None);
-        let back = Translation3::new(0.0, 0.05, -0.05) * pose;
-        let goal = lockstep
-            .within(engaged, Target::Pose(back), OnArrival::ReportAndHold)
-            .unwrap();
-        lockstep.until_resolved(goal, 6000).unwrap();
+        assert_eq!(guide, refused("a guiding hand", "Backend::Torques does"));
         let joints = lockstep.within(engaged, turned(0.0), OnArrival::ReportAndHold);
-        assert!(matches!(
-            joints,
-            Err(MotionError::Goal(GoalError::Backend { .. }))
-        ));
-        lockstep.disengage(engaged);
-        lockstep.until_resolved(engaged, 1000).unwrap();
+        let instead = "a pose does, or setpoints of joints, or Backend::Torques";
+        match backend.is_cartesian() {
+            true => {
+                assert_eq!(joints, refused("a target of joint positions", instead));
+                let text = joints.unwrap_err().to_string();
+                assert!(text.contains(&backend.to_string()), "{text}");
+                let chunk = lockstep.chunk(engaged, super::chunk(0.0, 0.1));
+                let chunk = chunk.map(|()| engaged);
+                assert_eq!(chunk, refused("a target of joint positions", instead));
+            }
+            false => assert!(joints.is_ok()),
+        }
     });
 }
 
 #[test]
-fn poses_with_an_elbow_move_the_robots_joints_like_the_reference() {
+fn setpoints_with_an_elbow_move_the_robots_joints_like_the_reference() {
     for_each_robot(|ready| {
-        for lost in [0, 1, 2, 5, 12] {
+        let cartesian = [Setpoints::CartesianPoses, Setpoints::CartesianVelocities];
+        for (setpoints, lost) in cartesian
+            .into_iter()
+            .flat_map(|setpoints| [0, 1, 2, 5, 12].map(|lost| (setpoints, lost)))
+        {
             let mut lockstep = ready();
             let engaged = lockstep.engage_with(Engagement {
-                backend: Backend::RobotController(Setpoints::Poses),
+                backend: Backend::cartesian_impedance(setpoints),
                 ..Engagement::default()
             });
             let aside = Translation3::new(0.0, 0.1, 0.05) * up(&lockstep, 0.05);
@@ -108,25 +122,21 @@ fn poses_with_an_elbow_move_the_robots_joints_like_the_reference() {
                 sent = lockstep.client.record.q_ref;
             }
             // The rounding of a robot's state.
-            assert!(off < 3e-7, "{off} rad");
+            assert!(off < 3e-7, "{setpoints}: {off} rad");
             lockstep.until_resolved(goal, 6000).unwrap();
         }
     });
 }
 
-/// The robot's controller with each kind of setpoint.
-const CONTROLLERS: [Backend; 2] = [
-    Backend::RobotController(Setpoints::Joints),
-    Backend::RobotController(Setpoints::Poses),
-];
-
 #[test]
 fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
     for_each_robot(|ready| {
-        for backend in CONTROLLERS {
+        for backend in Backend::ROBOT_CONTROLLERS {
             let mut lockstep = ready();
             let refused = MotionError::Goal(GoalError::Backend {
-                why: "keeps no force cap: its stiffness is set on the robot",
+                backend,
+                got: "a force cap",
+                instead: "the impedance set on the robot does, or Backend::Torques",
             });
             let capped = Goal {
                 force_cap: ForceCap::Newtons(20.0),
@@ -173,7 +183,10 @@ fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
 #[test]
 fn only_guards_of_the_backend_bind_when_the_arm_is_pushed() {
     for_each_robot(|ready| {
-        for backend in [Backend::Torques].into_iter().chain(CONTROLLERS) {
+        for backend in [Backend::Torques]
+            .into_iter()
+            .chain(Backend::ROBOT_CONTROLLERS)
+        {
             let mut lockstep = ready();
             let most =
                 CollisionBehavior::uniform([1000.0; 7], [1000.0; 7], [1000.0; 6], [1000.0; 6]);
@@ -211,50 +224,68 @@ fn only_guards_of_the_backend_bind_when_the_arm_is_pushed() {
 }
 
 #[test]
-fn poses_are_refused_to_a_stretched_arm() {
+fn setpoints_of_the_end_effector_are_refused_to_a_stretched_arm() {
     for kind in RobotKind::ALL {
-        let mut q = READY;
-        q[3] = -0.3;
-        let mut lockstep = Lockstep::new(Config {
-            q,
-            ..Lockstep::config_of(kind)
-        });
-        let goal = lockstep.goal(Target::Rest, OnArrival::Hold);
-        let engagement = Engagement {
-            backend: Backend::RobotController(Setpoints::Poses),
-            ..Engagement::default()
-        };
-        let begun = lockstep.client.begin(NewMotion::Session {
-            goal: Box::new(goal),
-            engagement,
-        });
-        let refused = MotionError::Goal(GoalError::Backend {
-            why: "takes no stretched arm",
-        });
-        assert_eq!(begun, Err(refused));
+        for backend in Backend::ROBOT_CONTROLLERS {
+            let mut q = READY;
+            q[3] = -0.3;
+            let mut lockstep = Lockstep::new(Config {
+                q,
+                ..Lockstep::config_of(kind)
+            });
+            let begun = lockstep.try_engage(Engagement {
+                backend,
+                ..Engagement::default()
+            });
+            if !backend.is_cartesian() {
+                assert!(begun.is_ok(), "{backend}");
+                continue;
+            }
+            let refused = MotionError::Goal(GoalError::Backend {
+                backend,
+                got: "a stretched arm, with joint 4 above -0.467 rad",
+                instead: "setpoints of joints do, or Backend::Torques",
+            });
+            assert_eq!(begun, Err(refused));
+        }
     }
 }
 
 #[test]
 fn setpoints_continue_from_the_robots_own_extrapolation() {
-    for_each_robot(|ready| {
-        for lost in [1, 2, 5, 12] {
-            let mut lockstep = ready();
-            let engaged = lockstep.engage_with(Engagement {
-                backend: Backend::RobotController(Setpoints::Joints),
-                ..Engagement::default()
-            });
+    for lost in [1, 2, 5, 12] {
+        for_each_controller(|backend, lockstep, engaged| {
+            let home = lockstep.arm_pose();
+            let target = match backend.is_cartesian() {
+                true => Target::Pose(Translation3::new(0.0, 0.15, 0.05) * home),
+                false => turned(0.4),
+            };
             let goal = lockstep
-                .within(engaged, turned(0.4), OnArrival::ReportAndHold)
+                .within(engaged, target, OnArrival::ReportAndHold)
                 .unwrap();
             for _ in 0..4 {
                 lockstep.run(200);
                 lockstep.link.drop_commands(lost);
             }
-            lockstep.until_resolved(goal, 6000).unwrap();
-            assert!((lockstep.robot.q()[0] - READY[0] - 0.4).abs() < 1e-3);
+            let report = lockstep.until_resolved(goal, 6000).unwrap();
+            assert!(report.final_error.is_some(), "{backend}: {report:?}");
+            let off = off_setpoint(lockstep, target);
+            assert!(off < 1e-5, "{backend}, {lost}: {off}");
+        });
+    }
+}
+
+/// How far the robot's own setpoint is from `target`, `[rad]` or `[m]`.
+fn off_setpoint(lockstep: &Lockstep, target: Target) -> f64 {
+    let q_d = JointVector::from(lockstep.client.state.q_d);
+    match target {
+        Target::Joints(q) => (q_d - JointVector::from(q)).amax(),
+        Target::Pose(pose) => {
+            let off = lockstep.pose_at(&q_d).translation.vector - pose.translation.vector;
+            off.norm()
         }
-    });
+        other => unreachable!("{other:?} is no place"),
+    }
 }
 
 #[test]

@@ -116,7 +116,7 @@ fn lost_commands_do_not_lead_past_the_points_of_a_chunk() {
         for (joints, after) in [(true, 30), (true, 60), (false, 30), (false, 60)] {
             let mut lockstep = ready();
             let engaged = lockstep.engage_with(Engagement {
-                backend: Backend::RobotController(Setpoints::Joints),
+                backend: Backend::joint_impedance(Setpoints::JointPositions),
                 ..Engagement::default()
             });
             let start = lockstep.reference_pose();

@@ -3,29 +3,27 @@
 use franka_model::RobotKind;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::condition::{elapsed, force_z};
-use franka_rt::session::{Backend, GoalError, GoalId, OnArrival, Setpoints, Target};
+use franka_rt::session::{Backend, GoalError, GoalId, OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
 use super::{MS, above, at, felt, goes_on, realistic, report, says_so, table, tolerate};
 
-fn engaged(lockstep: &mut Lockstep, setpoints: Setpoints) -> GoalId {
+fn engaged(lockstep: &mut Lockstep, backend: Backend) -> GoalId {
     tolerate(lockstep);
     lockstep.engage_with(Engagement {
-        backend: Backend::RobotController(setpoints),
+        backend,
         ..Engagement::default()
     })
 }
 
-const SETPOINTS: [Setpoints; 2] = [Setpoints::Joints, Setpoints::Poses];
-
 #[test]
 fn the_robots_controller_reacts_to_a_table_as_well() {
-    for setpoints in SETPOINTS {
+    for backend in Backend::ROBOT_CONTROLLERS {
         for kind in RobotKind::ALL {
             for retreats in [false, true] {
                 let mut lockstep = realistic(kind, 2);
-                let engaged = engaged(&mut lockstep, setpoints);
+                let engaged = engaged(&mut lockstep, backend);
                 let table = table(&mut lockstep, 0.03, 5000.0);
                 let home = lockstep.arm_pose();
                 let down = above(&lockstep, -0.1);
@@ -50,7 +48,7 @@ fn the_robots_controller_reacts_to_a_table_as_well() {
                 let report = report(&mut lockstep, goal);
                 assert!(report.reacted.is_some(), "{report:?}");
                 assert!(says_so(&lockstep));
-                println!("{kind:?}, {setpoints:?}: {most:.1} N");
+                println!("{kind:?}, {backend}: {most:.1} N");
                 assert!(most < 30.0, "{most} N");
                 assert_eq!(report.final_error.is_some(), retreats);
                 assert_eq!(felt(&lockstep, table) == 0.0, retreats);
@@ -63,10 +61,10 @@ fn the_robots_controller_reacts_to_a_table_as_well() {
 #[test]
 fn lost_commands_during_a_reaction_do_not_keep_it_from_its_end() {
     for_each_robot(|ready| {
-        for setpoints in SETPOINTS {
+        for backend in Backend::ROBOT_CONTROLLERS {
             for lost in [1, 4, 12] {
                 let mut lockstep = ready();
-                let engaged = engaged(&mut lockstep, setpoints);
+                let engaged = engaged(&mut lockstep, backend);
                 let home = lockstep.arm_pose();
                 let up = above(&lockstep, 0.1);
                 let due = elapsed(600 * MS).then(home);
@@ -89,28 +87,35 @@ fn lost_commands_during_a_reaction_do_not_keep_it_from_its_end() {
 
 #[test]
 fn a_controller_that_takes_poses_only_goes_on_to_poses_only() {
-    let mut lockstep = Lockstep::ready();
-    let engaged = engaged(&mut lockstep, Setpoints::Poses);
-    let aside = Translation3::new(0.0, 0.05, 0.0) * lockstep.arm_pose();
-    let joints = elapsed(10 * MS).then(<[f64; 7]>::from(franka_model::READY));
-    let goal = at(
-        0.2,
-        aside.into(),
-        joints,
-        OnArrival::ReportAndHold,
-        &mut lockstep,
-    );
-    let refused = MotionError::Goal(GoalError::Backend {
-        why: "takes poses only",
-    });
-    assert_eq!(lockstep.submit_within(engaged, goal), Err(refused));
-    let rest = elapsed(10 * MS).then(Target::Rest);
-    let goal = at(
-        0.2,
-        aside.into(),
-        rest,
-        OnArrival::ReportAndHold,
-        &mut lockstep,
-    );
-    assert!(lockstep.submit_within(engaged, goal).is_ok());
+    for backend in Backend::ROBOT_CONTROLLERS
+        .into_iter()
+        .filter(|backend| backend.is_cartesian())
+    {
+        let mut lockstep = Lockstep::ready();
+        let engaged = engaged(&mut lockstep, backend);
+        let aside = Translation3::new(0.0, 0.05, 0.0) * lockstep.arm_pose();
+        let joints = elapsed(10 * MS).then(<[f64; 7]>::from(franka_model::READY));
+        let goal = at(
+            0.2,
+            aside.into(),
+            joints,
+            OnArrival::ReportAndHold,
+            &mut lockstep,
+        );
+        let refused = MotionError::Goal(GoalError::Backend {
+            backend,
+            got: "a target of joint positions",
+            instead: "a pose does, or setpoints of joints, or Backend::Torques",
+        });
+        assert_eq!(lockstep.submit_within(engaged, goal), Err(refused));
+        let rest = elapsed(10 * MS).then(Target::Rest);
+        let goal = at(
+            0.2,
+            aside.into(),
+            rest,
+            OnArrival::ReportAndHold,
+            &mut lockstep,
+        );
+        assert!(lockstep.submit_within(engaged, goal).is_ok());
+    }
 }

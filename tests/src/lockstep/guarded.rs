@@ -8,14 +8,12 @@ use std::time::Duration;
 use franka_model::collision::Obstacle;
 use franka_model::limits::JointLimits;
 use franka_model::{JointVector, Model, READY, Wrench};
-use franka_proto::{
-    CollisionBehavior, MoveControllerMode, MoveGeneratorMode, MoveRequest, Request,
-};
+use franka_proto::{CollisionBehavior, Request};
 use franka_rt::driver::{Activity, Program};
 use franka_rt::law::{Gains, Law};
 use franka_rt::session::{
     Backend, Chunk, ChunkWriter, Deadman, Fate, ForceCap, Free, Goal, GoalId, Guard, KeepOut, Lead,
-    OnArrival, OnTimeout, Setpoints, Target, TargetSession, Watchdog, chunk_ring,
+    OnArrival, OnTimeout, Target, TargetSession, Watchdog, chunk_ring,
 };
 use franka_rt::slot::{SlotWriter, slot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
@@ -35,8 +33,8 @@ pub enum Workload {
     Chunks,
     /// Guiding, and a pose now and then.
     Guide,
-    /// Joint positions and poses for the robot's own controller; under an odd seed poses alone, as
-    /// Cartesian setpoints.
+    /// Joint positions and poses for the robot's own controllers, the seed chooses which, with which
+    /// setpoints; poses alone if those are Cartesian.
     RobotController,
 }
 
@@ -52,8 +50,10 @@ impl Workload {
 
     fn backend(self, seed: u64) -> Backend {
         match self {
-            Self::RobotController if seed % 2 == 1 => Backend::RobotController(Setpoints::Poses),
-            Self::RobotController => Backend::RobotController(Setpoints::Joints),
+            Self::RobotController => {
+                let all = Backend::ROBOT_CONTROLLERS;
+                all[seed as usize % all.len()]
+            }
             _ => Backend::Torques,
         }
     }
@@ -116,22 +116,7 @@ impl Guarded {
             .with_backend(backend)
             .bound_to(monitor)
             .with_chunks(taken);
-        let (controller, generator) = match backend {
-            Backend::Torques => (
-                MoveControllerMode::ExternalController,
-                version.torque_generator(),
-            ),
-            Backend::RobotController(Setpoints::Joints) => (
-                MoveControllerMode::JointImpedance,
-                MoveGeneratorMode::JointPosition,
-            ),
-            Backend::RobotController(Setpoints::Poses) => (
-                MoveControllerMode::CartesianImpedance,
-                MoveGeneratorMode::CartesianPosition,
-            ),
-            other => unreachable!("no request is known for {other:?}"),
-        };
-        let request = MoveRequest::new(controller, generator);
+        let request = backend.request(version);
         lockstep
             .control(Program::Target(Box::new(session)), request)
             .expect("nothing else moves");
@@ -235,8 +220,7 @@ impl Guarded {
                 self.submit(Target::Guide(free));
             }
             Workload::RobotController => {
-                let poses = self.backend == Backend::RobotController(Setpoints::Poses);
-                let target = if poses || self.random.random_bool(0.5) {
+                let target = if self.backend.is_cartesian() || self.random.random_bool(0.5) {
                     Target::Pose(self.pose())
                 } else {
                     Target::Joints(self.joints())

@@ -144,8 +144,12 @@ impl RunningSession {
     ) -> Option<Self> {
         let (q, drive) = match backend {
             Backend::Torques => (state.q, Drive::Torques(Effort::new(&goal))),
-            Backend::RobotController(setpoints) => {
-                let stream = SetpointStream::new(setpoints, version, model.joint_limits());
+            Backend::RobotController {
+                controller,
+                setpoints,
+            } => {
+                let limits = model.joint_limits();
+                let stream = SetpointStream::new(controller, setpoints, version, limits);
                 (state.q_d, Drive::Setpoints(stream))
             }
         };
@@ -495,7 +499,9 @@ impl RunningSession {
                 SessionCommand::Torques(Torques(tau.into()))
             }
             Drive::Setpoints(stream) => {
-                let (command, changed) = stream.command(model, &self.ee, &self.reference, state);
+                let last = matches!(self.stage, GoalStage::Finished(_));
+                let (command, changed) =
+                    stream.command(model, &self.ee, &self.reference, last, state);
                 bindings.set(Guard::Backstop, changed);
                 SessionCommand::Setpoint(command)
             }
@@ -521,7 +527,7 @@ impl RunningSession {
     /// Puts the reference at the setpoint that the robot's controller has, if that differs, and
     /// plans the course anew from there. Returns whether it did.
     fn reanchor(&mut self, model: &Model, state: &RobotState) -> bool {
-        let Drive::Setpoints(stream) = &self.drive else {
+        let Drive::Setpoints(stream) = &mut self.drive else {
             return false;
         };
         let Some(echo) = stream.echo(model, &self.ee, &self.reference, state) else {

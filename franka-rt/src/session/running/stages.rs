@@ -75,7 +75,7 @@ impl RunningSession {
                     };
                     let tolerance = self.goal.tolerance.unwrap_or_else(|| match &self.drive {
                         Drive::Torques(_) => Tolerance::of(&self.goal.gains),
-                        Drive::Setpoints(stream) => Tolerance::under(stream.setpoints()),
+                        Drive::Setpoints(stream) => Tolerance::under(stream.controller()),
                     });
                     self.stage =
                         GoalStage::Landing(Landing::new(target, tolerance, self.goal.settling));

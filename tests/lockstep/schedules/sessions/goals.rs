@@ -16,7 +16,7 @@ impl Sessions<'_> {
     pub(super) fn give(&mut self) {
         let backend = self.session.as_ref().map(|session| session.backend);
         let kinds = match backend {
-            Some(Backend::RobotController(_)) => 8,
+            Some(Backend::RobotController { .. }) => 8,
             _ => 10,
         };
         let target = match self.random.random_range(0..kinds) {
@@ -133,8 +133,8 @@ impl Sessions<'_> {
                 let mut submission = Submission::new(id, work, goal.on_arrival, now);
                 submission.watchdog = goal.watchdog;
                 submission.soft = soft;
-                if let Backend::RobotController(setpoints) = session.backend {
-                    submission.tolerance = Tolerance::under(setpoints);
+                if let Backend::RobotController { controller, .. } = session.backend {
+                    submission.tolerance = Tolerance::under(controller);
                 }
                 self.add(submission);
                 true

@@ -13,7 +13,7 @@ use std::time::Duration;
 use franka_model::RobotKind;
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::Engagement;
-use franka_rt::session::{Backend, Deadman, GoalId, OnArrival, Setpoints};
+use franka_rt::session::{Backend, Deadman, GoalId, OnArrival};
 use franka_tests::lockstep::{Link, Lockstep};
 use nalgebra::Isometry3;
 use rand::rngs::SmallRng;
@@ -114,11 +114,9 @@ impl<'a> Sessions<'a> {
     }
 
     fn engage(&mut self) {
-        let backend = match self.random.random_range(0..6) {
-            0 => Backend::RobotController(Setpoints::Joints),
-            1 => Backend::RobotController(Setpoints::Poses),
-            _ => Backend::Torques,
-        };
+        let kinds = Backend::ROBOT_CONTROLLERS;
+        let kind = self.random.random_range(0..2 * kinds.len());
+        let backend = kinds.get(kind).copied().unwrap_or_default();
         let bound = self.random.random_bool(0.5);
         let silence = self.random.random_range(30..80);
         let (token, monitor) = Deadman::new(Duration::from_millis(silence));

@@ -47,6 +47,9 @@ struct Arguments {
     /// The law.
     #[arg(long, value_enum, default_value_t = LawChoice::Default)]
     law: LawChoice,
+    /// What the robot's own controllers get.
+    #[arg(long, value_enum, default_value_t = SetpointChoice::JointPositions)]
+    setpoints: SetpointChoice,
     /// Threads.
     #[arg(long, default_value_t = 2)]
     threads: u64,
@@ -99,6 +102,7 @@ impl Scaled {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LawUnderTest {
     choice: LawChoice,
+    setpoints: SetpointChoice,
     scaled: Scaled,
     by: f64,
 }
@@ -106,7 +110,7 @@ pub(crate) struct LawUnderTest {
 impl LawUnderTest {
     /// What turns setpoints into torques.
     pub(crate) fn backend(self) -> Backend {
-        self.choice.backend()
+        self.choice.backend(self.setpoints.into())
     }
 
     /// The gains of a goal: its own where it is not for a pose.
@@ -136,17 +140,37 @@ pub(crate) enum LawChoice {
     Joint,
     /// Its springs and dampers alone.
     JointSprings,
-    /// The robot's own controller of joint positions.
-    RobotJoints,
-    /// The robot's own controller of poses.
-    RobotPoses,
+    /// The robot's own joint impedance controller, with `--setpoints`.
+    JointImpedance,
+    /// The robot's own Cartesian impedance controller, with `--setpoints`.
+    CartesianImpedance,
+}
+
+/// Setpoints of the robot's own controllers.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum SetpointChoice {
+    JointPositions,
+    JointVelocities,
+    CartesianPoses,
+    CartesianVelocities,
+}
+
+impl From<SetpointChoice> for Setpoints {
+    fn from(choice: SetpointChoice) -> Self {
+        match choice {
+            SetpointChoice::JointPositions => Self::JointPositions,
+            SetpointChoice::JointVelocities => Self::JointVelocities,
+            SetpointChoice::CartesianPoses => Self::CartesianPoses,
+            SetpointChoice::CartesianVelocities => Self::CartesianVelocities,
+        }
+    }
 }
 
 impl LawChoice {
-    fn backend(self) -> Backend {
+    fn backend(self, setpoints: Setpoints) -> Backend {
         match self {
-            Self::RobotJoints => Backend::RobotController(Setpoints::Joints),
-            Self::RobotPoses => Backend::RobotController(Setpoints::Poses),
+            Self::JointImpedance => Backend::joint_impedance(setpoints),
+            Self::CartesianImpedance => Backend::cartesian_impedance(setpoints),
             _ => Backend::Torques,
         }
     }
@@ -162,7 +186,7 @@ impl LawChoice {
             ..Gains::cartesian()
         };
         match self {
-            Self::Default | Self::RobotJoints | Self::RobotPoses => Gains::cartesian(),
+            Self::Default | Self::JointImpedance | Self::CartesianImpedance => Gains::cartesian(),
             Self::Springs => Gains::cartesian().without_compensation(),
             Self::Stiff => stiff,
             Self::StiffSprings => stiff.without_compensation(),
@@ -190,6 +214,7 @@ fn main() -> anyhow::Result<()> {
     };
     let law = LawUnderTest {
         choice: arguments.law,
+        setpoints: arguments.setpoints,
         scaled: arguments.scaled,
         by: arguments.gain,
     };

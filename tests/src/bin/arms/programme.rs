@@ -3,7 +3,7 @@
 use franka_model::{JointVector, Load, Model, RobotKind};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::Engagement;
-use franka_rt::session::{Backend, Free, Goal, GoalId, OnArrival, PoseError, Setpoints, Target};
+use franka_rt::session::{Backend, Free, Goal, GoalId, OnArrival, PoseError, Target};
 use franka_sim::arm::Arm;
 use franka_sim::{Config, Network, Touch};
 use franka_tests::figures::HighPass;
@@ -109,7 +109,7 @@ impl Programme {
                 self.step(self.home, false)?;
             }
         }
-        if self.law.backend() != Backend::RobotController(Setpoints::Poses) {
+        if !self.law.backend().is_cartesian() {
             self.joints()?;
         }
         self.hold()?;
