@@ -1,6 +1,8 @@
 //! The stream of setpoints to the robot's own controller, and where it goes on after lost commands.
 
 mod distance;
+#[cfg(test)]
+mod tests;
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation, transform};

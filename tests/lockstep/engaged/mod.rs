@@ -4,11 +4,13 @@
 //! * `options`: gains, force cap and regions.
 //! * `backends`: the robot's own controller, and observers.
 //! * `chunks`: the end of chunks.
+//! * `controllers`: every controller of the robot with every kind of setpoint, on arms that stick.
 //! * `corners`: orders that meet a cancelled goal, and sessions without their deadman.
 //! * `waiting`: sessions that are requested while the previous motion ends.
 
 mod backends;
 mod chunks;
+mod controllers;
 mod corners;
 mod lapses;
 mod options;

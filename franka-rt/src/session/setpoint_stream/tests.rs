@@ -1,0 +1,122 @@
+//! Robots that integrate velocities otherwise than they were sent.
+
+use std::sync::Arc;
+
+use franka_model::{Model, READY};
+
+use super::*;
+use crate::session::{
+    Backend, Goal, GoalId, OnArrival, SessionCommand, SessionEvent, Settlement, TargetSession,
+};
+use crate::slot::slot;
+use crate::together::Gate;
+
+fn resting() -> RobotState {
+    let rigid = transform::array(&Isometry3::identity());
+    let mut state = RobotState {
+        q: READY.into(),
+        q_d: READY.into(),
+        F_T_EE: rigid,
+        EE_T_K: rigid,
+        elbow_c: elbow(&READY),
+        ..RobotState::default()
+    };
+    let tool = crate::session::end_effector_of(&state).expect("a rigid one");
+    state.O_T_EE_c = transform::array(&pose_at(Model::fr3(), &tool, &READY));
+    state
+}
+
+/// Turns joint 1 by 0.3 rad under velocities, of which the robot integrates so much too little, and
+/// steps back once by so much. Returns how far it ends beside the target, `[rad]`, and its last
+/// command.
+fn turned(slip: f64, step: f64) -> (f64, [f64; 7]) {
+    let mut q: [f64; 7] = READY.into();
+    q[0] += 0.3;
+    let (mut goals, reader) = slot();
+    let limits = Model::fr3().joint_limits();
+    let finish = OnArrival::ReportAndFinish;
+    goals.write(&Goal::new(GoalId(1), q.into(), finish, limits));
+    let model = Arc::new(Model::fr3().clone());
+    let mut session = TargetSession::new(model, Version::V10, reader)
+        .with_backend(Backend::joint_impedance(Setpoints::JointVelocities));
+    let (mut state, mut settled) = (resting(), None);
+    for cycle in 0..10_000 {
+        state.message_id += 1;
+        let answer = session.answer(Gate::Open, &state);
+        session.prepare();
+        let SessionCommand::Setpoint(MotionCommand::JointVelocities(JointVelocities(sent))) =
+            answer.answer
+        else {
+            panic!("it sends joint velocities")
+        };
+        if let Some(SessionEvent::Settled { settlement, .. }) = answer.event {
+            settled = Some(settlement);
+        }
+        if answer.finished {
+            assert!(
+                matches!(settled, Some(Settlement::Arrived(_))),
+                "{settled:?}"
+            );
+            return (
+                (JointVector::from(q) - JointVector::from(state.q_d)).amax(),
+                sent,
+            );
+        }
+        let (before, dq) = (state.dq_d, sent);
+        state.ddq_d = core::array::from_fn(|i| (dq[i] - before[i]) / CYCLE);
+        state.dq_d = dq;
+        for (q, dq) in state.q_d.iter_mut().zip(&dq) {
+            *q += dq * (1.0 - slip) * CYCLE;
+        }
+        state.q_d[0] -= if cycle == 300 { step } else { 0.0 };
+        (state.q, state.dq) = (state.q_d, dq);
+    }
+    panic!("it does not end: {settled:?}")
+}
+
+#[test]
+fn velocities_end_at_the_target_where_the_robot_integrates_to_another_place() {
+    for (slip, step) in [
+        (0.0, 0.0),
+        (1e-4, 0.0),
+        (1e-2, 0.0),
+        (0.0, 1e-5),
+        (0.0, 1e-3),
+    ] {
+        let (off, last) = turned(slip, step);
+        assert!(off < 3e-6, "{slip}, {step}: {off} rad beside");
+        assert_eq!(last, [0.0; 7], "{slip}, {step}");
+    }
+}
+
+#[test]
+fn twists_make_up_for_a_small_drift_and_go_on_from_a_large_one() {
+    let (model, reference) = (Model::fr3(), Reference::at_rest(READY));
+    for (off, is_made_up_for) in [(1e-7, true), (2e-6, true), (1e-5, false)] {
+        let mut state = resting();
+        let ee = crate::session::end_effector_of(&state).expect("a rigid one");
+        let mut stream = SetpointStream::new(
+            Controller::JointImpedance,
+            Setpoints::CartesianVelocities,
+            Version::V10,
+            model.joint_limits(),
+        );
+        assert!(
+            stream.echo(model, &ee, &reference, &state).is_some(),
+            "the first"
+        );
+        let _ = stream.command(model, &ee, &reference, false, &state);
+        state.O_T_EE_c[13] -= off;
+        let anew = stream.echo(model, &ee, &reference, &state).is_some();
+        assert_eq!(anew, !is_made_up_for, "{off} m");
+        let (command, _) = stream.command(model, &ee, &reference, false, &state);
+        let MotionCommand::CartesianVelocities(twist) = command else {
+            panic!("it sends twists")
+        };
+        let expected = match off {
+            2e-6 => 10.0 * (2e-6 - 3e-7),
+            _ => 0.0,
+        };
+        assert!((twist.O_dP_EE[1] - expected).abs() < 1e-9, "{twist:?}");
+    }
+}

@@ -1,0 +1,232 @@
+//! Every controller of the robot with every kind of setpoint, on arms that stick and over links
+//! that lose packets: the robot checks each command, and may find nothing.
+
+use std::time::Duration;
+
+use franka_model::{JointVector, READY, RobotKind};
+use franka_proto::RobotMode;
+use franka_rt::lifecycle::{Engagement, MotionError, MotionReport};
+use franka_rt::session::condition::elapsed;
+use franka_rt::session::{
+    Backend, Chunk, Goal, GoalId, OnArrival, Reaction, Target, Tolerance, Waypoint,
+};
+use franka_sim::Config;
+use franka_sim::arm::{Arm, Family};
+use franka_tests::lockstep::{Link, Lockstep};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+/// A session under each controller with each kind of setpoint, on a realistic arm of each robot.
+fn for_each(seed: u64, test: impl Fn(Backend, &mut Lockstep, GoalId)) {
+    for kind in RobotKind::ALL {
+        for backend in Backend::ROBOT_CONTROLLERS {
+            println!("{kind:?}, {backend}");
+            let mut lockstep = Lockstep::new(Config {
+                arm: Some(match seed {
+                    0 => Arm::realistic(kind),
+                    _ => Arm::sample(kind, seed, &Family::realistic()),
+                }),
+                seed,
+                ..Lockstep::config_of(kind)
+            });
+            let engaged = lockstep.engage_with(Engagement {
+                backend,
+                ..Engagement::default()
+            });
+            test(backend, &mut lockstep, engaged);
+            let errors = &lockstep.client.state.errors;
+            assert!(errors.is_empty(), "{errors}");
+        }
+    }
+}
+
+fn tolerance(backend: Backend) -> Tolerance {
+    match backend {
+        Backend::RobotController { controller, .. } => Tolerance::under(controller),
+        other => unreachable!("{other} is none of the robot's"),
+    }
+}
+
+/// Steps and turns about `home`, and joint positions where they are taken.
+fn targets(backend: Backend, home: &Isometry3<f64>) -> Vec<Target> {
+    let place = |way: [f64; 3], turn: [f64; 3]| {
+        let turn = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+        Isometry3::from_parts(
+            Translation3::from(home.translation.vector + Vector3::from(way)),
+            turn * home.rotation,
+        )
+        .into()
+    };
+    let mut targets = vec![
+        place([0.05, 0.1, 0.0], [0.0, 0.0, 0.3]),
+        place([0.0, -0.1, -0.1], [0.2, -0.1, 0.0]),
+        place([0.0, 0.0, 0.001], [0.0; 3]),
+    ];
+    if !backend.is_cartesian() {
+        let q = |by: [f64; 7]| Target::Joints((JointVector::from(by) + READY).into());
+        targets.push(q([0.3, -0.2, 0.1, 0.2, -0.3, 0.2, 0.5]));
+        targets.push(q([0.0; 7]));
+    }
+    targets
+}
+
+fn is_near(report: &MotionReport, backend: Backend) {
+    let error = report.final_error.expect("a target");
+    let most = tolerance(backend);
+    assert!(error.translation <= most.translation, "{report:?}");
+    assert!(error.rotation <= most.rotation, "{report:?}");
+}
+
+/// How far the robot's own setpoint is from where the reference is, `[rad]`.
+fn off_reference(lockstep: &Lockstep) -> f64 {
+    let record = &lockstep.client.record;
+    (JointVector::from(lockstep.client.state.q_d) - JointVector::from(record.q_ref)).amax()
+}
+
+#[test]
+fn it_arrives_within_its_tolerance_whatever_is_lost() {
+    for (seed, loss) in [(0, 0.0), (3, 0.002), (4, 0.02)] {
+        for_each(seed, |backend, lockstep, engaged| {
+            if loss > 0.0 {
+                lockstep.link = Link::lossy(seed, loss, loss);
+            }
+            let home = lockstep.arm_pose();
+            for target in targets(backend, &home) {
+                let goal = lockstep.within(engaged, target, OnArrival::ReportAndHold);
+                let goal = goal.expect("within reach");
+                let report = lockstep.until_resolved(goal, 8000).expect("it arrives");
+                is_near(&report, backend);
+                let off = off_reference(lockstep);
+                assert!(off < 1e-5, "{backend}: the robot is {off} rad beside");
+            }
+            lockstep.disengage(engaged);
+            lockstep.until_resolved(engaged, 2000).expect("it ends");
+        });
+    }
+}
+
+/// In any phase of a motion: the goal alone, whose session holds the arm and goes on; then the
+/// session.
+#[test]
+fn it_brakes_to_rest_when_its_goal_or_its_session_is_dropped() {
+    for after in [30, 120, 333, 470] {
+        for_each(2, |backend, lockstep, engaged| {
+            let home = lockstep.arm_pose();
+            let away = Translation3::new(0.05, 0.15, 0.0) * home;
+            let goal = lockstep.within(engaged, away.into(), OnArrival::ReportAndHold);
+            let goal = goal.expect("within reach");
+            lockstep.run(after);
+            lockstep.cancel(goal);
+            let dropped = lockstep.until_resolved(goal, 3000);
+            assert_eq!(dropped, Err(MotionError::Stopped));
+            lockstep.run(600);
+            assert_eq!(lockstep.client.state.dq_d, [0.0; 7], "{backend}");
+            assert!(off_reference(lockstep) < 1e-5, "{backend}");
+
+            let back = lockstep.within(engaged, home.into(), OnArrival::ReportAndHold);
+            let back = back.expect("within reach");
+            let report = lockstep.until_resolved(back, 8000).expect("it arrives");
+            is_near(&report, backend);
+
+            let goal = lockstep.within(engaged, away.into(), OnArrival::Hold);
+            goal.expect("within reach");
+            lockstep.run(after);
+            lockstep.disengage(engaged);
+            lockstep.until_resolved(engaged, 3000).expect("it brakes");
+            assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
+            // The robot then holds the arm more stiffly than its Cartesian impedance does.
+            lockstep.run(300);
+            let dq = lockstep.robot.dq().amax();
+            assert!(dq < 0.01, "{backend}, {after}: {dq}");
+        });
+    }
+}
+
+#[test]
+fn it_goes_through_waypoints_and_pauses_on_its_way() {
+    for_each(1, |backend, lockstep, engaged| {
+        let home = lockstep.arm_pose();
+        let through = targets(backend, &home)[..3].to_vec();
+        let through: Vec<_> = through
+            .into_iter()
+            .map(|target| Waypoint::new(target).blend(0.02))
+            .collect();
+        let path = lockstep.through(Some(engaged), &through);
+        let path = path.expect("within reach");
+        for paused in [true, false] {
+            lockstep.run(500);
+            lockstep.client.lifecycle.pause(path, paused);
+        }
+        let report = lockstep.until_resolved(path, 8000).expect("it arrives");
+        assert!(report.duration > Duration::from_millis(1500), "{report:?}");
+        is_near(&report, backend);
+        if backend.is_cartesian() {
+            return;
+        }
+        let way = |by: f64| Waypoint::new(<[f64; 7]>::from(READY.map(|q| q + by))).blend(0.05);
+        let path = lockstep.through(Some(engaged), &[0.1, -0.1, 0.0].map(way));
+        let path = path.expect("in range");
+        let report = lockstep.until_resolved(path, 8000).expect("it arrives");
+        is_near(&report, backend);
+    });
+}
+
+#[test]
+fn it_follows_a_target_that_moves_and_chunks() {
+    for_each(1, |backend, lockstep, engaged| {
+        let home = lockstep.arm_pose();
+        let twist = Vector3::new(0.02, 0.1, -0.05);
+        let moving = |ms: u64| {
+            let pose = Translation3::from(twist * (ms as f64 * 1e-3)) * home;
+            let [x, y, z]: [f64; 3] = twist.into();
+            Target::MovingPose {
+                pose,
+                twist: [x, y, z, 0.0, 0.0, 0.0].into(),
+            }
+        };
+        let goal = lockstep.within(engaged, moving(0), OnArrival::Hold);
+        let goal = goal.expect("within reach");
+        for ms in 1..1200 {
+            lockstep.tick();
+            if ms % 20 == 0 {
+                assert_eq!(lockstep.update(goal, moving(ms)), Ok(true));
+            }
+            let Target::MovingPose { pose, .. } = moving(ms) else {
+                unreachable!("it moves")
+            };
+            let behind = lockstep.reference_pose().translation.vector - pose.translation.vector;
+            assert!(ms < 900 || behind.norm() < 1e-3, "{backend}: {behind}");
+        }
+        let start = lockstep.reference_pose();
+        let points = (0..12).map(|k| {
+            let along = Translation3::new(0.0, -0.008 * f64::from(k), 0.004 * f64::from(k));
+            (Duration::from_millis(50) * k, along * start)
+        });
+        let chunk = Chunk::poses(points).expect("finite points");
+        let end = chunk.target();
+        lockstep.chunk(engaged, chunk).expect("it is taken");
+        lockstep.run(2500);
+        let off = lockstep.arm_pose().translation.vector;
+        let Target::Pose(end) = end else {
+            unreachable!("a chunk of poses ends at one")
+        };
+        let off = (off - end.translation.vector).norm();
+        assert!(off < tolerance(backend).translation, "{backend}: {off}");
+    });
+}
+
+#[test]
+fn it_reacts() {
+    for_each(1, |backend, lockstep, engaged| {
+        let home = lockstep.arm_pose();
+        let away = Translation3::new(0.0, 0.2, 0.0) * home;
+        let reaction: Reaction = elapsed(Duration::from_millis(400)).then(home);
+        let goal = Goal {
+            reaction: Some(reaction),
+            ..lockstep.goal(away.into(), OnArrival::ReportAndHold)
+        };
+        let goal = lockstep.submit_within(engaged, goal).expect("within reach");
+        let report = lockstep.until_resolved(goal, 8000).expect("it comes back");
+        assert!(report.reacted.is_some(), "{report:?}");
+        is_near(&report, backend);
+    });
+}
