@@ -120,3 +120,26 @@ fn twists_make_up_for_a_small_drift_and_go_on_from_a_large_one() {
         assert!((twist.O_dP_EE[1] - expected).abs() < 1e-9, "{twist:?}");
     }
 }
+
+/// What a lost command leaves: the robot is where the reference is, and moves otherwise.
+#[test]
+fn velocities_go_on_from_those_of_the_robot() {
+    let model = Model::fr3();
+    for setpoints in [Setpoints::JointVelocities, Setpoints::CartesianVelocities] {
+        for (moves, is_taken_over) in [(0.0, false), (1e-6, false), (1e-3, true)] {
+            let mut state = resting();
+            let ee = crate::session::end_effector_of(&state).expect("a rigid one");
+            let limits = model.joint_limits();
+            let controller = Controller::CartesianImpedance;
+            let mut stream = SetpointStream::new(controller, setpoints, Version::V10, limits);
+            let reference = Reference::at_rest(READY);
+            let _ = stream.echo(model, &ee, &reference, &state);
+            let _ = stream.command(model, &ee, &reference, false, &state);
+            (state.dq_d[2], state.O_dP_EE_c[0]) = (moves, moves);
+            let anew = stream.echo(model, &ee, &reference, &state);
+            assert_eq!(anew.is_some(), is_taken_over, "{setpoints}, {moves}");
+            let dq = anew.map_or(0.0, |reference| reference.dq[2]);
+            assert_eq!(dq, if is_taken_over { moves } else { 0.0 });
+        }
+    }
+}
