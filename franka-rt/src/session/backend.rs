@@ -223,20 +223,20 @@ impl Backend {
         let place = goal.target.place();
         let to_joints =
             joints(place) || goal.reaction.is_some_and(|reaction| joints(reaction.then));
-        let (got, instead) = match place {
+        let (got, expected) = match place {
             Target::Guide(_) => ("a guiding hand", OWN_LAW),
             _ if to_joints && self.is_cartesian() => (
                 "a target of joint positions",
-                "a pose does, or setpoints of joints, or Backend::Torques",
+                "a pose, setpoints of joints or Backend::Torques",
             ),
             _ if goal.grasp.is_some() => ("an object to carry", OWN_LAW),
             _ if matches!(goal.force_cap, ForceCap::Newtons(_)) => (
                 "a force cap",
-                "the impedance set on the robot does, or Backend::Torques",
+                "an impedance that is set on the robot, or Backend::Torques",
             ),
             _ => return Ok(()),
         };
-        Err(self.refuses(got, instead))
+        Err(self.refuses(got, expected))
     }
 
     /// Checks that this backend can take over an arm at these joint positions.
@@ -246,16 +246,16 @@ impl Backend {
     pub(crate) fn check_start(self, q: &JointVector) -> Result<(), GoalError> {
         if self.is_cartesian() && side(q) > 0.0 {
             let got = "a stretched arm, with joint 4 above -0.467 rad";
-            return Err(self.refuses(got, "setpoints of joints do, or Backend::Torques"));
+            return Err(self.refuses(got, "setpoints of joints or Backend::Torques"));
         }
         Ok(())
     }
 
-    fn refuses(self, got: &'static str, instead: &'static str) -> GoalError {
+    fn refuses(self, got: &'static str, expected: &'static str) -> GoalError {
         GoalError::Backend {
             backend: self,
             got,
-            instead,
+            expected,
         }
     }
 
@@ -350,8 +350,8 @@ fn side(q: &JointVector) -> f64 {
     if q[3] < FLIP_ANGLE { -1.0 } else { 1.0 }
 }
 
-/// What does what no controller of the robot does.
-const OWN_LAW: &str = "Backend::Torques does";
+/// What takes what no controller of the robot does.
+const OWN_LAW: &str = "Backend::Torques";
 
 /// Share of the elbow's velocity that joint 3 may take, where that is less than its own.
 const ELBOW: f64 = 0.95;

@@ -101,14 +101,14 @@ pub enum GoalError {
     #[error(transparent)]
     Chunks(#[from] TooManyChunks),
     /// The backend of the session cannot do what the goal asks for.
-    #[error("{backend} cannot take {got}; {instead}")]
+    #[error("{backend} cannot take {got}, expected {expected}")]
     Backend {
         /// The backend.
         backend: Backend,
         /// What it cannot do.
         got: &'static str,
-        /// What can.
-        instead: &'static str,
+        /// What can take it, or what can be taken.
+        expected: &'static str,
     },
     /// A region to keep out of is invalid, or one too many.
     #[error("region {region} to keep out of {why}")]
