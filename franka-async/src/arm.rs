@@ -61,7 +61,8 @@ impl Engage {
     }
 
     /// What turns setpoints into torques; by default the session's own law. [`Backend`] says which
-    /// guards each has.
+    /// guards each has, and [`Setpoints`](crate::goal::Setpoints) which goals each kind takes. What
+    /// a backend cannot do is refused as [`GoalError::Backend`](crate::error::GoalError::Backend).
     pub fn backend(mut self, backend: Backend) -> Self {
         self.engagement.backend = backend;
         self

@@ -121,8 +121,8 @@ impl SetpointStream {
     }
 
     /// The command for `reference`, and whether the backstop changed it. A command that cannot be
-    /// shaped, as from a non-finite reference, is the one that holds the arm. The `last` velocity of
-    /// a motion is zero: it is repeated until the robot has ended the motion.
+    /// shaped, as from a non-finite reference, is the one that holds the arm. The `last` velocity
+    /// of a motion is zero: it is repeated until the robot has ended the motion.
     pub(super) fn command(
         &mut self,
         model: &Model,

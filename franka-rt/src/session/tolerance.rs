@@ -66,8 +66,8 @@ impl Tolerance {
     }
 
     /// What an arm like that keeps under the robot's own controllers, with the impedance that they
-    /// have by default and whatever their setpoints are: 2 mm and 5 mrad under joint impedance, 5 mm
-    /// and 15 mrad under Cartesian impedance.
+    /// have by default and whatever their setpoints are: 2 mm and 5 mrad under joint impedance,
+    /// 5 mm and 15 mrad under Cartesian impedance.
     pub fn under(controller: Controller) -> Self {
         match controller {
             Controller::JointImpedance => Self {

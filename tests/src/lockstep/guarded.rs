@@ -33,8 +33,8 @@ pub enum Workload {
     Chunks,
     /// Guiding, and a pose now and then.
     Guide,
-    /// Joint positions and poses for the robot's own controllers, the seed chooses which, with which
-    /// setpoints; poses alone if those are Cartesian.
+    /// Joint positions and poses for one of the robot's own controllers; the seed chooses
+    /// which, and with which setpoints. Poses alone if those are Cartesian.
     RobotController,
 }
 
