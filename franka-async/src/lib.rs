@@ -3,9 +3,9 @@
 //!
 //! A program sets goals at its own rate. A thread of its own, one per robot, answers the robot
 //! every millisecond; no task of the runtime is on that path, so a busy or blocked program delays
-//! new goals and nothing else. This page is all that a first program needs. The book has whole
-//! programs in its first chapter: a service with a queue of jobs, a policy at 10 Hz, a guarded
-//! move, a script.
+//! new goals and nothing else. This page is all that a first program needs. The book (`docs/src` of
+//! the repository) has whole programs in its first chapter: a service with a queue of jobs, a
+//! policy at 10 Hz, a guarded move, a script.
 //!
 //! # Connect
 //!
@@ -31,8 +31,11 @@
 //! }
 //! ```
 //!
-//! A [`Robot`] is a cheap handle: clone it into every task and request. A robot needs a host with a
-//! real-time kernel. Where there is none, connecting fails; against a simulator,
+//! The address is a host name or an IP address, as any string. A [`Robot`] is a cheap handle: clone
+//! it into every task and request. Dropping the last one brakes what moves and closes the
+//! connection, as [`Robot::shutdown`] does and waits for; a program that is killed leaves the robot
+//! to stop by itself. A robot needs a host with a real-time kernel. Where there is none, as on most
+//! hosts of a simulator, connecting fails, and
 //! `Robot::builder(address).realtime(Realtime::Ignore).connect()` does without. Every error of this
 //! crate converts into [`Error`]; `anyhow` prints its text when `main` returns it.
 //!
@@ -68,24 +71,30 @@
 //! ```
 //!
 //! Units are metres, radians, seconds and newtons. A [`Pose`] is that of the end effector in the
-//! frame of the base; it is an isometry of [`nalgebra`]. [`pose`] makes them of quaternions and
-//! arrays.
+//! frame of the base; it is an isometry of [`nalgebra`] with `f64`. [`Robot::pose`] is measured.
+//! [`mod@pose`] makes poses of quaternions and arrays.
+//!
+//! The end effector goes to a pose on a straight line; to joint positions, the joints go. An
+//! [`Offset`] starts at the target of what moves, and at the arm if nothing does. A target out of
+//! reach is refused before anything moves. Motions use 20 % of the robot's limits, and `speed(0.5)`
+//! takes half of that.
 //!
 //! # What a motion is
 //!
 //! `move_to` returns a [`Motion`]. It has options, and **nothing is sent before it is awaited**.
 //! Then
 //!
-//! * it resolves as `Ok` when the arm has arrived, rests and is let go, and otherwise as a
-//!   [`MotionError`] that says why not;
+//! * it resolves as `Ok` when the arm has arrived and rests, held by the robot itself, and
+//!   otherwise as a [`MotionError`] that says why not;
 //! * **dropping the future brakes the arm** within the robot's limits: it is still moving when
-//!   `drop` returns, and rests about a quarter of a second later. So a time limit, a `select!` and
-//!   a request whose client has gone stop the arm;
+//!   `drop` returns, and rests about a quarter of a second later. So the arm stops at a time limit,
+//!   in a `select!` that another branch wins, and when the client of a request has gone;
 //! * a newer motion of the same robot takes over without a stop, and the older one resolves as
 //!   [`MotionError::Superseded`].
 //!
-//! A motion that is to outlive its caller belongs to a task of its own. Its handle pauses or
-//! cancels it from elsewhere:
+//! A motion that is to outlive its caller belongs to a task of its own, or is
+//! [detached](Motion::detach) if nobody asks for its outcome. Its handle pauses or cancels it from
+//! elsewhere:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -115,7 +124,10 @@
 //!     while let Some(pose) = jobs.recv().await {
 //!         match robot.move_to(pose).await {
 //!             Ok(report) => println!("arrived after {:?}", report.duration),
-//!             Err(error) => println!("{error}"),
+//!             Err(error) => {
+//!                 println!("{error}");
+//!                 break; // nothing moves before somebody has looked
+//!             }
 //!         }
 //!     }
 //! });
@@ -123,8 +135,8 @@
 //! # }
 //! ```
 //!
-//! Between two motions of a robot the arm is let go. An [`Arm`] is held throughout, and goes from
-//! goal to goal without a stop:
+//! Between two motions the robot holds its arm by its own controller. An [`Arm`] keeps it under
+//! this crate's control, and goes from goal to goal without a stop:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -168,7 +180,7 @@
 //! let (sender, targets) = watch::channel(robot.pose());
 //! let silence = Duration::from_millis(500);
 //! let following = robot.follow(targets).watchdog(silence, OnTimeout::Brake);
-//! let policy = async {
+//! let sending = async {
 //!     let mut clock = tokio::time::interval(Duration::from_millis(100));
 //!     loop {
 //!         clock.tick().await;
@@ -179,14 +191,16 @@
 //!     }
 //!     drop(sender); // the motion then ends at the last target
 //! };
-//! let (outcome, ()) = tokio::join!(following.into_future(), policy);
+//! let (outcome, ()) = tokio::join!(following.into_future(), sending);
 //! outcome?;
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! The watchdog is counted by the control thread: it brakes the arm even if the program hangs. A
-//! target may be a [`Pose`], joint positions, or either with its velocity. Policies that predict
+//! Where the stream ends, the motion resolves as `Ok` at the last target. The watchdog is counted by
+//! the control thread: it brakes the arm even if the program hangs, and the motion resolves as
+//! [`MotionError::Braked`]. A target may be a [`Pose`], joint positions, or either with its velocity
+//! as a pair, by which the arm does not fall behind: `(pose, twist)`, `(q, dq)`. Policies that predict
 //! several steps at once have [`Arm::chunk`].
 //!
 //! # Move until contact
@@ -211,14 +225,18 @@
 //! # }
 //! ```
 //!
-//! The control thread looks at the condition in every cycle. `touched.then(pose)` goes elsewhere at
-//! once instead of stopping; [`condition`] has the others.
+//! The control thread looks at the condition in every cycle. `force_z` is the external force along z
+//! of the base, either way; `relative` counts from the beginning of the motion, and the 200 ms leave
+//! out the torques in which it begins. `contact` says when and where that was. Without one the
+//! motion arrives: `reacted` is `None`. `touched.then(pose)` goes elsewhere at once instead of
+//! stopping; [`condition`] has the others.
 //!
 //! # Errors and recovery
 //!
 //! A robot that stops itself (a *reflex*, for instance by a collision) takes no motion before it
 //! has been recovered. The error has the log of the last cycles, and its diagnosis says what to
-//! change. [`MotionError::party`] says who can act: robot, link, peer, caller or host.
+//! change. [`MotionError::party`] says who can act: the caller, the host, the link, whoever is at the
+//! robot, or who maintains the program at the other end.
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -265,7 +283,7 @@
 //! let robot = Robot::connect("172.16.0.2").wait()?;
 //! robot.move_to(READY).wait()?;
 //! let arm = robot.engage(Engage::default()).wait()?;
-//! arm.try_set(Pose::translation(0.0, 0.0, 0.05) * robot.pose())?; // never waits: for loops
+//! arm.try_set(Pose::translation(0.0, 0.0, 0.05) * robot.pose())?; // never waits, for loops of the program's own
 //! arm.at_rest().wait()?;
 //! arm.disengage().wait()?;
 //! robot.shutdown().wait();
@@ -298,7 +316,8 @@
 //! }
 //! ```
 //!
-//! The program `franka-sim` is the same for everything else: start it, and connect to `127.0.0.1`.
+//! The program `franka-sim` is the same for everything else: start it, and connect to `127.0.0.1`,
+//! with `Realtime::Ignore` as above.
 //!
 //! # Where to go next
 //!
