@@ -1,6 +1,8 @@
 //! Teams of two simulated robots, over sockets: outcomes in order, one stop, and joint motions
 //! dropped at every poll. tests/lockstep/team.rs has the cycles.
 
+mod grasp;
+
 use std::future::{Future, poll_fn};
 use std::pin::pin;
 use std::task::Poll;
@@ -22,9 +24,13 @@ struct Two {
 
 /// An FR3 and an FER that stick and lag as real arms do, at the pace of their client.
 async fn two() -> Two {
+    two_with([Engage::default(), Engage::default()]).await
+}
+
+async fn two_with([for_left, for_right]: [Engage; 2]) -> Two {
     let (left, left_sim) = at_the_clients_pace(Sim::fr3()).await;
     let (right, right_sim) = at_the_clients_pace(Sim::fer()).await;
-    let members = [(&left, Engage::default()), (&right, Engage::default())];
+    let members = [(&left, for_left), (&right, for_right)];
     let team = Team::engage_tolerating(PATIENCE, members).await;
     Two {
         team: team.expect("both are free"),
