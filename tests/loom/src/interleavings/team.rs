@@ -2,7 +2,7 @@
 
 use loom::thread;
 
-use crate::team::{MemberFault, Passage, TeamStop, team};
+use crate::team::{Carrying, MemberFault, Passage, TeamStop, team};
 
 #[test]
 fn a_fault_reaches_who_begins_at_the_same_time() {
@@ -66,5 +66,87 @@ fn a_stop_and_a_new_round_at_once_never_open_a_stopped_round() {
         assert_eq!(only.take_stop().is_some(), stopped);
         assert!(stopped || passage == Passage::Open);
         only.leave();
+    });
+}
+
+/// What a member says of an object that the team carries.
+const SAID: [Carrying; 2] = [
+    Carrying {
+        remaining: 0.25,
+        lags: true,
+    },
+    Carrying {
+        remaining: 0.125,
+        lags: false,
+    },
+];
+
+#[test]
+fn what_a_member_says_of_its_object_is_read_whole_and_in_order() {
+    loom::model(|| {
+        let (coordinator, [mut first, mut second]) = team();
+        let round = coordinator.begin();
+        let telling = thread::spawn(move || {
+            for said in SAID {
+                first.tell(round, said);
+            }
+            first.leave();
+        });
+        let order = |read: Carrying| match read {
+            read if read == Carrying::default() => 0,
+            read if read == SAID[0] => 1,
+            read if read == SAID[1] => 2,
+            mixed => panic!("nobody said {mixed:?}"),
+        };
+        let read = [second.others(round), second.others(round)].map(order);
+        assert!(read[0] <= read[1], "{read:?}");
+        telling.join().expect("no panic");
+        assert_eq!(second.others(round), SAID[1]);
+        second.leave();
+    });
+}
+
+#[test]
+fn what_is_said_of_one_round_is_never_read_in_the_next() {
+    loom::model(|| {
+        let (coordinator, [first, mut second]) = team();
+        let round = coordinator.begin();
+        let telling = thread::spawn(move || {
+            first.tell(round, SAID[0]);
+            first
+        });
+        let next = coordinator.begin();
+        assert_eq!(second.others(next), Carrying::default());
+        let mut first = telling.join().expect("no panic");
+        assert_eq!(second.others(next), Carrying::default());
+        first.tell(next, SAID[1]);
+        assert_eq!(second.others(next), SAID[1]);
+        assert_eq!(second.others(round), Carrying::default());
+        first.leave();
+        second.leave();
+    });
+}
+
+#[test]
+fn of_two_others_at_once_the_farthest_and_any_that_lags_count() {
+    loom::model(|| {
+        let (coordinator, [mut first, mut second, mut third]) = team();
+        let round = coordinator.begin();
+        let telling = thread::spawn(move || {
+            first.tell(round, SAID[1]);
+            first.leave();
+        });
+        second.tell(round, SAID[0]);
+        // What it says itself does not count for a member.
+        let others = second.others(round);
+        assert!(
+            [Carrying::default(), SAID[1]].contains(&others),
+            "{others:?}"
+        );
+        assert_eq!(third.others(round), SAID[0]);
+        telling.join().expect("no panic");
+        assert_eq!(third.others(round), SAID[0]);
+        second.leave();
+        third.leave();
     });
 }
