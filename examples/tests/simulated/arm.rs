@@ -2,7 +2,7 @@
 //! controls it.
 
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, mpsc};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use franka_async::READY;
@@ -79,55 +79,50 @@ pub(crate) struct Arm {
 #[derive(Default)]
 pub(crate) struct MeasuredPath(Vec<RobotState>);
 
+/// A robot of this name in this scene, and what it records.
+fn simulator(robot: &str, scene: Scene) -> (Sim, Arc<Mutex<Watch>>) {
+    let sim = match robot {
+        "fr3" => Sim::fr3(),
+        "fer" => Sim::fer(),
+        other => panic!("no robot is called {other}"),
+    };
+    let sim = if scene.realistic { sim } else { sim.ideal() };
+    let sim = sim
+        .tool(Tool::hand())
+        .configure(|config| config.q = scene.q);
+    let sim = match scene.on_the_wall {
+        true => sim.wait_for_commands(PATIENCE),
+        false => sim.virtual_time(PATIENCE),
+    };
+    let watch = Arc::new(Mutex::new(Watch {
+        events: scene.events.into(),
+        moving: None,
+        path: MeasuredPath::default(),
+    }));
+    let seen = watch.clone();
+    let sim = sim.every_millisecond(move |robot| {
+        std::thread::sleep(scene.slow);
+        seen.lock().expect("no panic").see(robot);
+    });
+    (sim, watch)
+}
+
 impl Arm {
     /// Starts the robot of this name.
     pub(crate) fn start(robot: &str, scene: Scene) -> Self {
-        Self::start_with(robot, scene, || {})
+        let (sim, watch) = simulator(robot, scene);
+        Self::serve(sim, watch)
     }
 
     /// Starts a robot of each kind, whose milliseconds are the same.
     pub(crate) fn in_step([one, other]: [Scene; 2]) -> [Self; 2] {
-        let (to_other, from_one) = mpsc::channel();
-        let (to_one, from_other) = mpsc::channel();
-        // Neither waits for a robot that has been stopped.
-        let meet = |sender: mpsc::Sender<()>, receiver: mpsc::Receiver<()>| {
-            move || {
-                let _ = sender.send(());
-                let _ = receiver.recv();
-            }
-        };
-        [
-            Self::start_with("fr3", one, meet(to_other, from_other)),
-            Self::start_with("fer", other, meet(to_one, from_one)),
-        ]
+        let (one, watch) = simulator("fr3", one);
+        let (other, other_watch) = simulator("fer", other);
+        let [one, other] = Sim::in_step([one, other]);
+        [Self::serve(one, watch), Self::serve(other, other_watch)]
     }
 
-    /// Starts the robot of this name, which calls `meet` every millisecond.
-    fn start_with(robot: &str, scene: Scene, mut meet: impl FnMut() + Send + 'static) -> Self {
-        let sim = match robot {
-            "fr3" => Sim::fr3(),
-            "fer" => Sim::fer(),
-            other => panic!("no robot is called {other}"),
-        };
-        let sim = if scene.realistic { sim } else { sim.ideal() };
-        let sim = sim
-            .tool(Tool::hand())
-            .configure(|config| config.q = scene.q);
-        let sim = match scene.on_the_wall {
-            true => sim.wait_for_commands(PATIENCE),
-            false => sim.virtual_time(PATIENCE),
-        };
-        let watch = Arc::new(Mutex::new(Watch {
-            events: scene.events.into(),
-            moving: None,
-            path: MeasuredPath::default(),
-        }));
-        let seen = watch.clone();
-        let sim = sim.every_millisecond(move |robot| {
-            meet();
-            std::thread::sleep(scene.slow);
-            seen.lock().expect("no panic").see(robot);
-        });
+    fn serve(sim: Sim, watch: Arc<Mutex<Watch>>) -> Self {
         let mut runtime = runtime::Builder::new_multi_thread();
         let runtime = runtime.worker_threads(1).enable_all().build();
         let runtime = runtime.expect("a runtime starts");

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::EveryMillisecond;
 use super::clock::{Clock, PERIOD, Pace};
 use super::device_server::DeviceServer;
+use super::in_step::InStep;
 use crate::end_effector::{Hand, VacuumGripper};
 use crate::robot::{Awaited, Robot};
 
@@ -22,6 +23,7 @@ pub(super) struct Cycle {
     pub(super) hand: Option<DeviceServer<Hand>>,
     pub(super) vacuum: Option<DeviceServer<VacuumGripper>>,
     pub(super) every_millisecond: Option<EveryMillisecond>,
+    pub(super) in_step: Option<InStep>,
 }
 
 impl Cycle {
@@ -142,6 +144,9 @@ impl Cycle {
 
     /// Advances every device by one millisecond. Returns false when the robot's service has ended.
     fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
+        if let Some(others) = &self.in_step {
+            others.meet();
+        }
         if let Some(EveryMillisecond(job)) = &mut self.every_millisecond {
             job(self.robot.device_mut());
         }
@@ -183,6 +188,7 @@ mod tests {
             hand: Some(hand_server),
             vacuum: None,
             every_millisecond: None,
+            in_step: None,
         };
         assert!(!cycle.has_client());
         let mut stream = TcpStream::connect(hand.addr()).expect("a listener");

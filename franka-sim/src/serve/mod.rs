@@ -26,6 +26,7 @@ mod clock;
 mod cycle;
 mod device;
 mod device_server;
+mod in_step;
 mod pending;
 mod priority;
 mod relay;
@@ -52,6 +53,7 @@ use crate::network::Network;
 use crate::plant::Plant;
 use crate::robot::Robot;
 use cycle::Cycle;
+use in_step::InStep;
 
 /// A robot to be simulated: configure, then [`start`](Self::start).
 ///
@@ -83,6 +85,7 @@ pub struct Sim {
     /// The network of the arm's interface; `None` is the host's own.
     network: Option<Network>,
     every_millisecond: Option<EveryMillisecond>,
+    in_step: Option<InStep>,
 }
 
 /// What [`Sim::every_millisecond`] runs.
@@ -130,6 +133,7 @@ impl Sim {
             patience: Duration::ZERO,
             network: None,
             every_millisecond: None,
+            in_step: None,
         }
     }
 
@@ -265,6 +269,18 @@ impl Sim {
         self
     }
 
+    /// Lets these robots begin each of their milliseconds together, whatever the clock of each:
+    /// where one waits for a command, all wait for it. For arms in one world, and for programs that
+    /// compare robots. A robot that has stopped, or whose `Sim` was dropped, is not waited for.
+    ///
+    /// Start all of them before you connect to one or stop one: until then their time stands still.
+    pub fn in_step<const N: usize>(mut sims: [Self; N]) -> [Self; N] {
+        for (sim, part) in sims.iter_mut().zip(in_step::in_step::<N>()) {
+            sim.in_step = Some(part);
+        }
+        sims
+    }
+
     /// Starts the robot. Must be called within a Tokio runtime with I/O and time enabled; any
     /// number of robots may run in one process.
     ///
@@ -305,6 +321,7 @@ impl Sim {
             hand: hand_server,
             vacuum: vacuum_server,
             every_millisecond: self.every_millisecond,
+            in_step: self.in_step,
         };
         let (virtual_time, patience) = (self.virtual_time, self.patience);
         let (realtime, strict) = (self.realtime, self.strict_clock);

@@ -1,5 +1,7 @@
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use franka_model::JointVector;
@@ -122,6 +124,44 @@ fn a_job_of_every_millisecond_misses_none() {
     let seen: Vec<_> = seen.iter().take(50).collect();
     let next_to_each_other = |pair: &[u64]| pair[1] == pair[0] + 1;
     assert!(seen.windows(2).all(next_to_each_other), "{seen:?}");
+}
+
+#[test]
+fn robots_in_step_begin_each_millisecond_together_until_one_stops() {
+    let counts = [0, 1].map(|_| Arc::new(AtomicU64::new(0)));
+    let apart = Arc::new(AtomicU64::new(0));
+    let counting = |number: usize| {
+        let (counts, apart) = (counts.clone(), apart.clone());
+        move |_: &mut Robot| {
+            let own = counts[number].fetch_add(1, Ordering::SeqCst) + 1;
+            let other = counts[1 - number].load(Ordering::SeqCst);
+            apart.fetch_max(own.abs_diff(other), Ordering::SeqCst);
+        }
+    };
+    // Up to ten times as fast as the second one, if it may.
+    let fast = Sim::fr3().virtual_time(Duration::ZERO);
+    let sims = [fast, Sim::fer()];
+    let [first, second] = Sim::in_step(sims);
+    let sims = [
+        first.every_millisecond(counting(0)),
+        second.every_millisecond(counting(1)),
+    ];
+    runtime().block_on(async {
+        let [first, second] = sims;
+        let first = first.start().await.expect("a robot");
+        tokio::time::sleep(Duration::from_millis(20)).await;
+        assert_eq!(
+            counts[0].load(Ordering::SeqCst),
+            0,
+            "it waits for the other"
+        );
+        let second = second.start().await.expect("a robot");
+        robot_time(&first, 200).await;
+        assert_eq!(apart.load(Ordering::SeqCst), 1);
+        first.stop().await;
+        robot_time(&second, 50).await;
+        second.stop().await;
+    });
 }
 
 #[test]

@@ -38,6 +38,7 @@ pub struct Mount {
 ///
 /// The robots that move the arms have to be in step, within 10 ms: one that comes later than that
 /// misses milliseconds of the world, in which its drives push as they did last.
+/// [`Sim::in_step`](crate::Sim::in_step) sees to that.
 pub struct SharedArm {
     world: Arc<Mutex<World>>,
     number: usize,

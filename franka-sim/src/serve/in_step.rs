@@ -1,0 +1,75 @@
+//! Robots that begin each of their milliseconds together.
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+/// Where the threads of robots in step meet, once in each of their milliseconds.
+#[derive(Debug)]
+struct Meeting {
+    state: Mutex<State>,
+    complete: Condvar,
+}
+
+#[derive(Debug)]
+struct State {
+    /// Robots that have not ended.
+    members: usize,
+    /// Those of them that wait for the others.
+    waiting: usize,
+    /// Counts the milliseconds that have begun.
+    begun: u64,
+}
+
+/// The part of one robot. Dropped when the robot ends, from when on no other one waits for it.
+#[derive(Debug)]
+pub(super) struct InStep(Arc<Meeting>);
+
+/// The parts of `N` robots.
+pub(super) fn in_step<const N: usize>() -> [InStep; N] {
+    let state = State {
+        members: N,
+        waiting: 0,
+        begun: 0,
+    };
+    let meeting = Arc::new(Meeting {
+        state: Mutex::new(state),
+        complete: Condvar::new(),
+    });
+    core::array::from_fn(|_| InStep(meeting.clone()))
+}
+
+impl InStep {
+    /// Returns when all other robots that have not ended are there, too.
+    pub(super) fn meet(&self) {
+        let mut state = self.0.state();
+        state.waiting += 1;
+        let begun = state.begun;
+        self.0.begin_if_complete(&mut state);
+        while state.begun == begun {
+            let waiting = self.0.complete.wait(state);
+            state = waiting.unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl Drop for InStep {
+    fn drop(&mut self) {
+        let mut state = self.0.state();
+        state.members -= 1;
+        self.0.begin_if_complete(&mut state);
+    }
+}
+
+impl Meeting {
+    fn state(&self) -> MutexGuard<'_, State> {
+        // Nothing panics while it is held.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn begin_if_complete(&self, state: &mut State) {
+        if state.waiting == state.members {
+            state.waiting = 0;
+            state.begun += 1;
+            self.complete.notify_all();
+        }
+    }
+}
