@@ -6,13 +6,16 @@
 //! Both arms are simulated, in one world of MuJoCo. On real robots the grasp would come first, and
 //! the bases would have been measured.
 
+use std::time::Duration;
+
 use clap::Parser;
+use franka_async::error::ConnectError;
 use franka_async::model::{EndEffector, Frame, Model, RobotKind};
 use franka_async::team::Team;
 use franka_async::{Engage, Pose, Realtime, Robot};
 use franka_async::{READY, pose};
 use franka_examples::Summary;
-use franka_sim::plant::{Mount, Scene, SharedArm, shared_world};
+use franka_sim::plant::{Mount, Scene, shared_world};
 use franka_sim::{Running, Sim};
 use nalgebra::{Translation3, UnitQuaternion};
 
@@ -28,6 +31,9 @@ struct Arguments {
 
 /// Distance of the bases, `[m]`.
 const APART: f64 = 1.2;
+
+/// How long a simulator and the team wait on a machine that is busy.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 #[tokio::main]
 async fn main() -> anyhow::Result<()> {
@@ -45,10 +51,15 @@ async fn main() -> anyhow::Result<()> {
     // In the middle between the hands.
     let bar = Pose::translation(APART / 2.0, 0.0, hand.translation.z);
 
-    let [left, right] = shared_world(scene(&bases, &hand, &bar), mounts(&bases))?;
-    let ((left, _one), (right, _other)) = tokio::try_join!(simulated(left), simulated(right))?;
+    // A simulator of its own for each arm. Their world takes them to be in step.
+    let arms = shared_world(scene(&bases, &hand, &bar), mounts(&bases))?;
+    let sims = arms.map(|arm| Sim::fr3().plant(arm).wait_for_commands(PATIENCE));
+    let [left, right] = Sim::in_step(sims);
+    let (one, other) = tokio::try_join!(left.start(), right.start())?;
+    let (left, right) = tokio::try_join!(connected(&one), connected(&other))?;
     let members = [(&left, Engage::default()), (&right, Engage::default())];
-    let team = Team::engage(members).await?;
+    // Real robots: `Team::engage`, for which 20 ms without a state are a fault.
+    let team = Team::engage_tolerating(PATIENCE, members).await?;
     let grasp = team.grasp(bases, bar)?;
     let turned = UnitQuaternion::from_euler_angles(0.0, 0.1, 0.2);
     let up = Pose::from_parts(Translation3::new(APART / 2.0, 0.05, 0.7), turned);
@@ -56,12 +67,13 @@ async fn main() -> anyhow::Result<()> {
         let carrying = grasp.move_with(to, |motion| motion.speed(speed).force_cap(force_cap));
         // One outcome for each arm: where one failed, the other says which it was.
         let [one, other] = carrying.await;
-        println!("{what}: {}; {}", Summary(&one?), Summary(&other?));
-        let off = grasp.measured().map(|bar| {
+        println!("{what}, one arm:   {}", Summary(&one?));
+        println!("{what}, the other: {}", Summary(&other?));
+        let [one, other] = grasp.measured().map(|bar| {
             let off = bar.translation.vector - to.translation.vector;
-            format!("{:.1} mm", off.norm() * 1e3)
+            off.norm() * 1e3
         });
-        println!("      the bar is off by {off:?}, as either arm measures it");
+        println!("{what}: the bar is off by {one:.1} mm and {other:.1} mm, by the joints of each");
     }
     for ended in team.disengage().await {
         ended?;
@@ -70,11 +82,9 @@ async fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A simulator of its own for each arm of the world, and a connection to it.
-async fn simulated(arm: SharedArm) -> anyhow::Result<(Robot, Running)> {
-    let sim = Sim::fr3().plant(arm).start().await?;
+async fn connected(sim: &Running) -> Result<Robot, ConnectError> {
     let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
-    Ok((robot.connect().await?, sim))
+    robot.connect().await
 }
 
 fn mounts([left, right]: &[Pose; 2]) -> [Mount; 2] {

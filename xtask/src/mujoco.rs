@@ -48,7 +48,7 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String
 pub(crate) fn features(workspace: &Workspace) -> anyhow::Result<String> {
     let mut features = "franka-tests/cycle-phases".to_owned();
     if prepare(workspace)?.is_ok() {
-        features += ",franka-tests/mujoco";
+        features += ",franka-tests/mujoco,franka-examples/mujoco";
     }
     Ok(features)
 }

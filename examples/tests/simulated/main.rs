@@ -47,6 +47,45 @@ fn pick_holds_the_block_and_puts_it_down() {
     }
 }
 
+#[cfg(feature = "mujoco")]
+#[test]
+fn carry_takes_the_bar_there_and_back() {
+    let said = program::run("carry", &[], "");
+    assert_eq!(said.code, Some(0), "{said:?}");
+    for way in ["up", "back"] {
+        for arm in ["one arm: ", "the other:"] {
+            let line = format!("{way}, {arm} ");
+            assert!(said.stdout.contains(&line), "no {line:?}: {said:?}");
+        }
+        // Either arm has it there, by less than 2 mm.
+        let line = format!("{way}: the bar is off by ");
+        let off = said
+            .stdout
+            .lines()
+            .find_map(|said| said.strip_prefix(&line));
+        let off = off.unwrap_or_else(|| panic!("no {line:?}: {said:?}"));
+        let off: Vec<f64> = off
+            .split(' ')
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        let [one, other] = off[..] else {
+            panic!("two distances: {said:?}")
+        };
+        assert!(one < 2.0 && other < 2.0, "{one} mm, {other} mm");
+    }
+}
+
+#[cfg(feature = "mujoco")]
+#[test]
+fn carry_says_why_it_is_refused() {
+    let said = program::run("carry", &["--speed", "1000"], "");
+    assert_eq!(said.code, Some(1), "{said:?}");
+    assert!(
+        said.stderr.contains("speed 1000, expected between"),
+        "{said:?}"
+    );
+}
+
 #[test]
 fn supervised_goes_on_after_reflexes() {
     for robot in ROBOTS {
