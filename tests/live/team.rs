@@ -1,6 +1,7 @@
 //! Teams of two simulated robots, over sockets: outcomes in order, one stop, and joint motions
 //! dropped at every poll. tests/lockstep/team.rs has the cycles.
 
+mod dropping;
 mod grasp;
 
 use std::future::{Future, poll_fn};
@@ -8,7 +9,7 @@ use std::pin::pin;
 use std::task::Poll;
 
 use franka_async::error::Lapse;
-use franka_async::team::{MemberFault, MemberMotion, Team, TeamStop};
+use franka_async::team::{MemberFault, MemberMotion, NotEngaged, Team, TeamStop};
 use franka_async::{Engage, MotionError, Offset, Pose, Robot};
 use franka_sim::{Running, Sim};
 use franka_tests::PATIENCE;

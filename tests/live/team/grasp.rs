@@ -10,14 +10,14 @@ use nalgebra::{Translation3, UnitQuaternion};
 use super::*;
 
 /// The bases, which face each other.
-fn bases() -> [Pose; 2] {
+pub(super) fn bases() -> [Pose; 2] {
     let turned = UnitQuaternion::from_euler_angles(0.0, 0.0, std::f64::consts::PI);
     let other = Pose::from_parts(Translation3::new(1.2, 0.0, 0.0), turned);
     [Pose::identity(), other]
 }
 
 /// An object between the hands, in the frame of the bases.
-fn object() -> Pose {
+pub(super) fn object() -> Pose {
     Pose::translation(0.6, 0.02, 0.5)
 }
 
