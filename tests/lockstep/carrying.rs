@@ -5,11 +5,13 @@ use std::any::Any;
 use franka_model::{EndEffector, Frame, Model, READY, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{Engagement, MotionError};
-use franka_rt::session::{ForceCap, Goal, GoalId, Lapse, OnArrival, Target};
+use franka_rt::session::{ForceCap, Goal, GoalId, Lapse, OnArrival, Target, Tolerance};
 use franka_rt::team::{Coordinator, MemberFault, TeamStop, team};
+use franka_sim::arm::Family;
 use franka_sim::plant::{Mount, Scene, SharedArm, shared_world};
 use franka_sim::{Arm, Config, Robot, Touch, TouchId};
 use franka_tests::lockstep::{Lockstep, Outcome, pose_of};
+use franka_tests::thorough;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// Distance of the bases, which face each other, `[m]`.
@@ -71,6 +73,21 @@ fn scene() -> Scene {
 
 impl Carriers {
     fn new() -> Self {
+        Self::pair(0)
+    }
+
+    /// The central arm of the realistic family twice, or two sampled ones of it: they stick
+    /// differently, and each believes its hand to be some millimetres from where it is.
+    fn pair(number: u64) -> Self {
+        let (kind, family) = (RobotKind::Fr3, Family::realistic());
+        let sampled = |seed| Arm::sample(kind, seed, &family);
+        Self::with(match number {
+            0 => [Arm::realistic(kind), Arm::realistic(kind)],
+            pair => [sampled(2 * pair), sampled(2 * pair + 1)],
+        })
+    }
+
+    fn with(arms: [Arm; 2]) -> Self {
         let kind = RobotKind::Fr3;
         let [left, right] = bases();
         let mount = |name: &str, base| Mount {
@@ -78,11 +95,12 @@ impl Carriers {
             name: name.into(),
             base,
         };
-        let arms = shared_world(scene(), [mount("left", left), mount("right", right)]);
-        let mut robots = arms.expect("a world").map(|plant| {
+        let plants = shared_world(scene(), [mount("left", left), mount("right", right)]);
+        let mut arms = arms.into_iter();
+        let mut robots = plants.expect("a world").map(|plant| {
             let config = Config {
                 kind,
-                arm: Some(Arm::realistic(kind)),
+                arm: arms.next(),
                 ..Config::default()
             };
             Lockstep::with_robot(Robot::with_plant(config, Box::new(plant)))
@@ -167,24 +185,35 @@ impl Carriers {
     }
 }
 
-/// Bounds of the internal force, `[N]`: that of a motion that nothing disturbs, and the force cap,
-/// with what the bar and the arms add by their inertia when something is hit.
-const CALM: f64 = 8.0;
+/// The most internal force when something is hit, `[N]`: the force cap, with what the bar and the
+/// arms add by their inertia.
 const MOST: f64 = CAP + 15.0;
+
+/// Pairs of arms. The bounds below are those of all 12; the sample has the worst ones.
+fn pairs(sample: &'static [u64]) -> Vec<u64> {
+    match thorough() {
+        true => (0..12).collect(),
+        false => sample.to_vec(),
+    }
+}
 
 impl Carriers {
     /// Begins to carry the bar to this pose in the world, with the poses of the hands kept.
     fn carry(&mut self, to: Isometry3<f64>) -> [GoalId; 2] {
+        self.carry_within(to, None)
+    }
+
+    fn carry_within(&mut self, to: Isometry3<f64>, tolerance: Option<Tolerance>) -> [GoalId; 2] {
         let round = Some(self.coordinator.begin());
-        let bar = self.bar();
+        let grasps = self.grasps();
         [0, 1].map(|i| {
-            let base = bases()[i];
-            let grasp = (base * self.robots[i].reference_pose()).inverse() * bar;
-            let target = Target::Pose(base.inverse() * to);
+            let grasp = grasps[i];
+            let target = Target::Pose(bases()[i].inverse() * to);
             let goal = self.robots[i].goal(target, OnArrival::ReportAndHold);
             let goal = Goal {
                 round,
                 grasp: Some(grasp),
+                tolerance,
                 force_cap: ForceCap::Newtons(CAP),
                 ..goal
             };
@@ -192,6 +221,25 @@ impl Carriers {
             let taken = self.robots[i].submit_within(session, goal);
             taken.expect("the session takes it")
         })
+    }
+
+    /// The bar in each hand, where its reference is.
+    fn grasps(&self) -> [Isometry3<f64>; 2] {
+        let bar = self.bar();
+        self.references().map(|hand| hand.inverse() * bar)
+    }
+
+    /// How far the bar is from its reference by the arm that is farther behind, as each measures it
+    /// and with turns as far as 0.2 m per radian, `[m]`.
+    fn lag(&self, grasps: &[Isometry3<f64>; 2]) -> f64 {
+        let of = |i: usize| {
+            let robot = &self.robots[i];
+            let reference = robot.reference_pose() * grasps[i];
+            let arm = robot.pose_at(&robot.client.state.q.into()) * grasps[i];
+            let way = reference.translation.vector - arm.translation.vector;
+            way.norm() + 0.2 * reference.rotation.angle_to(&arm.rotation)
+        };
+        of(0).max(of(1))
     }
 
     /// How far the references of the arms are apart from holding the bar as they began, `[m]`.
@@ -224,77 +272,120 @@ fn raised(bar: &Isometry3<f64>, by: f64, yaw: f64, tilt: f64) -> Isometry3<f64> 
 
 #[test]
 fn two_arms_carry_one_bar_and_hardly_pull_at_each_other() {
-    let mut carriers = Carriers::new();
-    let at_rest = carriers.internal().norm();
-    for (by, yaw, tilt) in [(0.1, 0.0, 0.0), (-0.1, 0.2, 0.0), (0.05, -0.2, 0.15)] {
-        let (start, [left, right]) = (carriers.bar(), carriers.references());
-        let begun = left.inverse() * right;
-        let to = raised(&start, by, yaw, tilt);
-        let goals = carriers.carry(to);
-        (carriers.strain, carriers.ticks) = (0.0, 0);
-        let mut gap = 0.0_f64;
-        while goals
-            .iter()
-            .zip(&carriers.robots)
-            .any(|(goal, robot)| robot.client.outcome(*goal).is_none())
-        {
-            carriers.tick();
-            gap = gap.max(carriers.gap(&begun));
-            assert!(carriers.ticks < 20_000, "it never arrives");
+    for pair in pairs(&[0, 9]) {
+        let mut carriers = Carriers::pair(pair);
+        let at_rest = carriers.internal().norm();
+        for (by, yaw, tilt) in [
+            (0.1, 0.0, 0.0),
+            (-0.1, 0.2, 0.0),
+            (0.05, -0.2, 0.15),
+            (0.15, 0.3, 0.0),
+        ] {
+            let (start, [left, right]) = (carriers.bar(), carriers.references());
+            let begun = left.inverse() * right;
+            let to = raised(&start, by, yaw, tilt);
+            let hands = carriers.grasps();
+            let goals = carriers.carry(to);
+            (carriers.strain, carriers.ticks) = (0.0, 0);
+            let (mut gap, mut lag) = (0.0_f64, 0.0_f64);
+            while goals
+                .iter()
+                .zip(&carriers.robots)
+                .any(|(goal, robot)| robot.client.outcome(*goal).is_none())
+            {
+                carriers.tick();
+                gap = gap.max(carriers.gap(&begun));
+                lag = lag.max(carriers.lag(&hands));
+                assert!(carriers.ticks < 20_000, "pair {pair}: it never arrives");
+            }
+            let ended = carriers.until_resolved(goals, 1);
+            assert_eq!(ended, [Ok(()), Ok(())], "pair {pair}");
+            let arrived = carriers.bar();
+            let off = (arrived.translation.vector - to.translation.vector).norm();
+            let turned = arrived.rotation.angle_to(&to.rotation);
+            println!(
+                "pair {pair}, {by} m, {yaw}, {tilt} rad in {} ms: off by {off:.4} m, {turned:.4} \
+                 rad; internal force {:.1} N (at rest {at_rest:.1} N), references apart by \
+                 {gap:.5} m, arms behind by {lag:.4} m",
+                carriers.ticks, carriers.strain
+            );
+            assert!(off < 2.1e-3 && turned < 9e-3, "{off} m, {turned} rad");
+            assert!(gap < 0.7e-3, "{gap} m");
+            // Half of the distance at which the other one halts.
+            assert!(lag < 7.5e-3, "{lag} m");
+            // Arms that disagree about where they are pull at each other as far as they may.
+            let most = if pair == 0 { 4.0 } else { CAP + 3.0 };
+            assert!(carriers.strain < most, "{} N", carriers.strain);
         }
-        let ended = carriers.until_resolved(goals, 1);
-        assert_eq!(ended, [Ok(()), Ok(())]);
-        let arrived = carriers.bar();
-        let off = (arrived.translation.vector - to.translation.vector).norm();
-        let turned = arrived.rotation.angle_to(&to.rotation);
-        println!(
-            "{by} m, {yaw}, {tilt} rad in {} ms: off by {off:.4} m, {turned:.4} rad; internal force \
-             {:.1} N (at rest {at_rest:.1} N), references apart by {gap:.5} m",
-            carriers.ticks, carriers.strain
-        );
-        assert!(off < 8e-3 && turned < 0.03, "{off} m, {turned} rad");
-        assert!(carriers.strain < CALM, "{} N", carriers.strain);
-        assert!(gap < 3e-3, "{gap} m");
     }
 }
 
 #[test]
 fn an_arm_that_is_held_back_holds_up_the_other_and_both_go_on_when_it_is_free() {
+    for pair in pairs(&[0, 2, 10]) {
+        let mut carriers = Carriers::pair(pair);
+        let [left, right] = carriers.references();
+        let begun = left.inverse() * right;
+        let to = raised(&carriers.bar(), 0.15, 0.0, 0.0);
+        let wall = carriers.wall_above(0.04);
+        let goals = carriers.carry(to);
+        let mut gap = 0.0_f64;
+        // Not much less than the time after which an arm that is held back gives up.
+        for _ in 0..5000 {
+            carriers.tick();
+            gap = gap.max(carriers.gap(&begun));
+        }
+        for (i, goal) in goals.iter().enumerate() {
+            assert_eq!(carriers.robots[i].client.outcome(*goal), None);
+        }
+        let height = carriers.bar().translation.z - to.translation.z + 0.15;
+        println!(
+            "pair {pair}: held {height:.3} m up: internal force {:.1} N, references apart by \
+             {gap:.4} m",
+            carriers.strain
+        );
+        assert!(height < 0.06, "{height} m");
+        // The one that is free halts within this way: 12.8 to 17.1 mm.
+        assert!(gap < 0.018, "{gap} m");
+        let most = if pair == 0 { 12.0 } else { 2.0 * CAP };
+        assert!(carriers.strain < most, "{} N", carriers.strain);
+        assert!(carriers.robots[0].robot.release(wall));
+        let ended = carriers.until_resolved(goals, 20_000);
+        assert_eq!(ended, [Ok(()), Ok(())], "pair {pair}");
+        let off = carriers.bar().translation.vector - to.translation.vector;
+        assert!(off.norm() < 2.1e-3, "pair {pair}: {off:?}");
+    }
+}
+
+/// Of two arms that halt, the one that is held back gives up after 5 s, not the one that waits.
+#[test]
+fn who_waits_for_the_other_arm_gives_up_with_it_and_not_before() {
     let mut carriers = Carriers::new();
-    let [left, right] = carriers.references();
-    let begun = left.inverse() * right;
     let to = raised(&carriers.bar(), 0.15, 0.0, 0.0);
-    let wall = carriers.wall_above(0.04);
+    carriers.wall_above(0.04);
     let goals = carriers.carry(to);
-    let mut gap = 0.0_f64;
-    for _ in 0..2500 {
-        carriers.tick();
-        gap = gap.max(carriers.gap(&begun));
-    }
-    for (i, goal) in goals.iter().enumerate() {
-        assert_eq!(carriers.robots[i].client.outcome(*goal), None);
-    }
-    let height = carriers.bar().translation.z - to.translation.z + 0.15;
-    println!(
-        "held {height:.3} m up: internal force {:.1} N, references apart by {gap:.4} m",
-        carriers.strain
-    );
-    assert!(height < 0.06, "{height} m");
-    assert!(gap < 0.035, "{gap} m");
-    assert!(carriers.strain < MOST, "{} N", carriers.strain);
-    assert!(carriers.robots[0].robot.release(wall));
-    for outcome in carriers.until_resolved(goals, 20_000) {
-        // What both have learnt of their friction against the wall may keep them from resting for
-        // so long that one says it is short of its target, by next to nothing.
-        let near = match &outcome {
-            Ok(()) => true,
-            Err(MotionError::TargetNotReached(short)) => short.error.translation < 5e-3,
-            Err(_) => false,
-        };
-        assert!(near, "{outcome:?}");
-    }
-    let off = carriers.bar().translation.vector - to.translation.vector;
-    assert!(off.norm() < 5e-3, "{off:?}");
+    let ended = carriers.until_resolved(goals, 20_000);
+    println!("after {} ms: {ended:?}", carriers.ticks);
+    let [held, waited] = ended;
+    assert!(matches!(held, Err(MotionError::TargetNotReached(_))));
+    let stop = TeamStop::Member {
+        member: 0,
+        fault: MemberFault::NotReached,
+    };
+    assert_eq!(waited, Err(MotionError::Braked(Lapse::Team(stop))));
+}
+
+#[test]
+fn a_motion_that_is_tighter_than_both_arms_can_keep_says_so() {
+    // Both arms have a tolerance of their own here, so none is given for what they disagree by.
+    let mut carriers = Carriers::pair(9);
+    let to = raised(&carriers.bar(), 0.1, 0.0, 0.0);
+    let goals = carriers.carry_within(to, Some(Tolerance::default()));
+    let ended = carriers.until_resolved(goals, 20_000);
+    let short = ended
+        .iter()
+        .any(|it| matches!(it, Err(MotionError::TargetNotReached(_))));
+    assert!(short, "{ended:?}");
 }
 
 #[test]

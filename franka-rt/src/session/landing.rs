@@ -70,7 +70,7 @@ impl PoseError {
         }
     }
 
-    fn within(&self, tolerance: &Tolerance) -> bool {
+    pub(super) fn within(&self, tolerance: &Tolerance) -> bool {
         self.in_parts_of(tolerance) <= 1.0
     }
 

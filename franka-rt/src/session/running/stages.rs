@@ -41,6 +41,7 @@ impl RunningSession {
         let heading = self.heading();
         let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
         let has_braked = self.has_braked_before(&heading);
+        let with_others = self.tolerance_with_others();
         match &mut self.stage {
             GoalStage::UnderWay if has_braked => {
                 self.turn_to(heading);
@@ -48,14 +49,17 @@ impl RunningSession {
             }
             GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                let waits = (self.goal.paused || self.waits && !self.lags)
-                    && heading != Target::Rest
-                    && !self.is_given_up();
+                let pursued = heading != Target::Rest && !self.is_given_up();
                 // The hand may have come to its target before the elbow has.
                 let turns = self.goal.posture.is_some()
                     && self.reference.dq.amax() > landing::REST_VELOCITY;
-                let ends = self.goal.on_arrival != OnArrival::Hold && !waits;
-                if ends && (self.route.is_done() && !turns || stalled) {
+                // A reference that halts on its way rests, too. An arm that others wait for gives
+                // up when it has been held back for too long.
+                let arrived = self.route.is_done() && !turns && !(pursued && self.waits);
+                let stalled = stalled && !(pursued && self.waits && !self.lags);
+                let paused = pursued && self.goal.paused;
+                let ends = self.goal.on_arrival != OnArrival::Hold && !paused;
+                if ends && (arrived || stalled) {
                     if stalled && self.route.is_hindered() {
                         self.give_up(Lapse::Blocked);
                     } else if stalled && heading != Target::Rest {
@@ -103,6 +107,11 @@ impl RunningSession {
                     (&mut settlement, effort)
                 {
                     short.pull = Some(effort.pull(&self.arm.jacobian).into());
+                }
+                if let Settlement::TargetNotReached(short) = settlement
+                    && with_others.is_some_and(|near| short.error.within(&near))
+                {
+                    settlement = Settlement::Arrived(short.error);
                 }
                 let compensation = effort.map(|effort| effort.compensated().into());
                 self.stage = match (self.goal.on_arrival, &self.drive) {
