@@ -16,10 +16,16 @@ use crate::robot::Pose;
 /// hand, so what an arm presses or pulls at the object with is bounded by its cap, but for inertia,
 /// and so is what two arms pull at each other with.
 ///
-/// An arm that is held back, by an obstacle or by its own limits, holds up the others: once it is
+/// An arm that is held back, by an obstacle or by its own limits, holds up the others: while it is
 /// 15 mm behind its reference, turns counted as 0.2 m per radian, the references of all halt on
-/// their line, with 2.5 m/s^2, and go on when it has caught up. They halt, too, where one is more
-/// than 2 mm ahead of another. After 5 s the motion ends with an error for each.
+/// their line, with 2.5 m/s^2. A reference that is more than 2 mm ahead of another one halts until
+/// that one has followed. An arm that does not catch up within 5 s comes to rest and ends as
+/// [`MotionError::TargetNotReached`], and so the motion of each ends with an error.
+///
+/// No arm knows exactly where its hand is, so an object in several hands keeps them from their
+/// targets. One that comes to rest within 5 mm and 10 mrad of its own has arrived, with the
+/// distance in [`MotionReport::final_error`](crate::MotionReport::final_error), unless the
+/// motion has a tolerance of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Grasp<'a, const N: usize> {
     team: &'a Team<N>,

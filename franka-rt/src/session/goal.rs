@@ -184,7 +184,8 @@ pub struct Goal {
     /// How stiff.
     pub gains: Gains,
     /// How near counts as arrived; `None` for what the law keeps on an arm that sticks: see
-    /// [`Tolerance::of`] and [`Tolerance::under`].
+    /// [`Tolerance::of`] and [`Tolerance::under`]. An arm that holds an object with others of its
+    /// team, and comes to rest farther away than that, has arrived within 5 mm and 10 mrad, too.
     pub tolerance: Option<Tolerance>,
     /// What happens if its updates stop coming; only for goals that are held.
     pub watchdog: Option<Watchdog>,
