@@ -6,11 +6,11 @@ use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::driver::Driver;
 use franka_rt::lifecycle::{Engagement, MotionError, NewMotion};
 use franka_rt::session::condition::elapsed;
-use franka_rt::session::{Goal, GoalId, Guard, Lapse, OnArrival, Reaction, Target};
-use franka_rt::team::{Coordinator, MemberFault, Round, TeamStop, team};
+use franka_rt::session::{Deadman, Goal, GoalId, Guard, Lapse, OnArrival, Reaction, Target};
+use franka_rt::team::{Coordinator, Member, MemberFault, Round, TeamStop, team, team_tolerating};
 use franka_sim::{Arm, Config, Touch};
 use franka_tests::lockstep::{Lockstep, Outcome};
-use nalgebra::{Translation3, Vector3};
+use nalgebra::{Isometry3, Translation3, Vector3};
 use std::time::Duration;
 
 /// An FR3 and an FER that stick and lag as real arms do, in one team.
@@ -25,11 +25,16 @@ struct Pair {
     stopped: Option<u64>,
     braked: [Option<u64>; 2],
     ticks: u64,
+    /// That of the first robot, which is silent for good once it is dropped.
+    deadman: Option<Deadman>,
 }
 
 impl Pair {
     fn new(swapped: bool) -> Self {
-        let (coordinator, [left, right]) = team();
+        Self::of(team(), swapped)
+    }
+
+    fn of((coordinator, [left, right]): (Coordinator, [Member; 2]), swapped: bool) -> Self {
         let robot = |kind| {
             Lockstep::new(Config {
                 arm: Some(Arm::realistic(kind)),
@@ -41,13 +46,17 @@ impl Pair {
         robots[0].request(&Request::SetCollisionBehavior(wary));
         robots[0].run(5);
         let mut members = [Some(left), Some(right)];
+        let (deadman, monitor) = Deadman::new(Duration::from_secs(3600));
+        let mut monitor = Some(monitor);
         let sessions = core::array::from_fn(|i| {
             robots[i].engage_with(Engagement {
                 team: members[i].take(),
+                deadman: monitor.take(),
                 ..Engagement::default()
             })
         });
         Self {
+            deadman: Some(deadman),
             robots,
             sessions,
             coordinator,
@@ -167,7 +176,14 @@ struct Case {
     goes_on: bool,
 }
 
-const CASES: [Case; 9] = [
+const CASES: [Case; 10] = [
+    Case {
+        name: "deadman dropped",
+        happen: |pair, _| pair.deadman = None,
+        fault: MemberFault::GivenUp,
+        seen_after: 1..=1,
+        goes_on: false,
+    },
     Case {
         name: "user stop",
         happen: |pair, _| pair.robots[0].robot.press_user_stop(true),
@@ -306,6 +322,57 @@ fn a_fault_of_one_brakes_the_other_within_two_cycles() {
             }
         }
     }
+}
+
+#[test]
+fn each_silence_of_one_brakes_the_other_anew() {
+    let mut pair = Pair::of(team_tolerating(Duration::from_millis(5)), false);
+    for (by, silence) in [(0.5, 4), (-0.5, 8), (0.5, 8)] {
+        let goals = pair.both([by, by]);
+        pair.run(300);
+        // Too short for the robot to stop by itself.
+        pair.robots[0].link.drop_states(silence);
+        let [_, other] = pair.until_resolved(goals, 20_000);
+        let braked = stopped_by(MemberFault::Silent);
+        assert_eq!(other, if silence < 5 { Ok(()) } else { braked });
+    }
+}
+
+/// The clock of the second robot runs at half the speed of the first one's, which would so be ahead
+/// by 5 cm with what both hold.
+#[test]
+fn a_reference_halts_while_it_is_ahead_of_another_one() {
+    let mut pair = Pair::new(false);
+    let round = Some(pair.coordinator.begin());
+    let start = [0, 1].map(|i| pair.robots[i].reference_pose().translation.vector);
+    let goals = [0, 1].map(|i| {
+        let hand = pair.robots[i].reference_pose();
+        let up = Target::Pose(Translation3::new(0.0, 0.0, 0.1) * hand);
+        let goal = pair.robots[i].goal(up, OnArrival::ReportAndHold);
+        let goal = Goal {
+            round,
+            grasp: Some(Isometry3::identity()),
+            budget: goal.budget.scaled(0.1),
+            ..goal
+        };
+        pair.submit_goal(i, goal)
+    });
+    let mut ahead = 0.0_f64;
+    for ms in 0..20_000 {
+        pair.robots[0].tick();
+        if ms % 2 == 0 {
+            pair.robots[1].tick();
+        }
+        let [one, other] = [0, 1].map(|i| {
+            let hand = pair.robots[i].reference_pose().translation.vector;
+            (hand - start[i]).norm()
+        });
+        ahead = ahead.max((one - other).abs());
+    }
+    println!("ahead by {ahead:.4} m");
+    // 2 mm, and the way in which it halts at 3 cm/s.
+    assert!(ahead < 4e-3, "{ahead} m");
+    assert_eq!(pair.until_resolved(goals, 20_000), [Ok(()), Ok(())]);
 }
 
 #[test]
