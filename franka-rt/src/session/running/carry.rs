@@ -10,8 +10,8 @@ use crate::session::reference::Reference;
 use crate::session::{Budget, Goal, Target, Tolerance};
 use crate::team::Carrying;
 
-/// Distance of the arm from its reference, `[m]`, from which on it lags. Realistic arms that nothing
-/// holds stay within half of it: 7.4 mm at most (as for [`NEAR`], each of the ways at full speed).
+/// Distance of the arm from its reference, `[m]`, from which on it lags. Realistic arms that
+/// nothing holds stay within half of it: 7.4 mm at most (as for [`NEAR`], at full speed).
 const LAG: f64 = 0.015;
 
 /// Distance within which it no longer does, `[m]`: arms that nothing holds come to rest within
