@@ -172,7 +172,7 @@ pub fn team<const N: usize>() -> (Coordinator, [Member; N]) {
 
 /// A team whose members' robots may be silent for so long.
 pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Member; N]) {
-    const { assert!(N <= MEMBERS_MAX, "so many members fit") };
+    const { assert!(0 < N && N <= MEMBERS_MAX, "a team has one member to 254") };
     let shared = Arc::new(Shared {
         word: AtomicU64::new(Word::default().0),
         carrying: (0..N).map(|_| AtomicU64::new(0)).collect(),
