@@ -197,11 +197,11 @@
 //! # }
 //! ```
 //!
-//! Where the stream ends, the motion resolves as `Ok` at the last target. The watchdog is counted by
-//! the control thread: it brakes the arm even if the program hangs, and the motion resolves as
-//! [`MotionError::Braked`]. A target may be a [`Pose`], joint positions, or either with its velocity
-//! as a pair, by which the arm does not fall behind: `(pose, twist)`, `(q, dq)`. Policies that predict
-//! several steps at once have [`Arm::chunk`].
+//! Where the stream ends, the motion resolves as `Ok` at the last target. The watchdog is counted
+//! by the control thread: it brakes the arm even if the program hangs, and the motion resolves as
+//! [`MotionError::Braked`]. A target may be a [`Pose`], joint positions, or either with its
+//! velocity as a pair, `(pose, twist)` or `(q, dq)`, by which the arm does not fall behind.
+//! Policies that predict several steps at once have [`Arm::chunk`].
 //!
 //! # Move until contact
 //!
@@ -225,18 +225,18 @@
 //! # }
 //! ```
 //!
-//! The control thread looks at the condition in every cycle. `force_z` is the external force along z
-//! of the base, either way; `relative` counts from the beginning of the motion, and the 200 ms leave
-//! out the torques in which it begins. `contact` says when and where that was. Without one the
-//! motion arrives: `reacted` is `None`. `touched.then(pose)` goes elsewhere at once instead of
+//! The control thread looks at the condition in every cycle. `force_z` is the external force along
+//! z of the base, either way; `relative` counts from the beginning of the motion, and the 200 ms
+//! leave out the torques in which it begins. `contact` says when and where that was. Without one
+//! the motion arrives: `reacted` is `None`. `touched.then(pose)` goes elsewhere at once instead of
 //! stopping; [`condition`] has the others.
 //!
 //! # Errors and recovery
 //!
 //! A robot that stops itself (a *reflex*, for instance by a collision) takes no motion before it
 //! has been recovered. The error has the log of the last cycles, and its diagnosis says what to
-//! change. [`MotionError::party`] says who can act: the caller, the host, the link, whoever is at the
-//! robot, or who maintains the program at the other end.
+//! change. [`MotionError::party`] says who can act: the caller, the host, the link, whoever is at
+//! the robot, or who maintains the program at the other end.
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -280,13 +280,10 @@
 //! use franka_async::blocking::Wait;
 //! use franka_async::prelude::*;
 //!
-//! let robot = Robot::connect("172.16.0.2").wait()?;
-//! robot.move_to(READY).wait()?;
-//! let arm = robot.engage(Engage::default()).wait()?;
-//! arm.try_set(Pose::translation(0.0, 0.0, 0.05) * robot.pose())?; // never waits, for loops of the program's own
-//! arm.at_rest().wait()?;
-//! arm.disengage().wait()?;
-//! robot.shutdown().wait();
+//! let robot = Robot::connect("172.16.0.2").wait()?; robot.move_to(READY).wait()?; let arm =
+//! robot.engage(Engage::default()).wait()?; arm.try_set(Pose::translation(0.0, 0.0, 0.05) *
+//! robot.pose())?; // never waits, for loops of the program's own arm.at_rest().wait()?;
+//! arm.disengage().wait()?; robot.shutdown().wait();
 //! # Ok(())
 //! # }
 //! ```
@@ -325,17 +322,21 @@
 //! |---|---|
 //! | [`prelude`] | what a first program needs |
 //! | [`pose`] | poses from quaternions, arrays and matrices, and back |
-//! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; what a motion goes on until |
+//! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; what a motion goes on until
+//! |
 //! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
 //! | [`team`] | several arms as one, with one stop |
 //! | [`state`] | every state, or the newest as it changes |
-//! | [`error`], [`diagnosis`] | what can go wrong, by who can act on it; why the robot ended a motion |
+//! | [`error`], [`diagnosis`] | what can go wrong, by who can act on it; why the robot ended a
+//! motion |
 //! | [`supervision`] | connections that are made again, recovery by a policy, events and health |
 //! | [`control`] | control at 1 kHz by functions of the program |
 //! | [`gripper`], [`vacuum`] | the end effectors, each with a connection of its own |
-//! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
+//! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured
+//! |
 //! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
-//! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
+//! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control
+//! is |
 //! | [`record`] | what every cycle saw and did |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
 //! | `blocking` | programs without async (feature `blocking`) |

@@ -182,7 +182,7 @@ async fn an_object_that_cannot_go_there_stays_in_all_hands() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn an_arm_under_the_robots_own_controller_carries_nothing() {
     let _alone = alone();
-    let own = Engage::default().backend(Backend::RobotController(Setpoints::Joints));
+    let own = Engage::default().backend(Backend::joint_impedance(Setpoints::JointPositions));
     let two = two_with([Engage::default(), own]).await;
     let grasp = two.team.grasp(bases(), object()).expect("both hold");
     let [first, second] = grasp.move_to(up(0.05) * object()).await;
