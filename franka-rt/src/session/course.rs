@@ -4,6 +4,7 @@ use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
 use franka_otg::{AxisLimits, AxisState, PlanError};
 
+use crate::session::aim::Aim;
 use crate::session::chunk::ChunkCourse;
 use crate::session::guard::joint_bounds::BoundsReached;
 use crate::session::guard::leash;
@@ -13,7 +14,7 @@ use crate::session::kinematics::{self, Drift, Posture};
 use crate::session::pose::{MovingPose, PoseGenerator, PoseState};
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
-use crate::session::{Budget, Goal, Target, budget, rigid};
+use crate::session::{Budget, Target, budget, rigid};
 
 const _: () = assert!(
     franka_otg::CYCLE == franka_model::CYCLE,
@@ -59,45 +60,45 @@ impl CourseStep {
 }
 
 impl Course {
-    /// Turns towards a new goal from wherever the reference is and however it moves.
+    /// Turns towards a new aim from wherever the reference is and however it moves.
     ///
     /// Courses are some kilobytes large: one of the same kind is planned anew in place.
     ///
     /// # Errors
     /// [`PlanError`], by a defect only: goals are checked where they are accepted. The course goes
-    /// on to where it was heading, which is safe and ends short of the goal.
+    /// on to where it was heading, which is safe and ends short of the aim.
     pub(super) fn head_for(
         &mut self,
         model: &Model,
         ee: &EndEffector,
         reference: &Reference,
-        goal: &Goal,
+        aim: &Aim,
     ) -> Result<(), PlanError> {
         let robot = model.joint_limits();
-        match goal.target {
-            Target::Rest => self.over_joints(robot, reference, None, goal)?,
+        match aim.target {
+            Target::Rest => self.over_joints(robot, reference, None, aim)?,
             Target::Joints(q) => {
                 let target = MovingJoints { q, dq: [0.0; 7] };
-                self.over_joints(robot, reference, Some(target), goal)?;
+                self.over_joints(robot, reference, Some(target), aim)?;
             }
             Target::MovingJoints { q, dq } => {
-                self.over_joints(robot, reference, Some(MovingJoints { q, dq }), goal)?;
+                self.over_joints(robot, reference, Some(MovingJoints { q, dq }), aim)?;
             }
             Target::Pose(target) => {
-                self.over_pose(model, ee, reference, target.into(), goal)?;
+                self.over_pose(model, ee, reference, target.into(), aim)?;
             }
             Target::MovingPose { pose, twist } => {
-                self.over_pose(model, ee, reference, MovingPose { pose, twist }, goal)?;
+                self.over_pose(model, ee, reference, MovingPose { pose, twist }, aim)?;
             }
             Target::Guide(free) => match self {
-                Self::Guide(guide) => guide.free(free, goal.leash),
+                Self::Guide(guide) => guide.free(free, aim.leash),
                 Self::Rest | Self::Joints(_) | Self::Pose(..) | Self::Chunk(_) => {
-                    let brake = JointGenerator::new(robot, reference, None, &goal.budget)?;
-                    *self = Self::Guide(Guide::new(free, goal.leash, brake));
+                    let brake = JointGenerator::new(robot, reference, None, &aim.budget)?;
+                    *self = Self::Guide(Guide::new(free, aim.leash, brake));
                 }
             },
         }
-        if goal.paused { self.halt() } else { Ok(()) }
+        if aim.paused { self.halt() } else { Ok(()) }
     }
 
     fn over_joints(
@@ -105,12 +106,12 @@ impl Course {
         robot: &JointLimits,
         reference: &Reference,
         target: Option<MovingJoints>,
-        goal: &Goal,
+        aim: &Aim,
     ) -> Result<(), PlanError> {
         match self {
-            Self::Joints(generator) => generator.head_for(robot, reference, target, &goal.budget),
+            Self::Joints(generator) => generator.head_for(robot, reference, target, &aim.budget),
             Self::Rest | Self::Pose(..) | Self::Guide(_) | Self::Chunk(_) => {
-                let budget = &goal.budget;
+                let budget = &aim.budget;
                 *self = Self::Joints(JointGenerator::new(robot, reference, target, budget)?);
                 Ok(())
             }
@@ -123,14 +124,14 @@ impl Course {
         ee: &EndEffector,
         reference: &Reference,
         target: MovingPose,
-        goal: &Goal,
+        aim: &Aim,
     ) -> Result<(), PlanError> {
         match self {
-            Self::Pose(generator, _) => generator.retarget(target, goal.budget),
+            Self::Pose(generator, _) => generator.retarget(target, aim.budget),
             Self::Rest | Self::Joints(_) | Self::Guide(_) | Self::Chunk(_) => {
                 let start = end_effector(model, ee, reference);
                 let most = model.cartesian_limits();
-                let generator = PoseGenerator::new(&start, target, goal.budget, most)?;
+                let generator = PoseGenerator::new(&start, target, aim.budget, most)?;
                 *self = Self::Pose(generator, Drift::of(reference.dq));
                 Ok(())
             }

@@ -19,6 +19,7 @@
 //! releasing, finished. A newer goal takes the session back under way from any of them but the
 //! last.
 
+mod aim;
 mod approach;
 mod backend;
 mod budget;
@@ -448,7 +449,13 @@ impl TargetSession {
         if let Some(active) = &mut self.active {
             let waits = self.team.as_ref().is_some_and(Membership::waits);
             let watched = (alive, stop, waits);
-            active.prepare(&self.model, newer, watched, self.chunks.as_mut(), now);
+            active.prepare(
+                &self.model,
+                newer.as_ref(),
+                watched,
+                self.chunks.as_mut(),
+                now,
+            );
             if let Some(team) = &mut self.team {
                 team.watch(active);
             }
@@ -470,8 +477,11 @@ impl TargetSession {
     fn newer(&mut self) -> Option<Goal> {
         match self.gate {
             Gate::Open => {
-                let held = self.held.take();
-                self.read().or(held)
+                let newer = self.read();
+                if self.held.is_none() {
+                    return newer;
+                }
+                newer.or(self.held.take())
             }
             Gate::Closed => {
                 let nothing = self.active.is_none();

@@ -1,15 +1,15 @@
 //! A course that keeps clear of the arm itself and of the regions to keep out of.
 
 use franka_model::{EndEffector, Model};
-use franka_otg::AxisLimits;
 
+use crate::session::aim::Aim;
 use crate::session::chunk::{ChunkCourse, ChunkStart};
 use crate::session::course::{self, Course};
 use crate::session::guard::clearance::{Ahead, Clearance};
 use crate::session::kinematics::Posture;
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
-use crate::session::{Budget, Chunk, Goal, Target};
+use crate::session::{Budget, Chunk, Target};
 
 /// Share of its velocity that a goal keeps where something is near.
 const SLOW: f64 = 0.3;
@@ -17,7 +17,7 @@ const SLOW: f64 = 0.3;
 /// Cycles without anything near ahead after which a goal has its full velocity again.
 const CLEAR: u32 = 100;
 
-/// Cycles from a brake to the next attempt at the goal.
+/// Cycles from a brake to the next attempt at the aim.
 const RETRY: u32 = 100;
 
 /// Cycles for which a course counts as hindered after a brake.
@@ -80,23 +80,23 @@ impl Route {
         self.stale = true;
     }
 
-    /// Plans anew towards `goal` if that is due.
+    /// Plans anew towards `aim` if that is due.
     pub(super) fn renew(
         &mut self,
         model: &Model,
         ee: &EndEffector,
         reference: &Reference,
-        goal: &Goal,
+        aim: &Aim,
     ) {
         if self.stale {
-            self.head_for(model, ee, reference, goal);
+            self.head_for(model, ee, reference, aim);
         }
     }
 
-    /// Plans the course towards `goal` from the reference; a chunk in force is kept, within the
-    /// budget of `goal`. The pace is kept; after a brake it is slow.
-    fn head_for(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
-        let paced = self.paced(goal);
+    /// Plans the course towards `aim` from the reference; a chunk in force is kept, within the
+    /// budget of `aim`. The pace is kept; after a brake it is slow.
+    fn head_for(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
+        let paced = self.paced(aim);
         match &mut self.course {
             Course::Chunk(chunk) => {
                 chunk.keep_to(model, reference, paced.budget);
@@ -106,9 +106,9 @@ impl Route {
         }
     }
 
-    /// Plans the course towards `goal`, or notes that no plan could be made.
-    fn plan(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
-        let planned = self.course.head_for(model, ee, reference, goal);
+    /// Plans the course towards `aim`, or notes that no plan could be made.
+    fn plan(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
+        let planned = self.course.head_for(model, ee, reference, aim);
         self.failed |= planned.is_err();
     }
 
@@ -117,13 +117,13 @@ impl Route {
         core::mem::take(&mut self.failed)
     }
 
-    /// Follows a chunk towards its end, `goal`, at the present pace. Returns the chunk before it.
+    /// Follows a chunk towards its end, `aim`, at the present pace. Returns the chunk before it.
     pub(super) fn follow(
         &mut self,
         model: &Model,
         ee: &EndEffector,
         reference: &Reference,
-        goal: &Goal,
+        aim: &Aim,
         chunk: Chunk,
         now: u64,
     ) -> Option<ChunkCourse> {
@@ -134,48 +134,48 @@ impl Route {
             drift,
             now,
         };
-        let budget = self.paced(goal).budget;
-        let next = ChunkCourse::new(model, goal.id, budget, chunk, start);
+        let budget = self.paced(aim).budget;
+        let next = ChunkCourse::new(model, aim.goal, budget, chunk, start);
         match core::mem::replace(&mut self.course, Course::Chunk(next)) {
             Course::Chunk(before) => Some(before),
             _ => None,
         }
     }
 
-    /// Returns `goal` with less velocity if something is near. Also ends a brake: the goal goes on
+    /// Returns `aim` with less velocity if something is near. Also ends a brake: the goal goes on
     /// slowly, and may be paced anew.
-    fn paced(&mut self, goal: &Goal) -> Goal {
+    fn paced(&mut self, aim: &Aim) -> Aim {
         self.stale = false;
         if matches!(self.pace, Pace::Braked(_)) {
             self.pace = Pace::Slow(0);
         }
-        match (goal.target, &self.pace) {
-            (Target::Rest | Target::Guide(_), _) => self.braking(goal),
-            (_, Pace::Full) => *goal,
-            (_, Pace::Slow(_) | Pace::Braked(_)) => slowed(goal),
+        match (aim.target, &self.pace) {
+            (Target::Rest | Target::Guide(_), _) => self.braking(aim),
+            (_, Pace::Full) => *aim,
+            (_, Pace::Slow(_) | Pace::Braked(_)) => aim.slowed(SLOW),
         }
     }
 
-    /// Returns `goal` with its joint limits raised to those of the last clear check, where they are
+    /// Returns `aim` with its joint limits raised to those of the last clear check, where they are
     /// lower: the way of the brake is then no longer than the one that was checked.
-    fn braking(&self, goal: &Goal) -> Goal {
-        let mut budget = goal.budget;
+    fn braking(&self, aim: &Aim) -> Aim {
+        let mut budget = aim.budget;
         for (joint, judged) in budget.joints.iter_mut().zip(&self.judged.joints) {
             joint.velocity = joint.velocity.max(judged.velocity);
             joint.acceleration = joint.acceleration.max(judged.acceleration);
             joint.jerk = joint.jerk.max(judged.jerk);
         }
-        Goal { budget, ..*goal }
+        Aim { budget, ..*aim }
     }
 
-    /// Plans anew towards `goal` from a reference that something else has moved, unless it has
+    /// Plans anew towards `aim` from a reference that something else has moved, unless it has
     /// arrived and rests.
     pub(super) fn begin_again(
         &mut self,
         model: &Model,
         ee: &EndEffector,
         reference: &Reference,
-        goal: &Goal,
+        aim: &Aim,
     ) {
         if self.course.is_done() && reference.dq.amax() < AT_REST {
             return;
@@ -186,9 +186,9 @@ impl Route {
         }
         self.course = Course::Rest;
         if matches!(self.pace, Pace::Braked(_)) {
-            self.brake(model, ee, reference, goal);
+            self.brake(model, ee, reference, aim);
         } else {
-            self.head_for(model, ee, reference, goal);
+            self.head_for(model, ee, reference, aim);
         }
     }
 
@@ -201,14 +201,14 @@ impl Route {
         }
     }
 
-    fn brake(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, goal: &Goal) {
+    fn brake(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
         if let Course::Chunk(chunk) = &self.course {
             self.chunk_end = Some(chunk.target());
             self.retire_chunk();
         }
-        let rest = Goal {
+        let rest = Aim {
             target: Target::Rest,
-            ..*goal
+            ..*aim
         };
         let rest = self.braking(&rest);
         self.plan(model, ee, reference, &rest);
@@ -221,7 +221,7 @@ impl Route {
         self.stale = false;
     }
 
-    /// Advances by one nominal millisecond towards `goal`, for the answer to the state `now`, or
+    /// Advances by one nominal millisecond towards `aim`, for the answer to the state `now`, or
     /// brakes before something too near.
     #[expect(clippy::too_many_arguments, reason = "each is of another type")]
     pub(super) fn step(
@@ -231,7 +231,7 @@ impl Route {
         posture: &Posture,
         reference: &Reference,
         arm: &Measured,
-        goal: &Goal,
+        aim: &Aim,
         now: u64,
     ) -> course::CourseStep {
         self.hindered = self.hindered.saturating_sub(1);
@@ -241,22 +241,22 @@ impl Route {
                 self.hindered = HINDERED;
                 return self.course.step(model, ee, posture, reference, arm, now);
             }
-            self.head_for(model, ee, reference, goal);
+            self.head_for(model, ee, reference, aim);
         }
         let step = self.course.step(model, ee, posture, reference, arm, now);
         // The way of a brake was checked before the step that it begins from. Hand guiding is not
         // checked.
-        if matches!(goal.target, Target::Rest | Target::Guide(_)) {
+        if matches!(aim.target, Target::Rest | Target::Guide(_)) {
             return step;
         }
         let next = &step.reference;
-        let end = course::end_of_brake(model, next, &goal.budget);
+        let end = course::end_of_brake(model, next, &aim.budget);
         let ahead = self.clearance.ahead(&reference.q, &next.q, &end);
         match (ahead, &mut self.pace) {
             (Ahead::TooNear, _) => {
                 self.pace = Pace::Braked(0);
                 self.hindered = HINDERED;
-                self.brake(model, ee, reference, goal);
+                self.brake(model, ee, reference, aim);
                 return self.course.step(model, ee, posture, reference, arm, now);
             }
             (Ahead::Near, pace @ Pace::Full) => {
@@ -273,11 +273,11 @@ impl Route {
             }
             (Ahead::Clear, Pace::Full | Pace::Braked(_)) => {}
         }
-        self.judged = goal.budget;
+        self.judged = aim.budget;
         step
     }
 
-    /// Whether something near slows the course down or keeps it from its goal.
+    /// Whether something near slows the course down or keeps it from its aim.
     pub(super) fn is_bound(&self) -> bool {
         !matches!(self.pace, Pace::Full)
     }
@@ -290,31 +290,5 @@ impl Route {
     /// Whether the course has come to the end of its way.
     pub(super) fn is_done(&self) -> bool {
         !self.stale && self.course.is_done() && !matches!(self.pace, Pace::Braked(_))
-    }
-}
-
-/// Returns `goal` with its velocities scaled by [`SLOW`]; those of the joints only for a joint
-/// target.
-fn slowed(goal: &Goal) -> Goal {
-    let slow = |limits: AxisLimits| AxisLimits {
-        velocity: limits.velocity * SLOW,
-        ..limits
-    };
-    let Budget {
-        joints,
-        translation,
-        rotation,
-    } = goal.budget;
-    let joints = match goal.target {
-        Target::Joints(_) | Target::MovingJoints { .. } => joints.map(slow),
-        _ => joints,
-    };
-    Goal {
-        budget: Budget {
-            joints,
-            translation: slow(translation),
-            rotation: slow(rotation),
-        },
-        ..*goal
     }
 }

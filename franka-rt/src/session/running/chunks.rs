@@ -3,9 +3,10 @@
 use franka_model::Model;
 
 use super::{GoalStage, RunningSession, Standing};
+use crate::session::aim::Aim;
 use crate::session::chunk::ChunkReader;
 use crate::session::course::Course;
-use crate::session::{Goal, OnArrival, Target};
+use crate::session::{OnArrival, Target};
 
 impl RunningSession {
     /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is
@@ -25,13 +26,13 @@ impl RunningSession {
             _ => true,
         };
         if let Some(chunk) = chunks.poll(self.goal.id, now, over) {
-            let goal = Goal {
+            let aim = Aim {
                 target: chunk.target(),
-                ..self.goal
+                ..self.aim(model, now)
             };
             let before = self
                 .route
-                .follow(model, &self.ee, &self.reference, &goal, chunk, now);
+                .follow(model, &self.ee, &self.reference, &aim, chunk, now);
             if let Some(before) = before {
                 before.end(chunks, now);
             }

@@ -5,6 +5,7 @@
 
 mod carry;
 mod chunks;
+mod goals;
 mod react;
 mod stages;
 mod watch;
@@ -20,8 +21,8 @@ use crate::law::compensation::Learned;
 use crate::session::reference::Reference;
 use crate::team::TeamStop;
 
+use super::aim::Aim;
 use super::backend::Backend;
-use super::budget::Budget;
 use super::chunk::ChunkReader;
 use super::course::{Course, CourseStep};
 use super::effort::{Effort, Resistance};
@@ -73,7 +74,7 @@ pub(super) struct RunningSession {
     /// When the session last heard of its goal, `message_id` of the state.
     heard: u64,
     standing: Standing,
-    /// The reaction of the goal, until its condition was true; `goal` has none.
+    /// The reaction of the goal, until its condition was true.
     reacting: Option<Reacting>,
     /// Whether the arm comes to rest, or rests, on what it may have met in a reaction.
     yields: bool,
@@ -135,7 +136,7 @@ pub(super) struct Measured {
 impl RunningSession {
     pub(super) fn begin(
         model: &Model,
-        mut goal: Goal,
+        goal: Goal,
         backend: Backend,
         version: Version,
         keep_out: KeepOut,
@@ -188,7 +189,7 @@ impl RunningSession {
             since: state.message_id,
             heard: state.message_id,
             standing: Standing::InForce,
-            reacting: Self::reacting_to(&mut goal, state.message_id),
+            reacting: Reacting::to(&goal, state.message_id),
             yields: false,
             posture: q,
             reference,
@@ -231,103 +232,6 @@ impl RunningSession {
         }
     }
 
-    /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
-    /// anew.
-    fn take_up(&mut self, mut goal: Goal, now: u64) {
-        if matches!(self.stage, GoalStage::Finished(_)) {
-            return;
-        }
-        let named = goal.id == self.goal.id;
-        let reacting = Self::reacting_to(&mut goal, now);
-        let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
-        // Tuning leaves the revision as it is.
-        let tuned = goal.revision == self.goal.revision;
-        // The caller has not yet seen the abort or the reaction: ignore where the update leads.
-        let aborted = !taken_back && self.is_given_up_for_good();
-        if named && (tuned || aborted) {
-            return self.tune(goal);
-        }
-        self.heard = now;
-        let same = named
-            && !self.is_given_up()
-            && goal.target == self.goal.target
-            && !goal.target.moves()
-            && goal.on_arrival == self.goal.on_arrival;
-        if same && !matches!(self.stage, GoalStage::Releasing(_)) {
-            return self.tune(goal);
-        }
-        if !named {
-            self.since = now;
-            self.reacting = reacting;
-        }
-        self.goal = goal;
-        self.take_hold();
-        self.fade_gains();
-        self.standing = if named && taken_back {
-            Standing::TakenBack
-        } else {
-            Standing::InForce
-        };
-        self.set_out();
-    }
-
-    /// Takes the reaction out of a goal that begins with the state `since`, `message_id`.
-    fn reacting_to(goal: &mut Goal, since: u64) -> Option<Reacting> {
-        let reaction = goal.reaction.take();
-        reaction.map(|reaction| Reacting::new(reaction, since))
-    }
-
-    /// Keeps the target, and takes budget, gains, tolerance and guards from `goal`. Gains for
-    /// guiding would release an arm that is held by now.
-    fn tune(&mut self, goal: Goal) {
-        let Goal {
-            target, on_arrival, ..
-        } = self.goal;
-        let gains = match target {
-            Target::Guide(_) => goal.gains,
-            _ => goal.at_rest(on_arrival).gains,
-        };
-        let before = core::mem::replace(
-            &mut self.goal,
-            Goal {
-                target,
-                on_arrival,
-                gains,
-                ..goal
-            },
-        );
-        self.fade_gains();
-        let changed = goal.budget != before.budget
-            || goal.paused != before.paused
-            || goal.leash != before.leash;
-        if changed && !matches!(self.stage, GoalStage::Releasing(_)) {
-            self.route.outdate();
-        }
-    }
-
-    /// Starts the fade of gains and force cap to those of the goal.
-    fn fade_gains(&mut self) {
-        if let Drive::Torques(effort) = &mut self.drive {
-            effort.take_up(&self.goal);
-        }
-    }
-
-    /// Sets out for the target of the goal.
-    fn set_out(&mut self) {
-        self.stage = GoalStage::UnderWay;
-        self.held_back = 0;
-        self.route.chunk_end = None;
-        self.turn_to(self.goal.target);
-    }
-
-    /// Ends the course, and has the next one planned to `target`.
-    fn turn_to(&mut self, target: Target) {
-        self.route.retire_chunk();
-        self.aim = target;
-        self.halted = false;
-        self.route.outdate();
-    }
-
     /// Prepares the answer to the state `now`, `message_id`: takes up a `newer` goal, if there is
     /// one, plans, and moves the reference by one step. `alive` is false once the deadman of the
     /// session is silent or dropped; `stop` is there in the cycle that sees that its team has
@@ -335,7 +239,7 @@ impl RunningSession {
     pub(super) fn prepare(
         &mut self,
         model: &Model,
-        newer: Option<Goal>,
+        newer: Option<&Goal>,
         (alive, stop, waits): (bool, Option<TeamStop>, bool),
         chunks: Option<&mut ChunkReader>,
         now: u64,
@@ -381,7 +285,7 @@ impl RunningSession {
     fn advance(
         &mut self,
         model: &Model,
-        aim: &Goal,
+        aim: &Aim,
         now: u64,
         bindings: &mut Bindings,
     ) -> CourseStep {
@@ -414,27 +318,6 @@ impl RunningSession {
             GoalStage::Finished(released) => released,
             _ => None,
         }
-    }
-
-    /// The goal with what the reference heads for at `now` as its target. A goal that is slow on
-    /// purpose is left quickly after a reaction.
-    fn aim(&self, model: &Model, now: u64) -> Goal {
-        let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
-        let mut aim = Goal {
-            target: self.aim.after(since),
-            // A stop is not to be paused.
-            paused: (self.goal.paused || self.waits) && self.aim != Target::Rest || self.halted,
-            reaction: None,
-            ..self.goal
-        };
-        if self.waits {
-            aim.budget = carry::quick_to_halt(aim.budget);
-        }
-        if self.has_reacted() {
-            let default = Budget::of(model.joint_limits());
-            aim.budget = aim.budget.as_brisk_as(&default);
-        }
-        aim
     }
 
     /// Answers one state, once the answer is prepared.
@@ -534,17 +417,15 @@ impl RunningSession {
             return false;
         };
         self.reference = echo;
+        let mut aim = self.aim(model, state.message_id);
         let target = match self.stage {
-            GoalStage::UnderWay => self.aim(model, state.message_id).target,
+            GoalStage::UnderWay => aim.target,
             GoalStage::Landing(_)
             | GoalStage::Staying
             | GoalStage::Releasing(_)
             | GoalStage::Finished(_) => Target::Rest,
         };
-        let aim = Goal {
-            target,
-            ..self.aim(model, state.message_id)
-        };
+        aim.target = target;
         self.route
             .begin_again(model, &self.ee, &self.reference, &aim);
         true

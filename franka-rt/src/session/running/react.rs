@@ -18,13 +18,14 @@ pub(super) struct Reacting {
 }
 
 impl Reacting {
-    /// Of a goal that begins with the state `since`, `message_id`.
-    pub(super) fn new(reaction: Reaction, since: u64) -> Self {
-        Self {
-            watch: Watch::new(reaction.condition, since),
-            then: reaction.then,
+    /// Of a goal that begins with the state `since`, `message_id`, if it has one.
+    pub(super) fn to(goal: &Goal, since: u64) -> Option<Self> {
+        let Reaction { condition, then } = goal.reaction?;
+        Some(Self {
+            watch: Watch::new(condition, since),
+            then,
             newest: None,
-        }
+        })
     }
 }
 

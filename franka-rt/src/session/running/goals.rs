@@ -1,0 +1,122 @@
+//! Goals: taken up, tuned, headed for.
+
+use franka_model::Model;
+
+use super::react::Reacting;
+use super::{Drive, GoalStage, RunningSession, Standing, carry};
+use crate::session::aim::Aim;
+use crate::session::{Budget, Goal, OnArrival, Target};
+
+impl RunningSession {
+    /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
+    /// anew.
+    pub(super) fn take_up(&mut self, goal: &Goal, now: u64) {
+        if matches!(self.stage, GoalStage::Finished(_)) {
+            return;
+        }
+        let named = goal.id == self.goal.id;
+        let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
+        // Tuning leaves the revision as it is.
+        let tuned = goal.revision == self.goal.revision;
+        // The caller has not yet seen the abort or the reaction: ignore where the update leads.
+        let aborted = !taken_back && self.is_given_up_for_good();
+        if named && (tuned || aborted) {
+            return self.tune(goal);
+        }
+        self.heard = now;
+        let same = named
+            && !self.is_given_up()
+            && goal.target == self.goal.target
+            && !goal.target.moves()
+            && goal.on_arrival == self.goal.on_arrival;
+        if same && !matches!(self.stage, GoalStage::Releasing(_)) {
+            return self.tune(goal);
+        }
+        if !named {
+            self.since = now;
+            self.reacting = Reacting::to(goal, now);
+        }
+        self.goal = *goal;
+        self.take_hold();
+        self.fade_gains();
+        self.standing = if named && taken_back {
+            Standing::TakenBack
+        } else {
+            Standing::InForce
+        };
+        self.set_out();
+    }
+
+    /// Keeps the target, and takes budget, gains, tolerance and guards from `goal`. Gains for
+    /// guiding would release an arm that is held by now.
+    fn tune(&mut self, goal: &Goal) {
+        let Goal {
+            target, on_arrival, ..
+        } = self.goal;
+        let gains = match target {
+            Target::Guide(_) => goal.gains,
+            _ => goal.at_rest(on_arrival).gains,
+        };
+        let before = core::mem::replace(
+            &mut self.goal,
+            Goal {
+                target,
+                on_arrival,
+                gains,
+                ..*goal
+            },
+        );
+        self.fade_gains();
+        let changed = goal.budget != before.budget
+            || goal.paused != before.paused
+            || goal.leash != before.leash;
+        if changed && !matches!(self.stage, GoalStage::Releasing(_)) {
+            self.route.outdate();
+        }
+    }
+
+    /// Starts the fade of gains and force cap to those of the goal.
+    pub(super) fn fade_gains(&mut self) {
+        if let Drive::Torques(effort) = &mut self.drive {
+            effort.take_up(&self.goal);
+        }
+    }
+
+    /// Sets out for the target of the goal.
+    pub(super) fn set_out(&mut self) {
+        self.stage = GoalStage::UnderWay;
+        self.held_back = 0;
+        self.route.chunk_end = None;
+        self.turn_to(self.goal.target);
+    }
+
+    /// Ends the course, and has the next one planned to `target`.
+    pub(super) fn turn_to(&mut self, target: Target) {
+        self.route.retire_chunk();
+        self.aim = target;
+        self.halted = false;
+        self.route.outdate();
+    }
+
+    /// What the reference heads for at `now`. A goal that is slow on purpose is left quickly after
+    /// a reaction.
+    pub(super) fn aim(&self, model: &Model, now: u64) -> Aim {
+        let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
+        let mut aim = Aim {
+            goal: self.goal.id,
+            target: self.aim.after(since),
+            budget: self.goal.budget,
+            // A stop is not to be paused.
+            paused: (self.goal.paused || self.waits) && self.aim != Target::Rest || self.halted,
+            leash: self.goal.leash,
+        };
+        if self.waits {
+            aim.budget = carry::quick_to_halt(aim.budget);
+        }
+        if self.has_reacted() {
+            let default = Budget::of(model.joint_limits());
+            aim.budget = aim.budget.as_brisk_as(&default);
+        }
+        aim
+    }
+}
