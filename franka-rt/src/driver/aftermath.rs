@@ -2,7 +2,7 @@
 
 use franka_proto::RobotState;
 
-use super::motion::DriverPhase;
+use super::motion::{Execution, Phase};
 use super::{Driver, Event, ReferenceState};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
@@ -17,7 +17,7 @@ impl Driver {
             self.record.turnaround = sent.turnaround;
             self.record.slack = Some(sent.slack);
         }
-        if let Some(motion) = self.phase.begun_mut() {
+        if let Some(motion) = self.motion.as_mut().filter(|motion| motion.has_begun()) {
             motion.log.note_state(state);
             motion.log.note_command(&motion.sent);
             if let Some(interval) = arrival.interval {
@@ -35,7 +35,9 @@ impl Driver {
     /// Computes what the answer to the next state does not need that state for: the program's next
     /// goal, plan and reference. To be called once everything that waits for this cycle is done.
     pub fn prepare(&mut self) {
-        if let DriverPhase::Running(motion) = &mut self.phase {
+        if let Some(motion) = &mut self.motion
+            && motion.phase == Phase::Running
+        {
             motion.program.prepare();
         }
     }
@@ -43,7 +45,7 @@ impl Driver {
     /// Notes the times of a cycle whose command has left, when all of them are known. Returns the
     /// counts of the motion that runs; `None` if none does.
     pub fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
-        let motion = self.phase.begun()?;
+        let motion = self.motion.as_ref().filter(|motion| motion.has_begun())?;
         self.statistics.note_cycle(cycle);
         motion.times.turnaround.note(cycle.turnaround);
         Some(&self.statistics)
@@ -51,6 +53,7 @@ impl Driver {
 
     /// Counts of the motion that runs; `None` if none does.
     pub fn statistics(&self) -> Option<&MotionStatistics> {
-        self.phase.begun().map(|_| &self.statistics)
+        let begun = self.motion.as_ref().is_some_and(Execution::has_begun);
+        begun.then_some(&self.statistics)
     }
 }

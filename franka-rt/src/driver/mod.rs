@@ -65,14 +65,15 @@ pub use program::Program;
 pub use record::{Activity, Record};
 
 use event::EventQueue;
-use motion::{DriverPhase, Execution, UNWANTED_STATES};
+use motion::{Execution, Phase, UNWANTED_STATES};
 use program::CycleOutcome;
 
 /// The pure core of one robot's control thread.
 #[derive(Debug)]
 pub struct Driver {
     version: Version,
-    phase: DriverPhase,
+    /// The motion under way, in its phase; `None` while the driver watches.
+    motion: Option<Execution>,
     /// `message_id` of the newest state, once there was one.
     newest: Option<u64>,
     /// The silence at which the link was given up, until a state revives it.
@@ -94,7 +95,7 @@ impl Driver {
         let (references, reader) = slot();
         Self {
             version,
-            phase: DriverPhase::Watching,
+            motion: None,
             newest: None,
             lost: None,
             link_timeout: LinkTimeout::default(),
@@ -121,7 +122,7 @@ impl Driver {
 
     /// Whether no motion is armed, running or finishing.
     pub fn is_watching(&self) -> bool {
-        matches!(self.phase, DriverPhase::Watching)
+        self.motion.is_none()
     }
 
     /// What the last cycle saw and did.
@@ -160,12 +161,13 @@ impl Driver {
                     times,
                     observer,
                     sent: RobotCommand::default(),
+                    phase: Phase::Armed,
                 };
                 let unseen = MotionStatistics::default();
                 match (self.lost, self.is_watching()) {
                     (None, true) => {
                         self.statistics = unseen;
-                        self.phase = DriverPhase::Armed(armed);
+                        self.motion = Some(armed);
                     }
                     (None, false) => self.give_back(armed, Ending::Refused, unseen),
                     (Some(silence), _) => {
@@ -173,29 +175,17 @@ impl Driver {
                     }
                 }
             }
+            // Otherwise the motion has ended by itself, and has said so; or another one is under way.
             Order::Disarm { motion } => {
-                match core::mem::replace(&mut self.phase, DriverPhase::Watching) {
-                    DriverPhase::Armed(armed) if armed.id == motion => {
-                        self.end(armed, Ending::Disarmed);
-                    }
-                    // The motion has ended by itself, and has said so; or another one is under way.
-                    other => self.phase = other,
+                let armed = |it: &mut Execution| it.id == motion && it.phase == Phase::Armed;
+                if let Some(armed) = self.motion.take_if(armed) {
+                    self.give_back(armed, Ending::Disarmed, self.statistics);
                 }
             }
             Order::Abandon { motion } => {
-                self.phase = match core::mem::replace(&mut self.phase, DriverPhase::Watching) {
-                    DriverPhase::Armed(mut abandoned) if abandoned.id == motion => {
-                        abandoned.leave();
-                        DriverPhase::Unwanted(abandoned, 0)
-                    }
-                    DriverPhase::Running(mut abandoned) | DriverPhase::Finishing(mut abandoned)
-                        if abandoned.id == motion && !abandoned.program.brakes() =>
-                    {
-                        abandoned.leave();
-                        DriverPhase::Silent(abandoned)
-                    }
-                    other => other,
-                };
+                if let Some(abandoned) = self.motion.as_mut().filter(|it| it.id == motion) {
+                    abandoned.abandon();
+                }
             }
         }
     }
@@ -225,65 +215,58 @@ impl Driver {
             self.statistics
                 .note_state(state, missing - skipped, skipped);
         }
-        match core::mem::replace(&mut self.phase, DriverPhase::Watching) {
-            DriverPhase::Watching => None,
-            DriverPhase::Armed(motion)
-                if motion.modes.shown_by(state) && motion.program.can_read(state) =>
-            {
+        let motion = self.motion.as_mut()?;
+        match motion.phase {
+            Phase::Armed if motion.modes.shown_by(state) && motion.program.can_read(state) => {
                 self.events.push(Event::Started {
                     motion: motion.id,
                     time: state.message_id,
                 });
                 // States lost before the motion's first one are not counted.
                 self.statistics.note_state(state, 0, 0);
-                self.run(motion, state)
+                self.run(state)
             }
-            DriverPhase::Armed(motion) => {
+            Phase::Armed => {
                 self.record.activity = Activity::Armed;
-                self.phase = DriverPhase::Armed(motion);
                 None
             }
-            DriverPhase::Unwanted(motion, quiet) => {
+            Phase::Unwanted(quiet) => {
                 let quiet = if motion.is_left_by(state) {
                     quiet + 1
                 } else {
                     0
                 };
                 if quiet == UNWANTED_STATES {
-                    return self.end_at(state, motion, Ending::Disarmed);
+                    return self.end_at(state, Ending::Disarmed);
                 }
                 self.record.activity = Activity::Silent;
-                self.phase = DriverPhase::Unwanted(motion, quiet);
+                motion.phase = Phase::Unwanted(quiet);
                 None
             }
-            DriverPhase::Running(motion) => {
+            Phase::Running => {
                 if motion.is_left_by(state) {
-                    self.end_at(state, motion, Ending::Aborted)
+                    self.end_at(state, Ending::Aborted)
                 } else if motion.program.can_read(state) {
-                    self.run(motion, state)
+                    self.run(state)
                 } else {
                     self.record.activity = Activity::Running;
-                    self.phase = DriverPhase::Running(motion);
                     None
                 }
             }
-            DriverPhase::Finishing(mut motion) => {
+            Phase::Finishing => {
                 if motion.is_left_by(state) {
-                    return self.end_at(state, motion, Ending::Finished);
+                    return self.end_at(state, Ending::Finished);
                 }
                 motion.sent.message_id = state.message_id;
-                let command = motion.sent;
                 self.record.activity = Activity::Finishing;
-                self.record.tau_c = command.tau_J_d;
-                self.phase = DriverPhase::Finishing(motion);
-                Some(command)
+                self.record.tau_c = motion.sent.tau_J_d;
+                Some(motion.sent)
             }
-            DriverPhase::Silent(motion) => {
+            Phase::Silent => {
                 if motion.is_left_by(state) {
-                    return self.end_at(state, motion, Ending::Aborted);
+                    return self.end_at(state, Ending::Aborted);
                 }
                 self.record.activity = Activity::Silent;
-                self.phase = DriverPhase::Silent(motion);
                 None
             }
         }
@@ -296,10 +279,10 @@ impl Driver {
     /// # Errors
     /// [`WriteError`]; nothing is to be sent then, and the motion goes on.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<RobotCommand, WriteError> {
-        let (DriverPhase::Running(motion), Some(newest)) = (&mut self.phase, self.newest) else {
+        let (Some(motion), Some(newest)) = (self.motion.as_mut(), self.newest) else {
             return Err(WriteError::NotRunning);
         };
-        let Program::Active(active) = &motion.program else {
+        let (Program::Active(active), Phase::Running) = (&motion.program, motion.phase) else {
             return Err(WriteError::NotRunning);
         };
         active.check(command, motion.modes, finished)?;
@@ -309,10 +292,7 @@ impl Driver {
         self.record.tau_c = sent.tau_J_d;
         if finished {
             self.events.push(Event::Finishing { motion: motion.id });
-            let running = core::mem::replace(&mut self.phase, DriverPhase::Watching);
-            if let DriverPhase::Running(motion) = running {
-                self.phase = DriverPhase::Finishing(motion);
-            }
+            motion.phase = Phase::Finishing;
         }
         Ok(sent)
     }
@@ -320,35 +300,24 @@ impl Driver {
     /// Tells that no state has come for `silence`. After [`team::SILENCE`](crate::team::SILENCE)
     /// the others of a team brake, and at the link timeout a motion ends with [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
-        if let Some(motion) = self.phase.begun_mut() {
-            motion.program.on_silence(silence);
+        if let Some(begun) = self.motion.as_mut().filter(|motion| motion.has_begun()) {
+            begun.program.on_silence(silence);
         }
         if silence < self.link_timeout.get() || self.lost.is_some() {
             return;
         }
         self.lost = Some(silence);
-        match core::mem::replace(&mut self.phase, DriverPhase::Watching) {
-            DriverPhase::Watching => {}
-            DriverPhase::Armed(motion)
-            | DriverPhase::Unwanted(motion, _)
-            | DriverPhase::Running(motion)
-            | DriverPhase::Finishing(motion)
-            | DriverPhase::Silent(motion) => {
-                self.end(motion, Ending::LinkLost { silence });
-            }
-        }
+        self.end(Ending::LinkLost { silence });
         self.events.push(Event::LinkLost { silence });
     }
 
-    fn run(&mut self, mut motion: Execution, state: &RobotState) -> Option<RobotCommand> {
+    /// Answers a state with the program of the motion under way.
+    fn run(&mut self, state: &RobotState) -> Option<RobotCommand> {
+        let motion = self.motion.as_mut()?;
         let gate = motion.gate(state);
         let step = motion
             .program
             .step(gate, self.version, state, &mut self.record);
-        let activity = match gate {
-            Gate::Closed => Activity::Waiting,
-            Gate::Open | Gate::Broken(_) => Activity::Running,
-        };
         if let Some(event) = step.event {
             self.events.push(Event::Program {
                 motion: motion.id,
@@ -356,61 +325,52 @@ impl Driver {
                 statistics: self.statistics,
             });
         }
+        (motion.phase, self.record.activity) = (Phase::Running, Activity::Running);
         match step.outcome {
             CycleOutcome::Command { command, finished } => {
-                let sent = match command.datagram(state.message_id, finished) {
-                    Ok(sent) => sent,
-                    Err(invalid) => return self.fail(motion, Failure::Invalid(invalid)),
-                };
-                motion.sent = sent;
-                self.record.tau_c = sent.tau_J_d;
-                self.phase = if finished {
-                    self.record.activity = Activity::Finishing;
+                match command.datagram(state.message_id, finished) {
+                    Ok(sent) => motion.sent = sent,
+                    Err(invalid) => return self.fail(Failure::Invalid(invalid)),
+                }
+                self.record.tau_c = motion.sent.tau_J_d;
+                if finished {
+                    (motion.phase, self.record.activity) = (Phase::Finishing, Activity::Finishing);
                     self.events.push(Event::Finishing { motion: motion.id });
-                    DriverPhase::Finishing(motion)
-                } else {
-                    self.record.activity = activity;
-                    DriverPhase::Running(motion)
-                };
-                Some(sent)
+                } else if matches!(gate, Gate::Closed) {
+                    self.record.activity = Activity::Waiting;
+                }
+                Some(motion.sent)
             }
-            CycleOutcome::Open => {
-                self.record.activity = Activity::Running;
-                self.phase = DriverPhase::Running(motion);
-                None
-            }
-            CycleOutcome::Failed(failure) => self.fail(motion, failure),
+            CycleOutcome::Open => None,
+            CycleOutcome::Failed(failure) => self.fail(failure),
         }
     }
 
-    /// Leaves a motion without commands from now on, as its program cannot go on.
-    fn fail(&mut self, mut motion: Execution, failure: Failure) -> Option<RobotCommand> {
+    /// Leaves the motion without commands from now on, as its program cannot go on.
+    fn fail(&mut self, failure: Failure) -> Option<RobotCommand> {
+        let motion = self.motion.as_mut()?;
         motion.program.fail_team(MemberFault::Failed);
-        self.record.activity = Activity::Silent;
+        (motion.phase, self.record.activity) = (Phase::Silent, Activity::Silent);
         self.events.push(Event::Failed {
             motion: motion.id,
             failure,
         });
-        self.phase = DriverPhase::Silent(motion);
         None
     }
 
-    /// Ends a motion with the state that shows its end. There is nothing to answer then, so its log
-    /// takes the state at once.
-    fn end_at(
-        &mut self,
-        state: &RobotState,
-        mut motion: Execution,
-        ending: Ending,
-    ) -> Option<RobotCommand> {
-        motion.log.note_state(state);
-        self.end(motion, ending);
+    /// Ends the motion with the state that shows its end. There is nothing to answer then, so its
+    /// log takes the state at once.
+    fn end_at(&mut self, state: &RobotState, ending: Ending) -> Option<RobotCommand> {
+        self.motion.as_mut()?.log.note_state(state);
+        self.end(ending);
         None
     }
 
-    fn end(&mut self, motion: Execution, ending: Ending) {
-        self.phase = DriverPhase::Watching;
-        self.give_back(motion, ending, self.statistics);
+    /// Ends the motion, if one is under way.
+    fn end(&mut self, ending: Ending) {
+        if let Some(motion) = self.motion.take() {
+            self.give_back(motion, ending, self.statistics);
+        }
     }
 
     fn give_back(&mut self, mut motion: Execution, ending: Ending, statistics: MotionStatistics) {

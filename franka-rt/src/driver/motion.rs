@@ -10,38 +10,20 @@ use crate::stats::MotionTimes;
 use crate::team::MemberFault;
 use crate::together::{Gate, StartTicket};
 
-/// What the driver is doing.
-#[derive(Debug)]
-pub(super) enum DriverPhase {
-    Watching,
-    Armed(Execution),
+/// How far a motion has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// Asked for; the robot has not shown it yet.
+    Armed,
     /// Abandoned while it was armed, and the number of states in a row since then that show no
     /// motion: the robot may begin it all the same. Nothing is sent.
-    Unwanted(Execution, u32),
-    Running(Execution),
+    Unwanted(u32),
+    Running,
     /// The finishing command is repeated until the robot leaves the motion's modes.
-    Finishing(Execution),
+    Finishing,
     /// The program has failed, or was left alone: nothing is sent until the robot leaves the
     /// motion's modes.
-    Silent(Execution),
-}
-
-impl DriverPhase {
-    /// The motion that the robot has begun; `None` if it has begun none, or has left it.
-    pub(super) fn begun(&self) -> Option<&Execution> {
-        match self {
-            Self::Running(motion) | Self::Finishing(motion) | Self::Silent(motion) => Some(motion),
-            Self::Watching | Self::Armed(_) | Self::Unwanted(..) => None,
-        }
-    }
-
-    /// [`Self::begun`], to be changed.
-    pub(super) fn begun_mut(&mut self) -> Option<&mut Execution> {
-        match self {
-            Self::Running(motion) | Self::Finishing(motion) | Self::Silent(motion) => Some(motion),
-            Self::Watching | Self::Armed(_) | Self::Unwanted(..) => None,
-        }
-    }
+    Silent,
 }
 
 /// States in a row without a motion after which a robot that was told to stop is taken not to begin
@@ -60,6 +42,7 @@ pub(super) struct Execution {
     pub(super) observer: Option<Observer>,
     /// The newest command that was sent; zeros before the first.
     pub(super) sent: RobotCommand,
+    pub(super) phase: Phase,
 }
 
 impl Execution {
@@ -72,6 +55,25 @@ impl Execution {
             ticket.withdraw();
         }
         ticket.pass(state.message_id)
+    }
+
+    /// Whether the robot has begun it, and has not left it.
+    pub(super) fn has_begun(&self) -> bool {
+        matches!(
+            self.phase,
+            Phase::Running | Phase::Finishing | Phase::Silent
+        )
+    }
+
+    /// Nobody answers for it any more: it ends once the robot has left it. A program that brakes by
+    /// itself goes on until then.
+    pub(super) fn abandon(&mut self) {
+        self.phase = match self.phase {
+            Phase::Armed => Phase::Unwanted(0),
+            Phase::Running | Phase::Finishing if !self.program.brakes() => Phase::Silent,
+            _ => return,
+        };
+        self.leave();
     }
 
     /// Lets those go that it was to begin with.
