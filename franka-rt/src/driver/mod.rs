@@ -315,10 +315,11 @@ impl Driver {
     fn run(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let motion = self.motion.as_mut()?;
         let gate = motion.gate(state);
-        let step = motion
+        let mut event = None;
+        let outcome = motion
             .program
-            .step(gate, self.version, state, &mut self.record);
-        if let Some(event) = step.event {
+            .step(gate, self.version, state, &mut self.record, &mut event);
+        if let Some(event) = event {
             self.events.push(Event::Program {
                 motion: motion.id,
                 event,
@@ -326,7 +327,7 @@ impl Driver {
             });
         }
         (motion.phase, self.record.activity) = (Phase::Running, Activity::Running);
-        match step.outcome {
+        match outcome {
             CycleOutcome::Command { command, finished } => {
                 match command.datagram(state.message_id, finished) {
                     Ok(sent) => motion.sent = sent,

@@ -23,12 +23,6 @@ pub enum Program {
     Asynchronous(AsynchronousPositions),
 }
 
-/// The result of one step of a program.
-pub(super) struct ProgramStep {
-    pub(super) outcome: CycleOutcome,
-    pub(super) event: Option<SessionEvent>,
-}
-
 /// What is sent in answer to a state.
 #[expect(
     clippy::large_enum_variant,
@@ -92,17 +86,19 @@ impl Program {
     }
 
     /// Answers a state: holds the arm while the gate is closed, and finishes where the arm is if
-    /// the gate is broken. [`Command::datagram`] checks that the command is finite.
+    /// the gate is broken. [`Command::datagram`] checks that the command is finite. What the program
+    /// reports is left in `event`.
     pub(super) fn step(
         &mut self,
         gate: Gate,
         version: Version,
         state: &RobotState,
         record: &mut Record,
-    ) -> ProgramStep {
-        let outcome = match self {
+        event: &mut Option<SessionEvent>,
+    ) -> CycleOutcome {
+        match self {
             Self::Target(session) => {
-                let step = session.answer(gate, state);
+                let step = session.answer(gate, state, event);
                 let Trace {
                     goal,
                     reference,
@@ -126,13 +122,10 @@ impl Program {
                     }
                 };
                 let finished = step.finished;
-                return ProgramStep {
-                    outcome: command.map_or_else(
-                        |invalid| CycleOutcome::Failed(Failure::Invalid(invalid)),
-                        |command| CycleOutcome::Command { command, finished },
-                    ),
-                    event: step.event,
-                };
+                command.map_or_else(
+                    |invalid| CycleOutcome::Failed(Failure::Invalid(invalid)),
+                    |command| CycleOutcome::Command { command, finished },
+                )
             }
             Self::Callback(callback) => match gate {
                 Gate::Open => match callback.step(state) {
@@ -149,10 +142,6 @@ impl Program {
                 Some((command, finished)) => CycleOutcome::Command { command, finished },
                 None => CycleOutcome::Open,
             },
-        };
-        ProgramStep {
-            outcome,
-            event: None,
         }
     }
 

@@ -190,7 +190,6 @@ pub(crate) struct SessionStep {
     pub(crate) trace: Trace,
     /// The last command: the motion ends once the robot has taken it.
     pub(crate) finished: bool,
-    pub(crate) event: Option<SessionEvent>,
 }
 
 /// What the record of a cycle has of the session; all zero where no goal is followed.
@@ -374,7 +373,15 @@ impl TargetSession {
     ///
     /// While the gate is closed the arm is held where it is, with the gains of the goal that waits.
     /// If the gate is broken, the arm lands there, unless another goal comes.
-    pub(crate) fn answer(&mut self, gate: Gate, state: &RobotState) -> SessionStep {
+    ///
+    /// What there is to report is left in `event`: returned, its 280 bytes would be copied in every
+    /// cycle.
+    pub(crate) fn answer(
+        &mut self,
+        gate: Gate,
+        state: &RobotState,
+        event: &mut Option<SessionEvent>,
+    ) -> SessionStep {
         self.gate = gate;
         if self.active.is_none() {
             let Some(goal) = self.newer() else {
@@ -383,7 +390,6 @@ impl TargetSession {
                     answer: self.backend.holding(state),
                     trace: Trace::default(),
                     finished: false,
-                    event: None,
                 };
             };
             let goal = match &mut self.team {
@@ -403,20 +409,20 @@ impl TargetSession {
         }
         self.prepare_for(state.message_id);
         let Some(active) = &mut self.active else {
+            *event = Some(SessionEvent::BadTool);
             return SessionStep {
                 answer: self.backend.holding(state),
                 trace: Trace::default(),
                 finished: true,
-                event: Some(SessionEvent::BadTool),
             };
         };
-        let mut step = active.answer(&self.model, state);
-        if let (Some(team), Some(event)) = (&mut self.team, &step.event) {
+        let step = active.answer(&self.model, state, event);
+        if let (Some(team), Some(event)) = (&mut self.team, &*event) {
             team.settle(event);
         }
         if let Some(SessionEvent::Settled {
             goal, settlement, ..
-        }) = &mut step.event
+        }) = event
             && let Some((unstarted, fault)) = self.unstarted
             && *goal == unstarted
         {

@@ -391,11 +391,10 @@ impl Session {
         let mut event = None;
         for _ in 0..cycles {
             self.state.message_id += 1;
-            let step = self.session.answer(Gate::Open, &self.state);
+            let step = self.session.answer(Gate::Open, &self.state, &mut event);
             self.session.prepare();
             self.state.q = step.trace.reference.q.into();
             self.state.dq = step.trace.reference.dq.into();
-            event = step.event.or(event);
         }
         event
     }

@@ -36,7 +36,10 @@ use super::kinematics::Posture;
 use super::landing::{self, PoseError};
 use super::route::Route;
 use super::setpoint_stream::SetpointStream;
-use super::{Lapse, Reacted, SessionCommand, SessionStep, Trace, end_effector_of, load_of, rigid};
+use super::{
+    Lapse, Reacted, SessionCommand, SessionEvent, SessionStep, Trace, end_effector_of, load_of,
+    rigid,
+};
 use react::Reacting;
 use stages::GoalStage;
 
@@ -321,7 +324,12 @@ impl RunningSession {
     }
 
     /// Answers one state, once the answer is prepared.
-    pub(super) fn answer(&mut self, model: &Model, state: &RobotState) -> SessionStep {
+    pub(super) fn answer(
+        &mut self,
+        model: &Model,
+        state: &RobotState,
+        event: &mut Option<SessionEvent>,
+    ) -> SessionStep {
         let q = JointVector::from(state.q);
         let dq = JointVector::from(state.dq);
         let dynamics = model.dynamics(&q, &dq, &self.hand, &self.load, &GRAVITY_EARTH);
@@ -344,7 +352,7 @@ impl RunningSession {
         };
         self.reference = step.reference;
         let at_rest = dq.amax() < landing::REST_VELOCITY;
-        let event = self.advance_stage(model, at_rest, state.message_id);
+        self.advance_stage(model, at_rest, state.message_id, event);
         self.observe(state);
         // Under the robot's own controller the reference is anchored on that one's setpoint.
         if let Drive::Torques(_) = self.drive {
@@ -403,7 +411,6 @@ impl RunningSession {
                 bindings,
             },
             finished: matches!(self.stage, GoalStage::Finished(_)),
-            event,
         }
     }
 

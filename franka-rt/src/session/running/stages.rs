@@ -31,13 +31,14 @@ pub(super) enum GoalStage {
 
 impl RunningSession {
     /// Moves through the stages of a goal that is to come to an end. The only place where the stage
-    /// advances.
+    /// advances. A goal that has come to its end is reported in `event`.
     pub(super) fn advance_stage(
         &mut self,
         model: &Model,
         at_rest: bool,
         now: u64,
-    ) -> Option<SessionEvent> {
+        event: &mut Option<SessionEvent>,
+    ) {
         let heading = self.heading();
         let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
         let has_braked = self.has_braked_before(&heading);
@@ -45,7 +46,6 @@ impl RunningSession {
         match &mut self.stage {
             GoalStage::UnderWay if has_braked => {
                 self.turn_to(heading);
-                None
             }
             GoalStage::UnderWay => {
                 let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
@@ -84,11 +84,10 @@ impl RunningSession {
                     self.stage =
                         GoalStage::Landing(Landing::new(target, tolerance, self.goal.settling));
                 }
-                None
             }
             GoalStage::Landing(landing) => {
                 let (mut settlement, held) = match landing.judge(&self.arm.pose, at_rest, working) {
-                    Verdict::Settling => return None,
+                    Verdict::Settling => return,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
                 if self.goal.on_arrival == OnArrival::ReportAndFinish
@@ -97,7 +96,7 @@ impl RunningSession {
                     if self.aim != Target::Rest {
                         self.turn_to(Target::Rest);
                     }
-                    return None;
+                    return;
                 }
                 let effort = match &self.drive {
                     Drive::Torques(effort) => Some(effort),
@@ -124,7 +123,7 @@ impl RunningSession {
                     // The robot holds the arm at its setpoint as it is.
                     (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => GoalStage::Finished(None),
                 };
-                Some(SessionEvent::Settled {
+                *event = Some(SessionEvent::Settled {
                     goal: self.goal.id,
                     settlement: match self.standing {
                         Standing::GivenUp { action, cause } => {
@@ -144,7 +143,7 @@ impl RunningSession {
                     },
                     duration_ms: (now - self.since).saturating_sub(held),
                     compensation,
-                })
+                });
             }
             GoalStage::Releasing(release) => {
                 self.reference = Reference::at_rest(release.reference());
@@ -152,9 +151,8 @@ impl RunningSession {
                 if release.is_over(at_rest) {
                     self.stage = GoalStage::Finished(release.error(&self.arm.pose));
                 }
-                None
             }
-            GoalStage::Staying | GoalStage::Finished(_) => None,
+            GoalStage::Staying | GoalStage::Finished(_) => {}
         }
     }
 }

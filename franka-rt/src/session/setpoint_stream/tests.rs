@@ -42,14 +42,15 @@ fn turned(slip: f64, step: f64) -> (f64, [f64; 7]) {
     let (mut state, mut settled) = (resting(), None);
     for cycle in 0..10_000 {
         state.message_id += 1;
-        let answer = session.answer(Gate::Open, &state);
+        let mut event = None;
+        let answer = session.answer(Gate::Open, &state, &mut event);
         session.prepare();
         let SessionCommand::Setpoint(MotionCommand::JointVelocities(JointVelocities(sent))) =
             answer.answer
         else {
             panic!("it sends joint velocities")
         };
-        if let Some(SessionEvent::Settled { settlement, .. }) = answer.event {
+        if let Some(SessionEvent::Settled { settlement, .. }) = event {
             settled = Some(settlement);
         }
         if answer.finished {
