@@ -160,6 +160,7 @@ impl RigidBody {
     }
 
     /// Both bodies as one; `self` where the total has no mass.
+    #[inline]
     pub(crate) fn joined(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         if mass <= 0.0 {

@@ -182,6 +182,7 @@ impl Model {
         Dynamics::of(&Chain::at(q), &self.links_with(load), dq, ee, gravity_earth)
     }
 
+    #[inline]
     pub(crate) fn links_with(&self, load: &Load) -> [RigidBody; 7] {
         let mut links = self.links;
         if let Some(load) = load.on_link_7() {

@@ -36,6 +36,7 @@ pub(crate) struct TaskSpace {
 
 impl TaskSpace {
     /// Of the links and the rotors together.
+    #[inline]
     pub(crate) fn of(dynamics: &Dynamics) -> Self {
         let rotors = MassMatrix::from_diagonal(&ROTORS.into());
         Self::new(&dynamics.jacobian, &(dynamics.mass + rotors))

@@ -39,57 +39,15 @@ impl RunningSession {
         now: u64,
         event: &mut Option<SessionEvent>,
     ) {
-        let heading = self.heading();
-        let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
-        let has_braked = self.has_braked_before(&heading);
-        let with_others = self.tolerance_with_others();
         match &mut self.stage {
-            GoalStage::UnderWay if has_braked => {
-                self.turn_to(heading);
-            }
-            GoalStage::UnderWay => {
-                let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-                let pursued = heading != Target::Rest && !self.is_given_up();
-                // The hand may have come to its target before the elbow has.
-                let turns = self.goal.posture.is_some()
-                    && self.reference.dq.amax() > landing::REST_VELOCITY;
-                // A reference that halts on its way rests, too. An arm that others wait for gives
-                // up when it has been held back for too long.
-                let arrived = self.route.is_done() && !turns && !(pursued && self.waits);
-                let stalled = stalled && !(pursued && self.waits && !self.lags);
-                let paused = pursued && self.goal.paused;
-                let ends = self.goal.on_arrival != OnArrival::Hold && !paused;
-                if ends && (arrived || stalled) {
-                    if stalled && self.route.is_hindered() {
-                        self.give_up(Lapse::Blocked);
-                    } else if stalled && heading != Target::Rest {
-                        self.turn_to(Target::Rest);
-                    }
-                    let target = match heading {
-                        // It counts as held at any place.
-                        _ if self.is_given_up() => None,
-                        Target::Rest | Target::Guide(_) => None,
-                        Target::Pose(pose) | Target::MovingPose { pose, .. } => {
-                            // Where the hand has to be: at an object its lever would not count.
-                            Some(pose * self.grasp.unwrap_or_default().inverse())
-                        }
-                        Target::Joints(q) | Target::MovingJoints { q, .. } => {
-                            Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
-                        }
-                    };
-                    let tolerance = self.goal.tolerance.unwrap_or_else(|| match &self.drive {
-                        Drive::Torques(_) => Tolerance::of(&self.goal.gains),
-                        Drive::Setpoints(stream) => Tolerance::under(stream.controller()),
-                    });
-                    self.stage =
-                        GoalStage::Landing(Landing::new(target, tolerance, self.goal.settling));
-                }
-            }
+            GoalStage::UnderWay => self.end_way(model),
             GoalStage::Landing(landing) => {
+                let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
                 let (mut settlement, held) = match landing.judge(&self.arm.pose, at_rest, working) {
                     Verdict::Settling => return,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
+                let target = landing.target();
                 if self.goal.on_arrival == OnArrival::ReportAndFinish
                     && self.reference.dq.amax() > REFERENCE_REST
                 {
@@ -108,7 +66,8 @@ impl RunningSession {
                     short.pull = Some(effort.pull(&self.arm.jacobian).into());
                 }
                 if let Settlement::TargetNotReached(short) = settlement
-                    && with_others.is_some_and(|near| short.error.within(&near))
+                    && let Some(near) = self.tolerance_with_others()
+                    && short.error.within(&near)
                 {
                     settlement = Settlement::Arrived(short.error);
                 }
@@ -117,7 +76,6 @@ impl RunningSession {
                     (OnArrival::Hold | OnArrival::ReportAndHold, _) => GoalStage::Staying,
                     (OnArrival::ReportAndFinish, Drive::Torques(_)) => {
                         self.route.rest();
-                        let target = landing.target();
                         GoalStage::Releasing(Release::new(target, self.arm.q, &self.reference.q))
                     }
                     // The robot holds the arm at its setpoint as it is.
@@ -153,6 +111,52 @@ impl RunningSession {
                 }
             }
             GoalStage::Staying | GoalStage::Finished(_) => {}
+        }
+    }
+
+    /// Lets the goal land once the reference has arrived, or has been held back for too long.
+    fn end_way(&mut self, model: &Model) {
+        let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
+        if !stalled && !self.route.is_done() {
+            return;
+        }
+        let heading = self.heading();
+        if self.has_braked_before(&heading) {
+            return self.turn_to(heading);
+        }
+        let pursued = heading != Target::Rest && !self.is_given_up();
+        // The hand may have come to its target before the elbow has.
+        let turns =
+            self.goal.posture.is_some() && self.reference.dq.amax() > landing::REST_VELOCITY;
+        // A reference that halts on its way rests, too. An arm that others wait for gives
+        // up when it has been held back for too long.
+        let arrived = self.route.is_done() && !turns && !(pursued && self.waits);
+        let stalled = stalled && !(pursued && self.waits && !self.lags);
+        let paused = pursued && self.goal.paused;
+        let ends = self.goal.on_arrival != OnArrival::Hold && !paused;
+        if ends && (arrived || stalled) {
+            if stalled && self.route.is_hindered() {
+                self.give_up(Lapse::Blocked);
+            } else if stalled && heading != Target::Rest {
+                self.turn_to(Target::Rest);
+            }
+            let target = match heading {
+                // It counts as held at any place.
+                _ if self.is_given_up() => None,
+                Target::Rest | Target::Guide(_) => None,
+                Target::Pose(pose) | Target::MovingPose { pose, .. } => {
+                    // Where the hand has to be: at an object its lever would not count.
+                    Some(pose * self.grasp.unwrap_or_default().inverse())
+                }
+                Target::Joints(q) | Target::MovingJoints { q, .. } => {
+                    Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
+                }
+            };
+            let tolerance = self.goal.tolerance.unwrap_or_else(|| match &self.drive {
+                Drive::Torques(_) => Tolerance::of(&self.goal.gains),
+                Drive::Setpoints(stream) => Tolerance::under(stream.controller()),
+            });
+            self.stage = GoalStage::Landing(Landing::new(target, tolerance, self.goal.settling));
         }
     }
 }
