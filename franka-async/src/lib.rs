@@ -93,8 +93,7 @@
 //!   [`MotionError::Superseded`].
 //!
 //! A motion that is to outlive its caller belongs to a task of its own, or is
-//! [detached](Motion::detach) if nobody asks for its outcome. Its handle pauses or cancels it from
-//! elsewhere:
+//! [detached](Motion::detach), which only logs its outcome. Its handle pauses or cancels it:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -126,7 +125,7 @@
 //!             Ok(report) => println!("arrived after {:?}", report.duration),
 //!             Err(error) => {
 //!                 println!("{error}");
-//!                 break; // nothing moves before somebody has looked
+//!                 break; // a person looks before the next job
 //!             }
 //!         }
 //!     }
@@ -235,8 +234,8 @@
 //!
 //! A robot that stops itself (a *reflex*, for instance by a collision) takes no motion before it
 //! has been recovered. The error has the log of the last cycles, and its diagnosis says what to
-//! change. [`MotionError::party`] says who can act: the caller, the host, the link, whoever is at
-//! the robot, or who maintains the program at the other end.
+//! change. [`MotionError::party`] says where to act: in this program, on its computer, in the
+//! network, at the robot, or in the code of one side.
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;

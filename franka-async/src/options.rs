@@ -145,8 +145,8 @@ macro_rules! goal_options {
         /// its end effector leaves it free (its null space), on the way to poses and while it holds
         /// them. The elbow moves at no more than half of the joints' budget, and a motion that is
         /// awaited arrives when it rests. By default the elbow is kept near where the motion or the
-        /// session began. Positions out of range are refused as
-        /// [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
+        /// session began. An engaged arm keeps its posture until it is given another. Positions out
+        /// of range are refused as [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
         pub fn posture(mut self, posture: impl Into<[f64; 7]>) -> Self {
             self.options.tuning.posture = Some(posture.into());
             self

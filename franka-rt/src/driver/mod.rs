@@ -175,7 +175,7 @@ impl Driver {
                     }
                 }
             }
-            // Otherwise the motion has ended by itself, and has said so; or another one is under way.
+            // Else the motion has ended by itself, and has said so; or another one is under way.
             Order::Disarm { motion } => {
                 let armed = |it: &mut Execution| it.id == motion && it.phase == Phase::Armed;
                 if let Some(armed) = self.motion.take_if(armed) {

@@ -86,8 +86,8 @@ impl Program {
     }
 
     /// Answers a state: holds the arm while the gate is closed, and finishes where the arm is if
-    /// the gate is broken. [`Command::datagram`] checks that the command is finite. What the program
-    /// reports is left in `event`.
+    /// the gate is broken. [`Command::datagram`] checks that the command is finite. What the
+    /// program reports is left in `event`.
     pub(super) fn step(
         &mut self,
         gate: Gate,

@@ -119,7 +119,12 @@ async fn a_motion_that_was_superseded_may_be_dropped_at_every_poll() {
     for (of_older, of_newer) in (0..3).flat_map(|older| (1..4).map(move |newer| (older, newer))) {
         let mut older = grasp.move_with(up(0.1) * object(), |motion| motion.speed(0.2));
         let ended = polled(&mut older, of_older).await;
-        assert!(ended.is_none(), "{of_older} polls: {ended:?}");
+        // What wakes it before its end may come as one, and then its second poll is the last.
+        let may_end = of_older > 1;
+        let as_expected = ended
+            .as_ref()
+            .is_none_or(|it| may_end && it.iter().all(Result::is_ok));
+        assert!(as_expected, "{of_older} polls: {ended:?}");
         let mut newer = grasp.move_to(object());
         let ended = polled(&mut newer, of_newer).await;
         drop(older);

@@ -96,7 +96,7 @@ fn what_a_member_says_of_its_object_is_read_whole_and_in_order() {
             read if read == Carrying::default() => 0,
             read if read == SAID[0] => 1,
             read if read == SAID[1] => 2,
-            mixed => panic!("nobody said {mixed:?}"),
+            mixed => panic!("no member said {mixed:?}"),
         };
         let read = [second.others(round), second.others(round)].map(order);
         assert!(read[0] <= read[1], "{read:?}");
