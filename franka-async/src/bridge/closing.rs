@@ -1,0 +1,101 @@
+//! The end of a connection: what moves is brought to rest, what is pending is resolved, and the
+//! control thread ends.
+
+use std::time::Duration;
+
+use franka_rt::lifecycle::{CloseReason, MotionError};
+use franka_rt::session::GoalId;
+use tokio::sync::{mpsc, oneshot};
+use tokio::time::Instant;
+
+use super::{Bridge, woken};
+use crate::input::Input;
+
+/// Time that a motion gets to brake and finish when the last handle is dropped.
+const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
+
+/// Time that an arm on its way to a goal gets to come to rest when the connection is lost, before
+/// the thread that brakes it ends.
+const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
+
+impl Bridge {
+    /// Brakes what moves. Returns when to give up on it.
+    pub(super) fn begin_closing(&mut self) -> Instant {
+        // An id that no handle uses: handles count up from 1.
+        self.lifecycle.stop(GoalId(u64::MAX), self.now());
+        Instant::now() + CLOSING_TIMEOUT
+    }
+
+    /// Takes note that robot or thread is out of reach. Everything else ends with it, after an arm
+    /// on its way to a goal has been braked: a thread without a connection would go on towards a
+    /// goal that can no longer be taken back.
+    pub(super) fn lose(&mut self, reason: CloseReason) {
+        let reason = self.channel.closing().note(reason);
+        // Before the motions resolve: what comes next finds a connection that is lost.
+        self.supervisor.on_lost(reason.clone());
+        self.lifecycle.on_connection_closed(reason);
+        self.lost = true;
+    }
+
+    /// Resolves what is pending, brakes an arm that moves, closes the connection and ends the
+    /// thread. Requests to shut down that come meanwhile are added to `done`.
+    pub(super) async fn end(
+        mut self,
+        mut inbox: mpsc::UnboundedReceiver<Input>,
+        done: &mut Vec<oneshot::Sender<()>>,
+    ) {
+        let reason = self.channel.closing().note(CloseReason::ClosedByUs);
+        inbox.close();
+        self.supervisor.on_lost(reason.clone());
+        self.lifecycle.on_connection_closed(reason.clone());
+        self.carry_out();
+        while let Some(input) = inbox.recv().await {
+            match input {
+                Input::Shutdown { ended: reply } => done.push(reply),
+                Input::Begin { motion, replies } => {
+                    let reason = reason.clone();
+                    self.refuse(
+                        motion.motion.id(),
+                        replies,
+                        MotionError::ConnectionClosed { reason },
+                    );
+                }
+                // Who waits for another answer sees the end by its channel being closed.
+                _ => {}
+            }
+        }
+        self.rest().await;
+        if let Some(connection) = self.connection.take() {
+            connection.close().await;
+        }
+        if let Some(thread) = self.thread.take() {
+            match tokio::task::spawn_blocking(move || thread.join()).await {
+                Ok(Ok(_)) => {}
+                Ok(Err(panicked)) => tracing::error!(%panicked, "control thread"),
+                Err(error) => tracing::error!(%error, "control thread"),
+            }
+        }
+    }
+
+    /// Waits until an arm that is being braked rests, for [`BRAKING_TIMEOUT`] at most.
+    async fn rest(&mut self) {
+        let deadline = Instant::now() + BRAKING_TIMEOUT;
+        while self.lifecycle.is_braking() && !self.thread_has_ended() {
+            match tokio::time::timeout_at(deadline, woken(&self.wake)).await {
+                Ok(Ok(())) => self.on_wakeup(),
+                Ok(Err(_)) | Err(_) => {
+                    tracing::warn!("the arm was not seen to rest; the control thread ends");
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// Also when the runtime drops the task.
+impl Drop for Bridge {
+    fn drop(&mut self) {
+        self.supervisor.on_lost(self.channel.closing().reason());
+        self.supervisor.on_released();
+    }
+}

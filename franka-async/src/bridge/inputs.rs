@@ -1,0 +1,142 @@
+//! What handles and motions ask of the bridge: goals to begin, to change and to end.
+
+use franka_proto::RobotState;
+use franka_rt::lifecycle::{MotionError, NewMotion};
+use franka_rt::session::{Chunk, GoalId, Target};
+
+use super::{Bridge, log};
+use crate::destination::Now;
+use crate::input::{Beginning, EndReply, Input, Replies};
+use crate::robot::{pose_at, pose_of};
+
+impl Bridge {
+    pub(super) fn on_input(&mut self, input: Input) {
+        let now = self.now();
+        // If no wake-up per state is requested, the state that was published last is old.
+        self.publisher.refresh();
+        self.observe();
+        // The caller may react to an event that is in the queue and not yet read by this task: the
+        // queue is read before the input is handled.
+        self.look_for_a_stall();
+        self.take_notices();
+        match input {
+            Input::Begin { motion, replies } => {
+                let id = motion.motion.id();
+                let compliant = motion.motion.compliant_goal();
+                let gains = compliant.map(|goal| goal.gains);
+                let force_cap = compliant.map(|goal| goal.force_cap);
+                match self.begin(motion) {
+                    Ok(()) => {
+                        self.warn_of_margin(id, gains, &self.publisher.state());
+                        self.warn_of_thresholds(id, force_cap);
+                        let span = tracing::info_span!("motion", goal = id.0);
+                        self.replies.insert(id, (replies, span));
+                    }
+                    Err(error) => self.refuse(id, replies, error),
+                }
+            }
+            Input::Update {
+                goal,
+                target,
+                taken,
+            } => {
+                let updated = self.lifecycle.update(goal, target, &self.publisher.state());
+                self.course.head_for(self.lifecycle.heading());
+                let _ = taken.send(updated);
+            }
+            Input::Set { motion, taken } => {
+                let begun = self.begin(motion);
+                self.course.head_for(self.lifecycle.heading());
+                let _ = taken.send(begun);
+            }
+            Input::SetNewest { waiting } => {
+                let Some(motion) = waiting.take() else {
+                    return;
+                };
+                let id = motion.motion.id();
+                if let Err(error) = self.begin(motion) {
+                    log(id, &Err(error));
+                }
+            }
+            Input::Chunk {
+                id,
+                goal,
+                chunk,
+                taken,
+            } => {
+                let state = &self.publisher.state();
+                let sent = self.lifecycle.chunk(id, *goal, *chunk, state);
+                self.course.head_for(self.lifecycle.heading());
+                let _ = taken.send(sent);
+            }
+            Input::Tune { id, tuning, taken } => {
+                let state = &self.publisher.state();
+                let tuned = self.lifecycle.tune(id, *tuning, state);
+                if tuned.is_ok() {
+                    self.warn_of_margin(id, tuning.gains, state);
+                }
+                let _ = taken.send(tuned);
+            }
+            Input::Disengage { id } => self.lifecycle.disengage(id),
+            Input::Close { goal } => self.lifecycle.close(goal),
+            Input::Pause { goal, paused } => self.lifecycle.pause(goal, paused),
+            Input::Cancel { goal } => self.lifecycle.cancel(goal, now),
+            Input::Stop { goal, ended } => {
+                if self.lifecycle.stop(goal, now) {
+                    let ended = EndReply::One(ended);
+                    let span = tracing::info_span!("stop", goal = goal.0);
+                    self.replies
+                        .insert(goal, (Replies { began: None, ended }, span));
+                }
+                // Otherwise nothing moves, and dropping `ended` says so.
+            }
+            Input::Lose { reason } => self.lose(reason),
+            Input::Shutdown { .. } => unreachable!("taken where the loop decides to close"),
+        }
+    }
+
+    /// Completes a motion by where the robot is, and begins it.
+    fn begin(&mut self, beginning: Beginning) -> Result<(), MotionError> {
+        let (now, state) = (self.now(), &self.publisher.state());
+        let Beginning {
+            mut motion,
+            destination,
+            path,
+        } = beginning;
+        let NewMotion::Goal { goal, .. } = &mut motion else {
+            return self.lifecycle.begin(motion, state, now);
+        };
+        if let Some(destination) = destination {
+            goal.target = destination.seen_from(&self.poses(state));
+        }
+        let Some(path) = path else {
+            return self.lifecycle.begin(motion, state, now);
+        };
+        let reference = self.course.reference();
+        let q = reference.map_or(state.q, |reference| reference.q);
+        let path = Chunk::through(&path, &q, &goal.budget, self.lifecycle.model(), state)?;
+        self.lifecycle.begin_along(path, motion, state, now)
+    }
+
+    /// The poses that a destination may be relative to.
+    fn poses(&self, state: &RobotState) -> Now {
+        let pose_at = |q| pose_at(self.lifecycle.model(), state, q);
+        let arm = pose_of(state).unwrap_or_else(|| pose_at(state.q));
+        // What is held or followed has no pose of its own.
+        let reference = || self.course.reference().map(|newest| pose_at(newest.q));
+        let target = match self.lifecycle.heading() {
+            Some((_, Target::Pose(pose))) => pose,
+            Some((_, Target::Joints(q))) => pose_at(q),
+            Some(_) => reference().unwrap_or(arm),
+            None => arm,
+        };
+        Now { target, arm }
+    }
+
+    pub(super) fn refuse(&self, goal: GoalId, replies: Replies, error: MotionError) {
+        let refused = Err(error);
+        log(goal, &refused);
+        self.supervisor.on_ended(goal, &refused);
+        replies.ended.send(refused);
+    }
+}

@@ -1,0 +1,259 @@
+//! The bridge: one task between the async world, the command channel and the real-time thread.
+//!
+//! It drives the lifecycle of motions and is the only one that touches the thread's queues and
+//! slots. Waking other tasks takes locks; that is why it happens here and never on the thread.
+
+mod closing;
+mod inputs;
+mod wakeups;
+mod warnings;
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use franka_proto::RobotState;
+use franka_rt::driver::{Driver, Event, Order};
+use franka_rt::event_fd::EventFd;
+use franka_rt::lifecycle::{CloseReason, Lifecycle, Outcome, Output};
+use franka_rt::queue::{Receiver, Sender};
+use franka_rt::session::GoalId;
+use franka_rt::supervision::Seen;
+use franka_rt::thread::{Handle, Notice, Thread};
+use tokio::io::unix::AsyncFd;
+use tokio::sync::{mpsc, watch};
+use tokio::time::Instant;
+use tokio_util::sync::CancellationToken;
+use tracing::{Instrument, Span};
+
+use crate::command_channel::{Channel, Connection, Report};
+use crate::input::{BridgeHandle, Input, Replies};
+use crate::progress::Course;
+use crate::publish::Publisher;
+use crate::supervisor::Supervisor;
+use crate::telemetry::Telemetry;
+use crate::thresholds::Thresholds;
+
+pub(crate) use wakeups::{attach, woken};
+
+pub(crate) struct Bridge {
+    lifecycle: Lifecycle,
+    wake: AsyncFd<EventFd>,
+    orders: Sender<Order>,
+    notices: Receiver<Notice<Event>>,
+    publisher: Publisher,
+    telemetry: Telemetry,
+    course: Course,
+    thresholds: Thresholds,
+    thread: Option<Thread<Driver>>,
+    channel: Channel,
+    connection: Option<Connection>,
+    replies: HashMap<GoalId, (Replies, Span)>,
+    started: Instant,
+    /// Whether robot or thread is out of reach, for good.
+    lost: bool,
+    /// Whether the thread that runs active control reads no states.
+    stalled: bool,
+    supervisor: Arc<Supervisor>,
+    /// What the supervisor was last shown.
+    seen: Option<Seen>,
+    /// `message_id` of the newest state when a silence was noticed, until one comes.
+    silent_since: Option<u64>,
+}
+
+/// A bridge that is not yet running, with what it will receive.
+pub(crate) struct Prepared {
+    bridge: Bridge,
+    inbox: mpsc::UnboundedReceiver<Input>,
+    reports: mpsc::UnboundedReceiver<Report>,
+}
+
+impl Prepared {
+    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is
+    /// told to end: by an input, or by `cancellation`.
+    pub(crate) fn start(self, cancellation: CancellationToken) {
+        let Self {
+            bridge,
+            inbox,
+            reports,
+        } = self;
+        tokio::spawn(bridge.run(inbox, reports, cancellation).in_current_span());
+    }
+}
+
+impl Bridge {
+    /// Returns a bridge that publishes to `states` and reports to `supervisor`.
+    pub(crate) fn new(
+        lifecycle: Lifecycle,
+        handle: Handle,
+        wake: AsyncFd<EventFd>,
+        (channel, connection): (Channel, Connection),
+        states: Arc<watch::Sender<RobotState>>,
+        (course, thresholds): (Course, Thresholds),
+        supervisor: Arc<Supervisor>,
+    ) -> Self {
+        Self {
+            lifecycle,
+            wake,
+            orders: handle.orders,
+            notices: handle.notices,
+            publisher: Publisher::new(
+                handle.states,
+                handle.sequence,
+                handle.records,
+                handle.state_wakeups,
+                states,
+            ),
+            telemetry: Telemetry::new(handle.stats),
+            course,
+            thresholds,
+            thread: Some(handle.thread),
+            channel,
+            connection: Some(connection),
+            replies: HashMap::new(),
+            started: Instant::now(),
+            lost: false,
+            stalled: false,
+            supervisor,
+            seen: None,
+            silent_since: None,
+        }
+    }
+
+    /// Returns the way into the bridge, which takes nothing before it is started.
+    pub(crate) fn prepare(
+        self,
+        reports: mpsc::UnboundedReceiver<Report>,
+    ) -> (BridgeHandle, Prepared) {
+        let (sender, inbox) = mpsc::unbounded_channel();
+        let handle = BridgeHandle {
+            inbox: sender,
+            subscriptions: self.publisher.subscriptions(),
+        };
+        let prepared = Prepared {
+            bridge: self,
+            inbox,
+            reports,
+        };
+        (handle, prepared)
+    }
+
+    async fn run(
+        mut self,
+        mut inbox: mpsc::UnboundedReceiver<Input>,
+        mut reports: mpsc::UnboundedReceiver<Report>,
+        cancellation: CancellationToken,
+    ) {
+        let mut closing = None;
+        let mut done = Vec::new();
+        loop {
+            self.carry_out();
+            if self.lost || closing.is_some() && self.lifecycle.is_idle() {
+                break;
+            }
+            let deadline = [
+                self.lifecycle.deadline().map(|after| self.started + after),
+                closing,
+            ];
+            let deadline = deadline.into_iter().flatten().min();
+            tokio::select! {
+                woken = woken(&self.wake) => {
+                    if let Err(error) = woken {
+                        let text = format!("its eventfd cannot be read: {error}");
+                        self.lose(CloseReason::ThreadEnded { text });
+                    }
+                    self.on_wakeup();
+                }
+                () = cancellation.cancelled(), if closing.is_none() => {
+                    closing = Some(self.begin_closing());
+                }
+                input = inbox.recv(), if closing.is_none() => match input {
+                    Some(Input::Shutdown { ended: reply }) => {
+                        done.push(reply);
+                        closing = Some(self.begin_closing());
+                    }
+                    Some(input) => self.on_input(input),
+                    None => closing = Some(self.begin_closing()),
+                },
+                Some(report) = reports.recv() => self.on_report(report),
+                () = sleep_until(deadline) => {
+                    if closing.is_some_and(|closing| closing <= Instant::now()) {
+                        tracing::error!("the motion did not end; closing all the same");
+                        break;
+                    }
+                    self.lifecycle.on_time(self.now());
+                }
+            }
+        }
+        self.end(inbox, &mut done).await;
+        for done in done {
+            // Fails if the caller was dropped.
+            let _ = done.send(());
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.started.elapsed()
+    }
+
+    /// Carries out what the lifecycle has decided, in its order.
+    fn carry_out(&mut self) {
+        self.course.head_for(self.lifecycle.heading());
+        while let Some(output) = self.lifecycle.poll() {
+            match output {
+                Output::Order(order) => {
+                    if self.orders.push(order).is_err() {
+                        let text = "its queue of orders is full".into();
+                        self.lose(CloseReason::ThreadEnded { text });
+                    }
+                }
+                Output::Send { motion, request } => self.channel.send(motion, request),
+                Output::Began { id } => {
+                    let replies = self.replies.get_mut(&id);
+                    if let Some(began) = replies.and_then(|(replies, _)| replies.began.take()) {
+                        // The future that began it may have been dropped.
+                        let _ = began.send(());
+                    }
+                }
+                Output::Resolve { goal, result } => {
+                    self.supervisor.on_ended(goal, &result);
+                    match self.replies.remove(&goal) {
+                        Some((replies, span)) => {
+                            span.in_scope(|| log(goal, &result));
+                            replies.ended.send(result);
+                        }
+                        None => log(goal, &result),
+                    }
+                }
+            }
+        }
+    }
+
+    fn on_report(&mut self, report: Report) {
+        let now = self.now();
+        self.publisher.refresh();
+        self.observe();
+        match report {
+            Report::Move { motion, status } => self.lifecycle.on_move_reply(motion, status, now),
+            Report::MoveViolation { motion, violation } => {
+                self.lifecycle.on_move_violation(motion, violation, now);
+            }
+            Report::Closed { reason } => self.lose(reason),
+        }
+    }
+}
+
+/// Notes how something ended, which may have been detached.
+fn log(goal: GoalId, outcome: &Outcome) {
+    match outcome {
+        Ok(report) => tracing::info!(goal = goal.0, duration = ?report.duration, "motion ended"),
+        Err(error) => tracing::info!(goal = goal.0, %error, "motion ended"),
+    }
+}
+
+async fn sleep_until(deadline: Option<Instant>) {
+    match deadline {
+        Some(deadline) => tokio::time::sleep_until(deadline).await,
+        None => std::future::pending().await,
+    }
+}

@@ -1,0 +1,116 @@
+//! What the control thread has published since the last wake-up: states, records and events.
+
+use std::io;
+
+use franka_proto::RobotMode;
+use franka_rt::driver::Event;
+use franka_rt::event_fd::EventFd;
+use franka_rt::lifecycle::CloseReason;
+use franka_rt::supervision::Seen;
+use franka_rt::thread::{Notice, Thread};
+use tokio::io::Interest;
+use tokio::io::unix::AsyncFd;
+use tokio::time::Instant;
+
+use super::Bridge;
+use crate::telemetry;
+
+/// Registers the eventfd of the thread with this runtime.
+///
+/// # Errors
+/// If the runtime's poll does not take the descriptor.
+pub(crate) fn attach(wake: EventFd) -> io::Result<AsyncFd<EventFd>> {
+    // SAFETY: an `EventFd` owns its eventfd through an `Arc` that nothing replaces: the descriptor
+    // is open, and the same, for as long as the `EventFd` lives, and the `AsyncFd` owns the
+    // `EventFd`.
+    let attached = unsafe { AsyncFd::register_with_interest(wake, Interest::READABLE) };
+    attached.map_err(Into::into)
+}
+
+/// Waits until the thread has written to its eventfd, and drains it.
+///
+/// # Cancel safety
+/// A wake-up is not lost: the next call returns at once.
+pub(crate) async fn woken(wake: &AsyncFd<EventFd>) -> io::Result<()> {
+    let mut guard = wake.readable().await?;
+    wake.get_ref().drain();
+    guard.clear_ready();
+    Ok(())
+}
+
+impl Bridge {
+    /// Takes everything that the thread has published.
+    pub(super) fn on_wakeup(&mut self) {
+        self.publisher.publish();
+        // Before a motion resolves: what comes next finds a robot that is in a reflex.
+        self.observe();
+        self.telemetry.watch(Instant::now());
+        self.take_notices();
+        self.look_for_a_stall();
+        if self.thread_has_ended() {
+            let text = "it has ended".into();
+            self.lose(CloseReason::ThreadEnded { text });
+        }
+    }
+
+    /// Passes the thread's events on to the lifecycle.
+    pub(super) fn take_notices(&mut self) {
+        while let Some(notice) = self.notices.pop() {
+            match notice {
+                Notice::Core(event) => {
+                    match &event {
+                        Event::Ended(ended) => telemetry::sum_up(ended),
+                        Event::Unobserved { motion } => {
+                            tracing::error!(
+                                motion = motion.0,
+                                "the observer panicked and is not called again"
+                            );
+                        }
+                        Event::LinkLost { silence } => {
+                            self.publisher.tell_silence(*silence);
+                            self.silent_since = Some(self.publisher.state().message_id);
+                            self.supervisor.on_silence(*silence);
+                        }
+                        _ => {}
+                    }
+                    let now = self.now();
+                    self.lifecycle.on_event(event, now);
+                }
+                Notice::Link(fault) => tracing::warn!(%fault, "control link"),
+            }
+        }
+    }
+
+    /// Takes note that the thread that runs active control reads no states, or that it does again.
+    pub(super) fn look_for_a_stall(&mut self) {
+        let stalled = self.thread.as_ref().and_then(Thread::stalled);
+        if stalled.is_some() != self.stalled {
+            self.stalled = stalled.is_some();
+            if let Some(silence) = stalled {
+                tracing::error!(?silence, "active control does not read states");
+                self.publisher.tell_silence(silence);
+            }
+            self.lifecycle.on_stall(stalled, self.now());
+        }
+    }
+
+    pub(super) fn thread_has_ended(&self) -> bool {
+        self.thread.as_ref().is_none_or(Thread::has_ended)
+    }
+
+    /// Shows the supervisor the newest state, if it shows anything new of the robot as a whole.
+    pub(super) fn observe(&mut self) {
+        let (newest, mode, seen) = {
+            let state = self.publisher.state();
+            (state.message_id, state.robot_mode, Some(Seen::of(&state)))
+        };
+        let resumed = self.silent_since.is_some_and(|since| newest > since);
+        if resumed || self.seen != seen {
+            (self.seen, self.silent_since) = (seen, None);
+            // Recovery is over soon: motions wait for it.
+            self.publisher
+                .watch(mode == RobotMode::AutomaticErrorRecovery);
+            self.supervisor.observe();
+        }
+    }
+}

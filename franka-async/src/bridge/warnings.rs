@@ -1,0 +1,35 @@
+//! Warnings about goals that are accepted: what may go wrong under their options.
+
+use franka_proto::RobotState;
+use franka_rt::law::Gains;
+use franka_rt::session::{ForceCap, GoalId, Margin};
+
+use super::Bridge;
+
+impl Bridge {
+    /// Says so if an arm may oscillate under these gains.
+    pub(super) fn warn_of_margin(&self, goal: GoalId, gains: Option<Gains>, state: &RobotState) {
+        let margin = gains.and_then(|gains| self.lifecycle.margin(&gains, state));
+        if let Some(Margin { damping, stiffness }) = margin.filter(|margin| !margin.is_wanted()) {
+            tracing::warn!(
+                goal = goal.0,
+                damping,
+                stiffness,
+                wanted = Margin::WANTED,
+                "gains are near an oscillation: dampers and springs may grow by these factors"
+            );
+        }
+    }
+
+    /// Says so if the robot stops itself at less than what the arm may be pushed with.
+    pub(super) fn warn_of_thresholds(&self, goal: GoalId, force_cap: Option<ForceCap>) {
+        if let Some((least, most)) = force_cap.and_then(|cap| self.thresholds.within(cap)) {
+            tracing::warn!(
+                goal = goal.0,
+                threshold_newtons = least,
+                push_newtons = most,
+                "the robot stops itself by a reflex before the arm gives way to a push"
+            );
+        }
+    }
+}
