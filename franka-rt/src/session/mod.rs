@@ -42,21 +42,22 @@ mod reference;
 mod route;
 mod running;
 mod setpoint_stream;
+mod settlement;
+mod step;
 #[cfg(test)]
 mod tests;
 mod tolerance;
+mod tool;
 
 use core::time::Duration;
 use std::sync::Arc;
 
-use franka_model::{EndEffector, JointVector, Load, Model, transform};
+use franka_model::Model;
 use franka_proto::{RobotState, Version};
-use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
-use crate::control::{MotionCommand, Torques};
 use crate::law::compensation::Learned;
 use crate::slot::{Read, SlotReader};
-use crate::team::{Member, MemberFault, TeamStop};
+use crate::team::{Member, MemberFault};
 use crate::together::{Gate, StartFault};
 
 pub use backend::{Backend, Controller, Setpoints};
@@ -79,139 +80,18 @@ pub use guard::{Bindings, Guard};
 pub use landing::{PoseError, RELEASE_TIMEOUT, Settling, Shortfall};
 pub use margin::Margin;
 pub use reaction::{Reacted, Reaction};
+pub use settlement::{Lapse, SessionEvent, Settlement};
 pub use tolerance::Tolerance;
 
+pub(crate) use step::{SessionCommand, SessionStep, Trace};
+
 use membership::Membership;
-use reference::Reference;
 use running::RunningSession;
+use tool::{end_effector_of, load_of, rigid};
 
 /// Time for which something may hold the course back: an obstacle by the leash, or the joints'
 /// bounds. A goal that is to finish and has not got on by then is braked, and lands where it is.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
-
-/// What a session reports to the lifecycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "made on the thread, where a box would allocate"
-)]
-#[non_exhaustive]
-pub enum SessionEvent {
-    /// A goal that was to finish has come to its end; the session releases the arm unless a newer
-    /// goal comes.
-    Settled {
-        /// The goal.
-        goal: GoalId,
-        /// How it came to its end.
-        settlement: Settlement,
-        /// Time from the first cycle that saw the goal to the arrival, `[ms]` of the robot's clock.
-        duration_ms: u64,
-        /// What friction and bias are compensated by there, `[N m]`; `None` where the robot's
-        /// controller turns setpoints into torques.
-        compensation: Option<[f64; 7]>,
-        /// The reaction that has led it to this end, if one has.
-        reacted: Option<Reacted>,
-    },
-    /// The robot's state names an end effector that is not a rigid transformation, or a load that
-    /// is not finite; the session ends without a torque.
-    BadTool,
-}
-
-/// How a goal came to its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Settlement {
-    /// At the target, within the tolerance, at rest and held there.
-    Arrived(PoseError),
-    /// At rest where it was braked.
-    AtRest,
-    /// The reference reached the target, the arm did not: something holds it, or its load is not
-    /// what was declared.
-    TargetNotReached(Shortfall),
-    /// Given up, and held: at the last target, or where it came to rest without its deadman.
-    Held(Lapse),
-    /// Given up, and braked: it is held where it came to rest.
-    Braked(Lapse),
-    /// At rest where it was held: its common start has failed.
-    Unstarted(StartFault),
-}
-
-/// Why a goal was given up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Lapse {
-    /// Its targets stopped coming: see [`Watchdog`].
-    Silent {
-        /// For how long none had come, by the robot's clock.
-        silence: Duration,
-    },
-    /// The [`Deadman`] that the session is bound to fell silent, or was dropped.
-    Deadman,
-    /// Something pushed the arm further from its path than it may swing back by itself:
-    /// [`Deviation`].
-    Displaced,
-    /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`]
-    /// and [`KEEP_OUT_STOP`].
-    Blocked,
-    /// The team that it is a member of has stopped.
-    Team(TeamStop),
-}
-
-impl Lapse {
-    /// Whether no update brings the goal back.
-    fn is_final(self) -> bool {
-        match self {
-            Self::Silent { .. } => false,
-            Self::Deadman | Self::Displaced | Self::Blocked | Self::Team(_) => true,
-        }
-    }
-}
-
-impl core::fmt::Display for Lapse {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Silent { silence } => write!(f, "no target came for {} ms", silence.as_millis()),
-            Self::Deadman => write!(f, "its deadman is silent"),
-            Self::Displaced => write!(f, "the arm was pushed too far from its path"),
-            Self::Blocked => write!(
-                f,
-                "the way leads too near to the arm itself or to a region to keep out of"
-            ),
-            Self::Team(stop) => stop.fmt(f),
-        }
-    }
-}
-
-/// What a session answers a state with.
-#[derive(Debug)]
-pub(crate) struct SessionStep {
-    pub(crate) answer: SessionCommand,
-    pub(crate) trace: Trace,
-    /// The last command: the motion ends once the robot has taken it.
-    pub(crate) finished: bool,
-}
-
-/// What the record of a cycle has of the session; all zero where no goal is followed.
-#[derive(Debug, Default)]
-pub(crate) struct Trace {
-    pub(crate) goal: GoalId,
-    pub(crate) reference: Reference,
-    /// Since the goal was first seen.
-    pub(crate) elapsed: Duration,
-    /// Until the reference meets the goal's target.
-    pub(crate) remaining: Duration,
-    /// `[N m]`
-    pub(crate) compensation: JointVector,
-    pub(crate) bindings: Bindings,
-}
-
-/// The command that answers a state: torques, or a setpoint.
-#[derive(Debug)]
-pub(crate) enum SessionCommand {
-    Torques(Torques),
-    Setpoint(MotionCommand),
-}
 
 /// One session. Created outside the thread, moved into it, handed back when it has ended.
 #[derive(Debug)]
@@ -520,39 +400,4 @@ impl TargetSession {
             Read::Same | Read::Torn => None,
         }
     }
-}
-
-/// The end effector and stiffness frame that a state names, orthonormalised, as protocol 10 rounds
-/// them to `f32`. `None` if one of them is not a rigid transformation.
-fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
-    let rigid = |column_major| {
-        transform::isometry_from_array(column_major).map(|pose| transform::matrix(&pose))
-    };
-    Some(EndEffector {
-        f_t_ee: rigid(&state.F_T_EE)?,
-        ee_t_k: rigid(&state.EE_T_K)?,
-    })
-}
-
-/// The load of end effector and payload together in a state of `version`. `None` if a number of it
-/// is not finite.
-fn load_of(state: &RobotState, version: Version) -> Option<Load> {
-    let total = state.total_load(version);
-    let numbers = [&[total.m_total][..], &total.F_x_Ctotal, &total.I_total];
-    let finite = numbers.into_iter().flatten().all(|x| x.is_finite());
-    finite.then(|| Load {
-        mass: total.m_total,
-        com: total.F_x_Ctotal.into(),
-        inertia: nalgebra::Matrix3::from_column_slice(&total.I_total),
-    })
-}
-
-/// A pose of the model as an isometry. The model's poses are products of rotations, so nothing is
-/// left to orthonormalise.
-fn rigid(pose: &Matrix4<f64>) -> Isometry3<f64> {
-    let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
-    Isometry3::from_parts(
-        Translation3::new(pose[(0, 3)], pose[(1, 3)], pose[(2, 3)]),
-        UnitQuaternion::from_rotation_matrix(&rotation),
-    )
 }

@@ -3,7 +3,8 @@
 use super::condition::{elapsed, force_z};
 use super::*;
 use crate::slot::{SlotWriter, slot};
-use franka_model::{JointVector, READY};
+use franka_model::{JointVector, READY, transform};
+use nalgebra::Isometry3;
 
 /// A session whose arm is wherever its reference is.
 struct Arm {

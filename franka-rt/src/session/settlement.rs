@@ -1,0 +1,101 @@
+//! How goals end, as a session reports it to the lifecycle.
+
+use core::time::Duration;
+
+use super::{GoalId, PoseError, Reacted, Shortfall};
+use crate::team::TeamStop;
+use crate::together::StartFault;
+
+/// What a session reports to the lifecycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "made on the thread, where a box would allocate"
+)]
+#[non_exhaustive]
+pub enum SessionEvent {
+    /// A goal that was to finish has come to its end; the session releases the arm unless a newer
+    /// goal comes.
+    Settled {
+        /// The goal.
+        goal: GoalId,
+        /// How it came to its end.
+        settlement: Settlement,
+        /// Time from the first cycle that saw the goal to the arrival, `[ms]` of the robot's clock.
+        duration_ms: u64,
+        /// What friction and bias are compensated by there, `[N m]`; `None` where the robot's
+        /// controller turns setpoints into torques.
+        compensation: Option<[f64; 7]>,
+        /// The reaction that has led it to this end, if one has.
+        reacted: Option<Reacted>,
+    },
+    /// The robot's state names an end effector that is not a rigid transformation, or a load that
+    /// is not finite; the session ends without a torque.
+    BadTool,
+}
+
+/// How a goal came to its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Settlement {
+    /// At the target, within the tolerance, at rest and held there.
+    Arrived(PoseError),
+    /// At rest where it was braked.
+    AtRest,
+    /// The reference reached the target, the arm did not: something holds it, or its load is not
+    /// what was declared.
+    TargetNotReached(Shortfall),
+    /// Given up, and held: at the last target, or where it came to rest without its deadman.
+    Held(Lapse),
+    /// Given up, and braked: it is held where it came to rest.
+    Braked(Lapse),
+    /// At rest where it was held: its common start has failed.
+    Unstarted(StartFault),
+}
+
+/// Why a goal was given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Lapse {
+    /// Its targets stopped coming: see [`Watchdog`].
+    Silent {
+        /// For how long none had come, by the robot's clock.
+        silence: Duration,
+    },
+    /// The [`Deadman`] that the session is bound to fell silent, or was dropped.
+    Deadman,
+    /// Something pushed the arm further from its path than it may swing back by itself:
+    /// [`Deviation`].
+    Displaced,
+    /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`]
+    /// and [`KEEP_OUT_STOP`].
+    Blocked,
+    /// The team that it is a member of has stopped.
+    Team(TeamStop),
+}
+
+impl Lapse {
+    /// Whether no update brings the goal back.
+    pub(super) fn is_final(self) -> bool {
+        match self {
+            Self::Silent { .. } => false,
+            Self::Deadman | Self::Displaced | Self::Blocked | Self::Team(_) => true,
+        }
+    }
+}
+
+impl core::fmt::Display for Lapse {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Silent { silence } => write!(f, "no target came for {} ms", silence.as_millis()),
+            Self::Deadman => write!(f, "its deadman is silent"),
+            Self::Displaced => write!(f, "the arm was pushed too far from its path"),
+            Self::Blocked => write!(
+                f,
+                "the way leads too near to the arm itself or to a region to keep out of"
+            ),
+            Self::Team(stop) => stop.fmt(f),
+        }
+    }
+}
