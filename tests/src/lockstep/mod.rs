@@ -21,27 +21,24 @@ mod engaged;
 mod guard;
 mod guarded;
 mod link;
+mod motions;
+mod poses;
 mod supervised;
 mod wander;
 
 use std::time::Duration;
 
-use franka_model::collision::Shape;
-use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, Twist, transform};
-use franka_proto::{MoveRequest, Request, RobotCommand};
-use franka_rt::control::{Callback, Command, WriteError};
-use franka_rt::driver::Program;
+use franka_model::{Model, RobotKind};
+use franka_proto::RobotCommand;
+use franka_rt::control::{Command, WriteError};
 pub use franka_rt::lifecycle::Outcome;
-use franka_rt::lifecycle::{MotionError, NewMotion};
-use franka_rt::session::{Goal, GoalError, GoalId, Guard, OnArrival, Target};
-use franka_rt::together::StartTicket;
+use franka_rt::session::Guard;
 use franka_sim::{Config, Robot};
-use nalgebra::Isometry3;
-use rand::Rng;
 
 pub use driver_stack::DriverStack;
 pub use guarded::{Guarded, Workload};
 pub use link::Link;
+pub use poses::{pose_of, self_distance, set_in_motion};
 pub use supervised::{Asked, Supervised};
 pub use wander::Wander;
 
@@ -299,196 +296,6 @@ impl Lockstep {
             self.tick();
         }
     }
-
-    /// Returns a goal with the defaults of the async API: see `franka_async::Motion`.
-    pub fn goal(&mut self, target: Target, on_arrival: OnArrival) -> Goal {
-        let limits = self.model.joint_limits();
-        Goal::new(self.client.next_goal(), target, on_arrival, limits)
-    }
-
-    /// Submits a goal.
-    ///
-    /// # Errors
-    /// As the lifecycle.
-    pub fn submit(&mut self, goal: Goal) -> Result<GoalId, MotionError> {
-        self.client.begin(NewMotion::to(goal))
-    }
-
-    /// Submits a goal that begins together with those of other robots.
-    ///
-    /// # Errors
-    /// As the lifecycle.
-    pub fn submit_together(
-        &mut self,
-        goal: Goal,
-        ticket: StartTicket,
-    ) -> Result<GoalId, MotionError> {
-        self.client.begin(NewMotion::Goal {
-            goal: Box::new(goal),
-            ticket: Some(ticket),
-            session: None,
-        })
-    }
-
-    /// Starts a control function that begins together with the motions of other robots; see
-    /// [`Self::control`].
-    ///
-    /// # Errors
-    /// As the lifecycle.
-    pub fn control_together(
-        &mut self,
-        callback: Callback,
-        request: MoveRequest,
-        ticket: StartTicket,
-    ) -> Result<GoalId, MotionError> {
-        self.guard = None;
-        let id = self.client.next_goal();
-        self.client.begin(NewMotion::Program {
-            id,
-            program: Program::Callback(Box::new(callback)),
-            request: Box::new(request),
-            ticket: Some(ticket),
-        })
-    }
-
-    /// Submits a motion that ends at `target`.
-    ///
-    /// # Panics
-    /// If the goal is not accepted.
-    pub fn begin(&mut self, target: Target) -> GoalId {
-        let goal = self.goal(target, OnArrival::ReportAndFinish);
-        self.submit(goal).expect("the goal is accepted")
-    }
-
-    /// Starts a motion under a program of the test. From then on the harness checks no commands:
-    /// the simulated robot judges them.
-    ///
-    /// # Errors
-    /// As the lifecycle.
-    pub fn control(
-        &mut self,
-        program: Program,
-        request: MoveRequest,
-    ) -> Result<GoalId, MotionError> {
-        self.guard = None;
-        self.client.control(program, request)
-    }
-
-    /// Brakes and returns the id of the stop; `None` if nothing moves.
-    pub fn stop(&mut self) -> Option<GoalId> {
-        self.client.stop()
-    }
-
-    /// Cancels a goal, as dropping its future does.
-    pub fn cancel(&mut self, goal: GoalId) {
-        self.client.cancel(goal);
-    }
-
-    /// Moves the target of a held goal. Returns whether the goal is still held.
-    ///
-    /// # Errors
-    /// As the lifecycle.
-    pub fn update(&mut self, goal: GoalId, target: Target) -> Result<bool, GoalError> {
-        let DriverStack {
-            lifecycle, state, ..
-        } = &mut self.client;
-        lifecycle.update(goal, target, state)
-    }
-
-    /// Runs until the goal is resolved, and returns its outcome.
-    ///
-    /// # Panics
-    /// If that takes longer than `most` milliseconds.
-    pub fn until_resolved(&mut self, goal: GoalId, most: u64) -> Outcome {
-        for _ in 0..most {
-            if let Some(outcome) = self.client.outcome(goal) {
-                return outcome.clone();
-            }
-            self.tick();
-        }
-        panic!(
-            "goal {goal:?} is unresolved after {most} ms: {:?}",
-            self.client.lifecycle
-        );
-    }
-
-    /// Moves to `target` in a motion of its own. Returns the greatest distance on the way between
-    /// the end effector and its reference, `[m]`.
-    ///
-    /// # Panics
-    /// If the goal is refused or not reached.
-    pub fn lag_to(&mut self, target: Isometry3<f64>) -> f64 {
-        let goal = self.goal(target.into(), OnArrival::ReportAndFinish);
-        let goal = self.submit(goal).expect("within reach");
-        let mut lag = 0.0_f64;
-        while self.client.outcome(goal).is_none() {
-            self.tick();
-            if self.client.record.goal == goal.0 {
-                let arm = self.arm_pose().translation.vector;
-                lag = lag.max((arm - self.reference_pose().translation.vector).norm());
-            }
-        }
-        self.until_resolved(goal, 1).expect("it arrives");
-        self.until_idle(1000);
-        lag
-    }
-
-    /// Runs until no motion is active.
-    ///
-    /// # Panics
-    /// If that takes longer than `most` milliseconds.
-    pub fn until_idle(&mut self, most: u64) {
-        for _ in 0..most {
-            if self.client.lifecycle.is_idle() {
-                return;
-            }
-            self.tick();
-        }
-        panic!("not idle after {most} ms: {:?}", self.client.lifecycle);
-    }
-
-    /// Sends a request that is not a motion; its answer is not awaited.
-    ///
-    /// # Panics
-    /// If the session refuses it.
-    pub fn request(&mut self, request: &Request) {
-        self.client.request(request);
-    }
-
-    /// The pose of the end effector that the robot's model has at the true joint positions: not
-    /// rounded by the wire, without noise.
-    pub fn arm_pose(&self) -> Isometry3<f64> {
-        self.pose_at(self.robot.q())
-    }
-
-    /// The pose of the end effector at the reference of the driver's last command.
-    pub fn reference_pose(&self) -> Isometry3<f64> {
-        self.pose_at(&self.client.record.q_ref.into())
-    }
-
-    /// The pose of the end effector at these joint positions.
-    pub fn pose_at(&self, q: &JointVector) -> Isometry3<f64> {
-        let rigid =
-            |column_major| transform::isometry_from_array(column_major).expect("a rigid frame");
-        let ee = EndEffector {
-            f_t_ee: transform::matrix(&rigid(&self.robot.state().F_T_EE)),
-            ..EndEffector::default()
-        };
-        pose_of(q, &ee)
-    }
-}
-
-/// Gives a target a random motion, some of them faster than any budget; others stay as they are.
-pub fn set_in_motion(target: Target, random: &mut impl Rng) -> Target {
-    let mut number = |most: f64| most * random.random_range(-1.0..1.0_f64).powi(3);
-    match target {
-        Target::Joints(q) => (q, core::array::from_fn(|_| number(2.0))).into(),
-        Target::Pose(pose) => {
-            let twist = Twist::from_fn(|i, _| number(if i < 3 { 0.6 } else { 1.0 }));
-            (pose, twist).into()
-        }
-        other => other,
-    }
 }
 
 /// Runs `test` for every kind of robot, with a function that makes one: see [`Lockstep::ready_of`].
@@ -497,22 +304,4 @@ pub fn for_each_robot(test: impl Fn(&dyn Fn() -> Lockstep)) {
         println!("{kind:?}");
         test(&|| Lockstep::ready_of(kind));
     }
-}
-
-/// The pose of the end effector at `q`; the kinematics of all kinds of robot are the same.
-pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
-    let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
-    transform::isometry(&pose).expect("a rigid end effector")
-}
-
-/// The smallest distance between links that are three or more apart in the chain, `[m]`; the Hand
-/// comes after link 7. The robot's self-collision avoidance checks this distance.
-pub fn self_distance(q: &JointVector) -> f64 {
-    let arm = Shape::vendor().with_hand().at(q);
-    let apart = arm
-        .distances()
-        .filter(|((inner, outer), _)| outer.number() - inner.number() >= 3);
-    apart
-        .map(|(_, distance)| distance)
-        .fold(f64::INFINITY, f64::min)
 }

@@ -1,0 +1,64 @@
+//! Where the arm and its reference are.
+
+use franka_model::collision::Shape;
+use franka_model::{EndEffector, Frame, JointVector, Model, Twist, transform};
+use franka_rt::session::Target;
+use nalgebra::Isometry3;
+use rand::Rng;
+
+use super::Lockstep;
+
+impl Lockstep {
+    /// The pose of the end effector that the robot's model has at the true joint positions: not
+    /// rounded by the wire, without noise.
+    pub fn arm_pose(&self) -> Isometry3<f64> {
+        self.pose_at(self.robot.q())
+    }
+
+    /// The pose of the end effector at the reference of the driver's last command.
+    pub fn reference_pose(&self) -> Isometry3<f64> {
+        self.pose_at(&self.client.record.q_ref.into())
+    }
+
+    /// The pose of the end effector at these joint positions.
+    pub fn pose_at(&self, q: &JointVector) -> Isometry3<f64> {
+        let rigid =
+            |column_major| transform::isometry_from_array(column_major).expect("a rigid frame");
+        let ee = EndEffector {
+            f_t_ee: transform::matrix(&rigid(&self.robot.state().F_T_EE)),
+            ..EndEffector::default()
+        };
+        pose_of(q, &ee)
+    }
+}
+
+/// The pose of the end effector at `q`; the kinematics of all kinds of robot are the same.
+pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
+    let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
+    transform::isometry(&pose).expect("a rigid end effector")
+}
+
+/// The smallest distance between links that are three or more apart in the chain, `[m]`; the Hand
+/// comes after link 7. The robot's self-collision avoidance checks this distance.
+pub fn self_distance(q: &JointVector) -> f64 {
+    let arm = Shape::vendor().with_hand().at(q);
+    let apart = arm
+        .distances()
+        .filter(|((inner, outer), _)| outer.number() - inner.number() >= 3);
+    apart
+        .map(|(_, distance)| distance)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Gives a target a random motion, some of them faster than any budget; others stay as they are.
+pub fn set_in_motion(target: Target, random: &mut impl Rng) -> Target {
+    let mut number = |most: f64| most * random.random_range(-1.0..1.0_f64).powi(3);
+    match target {
+        Target::Joints(q) => (q, core::array::from_fn(|_| number(2.0))).into(),
+        Target::Pose(pose) => {
+            let twist = Twist::from_fn(|i, _| number(if i < 3 { 0.6 } else { 1.0 }));
+            (pose, twist).into()
+        }
+        other => other,
+    }
+}
