@@ -279,10 +279,14 @@
 //! use franka_async::blocking::Wait;
 //! use franka_async::prelude::*;
 //!
-//! let robot = Robot::connect("172.16.0.2").wait()?; robot.move_to(READY).wait()?; let arm =
-//! robot.engage(Engage::default()).wait()?; arm.try_set(Pose::translation(0.0, 0.0, 0.05) *
-//! robot.pose())?; // never waits, for loops of the program's own arm.at_rest().wait()?;
-//! arm.disengage().wait()?; robot.shutdown().wait();
+//! let robot = Robot::connect("172.16.0.2").wait()?;
+//! robot.move_to(READY).wait()?;
+//! let arm = robot.engage(Engage::default()).wait()?;
+//! let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
+//! arm.try_set(up)?; // never waits: for loops at a rate of their own
+//! arm.at_rest().wait()?;
+//! arm.disengage().wait()?;
+//! robot.shutdown().wait();
 //! # Ok(())
 //! # }
 //! ```
@@ -321,21 +325,17 @@
 //! |---|---|
 //! | [`prelude`] | what a first program needs |
 //! | [`pose`] | poses from quaternions, arrays and matrices, and back |
-//! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; what a motion goes on until
-//! |
+//! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; what a motion goes on until |
 //! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
 //! | [`team`] | several arms as one, with one stop |
 //! | [`state`] | every state, or the newest as it changes |
-//! | [`error`], [`diagnosis`] | what can go wrong, by who can act on it; why the robot ended a
-//! motion |
+//! | [`error`], [`diagnosis`] | what can go wrong, by who can act on it; why the robot ended a motion |
 //! | [`supervision`] | connections that are made again, recovery by a policy, events and health |
 //! | [`control`] | control at 1 kHz by functions of the program |
 //! | [`gripper`], [`vacuum`] | the end effectors, each with a connection of its own |
-//! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured
-//! |
+//! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
 //! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
-//! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control
-//! is |
+//! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | what every cycle saw and did |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
 //! | `blocking` | programs without async (feature `blocking`) |
