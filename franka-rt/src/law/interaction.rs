@@ -3,7 +3,7 @@
 use franka_model::{Jacobian, JointVector};
 use nalgebra::Matrix6;
 
-use crate::law::gain_fade::BlendedGains;
+use crate::law::blended_gains::BlendedGains;
 use crate::law::operational;
 use crate::law::task_space::TaskSpace;
 
@@ -289,7 +289,7 @@ mod tests {
         let at = |gains| of(&gains, &errors, &dynamics);
         for (from, to) in [(plain, projected), (plain, operational)] {
             assert!((at(from) - at(to)).amax() > 0.1);
-            let mut fade = crate::law::gain_fade::GainFade::at(from);
+            let mut fade = crate::law::fade::Fade::at(from);
             fade.towards(to);
             for cycle in 1..=300 {
                 let share = f64::from(cycle) / 300.0;

@@ -1,14 +1,14 @@
 //! Control laws: joint torques from the error between a reference and a state.
 //!
 //! ```text
-//! Gains -> GainFade -> BlendedGains --+-> wrench at the end effector: hybrid or operational -> J' --+
+//! Gains -> BlendedGains -> Fade -------+-> wrench at the end effector: hybrid or operational -> J' --+
 //! errors of q and dq -----------------+-> springs and dampers of the joints -> null space ---------+-> Interaction
 //! springs, dq_ref ----------------------> Compensation of friction and bias
 //! ```
 //!
-//! [`Gains`] are what a goal asks for. `gain_fade` has the same in numbers, where a choice is a
-//! weight, so that the way from one to the next is continuous. `interaction` makes torques of them
-//! by either law; the two differ in the wrench at the end effector and in where the springs of the
+//! [`Gains`] are what a goal asks for. `blended_gains` has the same in numbers, where a choice
+//! is a weight, so that `fade` leads from one to the next continuously. `interaction` makes torques
+//! of them by either law; the two differ in the wrench at the end effector and in where the springs of the
 //! joints act. `compensation` adds what springs cannot do on an arm that sticks or carries what it
 //! does not know of. What bounds these torques are guards of the session.
 //!
@@ -29,8 +29,9 @@
 //! [`Gains::project_joint_gains`] the torques of `Kq` and `Kqd` pass through the null-space
 //! projection of the [operational-space law](operational) first.
 
+pub(crate) mod blended_gains;
 pub(crate) mod compensation;
-pub(crate) mod gain_fade;
+pub(crate) mod fade;
 mod gains;
 pub(crate) mod interaction;
 pub mod operational;

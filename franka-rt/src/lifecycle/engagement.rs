@@ -54,7 +54,7 @@ pub struct Tuning {
     pub budget: Option<Budget>,
     /// With how much force springs and dampers may press. It fades as the gains do.
     pub force_cap: Option<ForceCap>,
-    /// How far the reference may be ahead of the arm.
+    /// How far the reference may be ahead of the arm. It fades as the gains do.
     pub leash: Option<Leash>,
     /// How far the arm may be pushed off its way.
     pub deviation: Option<Deviation>,

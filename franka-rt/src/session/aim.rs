@@ -13,7 +13,7 @@ pub(super) struct Aim {
     pub(super) budget: Budget,
     /// Whether to stop on the way.
     pub(super) paused: bool,
-    /// For hand guiding.
+    /// The leash of hand guiding, in this cycle.
     pub(super) leash: Leash,
 }
 

@@ -7,7 +7,7 @@ use franka_otg::{AxisLimits, AxisState, PlanError};
 use crate::session::aim::Aim;
 use crate::session::chunk::ChunkCourse;
 use crate::session::guard::joint_bounds::BoundsReached;
-use crate::session::guard::leash;
+use crate::session::guard::leash::{self, Leash};
 use crate::session::guide::Guide;
 use crate::session::joints::{JointGenerator, MovingJoints};
 use crate::session::kinematics::{self, Drift, Posture};
@@ -91,10 +91,10 @@ impl Course {
                 self.over_pose(model, ee, reference, MovingPose { pose, twist }, aim)?;
             }
             Target::Guide(free) => match self {
-                Self::Guide(guide) => guide.free(free, aim.leash),
+                Self::Guide(guide) => guide.free(free),
                 Self::Rest | Self::Joints(_) | Self::Pose(..) | Self::Chunk(_) => {
                     let brake = JointGenerator::new(robot, reference, None, &aim.budget)?;
-                    *self = Self::Guide(Guide::new(free, aim.leash, brake));
+                    *self = Self::Guide(Guide::new(free, brake));
                 }
             },
         }
@@ -181,14 +181,14 @@ impl Course {
         ee: &EndEffector,
         posture: &Posture,
         reference: &Reference,
-        arm: &Measured,
+        (arm, leash): (&Measured, &Leash),
         now: u64,
     ) -> CourseStep {
         match self {
             Self::Rest => CourseStep::free(Reference::at_rest(reference.q)),
             Self::Joints(generator) => CourseStep::free(generator.step()),
             Self::Guide(guide) => {
-                let (reference, leashed) = guide.step(reference, arm);
+                let (reference, leashed) = guide.step(reference, arm, leash);
                 CourseStep {
                     leashed,
                     ..CourseStep::free(reference)

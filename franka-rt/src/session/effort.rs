@@ -11,8 +11,9 @@ use franka_proto::RobotState;
 use nalgebra::Matrix6;
 
 use crate::law::Gains;
+use crate::law::blended_gains::BlendedGains;
 use crate::law::compensation::{Compensation, Demand, Learned};
-use crate::law::gain_fade::{BlendedGains, GainFade};
+use crate::law::fade::Fade;
 use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
 use crate::session::guard::torque_clamp::clamp;
@@ -25,7 +26,7 @@ use crate::shaping::filter;
 /// What the law remembers between cycles.
 #[derive(Debug)]
 pub(super) struct Effort {
-    fade: GainFade,
+    fade: Fade<BlendedGains>,
     /// Reference velocity behind its low-pass, `[rad/s]`.
     feedforward: JointVector,
     inertia: Inertia,
@@ -92,7 +93,7 @@ impl Effort {
     /// Starts with the gains of the first goal, for a reference at rest.
     pub(super) fn new(goal: &Goal) -> Self {
         Self {
-            fade: GainFade::at(BlendedGains::new(&goal.gains, goal.force_cap.newtons())),
+            fade: Fade::at(BlendedGains::new(&goal.gains, goal.force_cap.newtons())),
             feedforward: JointVector::zeros(),
             inertia: Inertia {
                 acceleration: JointVector::zeros(),

@@ -38,7 +38,6 @@ impl Gains {
 #[derive(Debug)]
 pub(super) struct Guide {
     free: Free,
-    leash: Leash,
     stage: GuideStage,
 }
 
@@ -67,17 +66,15 @@ struct Floating {
 
 impl Guide {
     /// Begins by braking over `brake`.
-    pub(super) fn new(free: Free, leash: Leash, brake: JointGenerator) -> Self {
+    pub(super) fn new(free: Free, brake: JointGenerator) -> Self {
         Self {
             free,
-            leash,
             stage: GuideStage::Braking(brake),
         }
     }
 
-    /// Frees other axes, with another leash. The rest is held where the arm is now.
-    pub(super) fn free(&mut self, free: Free, leash: Leash) {
-        self.leash = leash;
+    /// Frees other axes. The rest is held where the arm is now.
+    pub(super) fn free(&mut self, free: Free) {
         if free != self.free {
             self.free = free;
             if let GuideStage::Floating(floating) = &mut self.stage {
@@ -88,17 +85,22 @@ impl Guide {
 
     /// Advances by one nominal millisecond. Returns also whether the arm was pushed off a held axis
     /// by more than the leash.
-    pub(super) fn step(&mut self, reference: &Reference, arm: &Measured) -> (Reference, bool) {
+    pub(super) fn step(
+        &mut self,
+        reference: &Reference,
+        arm: &Measured,
+        leash: &Leash,
+    ) -> (Reference, bool) {
         let (away, leashed) = match &mut self.stage {
             GuideStage::Braking(generator) if !generator.is_done() => {
                 return (generator.step(), false);
             }
             GuideStage::Floating(floating) if floating.cycle < u32::MAX => {
-                floating.step(self.free, &self.leash, arm)
+                floating.step(self.free, leash, arm)
             }
             GuideStage::Braking(_) | GuideStage::Floating(_) => {
                 let mut floating = Floating::begin(reference, arm);
-                let stepped = floating.step(self.free, &self.leash, arm);
+                let stepped = floating.step(self.free, leash, arm);
                 self.stage = GuideStage::Floating(floating);
                 stepped
             }
@@ -129,6 +131,7 @@ impl Floating {
     fn step(&mut self, free: Free, leash: &Leash, arm: &Measured) -> (JointVector, bool) {
         let remaining = 1.0 - f64::from(self.cycle.min(LET_GO)) / f64::from(LET_GO);
         self.cycle = (self.cycle + 1).min(LET_GO);
+        let leash = &self.slack(leash, remaining);
         let (at_ee, mut leashed) = self.at_end_effector(free, leash, arm, remaining);
         let inverse = Inverse::of(arm);
         let along = inverse.solve(arm, &at_ee);
@@ -146,6 +149,17 @@ impl Floating {
         // Near a singular posture a small way of the end effector is a long one of the joints.
         let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
         (held, leashed || held != away)
+    }
+
+    /// The leash, and what the reference was ahead of the arm by beyond it, which `remaining` is
+    /// left of: the goal before may have had another leash, or none at the end effector.
+    fn slack(&self, leash: &Leash, remaining: f64) -> Leash {
+        let at_ee = |part| remaining * self.offset_at_ee.fixed_rows::<3>(part).norm();
+        Leash {
+            translation: leash.translation.max(at_ee(0)),
+            rotation: leash.rotation.max(at_ee(3)),
+            joints: leash.joints.max(remaining * self.offset.amax()),
+        }
     }
 
     /// The same at the end effector. Axes that stay are held as by the leash.

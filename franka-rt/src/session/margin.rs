@@ -20,7 +20,7 @@ use franka_proto::{RobotState, Version};
 
 use super::{ForceCap, end_effector_of, load_of};
 use crate::law::Gains;
-use crate::law::gain_fade::BlendedGains;
+use crate::law::blended_gains::BlendedGains;
 use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
 use crate::shaping::MAX_CUTOFF_FREQUENCY;

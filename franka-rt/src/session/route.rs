@@ -235,15 +235,16 @@ impl Route {
         now: u64,
     ) -> course::CourseStep {
         self.hindered = self.hindered.saturating_sub(1);
+        let guided = (arm, &aim.leash);
         if let Pace::Braked(since) = &mut self.pace {
             *since += 1;
             if *since < RETRY || !self.course.is_done() {
                 self.hindered = HINDERED;
-                return self.course.step(model, ee, posture, reference, arm, now);
+                return self.course.step(model, ee, posture, reference, guided, now);
             }
             self.head_for(model, ee, reference, aim);
         }
-        let step = self.course.step(model, ee, posture, reference, arm, now);
+        let step = self.course.step(model, ee, posture, reference, guided, now);
         // The way of a brake was checked before the step that it begins from. Hand guiding is not
         // checked.
         if matches!(aim.target, Target::Rest | Target::Guide(_)) {
@@ -257,7 +258,7 @@ impl Route {
                 self.pace = Pace::Braked(0);
                 self.hindered = HINDERED;
                 self.brake(model, ee, reference, aim);
-                return self.course.step(model, ee, posture, reference, arm, now);
+                return self.course.step(model, ee, posture, reference, guided, now);
             }
             (Ahead::Near, pace @ Pace::Full) => {
                 *pace = Pace::Slow(0);

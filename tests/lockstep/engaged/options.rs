@@ -1,12 +1,14 @@
 //! Tuning of a session, and options that are refused.
 
 use super::{turned, up};
-use franka_model::Wrench;
 use franka_model::collision::Obstacle;
+use franka_model::{JointVector, RobotKind, Wrench};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
-use franka_rt::session::{ForceCap, Free, Goal, GoalError, Guard, Lapse, OnArrival, Target};
+use franka_rt::session::{ForceCap, Free, Goal, GoalError, Guard, Lapse, Leash, OnArrival, Target};
+use franka_sim::Arm;
 use franka_tests::lockstep::{Lockstep, for_each_robot};
+use nalgebra::Translation3;
 
 #[test]
 fn tuning_gains_does_not_step_the_torque_and_keeps_their_bounds() {
@@ -59,6 +61,75 @@ fn tuning_gains_does_not_step_the_torque_and_keeps_their_bounds() {
             Err(MotionError::Goal(GoalError::Gains(_)))
         ));
     });
+}
+
+/// The arm is held back on its way, far behind its reference on a long leash, which is then
+/// shortened in a single call.
+#[test]
+fn a_leash_that_is_tightened_in_mid_motion_steps_neither_the_reference_nor_the_torque() {
+    for kind in [RobotKind::Fr3, RobotKind::Fer] {
+        let held = Free {
+            axes: [true, false, true, true, true, true],
+            elbow: true,
+        };
+        for name in ["joints", "pose", "guide"] {
+            let mut lockstep = Lockstep::new(franka_sim::Config {
+                arm: Some(Arm::realistic(kind)),
+                ..Lockstep::config_of(kind)
+            });
+            let engaged = lockstep.engage();
+            let tuning = |leash| Tuning {
+                leash: Some(leash),
+                force_cap: Some(ForceCap::Off),
+                ..Tuning::default()
+            };
+            lockstep.tune(engaged, tuning(Leash::MOST)).unwrap();
+            let aside = Translation3::new(0.0, 0.2, 0.0) * lockstep.arm_pose();
+            let target = match name {
+                "joints" => turned(0.6),
+                "pose" => Target::Pose(aside),
+                _ => Target::Guide(held),
+            };
+            let goal = lockstep.goal(target, OnArrival::Hold);
+            let goal = tuning(Leash::MOST).apply(goal);
+            lockstep.submit_within(engaged, goal).unwrap();
+            lockstep.run(350);
+            let push = Wrench::new(0.0, -28.0, 0.0, 0.0, 0.0, 0.0);
+            lockstep.robot.push_end_effector(push, 100_000);
+            lockstep.run(350);
+            let stretch = |lockstep: &Lockstep| {
+                let record = &lockstep.client.record;
+                let joints = JointVector::from(record.q_ref) - JointVector::from(record.q);
+                let (hand, reference) = (lockstep.arm_pose(), lockstep.reference_pose());
+                let hand = reference.translation.vector - hand.translation.vector;
+                (joints, hand, JointVector::from(record.tau_c))
+            };
+            let mut last = stretch(&lockstep);
+            let before = (last.0.amax(), last.1.norm());
+            lockstep.tune(engaged, tuning(Leash::LEAST)).unwrap();
+            let mut most = [0.0_f64; 3];
+            for _ in 0..400 {
+                lockstep.tick();
+                let now = stretch(&lockstep);
+                most[0] = most[0].max((now.0 - last.0).amax());
+                most[1] = most[1].max((now.1 - last.1).norm());
+                most[2] = most[2].max((now.2 - last.2).amax());
+                last = now;
+            }
+            let after = (last.0.amax(), last.1.norm());
+            let [joints, hand, torque] = most;
+            println!(
+                "{kind:?} {name}: {before:.3?} rad and m ahead, then {after:.3?}; steps of \
+                 {joints:.5} rad, {hand:.5} m, {torque:.2} N m"
+            );
+            assert!(before.0 > 0.037 && before.1 > 0.026, "{before:?}");
+            assert!(after.0 < 0.0301 && after.1 < 0.025, "{after:?}");
+            // The whole change of the leash in 0.3 s: 1.24 mrad and 0.32 mm a cycle, beside what
+            // the reference gains on the arm by itself.
+            assert!(joints < 1.5e-3 && hand < 0.8e-3, "{most:?}");
+            assert!(torque < 0.6, "{most:?}");
+        }
+    }
 }
 
 #[test]

@@ -19,6 +19,7 @@ struct Last {
     goal: u64,
     leashed: bool,
     tau: [f64; 7],
+    q: [f64; 7],
     q_ref: [f64; 7],
     dq_ref: [f64; 7],
     ddq_ref: [f64; 7],
@@ -93,14 +94,18 @@ impl CommandGuard {
                     "{at}: reference of joint {joint} steps by {step} rad/s^2"
                 );
                 // The leash moves the reference with the arm, and the arm may be pushed.
-                if !(leashed || last.leashed) {
-                    let step = (record.q_ref[i] - last.q_ref[i]).abs();
-                    let most = limits.velocity[i] * CYCLE * 1.001;
-                    assert!(
-                        step <= most,
-                        "{at}: reference of joint {joint} steps by {step} rad"
-                    );
-                }
+                let step = record.q_ref[i] - last.q_ref[i];
+                let with_arm = step - (state.q[i] - last.q[i]);
+                let step = if leashed || last.leashed {
+                    step.abs().min(with_arm.abs())
+                } else {
+                    step.abs()
+                };
+                let most = limits.velocity[i] * CYCLE * 1.001;
+                assert!(
+                    step <= most,
+                    "{at}: reference of joint {joint} steps by {step} rad"
+                );
                 let jerk = (record.ddq_ref[i] - last.ddq_ref[i]).abs() / CYCLE;
                 let most = limits.jerk[i] * 1.001;
                 assert!(
@@ -121,6 +126,7 @@ impl CommandGuard {
             goal,
             leashed,
             tau: command.tau_J_d,
+            q: state.q,
             q_ref,
             dq_ref,
             ddq_ref,

@@ -120,7 +120,7 @@ fn within(force: &Vector3<f64>, most: f64) -> Vector3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::gain_fade::BlendedGains;
+    use crate::law::blended_gains::BlendedGains;
     use crate::law::interaction::Interaction;
     use crate::law::{Gains, Law, task_space};
     use franka_model::{

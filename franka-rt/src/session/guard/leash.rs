@@ -5,6 +5,7 @@ use franka_model::{JointVector, rotation};
 use franka_otg::PlanError;
 use nalgebra::{Isometry3, Translation3};
 
+use crate::law::fade::{Blend, mix};
 use crate::session::course::Course;
 use crate::session::pose::PoseGenerator;
 use crate::session::reference::Reference;
@@ -47,6 +48,18 @@ impl Leash {
         rotation: 0.6,
         joints: 0.4,
     };
+}
+
+/// A leash that is changed goes evenly to its new length: one that were shortened at once would
+/// jerk a reference that is far ahead towards the arm.
+impl Blend for Leash {
+    fn blend(&self, other: &Self, share: f64) -> Self {
+        Self {
+            translation: mix(self.translation, other.translation, share),
+            rotation: mix(self.rotation, other.rotation, share),
+            joints: mix(self.joints, other.joints, share),
+        }
+    }
 }
 
 /// Longest distance from the joint reference's end effector to the pose that it follows, `[m]`.

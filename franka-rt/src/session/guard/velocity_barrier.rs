@@ -50,7 +50,7 @@ pub(crate) fn brake(
 mod tests {
     use super::*;
     use crate::law::Gains;
-    use crate::law::gain_fade::BlendedGains;
+    use crate::law::blended_gains::BlendedGains;
     use crate::session::effort::low_pass;
     use crate::session::guard::torque_rate::limit_rate;
     use franka_model::{CYCLE, Model};

@@ -38,7 +38,7 @@ impl RunningSession {
         }
         self.goal = *goal;
         self.take_hold();
-        self.fade_gains();
+        self.fade();
         self.standing = if named && taken_back {
             Standing::TakenBack
         } else {
@@ -66,17 +66,16 @@ impl RunningSession {
                 ..*goal
             },
         );
-        self.fade_gains();
-        let changed = goal.budget != before.budget
-            || goal.paused != before.paused
-            || goal.leash != before.leash;
+        self.fade();
+        let changed = goal.budget != before.budget || goal.paused != before.paused;
         if changed && !matches!(self.stage, GoalStage::Releasing(_)) {
             self.route.outdate();
         }
     }
 
-    /// Starts the fade of gains and force cap to those of the goal.
-    pub(super) fn fade_gains(&mut self) {
+    /// Starts the fade of gains, force cap and leash to those of the goal.
+    pub(super) fn fade(&mut self) {
+        self.leash.towards(self.goal.leash);
         if let Drive::Torques(effort) = &mut self.drive {
             effort.take_up(&self.goal);
         }
@@ -108,7 +107,7 @@ impl RunningSession {
             budget: self.goal.budget,
             // A stop is not to be paused.
             paused: (self.goal.paused || self.waits) && self.aim != Target::Rest || self.halted,
-            leash: self.goal.leash,
+            leash: self.leash.now(),
         };
         if self.waits {
             aim.budget = carry::quick_to_halt(aim.budget);

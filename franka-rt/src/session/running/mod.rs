@@ -18,6 +18,7 @@ use nalgebra::Isometry3;
 
 use crate::control::Torques;
 use crate::law::compensation::Learned;
+use crate::law::fade::Fade;
 use crate::session::reference::Reference;
 use crate::team::TeamStop;
 
@@ -29,7 +30,7 @@ use super::effort::{Effort, Resistance};
 use super::goal::{Goal, OnArrival, Target};
 use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Displacement;
-use super::guard::leash::{self, Held};
+use super::guard::leash::{self, Held, Leash};
 use super::guard::watchdog::OnTimeout;
 use super::guard::{Bindings, Guard};
 use super::kinematics::Posture;
@@ -59,6 +60,8 @@ pub(super) struct RunningSession {
     arm: Measured,
     /// For the answer to the next state, once it is prepared.
     next: Option<Next>,
+    /// On its way to that of the goal.
+    leash: Fade<Leash>,
     /// What the leash held in the last answer, if it did.
     held: Option<Held>,
     /// When the goal was first seen, `message_id` of the state.
@@ -188,6 +191,7 @@ impl RunningSession {
                 step: Some(CourseStep::free(reference)),
                 bindings: Bindings::default(),
             }),
+            leash: Fade::at(goal.leash),
             held: None,
             since: state.message_id,
             heard: state.message_id,
@@ -277,6 +281,7 @@ impl RunningSession {
         self.halt_without_news(now);
         bindings.set(Guard::Reaction, self.has_reacted());
         self.yields &= self.aim == Target::Rest;
+        self.leash.step();
         let aim = self.aim(model, now);
         self.route.renew(model, &self.ee, &self.reference, &aim);
         let guided = matches!(self.route.course, Course::Guide(_));
@@ -357,7 +362,7 @@ impl RunningSession {
         // Under the robot's own controller the reference is anchored on that one's setpoint.
         if let Drive::Torques(_) = self.drive {
             self.held = leash::hold(
-                &self.goal.leash,
+                &self.leash.now(),
                 &self.route.course,
                 &mut self.reference,
                 &self.arm,

@@ -67,7 +67,7 @@ impl RunningSession {
             paused: self.goal.paused,
             ..self.goal.at_rest(on_arrival)
         };
-        self.fade_gains();
+        self.fade();
         self.set_out();
         self.turn_to(Target::Rest);
         self.standing = Standing::Reacted(reacted);

@@ -47,7 +47,7 @@ impl RunningSession {
     /// Gives the goal up, and brakes.
     pub(super) fn give_up(&mut self, lapse: Lapse) {
         self.goal = self.goal.at_rest(self.goal.on_arrival);
-        self.fade_gains();
+        self.fade();
         self.set_out();
         self.lapse(OnTimeout::Brake, lapse);
     }

@@ -1,10 +1,8 @@
-//! Gains as the cycle uses them: numbers only, on their way from one goal's to the next.
+//! Gains as the cycle uses them: numbers only, so that they may stand between two goals'.
 
+use crate::law::fade::{Blend, mix};
 use crate::law::{Gains, Law};
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY, filter};
-
-/// Cycles over which everything goes from one goal's to the next.
-const CROSS_FADE: u32 = 300;
 
 /// Gains and force cap in numbers: a choice is a weight between 0 and 1, so that all of it may
 /// stand between two goals.
@@ -64,10 +62,11 @@ impl BlendedGains {
     pub(crate) fn force_cap(&self) -> Option<f64> {
         (self.inverse_force_cap > 0.0).then(|| self.inverse_force_cap.recip())
     }
+}
 
-    /// At `share` of the way to `other`, linearly: each number stays between its two ends.
+impl Blend for BlendedGains {
     fn blend(&self, other: &Self, share: f64) -> Self {
-        let mix = |from: f64, to: f64| from + share * (to - from);
+        let mix = |from, to| mix(from, to, share);
         macro_rules! each {
             ($array:ident) => {
                 core::array::from_fn(|i| mix(self.$array[i], other.$array[i]))
@@ -90,54 +89,10 @@ impl BlendedGains {
     }
 }
 
-/// The cross-fade from the gains of one goal to those of the next.
-#[derive(Debug)]
-pub(crate) struct GainFade {
-    from: BlendedGains,
-    to: BlendedGains,
-    cycle: u32,
-}
-
-impl GainFade {
-    /// A fade that is over from the start.
-    pub(crate) fn at(gains: BlendedGains) -> Self {
-        Self {
-            from: gains,
-            to: gains,
-            cycle: CROSS_FADE,
-        }
-    }
-
-    /// Heads for `to` from where it stands.
-    pub(crate) fn towards(&mut self, to: BlendedGains) {
-        if to != self.to {
-            *self = Self {
-                from: self.now(),
-                to,
-                cycle: 0,
-            };
-        }
-    }
-
-    /// Advances by one cycle.
-    pub(crate) fn step(&mut self) -> BlendedGains {
-        self.cycle = self.cycle.saturating_add(1);
-        self.now()
-    }
-
-    fn now(&self) -> BlendedGains {
-        if self.cycle >= CROSS_FADE {
-            self.to
-        } else {
-            self.from
-                .blend(&self.to, f64::from(self.cycle) / f64::from(CROSS_FADE))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::fade::{CROSS_FADE, Fade};
 
     fn soft() -> BlendedGains {
         BlendedGains::new(&Gains::cartesian(), None)
@@ -154,7 +109,7 @@ mod tests {
 
     #[test]
     fn every_number_goes_evenly_from_one_goal_to_the_next() {
-        let mut fade = GainFade::at(soft());
+        let mut fade = Fade::at(soft());
         assert_eq!(fade.step(), soft());
         fade.towards(other());
         let mut last = soft();
@@ -171,18 +126,6 @@ mod tests {
         }
         assert_eq!(last, other());
         assert_eq!(fade.step(), other());
-    }
-
-    #[test]
-    fn a_fade_that_is_turned_round_goes_on_from_where_it_stands() {
-        let mut fade = GainFade::at(soft());
-        fade.towards(other());
-        let half = (0..CROSS_FADE / 2).map(|_| fade.step()).last().unwrap();
-        assert_eq!(half.projection, 0.5);
-        fade.towards(soft());
-        let next = fade.step();
-        assert!((next.projection - 0.5).abs() < 2e-3);
-        assert!((next.inverse_force_cap - half.inverse_force_cap).abs() < 1e-3);
     }
 
     #[test]
