@@ -227,9 +227,11 @@ fn an_arm_kept_from_its_target_is_reported_and_released_without_a_torque_step() 
         // More than friction and bias are compensated by.
         lockstep.robot.push_end_effector(downward(22.0), 1_000_000);
         let error = lockstep.until_resolved(goal, 3000).unwrap_err();
-        let MotionError::TargetNotReached(short) = error else {
+        let MotionError::TargetNotReached(short) = &error else {
             panic!("{error:?}")
         };
+        assert_eq!(short.limited, None, "no torque limit binds");
+        assert!(error.to_string().contains("something holds it"), "{error}");
         let error = short.error;
         // 22 N against 750 N/m and what the joint springs add to it.
         assert!((0.012..0.024).contains(&error.translation), "{error:?}");

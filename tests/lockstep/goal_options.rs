@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use franka_model::{JointVector, RobotKind, Wrench};
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::lifecycle::{MotionError, Party, Tuning};
 use franka_rt::session::{
     Deviation, Goal, GoalError, GoalId, Guard, Lapse, Leash, OnArrival, Settling, Target,
 };
@@ -179,6 +179,40 @@ fn the_torques_stay_within_their_limits() {
             free.as_slice()
         );
         assert!(free[0] > 1.5 * torque_limits[0], "{free}");
+    });
+}
+
+#[test]
+fn a_torque_limit_below_the_friction_of_a_joint_is_named_as_what_kept_the_arm() {
+    for_each_arm(|arm| {
+        for by_joints in [false, true] {
+            let mut lockstep = arm();
+            let q = lockstep.robot.q() + JointVector::repeat(0.1);
+            let target = if by_joints {
+                Target::Joints(q.into())
+            } else {
+                Target::Pose(aside(&lockstep))
+            };
+            let goal = lockstep.goal(target, OnArrival::ReportAndFinish);
+            let gains = Gains {
+                torque_limits: Gains::LEAST.torque_limits,
+                ..goal.gains
+            };
+            let goal = Goal { gains, ..goal };
+            let id = lockstep.submit(goal).expect("within the bounds");
+            let error = lockstep.until_resolved(id, 10_000).unwrap_err();
+            println!("{error}");
+            let MotionError::TargetNotReached(short) = &error else {
+                panic!("{error}");
+            };
+            let limited = short.limited.expect("1 N m moves no joint");
+            let sticks = Gains::COMPENSATION[limited.joint - 1];
+            assert_eq!(limited.limit, 1.0);
+            assert!(limited.asked > sticks, "{limited:?}");
+            let named = format!("the torque limit of joint {} leaves 1.0 N m", limited.joint);
+            assert!(error.to_string().contains(&named), "{error}");
+            assert_eq!(error.party(), Party::Caller);
+        }
     });
 }
 

@@ -180,9 +180,9 @@ pub enum MotionError {
     },
     /// Robot or surroundings: the reference reached the target and the arm did not follow. It rests
     /// where it is.
-    #[error(
-        "the arm came to rest {0}: something holds it, or its load differs from the one declared"
-    )]
+    ///
+    /// Caller: if a torque limit of its gains is what kept it, [`Shortfall::limited`].
+    #[error("the arm came to rest {0}")]
     TargetNotReached(Shortfall),
     /// Link: the robot fell silent.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
@@ -254,6 +254,7 @@ impl MotionError {
             | Self::Invalid(_)
             | Self::Panicked { .. }
             | Self::Stalled { .. } => Party::Caller,
+            Self::TargetNotReached(short) if short.limited.is_some() => Party::Caller,
             Self::Rejected(_) | Self::Control(_) | Self::TargetNotReached(_) => Party::Robot,
             Self::LinkLost { .. } => Party::Link,
             Self::NotReady { why, .. } => why.party(),

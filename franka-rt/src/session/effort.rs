@@ -16,7 +16,7 @@ use crate::law::compensation::{Compensation, Demand, Learned};
 use crate::law::fade::Fade;
 use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
-use crate::session::guard::torque_clamp::clamp;
+use crate::session::guard::torque_clamp::{LimitedTorque, clamp};
 use crate::session::guard::torque_rate::limit_rate;
 use crate::session::guard::{force_cap, velocity_barrier};
 use crate::session::reference::Reference;
@@ -36,6 +36,8 @@ pub(super) struct Effort {
     /// Torques of springs, dampers and compensation in the last cycle, behind clamp and force cap,
     /// `[N m]`.
     interaction: JointVector,
+    /// Torques of springs and compensation in the last cycle, before the clamp, `[N m]`.
+    asked: JointVector,
     /// Whether clamp or force cap bound in the last cycle.
     bound: bool,
 }
@@ -102,6 +104,7 @@ impl Effort {
             compensation: Compensation::new(Learned::default()),
             compensated: JointVector::zeros(),
             interaction: JointVector::zeros(),
+            asked: JointVector::zeros(),
             bound: false,
         }
     }
@@ -127,6 +130,13 @@ impl Effort {
         let damped = jacobian * jacobian.transpose() + Matrix6::identity() * SINGULAR;
         let pull = jacobian * self.interaction;
         damped.cholesky().map_or(pull, |factor| factor.solve(&pull))
+    }
+
+    /// The joint that a torque limit kept most from the torque of its springs and compensation in
+    /// the last cycle, if one was.
+    pub(super) fn limited(&self) -> Option<LimitedTorque> {
+        let most = JointVector::from(self.fade.now().torque_limits);
+        LimitedTorque::worst(&self.asked, &most)
     }
 
     /// Whether the compensation still grows, to move a joint that rests away from its target.
@@ -178,6 +188,7 @@ impl Effort {
             ending: resistance == Resistance::Release,
         });
         let springs = springs + self.compensated;
+        self.asked = springs;
         let dampers = dampers.torques(&(feedforward - dq));
         let (tau, clamped) = clamp(&(springs + dampers), &most);
         let (tau, capped) = match (tuning.force_cap(), &space) {

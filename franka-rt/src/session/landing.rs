@@ -5,7 +5,7 @@ use core::time::Duration;
 use franka_model::{JointVector, rotation};
 use nalgebra::Isometry3;
 
-use crate::session::{Settlement, Tolerance};
+use crate::session::{LimitedTorque, Settlement, Tolerance};
 
 /// Joint velocity below which the arm counts as resting, `[rad/s]`.
 pub(super) const REST_VELOCITY: f64 = 0.01;
@@ -91,6 +91,8 @@ pub struct Shortfall {
     /// it does so with the opposite. `None` where the robot's controller turns setpoints into
     /// torques.
     pub pull: Option<[f64; 6]>,
+    /// Where a torque limit of its goal keeps it from pulling harder.
+    pub limited: Option<LimitedTorque>,
 }
 
 impl core::fmt::Display for Shortfall {
@@ -105,13 +107,19 @@ impl core::fmt::Display for Shortfall {
             translation * 1e3,
             rotation * 1e3
         )?;
-        let Some([x, y, z, about_x, about_y, about_z]) = self.pull else {
-            return Ok(());
-        };
-        write!(
-            f,
-            ", where it pulls with {x:.1} {y:.1} {z:.1} N and {about_x:.1} {about_y:.1} {about_z:.1} N m (x y z of the base)",
-        )
+        if let Some([x, y, z, about_x, about_y, about_z]) = self.pull {
+            write!(
+                f,
+                ", where it pulls with {x:.1} {y:.1} {z:.1} N and {about_x:.1} {about_y:.1} {about_z:.1} N m (x y z of the base)",
+            )?;
+        }
+        match self.limited {
+            Some(limited) => write!(f, ": {limited}"),
+            None => write!(
+                f,
+                ": something holds it, or its load differs from the one declared"
+            ),
+        }
     }
 }
 
@@ -184,7 +192,11 @@ impl Landing {
             // An arm that does not rest after all this time is being moved from outside; the
             // reference rests.
             None => Settlement::AtRest,
-            Some(error) => Settlement::TargetNotReached(Shortfall { error, pull: None }),
+            Some(error) => Settlement::TargetNotReached(Shortfall {
+                error,
+                pull: None,
+                limited: None,
+            }),
         };
         Verdict::Settled(settlement, self.held)
     }

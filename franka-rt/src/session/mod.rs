@@ -74,6 +74,7 @@ pub use guard::deviation::Deviation;
 pub use guard::force_cap::ForceCap;
 pub use guard::lead::Lead;
 pub use guard::leash::Leash;
+pub use guard::torque_clamp::LimitedTorque;
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};

@@ -8,6 +8,47 @@ pub(crate) fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool
     (clamped, clamped != *tau)
 }
 
+/// A joint at rest that gets no more torque than its limit, although its springs and compensation
+/// ask for more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LimitedTorque {
+    /// Its number, from 1.
+    pub joint: usize,
+    /// Its limit in [`Gains::torque_limits`](crate::law::Gains::torque_limits), `[N m]`.
+    pub limit: f64,
+    /// What it would get without one, `[N m]`.
+    pub asked: f64,
+}
+
+impl LimitedTorque {
+    /// The joint of which `most` leaves the smallest share of what is `asked` for, `[N m]`; `None`
+    /// if each gets all of it.
+    pub(crate) fn worst(asked: &JointVector, most: &JointVector) -> Option<Self> {
+        let shares = asked.abs().component_div(most);
+        let (joint, share) = shares.argmax();
+        (share > 1.0).then(|| Self {
+            joint: joint + 1,
+            limit: most[joint],
+            asked: asked[joint].abs(),
+        })
+    }
+}
+
+impl core::fmt::Display for LimitedTorque {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self {
+            joint,
+            limit,
+            asked,
+        } = self;
+        write!(
+            f,
+            "the torque limit of joint {joint} leaves {limit:.1} N m of the {asked:.1} N m that its springs and compensation ask for"
+        )
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -21,6 +62,20 @@ mod tests {
             let most = JointVector::from(Gains::TORQUE_LIMITS);
             assert!((robot - most).min() > 0.0, "{robot}");
         }
+    }
+
+    #[test]
+    fn the_worst_limit_is_that_with_the_smallest_share() {
+        let most = JointVector::from(Gains::TORQUE_LIMITS);
+        let mut asked = most;
+        assert_eq!(LimitedTorque::worst(&asked, &most), None);
+        (asked[1], asked[5]) = (100.0, -23.0);
+        let worst = LimitedTorque {
+            joint: 6,
+            limit: 11.5,
+            asked: 23.0,
+        };
+        assert_eq!(LimitedTorque::worst(&asked, &most), Some(worst));
     }
 
     #[test]

@@ -64,6 +64,7 @@ impl RunningSession {
                     (&mut settlement, effort)
                 {
                     short.pull = Some(effort.pull(&self.arm.jacobian).into());
+                    short.limited = effort.limited();
                 }
                 if let Settlement::TargetNotReached(short) = settlement
                     && let Some(near) = self.tolerance_with_others()
