@@ -329,8 +329,8 @@ impl Arm {
         Follow::new(self.robot().clone(), Some(self.session.clone()), targets)
     }
 
-    /// Changes how the goal under way and those to come are pursued. Gains, force cap and leash fade
-    /// over 0.3 s: neither the reference nor the torques step.
+    /// Changes how the goal under way and those to come are pursued. Gains, force cap and leash
+    /// fade over 0.3 s: neither the reference nor the torques step.
     ///
     /// # Errors
     /// [`MotionError::Goal`] for values out of their bounds, which change nothing; what ended the

@@ -1,4 +1,5 @@
-//! Taking motions back: what cancelling one, or dropping its future, does to an arm that moves.
+//! Taking motions back, and pausing them: what cancelling one, or dropping its future, does to an
+//! arm that moves.
 //!
 //! A motion towards goals is braked within the robot's limits, a session likewise before it ends,
 //! and a control function or program has the robot stop. All of it is one input to the bridge,
@@ -7,12 +8,14 @@
 //! `active_control` and `asynchronous_control`; what happens is decided by `Lifecycle::cancel`, in
 //! `franka_rt::lifecycle::goals`.
 
-use franka_rt::lifecycle::Outcome;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use franka_rt::lifecycle::{NewMotion, Outcome};
 use franka_rt::session::GoalId;
 use tokio::sync::oneshot;
 use tokio_util::sync::CancellationToken;
 
-use crate::input::Beginning;
+use crate::input::{Beginning, Input};
 use crate::robot::Robot;
 
 /// Takes a motion back: an arm on its way to a goal brakes, and a control function or program has
@@ -22,6 +25,8 @@ pub struct Canceller {
     robot: Robot,
     id: GoalId,
     cancelled: CancellationToken,
+    /// Whether it is to pause; locked while that is sent.
+    paused: Arc<Mutex<bool>>,
 }
 
 impl Canceller {
@@ -30,6 +35,7 @@ impl Canceller {
             robot,
             id,
             cancelled: CancellationToken::new(),
+            paused: Arc::default(),
         }
     }
 
@@ -41,6 +47,20 @@ impl Canceller {
         self.robot.cancel(self.id);
     }
 
+    /// Pauses the motion or lets it go on. One that has not begun will begin paused.
+    pub(crate) fn set_paused(&self, paused: bool) {
+        let mut wanted = self.lock_paused();
+        *wanted = paused;
+        // Without effect on a motion that has not begun.
+        let goal = self.id;
+        self.robot.send(Input::Pause { goal, paused });
+    }
+
+    fn lock_paused(&self) -> MutexGuard<'_, bool> {
+        // Nothing panics while it is held.
+        self.paused.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     pub(crate) fn robot(&self) -> &Robot {
         &self.robot
     }
@@ -50,11 +70,17 @@ impl Canceller {
     }
 
     /// Begins `motion`, unless it is cancelled already. Returns the receiver of its outcome.
-    pub(crate) fn begin(&self, motion: Beginning) -> Option<oneshot::Receiver<Outcome>> {
+    pub(crate) fn begin(&self, mut motion: Beginning) -> Option<oneshot::Receiver<Outcome>> {
         if self.cancelled.is_cancelled() {
             return None;
         }
+        // A pause that comes now is sent after the motion.
+        let paused = self.lock_paused();
+        if let NewMotion::Goal { goal, .. } = &mut motion.motion {
+            goal.paused = *paused;
+        }
         let outcome = self.robot.begin(motion);
+        drop(paused);
         // `cancel` sets the token before it sends: if its input came before the motion, and so had
         // no effect, the token is set here.
         if self.cancelled.is_cancelled() {

@@ -15,8 +15,8 @@ use tokio::sync::oneshot;
 
 use crate::cancel::Canceller;
 use crate::destination::{Destination, Offset};
+use crate::input::Beginning;
 use crate::input::unserved;
-use crate::input::{Beginning, Input};
 use crate::options::{GoalOptions, goal_options};
 use crate::progress::Progress;
 use crate::robot::Robot;
@@ -217,20 +217,18 @@ impl MotionHandle {
     }
 
     /// Stops the motion on its way, within its limits and on its line if it goes along one, until
-    /// [`Self::resume`]. The arm is held there meanwhile. Without effect before the motion has
-    /// begun, after its end and once a newer goal has come.
+    /// [`Self::resume`]. The arm is held there meanwhile. A motion that has not begun is then held
+    /// where it begins. Without effect after its end and once a newer goal has come.
+    ///
+    /// The pause counts in the [duration](franka_rt::lifecycle::MotionReport::duration) of the
+    /// motion, in its [`Progress::elapsed`], and in every time limit that the program sets.
     pub fn pause(&self) {
-        self.set_paused(true);
+        self.0.set_paused(true);
     }
 
     /// Lets the motion go on.
     pub fn resume(&self) {
-        self.set_paused(false);
-    }
-
-    fn set_paused(&self, paused: bool) {
-        let goal = self.0.id();
-        self.0.robot().send(Input::Pause { goal, paused });
+        self.0.set_paused(false);
     }
 
     /// How far the motion has come; `None` before it has begun and after its end.

@@ -27,7 +27,7 @@ pub struct Reference {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Since it began, by the robot's clock.
+    /// Since it began, by the robot's clock, pauses included.
     pub elapsed: Duration,
     /// Until the reference is at the target, if nothing holds it up. The arm settles after that, a
     /// quarter of a second at the least.

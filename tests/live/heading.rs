@@ -106,6 +106,16 @@ async fn a_handle_tells_how_far_a_motion_is_and_pauses_it() {
     assert_eq!(handle.progress(), None, "not begun");
     handle.pause();
     let moving = tokio::spawn(motion.into_future());
+    while handle.progress().is_none() {
+        robot_time(&robot, 5).await;
+    }
+    let begins = robot.reference().expect("held").pose;
+    robot_time(&robot, 300).await;
+    let held = handle.progress().expect("begun, and paused");
+    assert!(held.elapsed >= Duration::from_millis(250), "{held:?}");
+    let stands = robot.reference().expect("held").pose;
+    assert!((stands.translation.vector - begins.translation.vector).norm() < 1e-9);
+    handle.resume();
     under_way(&robot).await;
     robot_time(&robot, 5).await;
     let begun = handle.progress().expect("under way");

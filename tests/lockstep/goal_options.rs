@@ -4,9 +4,9 @@ use core::time::Duration;
 
 use franka_model::{JointVector, RobotKind, Wrench};
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{MotionError, Party, Tuning};
+use franka_rt::lifecycle::{MotionError, NewMotion, Party, Tuning};
 use franka_rt::session::{
-    Deviation, Goal, GoalError, GoalId, Guard, Lapse, Leash, OnArrival, Settling, Target,
+    Deviation, Goal, GoalError, GoalId, Guard, Lapse, Leash, OnArrival, Settling, Target, Waypoint,
 };
 use franka_sim::Arm;
 use franka_tests::lockstep::Lockstep;
@@ -179,6 +179,61 @@ fn the_torques_stay_within_their_limits() {
             free.as_slice()
         );
         assert!(free[0] > 1.5 * torque_limits[0], "{free}");
+    });
+}
+
+#[test]
+fn a_motion_that_begins_paused_is_held_where_it_begins_until_it_is_resumed() {
+    for_each_arm(|arm| {
+        for kind in ["pose", "joints", "path", "path of a session"] {
+            let mut lockstep = arm();
+            let engaged = (kind == "path of a session").then(|| lockstep.engage());
+            let (start, end) = (lockstep.arm_pose(), aside(&lockstep));
+            let q = lockstep.robot.q() + JointVector::repeat(0.1);
+            let target = match kind {
+                "joints" => Target::Joints(q.into()),
+                _ => Target::Pose(end),
+            };
+            let goal = lockstep.goal(target, OnArrival::ReportAndFinish);
+            let mut goal = Goal {
+                paused: true,
+                ..goal
+            };
+            if engaged.is_some() {
+                goal.on_arrival = OnArrival::ReportAndHold;
+            }
+            let motion = NewMotion::Goal {
+                goal: Box::new(goal),
+                ticket: None,
+                session: engaged,
+            };
+            let path = [
+                Waypoint::new(Translation3::new(0.0, 0.1, 0.0) * start).blend(0.02),
+                end.into(),
+            ];
+            let begun = match kind {
+                "pose" | "joints" => lockstep.client.begin(motion),
+                _ => lockstep.client.begin_along(&path, motion),
+            };
+            let id = begun.expect("within reach");
+            let (mut moved, mut cycles) = (0.0_f64, 0);
+            for _ in 0..1500 {
+                lockstep.tick();
+                if lockstep.client.record.goal == id.0 {
+                    cycles += 1;
+                    let reference = lockstep.reference_pose().translation.vector;
+                    moved = moved.max((reference - start.translation.vector).norm());
+                }
+            }
+            println!("{kind}: {moved:.6} m in {cycles} cycles");
+            assert!(cycles > 1000, "{kind}: it has begun");
+            assert!(moved < 1e-3, "{kind}: {moved} m");
+            assert_eq!(lockstep.client.outcome(id), None, "{kind}: it waits");
+            lockstep.client.lifecycle.pause(id, false);
+            let report = lockstep.until_resolved(id, 10_000).expect("it arrives");
+            assert!(report.duration > Duration::from_millis(1500), "{report:?}");
+            assert!(report.final_error.expect("of a pose").translation < 1e-3);
+        }
     });
 }
 

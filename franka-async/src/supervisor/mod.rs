@@ -312,6 +312,20 @@ impl Inner {
                 }
                 _ => Input::Close { goal },
             },
+            Input::Pause { goal, paused } => match &mut self.waiting {
+                Some(Waiting {
+                    motion:
+                        Beginning {
+                            motion: NewMotion::Goal { goal: waiting, .. },
+                            ..
+                        },
+                    ..
+                }) if waiting.id == goal => {
+                    waiting.paused = paused;
+                    return;
+                }
+                _ => Input::Pause { goal, paused },
+            },
             Input::Cancel { goal } if self.core.withdraw(goal) => {
                 if let Some(Waiting {
                     motion, replies, ..

@@ -8,9 +8,9 @@
 //!
 //! [`Gains`] are what a goal asks for. `blended_gains` has the same in numbers, where a choice
 //! is a weight, so that `fade` leads from one to the next continuously. `interaction` makes torques
-//! of them by either law; the two differ in the wrench at the end effector and in where the springs of the
-//! joints act. `compensation` adds what springs cannot do on an arm that sticks or carries what it
-//! does not know of. What bounds these torques are guards of the session.
+//! of them by either law; the two differ in the wrench at the end effector and in where the springs
+//! of the joints act. `compensation` adds what springs cannot do on an arm that sticks or carries
+//! what it does not know of. What bounds these torques are guards of the session.
 //!
 //! # The hybrid law
 //!

@@ -22,8 +22,8 @@ pub type Outcome = Result<MotionReport, MotionError>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionReport {
-    /// From the first state that the goal answered to the arrival, in the robot's time; of a
-    /// control function, to the end of the motion.
+    /// From the first state that the goal answered to the arrival, in the robot's time, pauses and
+    /// all that held the arm up included; of a control function, to the end of the motion.
     pub duration: Duration,
     /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,

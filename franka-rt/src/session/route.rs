@@ -135,7 +135,8 @@ impl Route {
             now,
         };
         let budget = self.paced(aim).budget;
-        let next = ChunkCourse::new(model, aim.goal, budget, chunk, start);
+        let mut next = ChunkCourse::new(model, aim.goal, budget, chunk, start);
+        next.set_paused(aim.paused);
         match core::mem::replace(&mut self.course, Course::Chunk(next)) {
             Course::Chunk(before) => Some(before),
             _ => None,

@@ -28,6 +28,12 @@ impl Pace {
         let jerk = 10.0 * pace.acceleration * pace.velocity.max(pace.acceleration / pace.velocity);
         Self(AxisLimits { jerk, ..pace })
     }
+
+    /// What leads from a constant pace to others.
+    fn at(self, pace: f64) -> Option<Generator<1>> {
+        let limits = Limits::per_axis([self.0]).ok()?;
+        Generator::towards(State::at_rest([pace]), limits, Some(&[pace])).ok()
+    }
 }
 
 /// Shortest time in which the time of a path stops, `[s]`.
@@ -38,6 +44,7 @@ const STOP_MIN: f64 = 0.05;
 pub(super) struct PathTime {
     /// Seconds of the path.
     pub(super) time: f64,
+    pace: Pace,
     /// 1 at full pace, 0 when paused.
     axis: Generator<1>,
     /// What is left of the pace where the arm lags.
@@ -47,15 +54,22 @@ pub(super) struct PathTime {
 impl PathTime {
     /// From the begin of a path on.
     pub(super) fn new(pace: Pace) -> Option<Self> {
-        let limits = Limits::per_axis([pace.0]).ok()?;
         Some(Self {
             time: -CYCLE,
-            axis: Generator::towards(State::at_rest([1.0]), limits, Some(&[1.0])).ok()?,
+            pace,
+            axis: pace.at(1.0)?,
             share: 1.0,
         })
     }
 
+    /// Stops the time, or lets it go on. A path that has not begun does not begin.
     pub(super) fn set_paused(&mut self, paused: bool) {
+        if paused
+            && self.time < 0.0
+            && let Some(axis) = self.pace.at(0.0)
+        {
+            (self.time, self.axis) = (0.0, axis);
+        }
         let wanted = if paused { 0.0 } else { 1.0 };
         // Both are in the range that was checked with the limits.
         let _ = self.axis.set_target(&[wanted]);
