@@ -238,13 +238,12 @@ impl Member {
     pub fn pass(&mut self, round: Round, now: u64) -> Passage {
         let since = match self.arrived {
             Some((arrived, since)) if arrived == round => since,
+            // Too late, or too early: where it has arrived is not forgotten for it.
+            _ if !self.shared.look().is_going(round) => return self.passage(round),
             _ => {
                 self.arrived = Some((round, now));
-                let members = self.shared.members;
-                self.shared.change(|word| {
-                    let waits = word.is_going(round) && word.present() < members;
-                    waits.then(|| word.with_one_more())
-                });
+                let arrives = |word: Word| word.is_going(round).then(|| word.with_one_more());
+                self.shared.change(arrives);
                 now
             }
         };
@@ -270,12 +269,17 @@ impl Member {
         }
     }
 
-    /// The stop of the team, if this is the first call since then.
+    /// The stop of the team, if this is the first call since then. That it has taken back a motion
+    /// itself is none for this member: what it does instead goes on.
     pub fn take_stop(&mut self) -> Option<TeamStop> {
         let word = self.shared.look();
         let stop = word.stop().filter(|_| word != self.seen)?;
         self.seen = word;
-        Some(stop)
+        let own = TeamStop::Member {
+            member: self.number(),
+            fault: MemberFault::TakenBack,
+        };
+        (stop != own).then_some(stop)
     }
 
     /// Stops `round` for a fault of this member in it. Without effect on a round that has stopped,

@@ -14,7 +14,7 @@ use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{Goal, GoalId, OnArrival, OnTimeout, Target, Watchdog};
 use franka_rt::together::{StartBarrier, StartFault, StartTicket};
-use franka_tests::lockstep::Lockstep;
+use franka_tests::lockstep::{Lockstep, outcomes_of, turned};
 use nalgebra::Translation3;
 
 /// An FR3 and an FER, in the order of their tickets. Their milliseconds alternate.
@@ -48,20 +48,14 @@ impl Two {
         most: u64,
     ) -> [Result<(), MotionError>; 2] {
         for _ in 0..most {
-            let of = |robot: &Lockstep, goal| robot.client.outcome(goal).cloned();
-            if let (Some(left), Some(right)) = (of(&self.left, left), of(&self.right, right)) {
-                return [left.map(drop), right.map(drop)];
+            let ended = outcomes_of([&self.left, &self.right], [left, right]);
+            if let Some(outcomes) = ended {
+                return outcomes;
             }
             self.tick();
         }
         panic!("unresolved after {most} ms");
     }
-}
-
-fn turned(by: f64) -> Target {
-    let mut q: [f64; 7] = READY.into();
-    q[0] += by;
-    Target::Joints(q)
 }
 
 fn submit(robot: &mut Lockstep, target: Target, ticket: StartTicket) -> GoalId {

@@ -25,8 +25,8 @@ pub(super) struct Membership {
 struct Pursued {
     round: Round,
     goal: GoalId,
-    /// Whether it has come to its end as asked.
-    is_done: bool,
+    /// What it is held at, once it has come to its end as asked.
+    held: Option<Target>,
 }
 
 /// How far the reference may be ahead of those of the others, `[m]`.
@@ -73,7 +73,7 @@ impl Membership {
                     self.pursued = Some(Pursued {
                         round,
                         goal: goal.id,
-                        is_done: false,
+                        held: None,
                     });
                 }
                 Passage::Stopped(reason) => stop = Some(reason),
@@ -86,23 +86,32 @@ impl Membership {
 
     /// Takes note of a goal that was read. Returns whether it waits for the other members.
     fn keeps(&mut self, goal: &Goal) -> bool {
-        let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
+        // A goal of a round may be to hold the arm, too.
+        let comes_to_rest = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
+        let taken_back = comes_to_rest && goal.round.is_none();
         if let Some((round, waiting)) = self.waiting
             && (waiting.id != goal.id || taken_back)
         {
             self.waiting = None;
             self.member.give_up(round, MemberFault::TakenBack);
         }
-        if let Some(pursued) = self.pursued {
+        if let Some(pursued) = &mut self.pursued {
             if pursued.goal == goal.id && !taken_back {
                 return false;
             }
+            // Tuned where it is held, by then under the session's name.
+            let stays = pursued.held == Some(goal.target) && goal.round.is_none();
+            if stays && !taken_back {
+                pursued.goal = goal.id;
+                return false;
+            }
+            let Pursued { round, held, .. } = *pursued;
             self.pursued = None;
-            if !pursued.is_done {
-                self.member.give_up(pursued.round, MemberFault::TakenBack);
+            if held.is_none() {
+                self.member.give_up(round, MemberFault::TakenBack);
             }
         }
-        let Some(round) = goal.round.filter(|_| !taken_back) else {
+        let Some(round) = goal.round else {
             return false;
         };
         self.waiting = Some((round, *goal));
@@ -126,7 +135,6 @@ impl Membership {
             self.member.tell(pursued.round, own);
         }
         if let Some(pursued) = self.pursued
-            && session.goal.id == pursued.goal
             && session.has_braked()
         {
             self.pursued = None;
@@ -134,21 +142,16 @@ impl Membership {
         }
     }
 
-    /// Takes note of the end of a goal. One that ended as asked is still part of its round: if it
-    /// is given up later, the others brake.
-    pub(super) fn settle(&mut self, event: &SessionEvent) {
-        let SessionEvent::Settled {
-            goal, settlement, ..
-        } = event
+    /// Takes note of the end of a goal, at this target. One that ended as asked is still part of
+    /// its round, also when it is tuned: if it is given up later, the others brake.
+    pub(super) fn settle(&mut self, event: &SessionEvent, target: Target) {
+        let (SessionEvent::Settled { settlement, .. }, Some(pursued)) = (event, &mut self.pursued)
         else {
-            return;
-        };
-        let Some(pursued) = self.pursued.as_mut().filter(|it| it.goal == *goal) else {
             return;
         };
         let fault = match settlement {
             Settlement::Arrived(_) | Settlement::AtRest => {
-                pursued.is_done = true;
+                pursued.held = Some(target);
                 return;
             }
             Settlement::TargetNotReached(_) => MemberFault::NotReached,

@@ -299,7 +299,7 @@ impl TargetSession {
         };
         let step = active.answer(&self.model, state, event);
         if let (Some(team), Some(event)) = (&mut self.team, &*event) {
-            team.settle(event);
+            team.settle(event, active.goal.target);
         }
         if let Some(SessionEvent::Settled {
             goal, settlement, ..

@@ -112,3 +112,34 @@ impl Words for Option<Reaction> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use franka_model::Model;
+
+    use super::*;
+
+    #[test]
+    fn a_slow_budget_is_as_brisk_as_another_one_and_no_faster() {
+        let default = Budget::of(Model::fr3().joint_limits());
+        let (slow, hasty) = (default.scaled(0.1), default.scaled(1.5));
+        let axes = |budget: &Budget| {
+            let Budget {
+                joints,
+                translation,
+                rotation,
+            } = budget;
+            let mut axes = joints.to_vec();
+            axes.extend([*translation, *rotation]);
+            axes
+        };
+        let [slow_axes, default_axes] = [slow, default].map(|budget| axes(&budget));
+        let brisk = axes(&slow.as_brisk_as(&default));
+        for ((brisk, slow), default) in brisk.iter().zip(&slow_axes).zip(&default_axes) {
+            assert_eq!(brisk.velocity, slow.velocity);
+            assert_eq!(brisk.acceleration, default.acceleration);
+            assert_eq!(brisk.jerk, default.jerk);
+        }
+        assert_eq!(hasty.as_brisk_as(&default), hasty);
+    }
+}

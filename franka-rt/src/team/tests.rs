@@ -43,6 +43,12 @@ fn the_first_fault_of_a_round_stays_and_is_seen_once() {
     // A goal of the round before comes too late.
     let late = stop_of(2, MemberFault::TakenBack);
     assert_eq!(third.pass(round, 3), Passage::Stopped(late));
+    // It counts for neither round, also of one that waits already.
+    assert_eq!(second.pass(next, 4), Passage::Waiting);
+    let late = stop_of(1, MemberFault::TakenBack);
+    assert_eq!(second.pass(round, 5), Passage::Stopped(late));
+    assert_eq!(second.pass(next, 6), Passage::Waiting);
+    assert_eq!(third.pass(next, 7), Passage::Open);
 }
 
 #[test]
@@ -56,6 +62,47 @@ fn a_session_that_ends_stops_what_is_done_after_a_stop_too() {
     drop(second);
     let stop = stop_of(1, MemberFault::Gone);
     assert_eq!(first.take_stop(), Some(stop));
+}
+
+#[test]
+fn what_is_taken_back_stops_if_it_is_the_newest_round_and_goes_on() {
+    let (coordinator, [mut first]) = team();
+    let (older, round) = (coordinator.begin(), coordinator.begin());
+    coordinator.take_back(older);
+    assert_eq!(first.pass(round, 0), Passage::Open);
+    coordinator.take_back(round);
+    let requested = Passage::Stopped(TeamStop::Requested);
+    assert_eq!(first.pass(round, 1), requested);
+    coordinator.refuse(round, 0);
+    assert_eq!(first.pass(round, 2), requested, "the first stays");
+}
+
+#[test]
+fn what_a_member_tells_of_a_round_is_what_the_others_read_of_it() {
+    let (coordinator, [first, second, third]) = team();
+    let (older, round) = (coordinator.begin(), coordinator.begin());
+    let told = |remaining, lags| Carrying { remaining, lags };
+    assert_eq!(first.others(round), Carrying::default());
+    first.tell(round, told(0.7, true));
+    assert_eq!(first.others(round), Carrying::default(), "of itself");
+    second.tell(round, told(0.25, true));
+    third.tell(round, told(0.125, false));
+    assert_eq!(first.others(round), told(0.25, true), "the longest, any");
+    assert_eq!(second.others(round), told(0.7, true));
+    assert_eq!(first.others(older), Carrying::default());
+    second.tell(older, told(0.25, true));
+    assert_eq!(first.others(round), told(0.125, false));
+    // Whole micrometres, and no more than there is room for.
+    for (way, read) in [
+        (-1.0, 0.0),
+        (f64::NAN, 0.0),
+        (1.5e-6, 1e-6),
+        (1e4, WAY_MAX as f64 * 1e-6),
+        (f64::INFINITY, WAY_MAX as f64 * 1e-6),
+    ] {
+        third.tell(round, told(way, false));
+        assert_eq!(first.others(round), told(read, false), "{way} m");
+    }
 }
 
 #[test]

@@ -20,6 +20,12 @@ fn the_gate_opens_for_all_when_the_last_has_arrived() {
     for ticket in &mut tickets {
         assert_eq!((ticket.pass(5), ticket.fault()), (Gate::Open, None));
     }
+    // Nor does what happens to one that has not seen it yet.
+    let [mut first, mut second] = StartBarrier::new().tickets();
+    assert_eq!(first.pass(0), Gate::Closed);
+    assert_eq!(second.pass(0), Gate::Open);
+    drop(first);
+    assert_eq!(second.fault(), None);
     let [mut alone] = StartBarrier::new().tickets();
     assert_eq!(alone.pass(0), Gate::Open);
 }

@@ -6,7 +6,9 @@ use franka_model::RobotKind;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
 use franka_rt::session::condition::{Axis, Quantity, contact, elapsed, force_z};
-use franka_rt::session::{Deadman, Goal, GoalId, Lapse, Lead, OnArrival, OnTimeout, Watchdog};
+use franka_rt::session::{
+    Deadman, Free, Goal, GoalId, Lapse, Lead, OnArrival, OnTimeout, Target, Watchdog,
+};
 use franka_sim::Touch;
 use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Translation3, Vector3};
@@ -257,6 +259,75 @@ fn a_deadman_that_falls_silent_on_the_way_to_the_other_target_brakes_the_arm() {
         let off = lockstep.arm_pose().translation.vector - back.translation.vector;
         assert!(off.norm() > 0.01, "{off}");
         assert!(!says_so(&lockstep), "that is not why it rests");
+    });
+}
+
+/// The condition, which comes true while the arm brakes, would have it go on to another target.
+#[test]
+fn an_arm_that_brakes_for_its_deadman_does_not_react() {
+    for_each_robot(|ready| {
+        for cycle in [598, 600, 602, 650] {
+            let mut lockstep = ready();
+            let (token, monitor) = Deadman::new(50 * MS);
+            let engaged = lockstep.engage_with(Engagement {
+                deadman: Some(monitor),
+                ..Engagement::default()
+            });
+            let back = lockstep.arm_pose();
+            let up = above(&lockstep, 0.1);
+            let due = elapsed(cycle * MS).then(back);
+            let goal = at(0.2, up, due, OnArrival::ReportAndHold, &mut lockstep);
+            let goal = lockstep.submit_within(engaged, goal).expect("within reach");
+            while lockstep.client.record.goal != goal.0 {
+                token.keep_alive();
+                lockstep.tick();
+            }
+            // Seen as dropped in the cycle after.
+            for _ in 0..598 {
+                token.keep_alive();
+                lockstep.tick();
+            }
+            drop(token);
+            lockstep.tick();
+            while goes_on(&lockstep, goal) {
+                lockstep.tick();
+                assert!(!says_so(&lockstep));
+            }
+            let outcome = lockstep.until_resolved(goal, 1);
+            assert_eq!(outcome, Err(MotionError::Held(Lapse::Deadman)));
+            let off = lockstep.arm_pose().translation.z - back.translation.z;
+            lockstep.run(2000);
+            let later = lockstep.arm_pose().translation.z - back.translation.z;
+            assert!((off - later).abs() < 1e-3 && off > 0.01, "{off}, {later}");
+        }
+    });
+}
+
+/// The gains of guiding would let it go.
+#[test]
+fn a_guided_arm_is_held_where_it_reacts() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let due = elapsed(500 * MS);
+        let guide = Target::Guide(Free::ALL);
+        let goal = at(0.2, guide, due, OnArrival::Hold, &mut lockstep);
+        let goal = lockstep.submit_within(engaged, goal).expect("it is there");
+        let push = |lockstep: &mut Lockstep| {
+            let push = Touch::force(Vector3::new(0.0, 6.0, 0.0)).lasting(200);
+            let before = lockstep.arm_pose().translation.vector;
+            lockstep.robot.touch(push);
+            lockstep.run(200);
+            (lockstep.arm_pose().translation.vector - before).norm()
+        };
+        lockstep.run(100);
+        let free = push(&mut lockstep);
+        let report = report(&mut lockstep, goal);
+        assert_eq!(report.reacted.expect("in time").after, 500 * MS);
+        lockstep.run(1000);
+        let held = push(&mut lockstep);
+        println!("{free:.4} m, {held:.4} m");
+        assert!(free > 0.02 && held < 0.01, "{free} m, {held} m");
     });
 }
 

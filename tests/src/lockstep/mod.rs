@@ -23,6 +23,7 @@ mod guarded;
 mod link;
 mod motions;
 mod poses;
+mod several;
 mod supervised;
 mod wander;
 
@@ -39,6 +40,7 @@ pub use driver_stack::DriverStack;
 pub use guarded::{Guarded, Workload};
 pub use link::Link;
 pub use poses::{pose_of, self_distance, set_in_motion};
+pub use several::{outcomes_of, turned};
 pub use supervised::{Asked, Supervised};
 pub use wander::Wander;
 

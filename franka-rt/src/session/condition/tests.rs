@@ -109,6 +109,18 @@ fn every_quantity_is_the_number_of_the_state_that_it_names() {
 }
 
 #[test]
+fn a_number_at_its_threshold_fulfils_the_comparison() {
+    let arm = Arm::new();
+    let y = Quantity::Position(Axis::Y);
+    for met in [y.above(-0.1), y.below(-0.1), y.beyond(0.1)] {
+        assert!(arm.meets(met), "{met:?}");
+    }
+    for beside in [y.above(-0.0999), y.below(-0.1001), y.beyond(0.1001)] {
+        assert!(!arm.meets(beside), "{beside:?}");
+    }
+}
+
+#[test]
 fn flags_are_what_the_robot_reports() {
     let mut arm = Arm::new();
     let all = [

@@ -85,10 +85,10 @@ impl RunningSession {
         pursued && matches!(self.stage, GoalStage::UnderWay | GoalStage::Landing(_))
     }
 
-    /// Whether the arm has come to rest after a reaction, and is to go on to `heading`.
+    /// Whether what the arm has come to the end of is the brake of a reaction, before its way to
+    /// `heading`.
     pub(super) fn has_braked_before(&self, heading: &Target) -> bool {
-        let braked = self.has_reacted() && self.aim == Target::Rest && self.route.is_done();
-        braked && *heading != Target::Rest
+        self.has_reacted() && self.aim == Target::Rest && *heading != Target::Rest
     }
 
     /// Whether the goal ends otherwise since its condition was true.

@@ -106,12 +106,12 @@ impl RunningSession {
         exceeded
     }
 
-    /// Gives the goal up if the team has just stopped and the arm goes anywhere.
+    /// Gives the goal up if the team has just stopped and the arm goes anywhere. One that was given
+    /// up before keeps its own cause.
     pub(super) fn stop_with_team(&mut self, stop: Option<TeamStop>) {
         let over = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
         if let Some(stop) = stop
             && !over
-            && !self.has_braked()
             && self.heading() != Target::Rest
         {
             self.give_up(Lapse::Team(stop));

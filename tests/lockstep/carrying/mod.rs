@@ -1,16 +1,19 @@
 //! Two arms that face each other and hold the ends of one bar, in one world of MuJoCo.
 
+mod arriving;
+mod held_back;
+
 use std::any::Any;
 
 use franka_model::{EndEffector, Frame, Model, READY, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{Engagement, MotionError};
-use franka_rt::session::{ForceCap, Goal, GoalId, Lapse, OnArrival, Target, Tolerance};
-use franka_rt::team::{Coordinator, MemberFault, TeamStop, team};
+use franka_rt::session::{ForceCap, Goal, GoalId, OnArrival, Target, Tolerance};
+use franka_rt::team::{Coordinator, team};
 use franka_sim::arm::Family;
 use franka_sim::plant::{Mount, Scene, SharedArm, shared_world};
 use franka_sim::{Arm, Config, Robot, Touch, TouchId};
-use franka_tests::lockstep::{Lockstep, Outcome, pose_of};
+use franka_tests::lockstep::{Lockstep, outcomes_of, pose_of};
 use franka_tests::thorough;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -174,10 +177,8 @@ impl Carriers {
 
     fn until_resolved(&mut self, goals: [GoalId; 2], most: u64) -> [Result<(), MotionError>; 2] {
         for _ in 0..most {
-            let of = |i: usize| self.robots[i].client.outcome(goals[i]).cloned();
-            if let (Some(left), Some(right)) = (of(0), of(1)) {
-                let plain = |outcome: Outcome| outcome.map(drop);
-                return [plain(left), plain(right)];
+            if let Some(outcomes) = outcomes_of(self.robots.each_ref(), goals) {
+                return outcomes;
             }
             self.tick();
         }
@@ -268,188 +269,4 @@ fn raised(bar: &Isometry3<f64>, by: f64, yaw: f64, tilt: f64) -> Isometry3<f64> 
     let turn = UnitQuaternion::from_euler_angles(0.0, tilt, yaw);
     let place = bar.translation.vector + Vector3::new(0.0, 0.02, by);
     Isometry3::from_parts(place.into(), turn * bar.rotation)
-}
-
-#[test]
-fn two_arms_carry_one_bar_and_hardly_pull_at_each_other() {
-    for pair in pairs(&[0, 9]) {
-        let mut carriers = Carriers::pair(pair);
-        let at_rest = carriers.internal().norm();
-        for (by, yaw, tilt) in [
-            (0.1, 0.0, 0.0),
-            (-0.1, 0.2, 0.0),
-            (0.05, -0.2, 0.15),
-            (0.15, 0.3, 0.0),
-        ] {
-            let (start, [left, right]) = (carriers.bar(), carriers.references());
-            let begun = left.inverse() * right;
-            let to = raised(&start, by, yaw, tilt);
-            let hands = carriers.grasps();
-            let goals = carriers.carry(to);
-            (carriers.strain, carriers.ticks) = (0.0, 0);
-            let (mut gap, mut lag) = (0.0_f64, 0.0_f64);
-            while goals
-                .iter()
-                .zip(&carriers.robots)
-                .any(|(goal, robot)| robot.client.outcome(*goal).is_none())
-            {
-                carriers.tick();
-                gap = gap.max(carriers.gap(&begun));
-                lag = lag.max(carriers.lag(&hands));
-                assert!(carriers.ticks < 20_000, "pair {pair}: it never arrives");
-            }
-            let ended = carriers.until_resolved(goals, 1);
-            assert_eq!(ended, [Ok(()), Ok(())], "pair {pair}");
-            let arrived = carriers.bar();
-            let off = (arrived.translation.vector - to.translation.vector).norm();
-            let turned = arrived.rotation.angle_to(&to.rotation);
-            println!(
-                "pair {pair}, {by} m, {yaw}, {tilt} rad in {} ms: off by {off:.4} m, {turned:.4} \
-                 rad; internal force {:.1} N (at rest {at_rest:.1} N), references apart by \
-                 {gap:.5} m, arms behind by {lag:.4} m",
-                carriers.ticks, carriers.strain
-            );
-            assert!(off < 2.1e-3 && turned < 9e-3, "{off} m, {turned} rad");
-            assert!(gap < 0.7e-3, "{gap} m");
-            // Half of the distance at which the other one halts.
-            assert!(lag < 7.5e-3, "{lag} m");
-            // Arms that disagree about where they are pull at each other as far as they may.
-            let most = if pair == 0 { 4.0 } else { CAP + 3.0 };
-            assert!(carriers.strain < most, "{} N", carriers.strain);
-        }
-    }
-}
-
-#[test]
-fn an_arm_that_is_held_back_holds_up_the_other_and_both_go_on_when_it_is_free() {
-    for pair in pairs(&[0, 2, 10]) {
-        let mut carriers = Carriers::pair(pair);
-        let [left, right] = carriers.references();
-        let begun = left.inverse() * right;
-        let to = raised(&carriers.bar(), 0.15, 0.0, 0.0);
-        let wall = carriers.wall_above(0.04);
-        let goals = carriers.carry(to);
-        let mut gap = 0.0_f64;
-        // Not much less than the time after which an arm that is held back gives up.
-        for _ in 0..5000 {
-            carriers.tick();
-            gap = gap.max(carriers.gap(&begun));
-        }
-        for (i, goal) in goals.iter().enumerate() {
-            assert_eq!(carriers.robots[i].client.outcome(*goal), None);
-        }
-        let height = carriers.bar().translation.z - to.translation.z + 0.15;
-        println!(
-            "pair {pair}: held {height:.3} m up: internal force {:.1} N, references apart by \
-             {gap:.4} m",
-            carriers.strain
-        );
-        assert!(height < 0.06, "{height} m");
-        // The one that is free halts within this way: 12.8 to 17.1 mm.
-        assert!(gap < 0.018, "{gap} m");
-        let most = if pair == 0 { 12.0 } else { 2.0 * CAP };
-        assert!(carriers.strain < most, "{} N", carriers.strain);
-        assert!(carriers.robots[0].robot.release(wall));
-        let ended = carriers.until_resolved(goals, 20_000);
-        assert_eq!(ended, [Ok(()), Ok(())], "pair {pair}");
-        let off = carriers.bar().translation.vector - to.translation.vector;
-        assert!(off.norm() < 2.1e-3, "pair {pair}: {off:?}");
-    }
-}
-
-/// Of two arms that halt, the one that is held back gives up after 5 s, not the one that waits.
-#[test]
-fn who_waits_for_the_other_arm_gives_up_with_it_and_not_before() {
-    let mut carriers = Carriers::new();
-    let to = raised(&carriers.bar(), 0.15, 0.0, 0.0);
-    carriers.wall_above(0.04);
-    let goals = carriers.carry(to);
-    let ended = carriers.until_resolved(goals, 20_000);
-    println!("after {} ms: {ended:?}", carriers.ticks);
-    let [held, waited] = ended;
-    assert!(matches!(held, Err(MotionError::TargetNotReached(_))));
-    let stop = TeamStop::Member {
-        member: 0,
-        fault: MemberFault::NotReached,
-    };
-    assert_eq!(waited, Err(MotionError::Braked(Lapse::Team(stop))));
-}
-
-#[test]
-fn a_motion_that_is_tighter_than_both_arms_can_keep_says_so() {
-    // Both arms have a tolerance of their own here, so none is given for what they disagree by.
-    let mut carriers = Carriers::pair(9);
-    let to = raised(&carriers.bar(), 0.1, 0.0, 0.0);
-    let goals = carriers.carry_within(to, Some(Tolerance::default()));
-    let ended = carriers.until_resolved(goals, 20_000);
-    let short = ended
-        .iter()
-        .any(|it| matches!(it, Err(MotionError::TargetNotReached(_))));
-    assert!(short, "{ended:?}");
-}
-
-#[test]
-fn what_stops_one_arm_stops_the_other_and_the_bar_is_not_torn_away() {
-    type Happen = fn(&mut Carriers, [GoalId; 2]);
-    let ways: [(&str, Happen, MemberFault); 4] = [
-        (
-            "held for good",
-            |carriers, _| {
-                carriers.wall_above(0.02);
-            },
-            MemberFault::NotReached,
-        ),
-        (
-            "user stop",
-            |carriers, _| carriers.robots[0].robot.press_user_stop(true),
-            MemberFault::RobotStopped,
-        ),
-        (
-            "link cut",
-            |carriers, _| carriers.robots[0].link.drop_states(1500),
-            MemberFault::Silent,
-        ),
-        (
-            "taken back",
-            |carriers, [left, _]| carriers.robots[0].cancel(left),
-            MemberFault::TakenBack,
-        ),
-    ];
-    for (name, happen, fault) in ways {
-        let mut carriers = Carriers::new();
-        let start = carriers.bar();
-        let to = raised(&start, 0.2, 0.0, 0.0);
-        let goals = carriers.carry(to);
-        carriers.run(500);
-        happen(&mut carriers, goals);
-        let [left, right] = carriers.until_resolved(goals, 20_000);
-        assert!(left.is_err(), "{name}: {left:?}");
-        let stop = TeamStop::Member { member: 0, fault };
-        let braked = Err(MotionError::Braked(Lapse::Team(stop)));
-        // Both are held by a bar that is: either may be the first to give up.
-        let held = matches!(right, Err(MotionError::TargetNotReached(_)));
-        assert!(
-            right == braked || fault == MemberFault::NotReached && held,
-            "{name}: {right:?}"
-        );
-        carriers.run(1000);
-        let rested = carriers.internal().norm();
-        println!(
-            "{name}: internal force {:.1} N at most, {rested:.1} N at rest",
-            carriers.strain
-        );
-        assert!(carriers.strain < MOST, "{name}: {} N", carriers.strain);
-        // It is still in both hands.
-        let held = [0, 1].map(|i| {
-            let flange = bases()[i] * carriers.hand(i);
-            (flange.inverse() * carriers.bar())
-                .translation
-                .vector
-                .norm()
-        });
-        let half = APART / 2.0 - pose_of(&READY, &EndEffector::default()).translation.x;
-        for held in held {
-            assert!((held - half).abs() < 3e-3, "{name}: {held} m, {half} m");
-        }
-    }
 }

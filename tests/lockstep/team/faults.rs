@@ -1,0 +1,426 @@
+//! What brakes the other arm, and what does not.
+
+use std::time::Duration;
+
+use franka_model::READY;
+use franka_proto::RobotMode;
+use franka_rt::driver::Driver;
+use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::session::condition::elapsed;
+use franka_rt::session::{
+    ForceCap, Goal, GoalId, Lapse, OnArrival, OnTimeout, Reaction, Target, Watchdog,
+};
+use franka_rt::team::{MemberFault, TeamStop, team_tolerating};
+use franka_sim::Touch;
+use franka_tests::lockstep::turned;
+use nalgebra::{Translation3, Vector3};
+
+use super::{Pair, stopped_by};
+
+/// What happens to the first robot, and what the second one's motion ends with.
+struct Case {
+    name: &'static str,
+    happen: fn(&mut Pair, GoalId),
+    fault: MemberFault,
+    /// Cycles from that to the one in which the thread of the first robot has to have seen it.
+    seen_after: core::ops::RangeInclusive<u64>,
+    /// Whether its session goes on.
+    goes_on: bool,
+}
+
+const CASES: [Case; 10] = [
+    Case {
+        name: "deadman dropped",
+        happen: |pair, _| pair.deadman = None,
+        fault: MemberFault::GivenUp,
+        seen_after: 1..=1,
+        goes_on: false,
+    },
+    Case {
+        name: "user stop",
+        happen: |pair, _| pair.robots[0].robot.press_user_stop(true),
+        fault: MemberFault::RobotStopped,
+        seen_after: 1..=1,
+        goes_on: false,
+    },
+    Case {
+        name: "collision",
+        happen: |pair, _| {
+            let robot = &mut pair.robots[0].robot;
+            let hand = robot.true_pose().translation.vector;
+            let wall = Touch::wall(hand + Vector3::y() * 0.01, -Vector3::y());
+            robot.touch(wall.stiffness(20_000.0));
+        },
+        fault: MemberFault::RobotStopped,
+        seen_after: 1..=400,
+        goes_on: false,
+    },
+    Case {
+        name: "link cut",
+        happen: |pair, _| pair.robots[0].link.drop_states(1500),
+        fault: MemberFault::Silent,
+        seen_after: 20..=20,
+        goes_on: false,
+    },
+    Case {
+        name: "control thread gone",
+        happen: |pair, _| {
+            let client = &mut pair.robots[0].client;
+            client.driver = Driver::new(client.version());
+        },
+        fault: MemberFault::Gone,
+        seen_after: 0..=1,
+        goes_on: false,
+    },
+    Case {
+        name: "future dropped",
+        happen: |pair, goal| pair.robots[0].cancel(goal),
+        fault: MemberFault::TakenBack,
+        seen_after: 1..=1,
+        goes_on: true,
+    },
+    Case {
+        name: "stopped",
+        happen: |pair, _| {
+            let stopping = pair.robots[0].stop();
+            stopping.expect("it moves");
+        },
+        fault: MemberFault::TakenBack,
+        seen_after: 1..=1,
+        goes_on: false,
+    },
+    Case {
+        name: "disengaged",
+        happen: |pair, _| {
+            let session = pair.sessions[0];
+            pair.robots[0].disengage(session);
+        },
+        fault: MemberFault::TakenBack,
+        seen_after: 1..=1,
+        goes_on: false,
+    },
+    Case {
+        name: "another goal",
+        happen: |pair, _| {
+            pair.submit(0, None, turned(0.0));
+        },
+        fault: MemberFault::TakenBack,
+        seen_after: 1..=1,
+        goes_on: true,
+    },
+    Case {
+        name: "connection closed",
+        happen: |pair, _| {
+            let reason = franka_rt::lifecycle::CloseReason::ClosedByPeer;
+            pair.robots[0].client.close(reason);
+        },
+        fault: MemberFault::TakenBack,
+        seen_after: 1..=1,
+        goes_on: false,
+    },
+];
+
+#[test]
+fn a_fault_of_one_brakes_the_other_within_two_cycles() {
+    for case in CASES {
+        for swapped in [false, true] {
+            let name = case.name;
+            let mut pair = Pair::new(swapped);
+            let goals = pair.both([1.0, 1.0]);
+            pair.run(700);
+            let speed = pair.robots[1].client.record.dq_ref[0];
+            assert!(speed > 0.2, "{name}: it is under way, {speed} rad/s");
+            assert_eq!(pair.stopped, None, "{name}");
+            let happened = pair.ticks;
+            (case.happen)(&mut pair, goals[0]);
+            while pair.stopped.is_none() {
+                pair.tick();
+                assert!(pair.ticks < happened + 2000, "{name}: nothing happens");
+            }
+            let seen = pair.stopped.expect("it was waited for");
+            let after = seen - happened;
+            assert!(case.seen_after.contains(&after), "{name}: {after} cycles");
+            if case.fault == MemberFault::RobotStopped {
+                // In the very cycle in which the state said so.
+                let mode = pair.robots[0].client.state.robot_mode;
+                assert_ne!(mode, RobotMode::Move, "{name}");
+            }
+            pair.run(2);
+            let braked = pair.braked[1].unwrap_or_else(|| panic!("{name}: it goes on"));
+            let cycles = braked - seen;
+            assert!(cycles <= 2, "{name}: {cycles} cycles");
+            println!("{name}: seen after {after} cycles, brakes after {cycles} more");
+            pair.run(400);
+            let record = &pair.robots[1].client.record;
+            assert_eq!(record.dq_ref, [0.0; 7], "{name}: it rests after 0.4 s");
+            let outcome = pair.robots[1].until_resolved(goals[1], 3000);
+            assert_eq!(outcome.map(drop), stopped_by(case.fault), "{name}");
+            assert!(pair.moved(1) < 0.9, "{name}: {}", pair.moved(1));
+            let own = pair.robots[0].client.outcome(goals[0]);
+            assert!(
+                matches!(own, None | Some(Err(_))),
+                "{name}: its own error names the cause: {own:?}"
+            );
+            // The other session goes on, alone or with the next joint motion.
+            let back = [0, 1].map(|i| pair.robots[i].robot.q()[0] - READY[0] + 0.1);
+            if case.goes_on {
+                let goals = pair.both(back);
+                let ended = pair.until_resolved(goals, 20_000);
+                assert_eq!(ended, [Ok(()), Ok(())], "{name}");
+            } else {
+                let alone = pair.submit(1, None, turned(back[1]));
+                let outcome = pair.robots[1].until_resolved(alone, 20_000);
+                outcome.unwrap_or_else(|error| panic!("{name}: {error}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn each_silence_of_one_brakes_the_other_anew() {
+    let mut pair = Pair::of(team_tolerating(Duration::from_millis(5)), false);
+    for (by, silence) in [(0.5, 4), (-0.5, 8), (0.5, 8)] {
+        let goals = pair.both([by, by]);
+        pair.run(300);
+        // Too short for the robot to stop by itself.
+        pair.robots[0].link.drop_states(silence);
+        let [_, other] = pair.until_resolved(goals, 20_000);
+        let braked = stopped_by(MemberFault::Silent);
+        assert_eq!(other, if silence < 5 { Ok(()) } else { braked });
+    }
+}
+
+/// Tuning gives the session's name to what the arm is held at.
+#[test]
+fn an_arm_that_has_arrived_is_part_of_its_round_until_it_goes_elsewhere() {
+    type Meanwhile = fn(&mut Pair);
+    let ways: [(&str, Meanwhile, bool); 4] = [
+        ("held", |_| {}, true),
+        (
+            "tuned",
+            |pair| {
+                let session = pair.sessions[0];
+                let tuned = pair.robots[0].tune(session, Tuning::default());
+                tuned.expect("it is engaged");
+            },
+            true,
+        ),
+        (
+            "moved",
+            |pair| {
+                pair.submit(0, None, turned(0.0));
+            },
+            false,
+        ),
+        (
+            "tuned and moved",
+            |pair| {
+                let session = pair.sessions[0];
+                let tuned = pair.robots[0].tune(session, Tuning::default());
+                tuned.expect("it is engaged");
+                pair.run(20);
+                pair.submit(0, None, turned(0.0));
+            },
+            false,
+        ),
+    ];
+    for (name, meanwhile, is_part) in ways {
+        let mut pair = Pair::new(false);
+        let [first, second] = pair.both([0.02, 1.2]);
+        let arrived = pair.until_one_resolved(0, first, 3000);
+        assert_eq!(arrived, Ok(()), "{name}");
+        meanwhile(&mut pair);
+        pair.run(50);
+        assert_eq!(pair.stopped, None, "{name}");
+        let speed = pair.robots[1].client.record.dq_ref[0];
+        assert!(speed > 0.2, "{name}: it is under way, {speed} rad/s");
+        let happened = pair.ticks;
+        pair.deadman = None;
+        pair.run(2);
+        let seen = is_part.then_some(happened + 1);
+        assert_eq!(pair.stopped, seen, "{name}");
+        let outcome = pair.until_one_resolved(1, second, 20_000);
+        let expected = match is_part {
+            true => stopped_by(MemberFault::GivenUp),
+            false => Ok(()),
+        };
+        assert_eq!(outcome, expected, "{name}");
+    }
+}
+
+#[test]
+fn a_goal_that_takes_an_arm_out_of_its_round_is_pursued() {
+    for waits in [false, true] {
+        let mut pair = Pair::new(false);
+        let round = Some(pair.coordinator.begin());
+        let first = pair.submit(0, round, turned(1.0));
+        if waits {
+            pair.run(20);
+        }
+        let second = pair.submit(1, round, turned(1.0));
+        if !waits {
+            pair.run(700);
+        }
+        let alone = pair.submit(0, None, turned(0.1));
+        let outcome = pair.until_one_resolved(0, alone, 10_000);
+        assert_eq!(outcome, Ok(()), "waits: {waits}");
+        let ended = pair.until_resolved([first, second], 1);
+        let superseded = Err(MotionError::Superseded);
+        assert_eq!(ended, [superseded, stopped_by(MemberFault::TakenBack)]);
+    }
+}
+
+/// Whether it brakes or is held at the last target.
+#[test]
+fn a_stream_of_one_that_falls_silent_brakes_the_other() {
+    type Ended = fn(Lapse) -> MotionError;
+    let ways: [(OnTimeout, Ended); 2] = [
+        (OnTimeout::Brake, MotionError::Braked),
+        (OnTimeout::Hold, MotionError::Held),
+    ];
+    for (on_timeout, ended_as) in ways {
+        let mut pair = Pair::new(false);
+        let round = Some(pair.coordinator.begin());
+        let silence = Duration::from_millis(100);
+        let stream = Goal {
+            round,
+            watchdog: Some(Watchdog {
+                silence,
+                on_timeout,
+            }),
+            ..pair.robots[0].goal(turned(0.02), OnArrival::Hold)
+        };
+        let stream = pair.submit_goal(0, stream);
+        let other = pair.submit(1, round, turned(1.2));
+        let ended = pair.until_resolved([stream, other], 5000);
+        let own = ended_as(Lapse::Silent { silence });
+        assert_eq!(ended, [Err(own), stopped_by(MemberFault::GivenUp)]);
+    }
+}
+
+#[test]
+fn no_target_that_comes_after_a_stop_sets_an_arm_in_motion() {
+    for after in [0, 1, 50, 1000] {
+        let mut pair = Pair::new(false);
+        let round = Some(pair.coordinator.begin());
+        let streams = [0, 1].map(|i| {
+            let goal = pair.robots[i].goal(turned(0.6), OnArrival::Hold);
+            pair.submit_goal(i, Goal { round, ..goal })
+        });
+        pair.run(700);
+        pair.coordinator.stop();
+        pair.run(after);
+        for ms in 0..1500 {
+            if ms % 10 == 0 {
+                for (robot, stream) in pair.robots.iter_mut().zip(streams) {
+                    let further = turned(0.6 + 1e-4 * f64::from(ms));
+                    robot.update(stream, further).expect("within reach");
+                }
+            }
+            pair.tick();
+        }
+        assert!(pair.moved(0) < 0.5 && pair.moved(1) < 0.5, "{after} ms");
+        let requested = Err(MotionError::Braked(Lapse::Team(TeamStop::Requested)));
+        let ended = pair.until_resolved(streams, 3000);
+        assert_eq!(ended, [requested.clone(), requested], "{after} ms");
+    }
+}
+
+/// It has arrived, and its spring is let go: nothing is left to brake.
+#[test]
+fn a_motion_that_is_about_to_finish_ends_as_it_was_when_the_team_stops() {
+    let mut pair = Pair::new(false);
+    let last = pair.robots[0].goal(turned(0.02), OnArrival::ReportAndFinish);
+    let last = pair.submit_goal(0, last);
+    let mut released = 0;
+    while pair.robots[0].client.outcome(last).is_none() {
+        pair.tick();
+        assert!(pair.ticks < 5000, "it never ends");
+        let record = &pair.robots[0].client.record;
+        released += u64::from(record.goal == last.0 && record.remaining.is_zero());
+        if released == 400 {
+            pair.coordinator.stop();
+        }
+    }
+    assert!(released > 400, "{released}");
+    let ended = pair.robots[0].until_resolved(last, 1);
+    assert_eq!(ended.map(drop), Ok(()));
+}
+
+#[test]
+fn an_arm_that_something_holds_brakes_the_other() {
+    let mut pair = Pair::new(false);
+    let hand = pair.robots[0].robot.true_pose();
+    let wall = Touch::wall(hand.translation.vector + Vector3::z() * 0.02, -Vector3::z());
+    pair.robots[0].robot.touch(wall.stiffness(2000.0));
+    let round = Some(pair.coordinator.begin());
+    let up = |by: f64| Target::Pose(Translation3::new(0.0, 0.0, by) * hand);
+    let first = pair.robots[0].goal(up(0.06), OnArrival::ReportAndHold);
+    let first = Goal {
+        force_cap: ForceCap::Newtons(8.0),
+        round,
+        ..first
+    };
+    let first = pair.submit_goal(0, first);
+    // Slow enough to be under way when the first one gives up.
+    let second = pair.robots[1].goal(turned(1.2), OnArrival::ReportAndHold);
+    let second = Goal {
+        budget: second.budget.scaled(0.08),
+        round,
+        ..second
+    };
+    let second = pair.submit_goal(1, second);
+    let [held, braked] = pair.until_resolved([first, second], 30_000);
+    assert!(
+        matches!(held, Err(MotionError::TargetNotReached(_))),
+        "{held:?}"
+    );
+    assert_eq!(braked, stopped_by(MemberFault::NotReached));
+}
+
+#[test]
+fn a_stop_from_outside_brakes_all_and_the_next_motion_begins() {
+    let mut pair = Pair::new(false);
+    let goals = pair.both([0.6, 0.6]);
+    pair.run(500);
+    pair.coordinator.stop();
+    let stopped = pair.ticks;
+    pair.run(2);
+    for braked in pair.braked {
+        let braked = braked.expect("each brakes");
+        assert!(braked <= stopped + 2, "{braked}, {stopped}");
+    }
+    let requested = Err(MotionError::Braked(Lapse::Team(TeamStop::Requested)));
+    let ended = pair.until_resolved(goals, 3000);
+    assert_eq!(ended, [requested.clone(), requested]);
+    let goals = pair.both([0.1, 0.1]);
+    assert_eq!(pair.until_resolved(goals, 20_000), [Ok(()), Ok(())]);
+}
+
+#[test]
+fn a_reaction_and_a_motion_of_one_arm_alone_concern_no_other() {
+    let mut pair = Pair::new(false);
+    let round = Some(pair.coordinator.begin());
+    let reacting = Goal {
+        round,
+        reaction: Some(Reaction::from(elapsed(Duration::from_millis(400)))),
+        ..pair.robots[0].goal(turned(0.6), OnArrival::ReportAndHold)
+    };
+    let first = pair.submit_goal(0, reacting);
+    let second = pair.submit(1, round, turned(0.6));
+    let ended = pair.until_resolved([first, second], 20_000);
+    assert_eq!(ended, [Ok(()), Ok(())]);
+    assert!(pair.moved(0) < 0.5 && pair.moved(1) > 0.59);
+    let alone = pair.submit(0, None, turned(0.2));
+    pair.run(100);
+    pair.robots[0].cancel(alone);
+    pair.run(1000);
+    assert_eq!(pair.stopped, None);
+    // But the end of its session brakes whatever the other one does.
+    let other = pair.submit(1, None, turned(0.0));
+    pair.run(300);
+    pair.robots[0].robot.press_user_stop(true);
+    pair.run(3);
+    let outcome = pair.robots[1].until_resolved(other, 3000);
+    assert_eq!(outcome.map(drop), stopped_by(MemberFault::RobotStopped));
+}

@@ -1,0 +1,26 @@
+//! Goals of several robots in one thread.
+
+use franka_model::READY;
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::{GoalId, Target};
+
+use super::Lockstep;
+
+/// How one goal of each robot has ended, without the reports; `None` while one is unresolved.
+pub fn outcomes_of<const N: usize>(
+    robots: [&Lockstep; N],
+    goals: [GoalId; N],
+) -> Option<[Result<(), MotionError>; N]> {
+    let mut outcomes = [const { Ok(()) }; N];
+    for ((outcome, robot), goal) in outcomes.iter_mut().zip(robots).zip(goals) {
+        *outcome = robot.client.outcome(goal)?.clone().map(drop);
+    }
+    Some(outcomes)
+}
+
+/// The ready pose with the first joint turned by so much, `[rad]`.
+pub fn turned(by: f64) -> Target {
+    let mut q: [f64; 7] = READY.into();
+    q[0] += by;
+    Target::Joints(q)
+}
