@@ -56,16 +56,20 @@ fn count<T: PartialEq>(counts: &mut [u64], all: &[T], this: &T) {
 }
 
 fn name_of(outcome: &Outcome) -> &'static str {
-    let error = match outcome {
-        Ok(_) => return "done",
-        Err(error) => error,
-    };
+    match outcome {
+        Ok(_) => "done",
+        Err(error) => name_of_error(error),
+    }
+}
+
+fn name_of_error(error: &MotionError) -> &'static str {
     match error {
         MotionError::Superseded => "superseded",
         MotionError::Stopped => "stopped",
         MotionError::Held(_) => "held",
         MotionError::Braked(_) => "braked",
         MotionError::TargetNotReached(_) => "not_reached",
+        MotionError::AfterReaction { error, .. } => name_of_error(error),
         MotionError::Control(error) if error.is_reflex() => "reflex",
         MotionError::Control(_) => "ended_by_robot",
         MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => "lost",

@@ -204,15 +204,19 @@ impl Goals {
 impl Settled {
     /// How the goal turned out, in a motion whose cycles came to what was `counted`.
     pub(super) fn result(&self, counted: &Counted, cancelled: bool) -> Outcome {
+        let failed = |error: MotionError| match self.reacted {
+            Some(reacted) => Err(error.after(reacted)),
+            None => Err(error),
+        };
         let final_error = match self.settlement {
             Settlement::Arrived(error) => Some(error),
             Settlement::AtRest if cancelled => return Err(MotionError::Stopped),
             Settlement::AtRest => None,
             Settlement::TargetNotReached(error) => {
-                return Err(MotionError::TargetNotReached(error));
+                return failed(MotionError::TargetNotReached(error));
             }
-            Settlement::Held(lapse) => return Err(MotionError::Held(lapse)),
-            Settlement::Braked(lapse) => return Err(MotionError::Braked(lapse)),
+            Settlement::Held(lapse) => return failed(MotionError::Held(lapse)),
+            Settlement::Braked(lapse) => return failed(MotionError::Braked(lapse)),
             Settlement::Unstarted(fault) => return Err(fault.into()),
         };
         Ok(MotionReport {

@@ -184,6 +184,16 @@ pub enum MotionError {
     /// Caller: if a torque limit of its gains is what kept it, [`Shortfall::limited`].
     #[error("the arm came to rest {0}")]
     TargetNotReached(Shortfall),
+    /// The condition of the motion was true, and the arm did not come to where it was to go then,
+    /// for `error`: [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]. The party that
+    /// can act on it is that of the error.
+    #[error("{error}, after its condition was true at {} ms", .reacted.after.as_millis())]
+    AfterReaction {
+        /// What the motion saw when the condition became true.
+        reacted: Box<Reacted>,
+        /// Why it did not come to the other target.
+        error: Box<Self>,
+    },
     /// Link: the robot fell silent.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {
@@ -227,7 +237,26 @@ impl MotionError {
                 | Self::Start(_)
                 | Self::Unsupported(_)
                 | Self::TargetNotReached(_)
+                | Self::AfterReaction { .. }
         )
+    }
+
+    /// What the motion saw when its condition became true, if it failed after that. Of a motion
+    /// that the robot ended, the log says so: [`Guard::Reaction`](crate::session::Guard::Reaction)
+    /// in its records.
+    pub fn reacted(&self) -> Option<&Reacted> {
+        match self {
+            Self::AfterReaction { reacted, .. } => Some(reacted),
+            _ => None,
+        }
+    }
+
+    /// This error of a motion whose condition was true before.
+    pub(super) fn after(self, reacted: Reacted) -> Self {
+        Self::AfterReaction {
+            reacted: Box::new(reacted),
+            error: Box::new(self),
+        }
     }
 
     /// What the robot said and did when it ended the motion, if that is what happened.
@@ -256,6 +285,7 @@ impl MotionError {
             | Self::Stalled { .. } => Party::Caller,
             Self::TargetNotReached(short) if short.limited.is_some() => Party::Caller,
             Self::Rejected(_) | Self::Control(_) | Self::TargetNotReached(_) => Party::Robot,
+            Self::AfterReaction { error, .. } => error.party(),
             Self::LinkLost { .. } => Party::Link,
             Self::NotReady { why, .. } => why.party(),
             Self::ConnectionClosed { reason } => reason.party(),

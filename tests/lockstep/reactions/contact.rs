@@ -1,7 +1,7 @@
 //! Guarded moves: down to a table of unknown height, and the hand of a person on the way.
 
 use franka_model::RobotKind;
-use franka_rt::lifecycle::MotionError;
+use franka_rt::lifecycle::{MotionError, Party};
 use franka_rt::session::condition::{elapsed, force_z};
 use franka_rt::session::{OnArrival, Reaction};
 use franka_sim::arm::Family;
@@ -280,4 +280,43 @@ fn a_missed_contact_is_no_reaction() {
         "{outcome:?}"
     );
     assert!(felt(&lockstep, table) < 50.0);
+}
+
+/// A wall that was not there on the way down.
+#[test]
+fn a_retreat_that_something_holds_tells_of_the_contact_too() {
+    let mut lockstep = Lockstep::ready();
+    tolerate(&mut lockstep);
+    let home = lockstep.arm_pose();
+    let table = table(&mut lockstep, 0.04, FIRM);
+    let touched = force_z(THRESHOLD).relative().then(home);
+    let down = above(&lockstep, -0.1);
+    let goal = at(
+        0.05,
+        down,
+        touched,
+        OnArrival::ReportAndFinish,
+        &mut lockstep,
+    );
+    let goal = lockstep.submit(goal).expect("within reach");
+    while !says_so(&lockstep) {
+        lockstep.tick();
+        assert!(goes_on(&lockstep, goal));
+    }
+    let hand = lockstep.robot.true_pose().translation.vector;
+    let wall = Touch::wall(hand + Vector3::z() * 0.015, -Vector3::z());
+    lockstep.robot.touch(wall.stiffness(SOFT));
+    let error = lockstep.until_resolved(goal, 20_000).expect_err("a wall");
+    let reacted = error.reacted().expect("a contact before that");
+    assert!(-reacted.wrench[2] > 5.0, "{reacted:?}");
+    assert!(error.is_ready_for_more(), "{error}");
+    assert_eq!(error.party(), Party::Robot);
+    let MotionError::AfterReaction { error, .. } = error else {
+        panic!("{error}");
+    };
+    assert!(
+        matches!(*error, MotionError::TargetNotReached(_)),
+        "{error}"
+    );
+    assert_eq!(felt(&lockstep, table), 0.0);
 }

@@ -34,7 +34,7 @@ const LEVER: f64 = 0.2;
 
 /// How near arms that hold one object come to their targets at least. What they know of themselves
 /// differs, so the object keeps them from being there all at once: 3.1 mm and 5.3 mrad at most on
-/// 48 ways of 12 pairs of realistic arms (`tests/lockstep/carrying.rs`), with their force caps at
+/// 48 ways of 12 pairs of realistic arms (`tests/lockstep/carrying`), with their force caps at
 /// 20 N.
 const NEAR: Tolerance = Tolerance {
     translation: 5e-3,

@@ -100,7 +100,12 @@ enum Standing {
     /// It was changed to one of coming to rest. Chunks that wait for their time are discarded.
     TakenBack,
     /// It was given up for `cause`: the arm holds the last target, or brakes.
-    GivenUp { action: OnTimeout, cause: Lapse },
+    GivenUp {
+        action: OnTimeout,
+        cause: Lapse,
+        /// If its condition had been true by then.
+        reacted: Option<Reacted>,
+    },
     /// Its condition was true: the arm brakes, and goes on to the other target if there is one.
     Reacted(Reacted),
 }

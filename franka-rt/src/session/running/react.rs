@@ -91,6 +91,15 @@ impl RunningSession {
         self.has_reacted() && self.aim == Target::Rest && *heading != Target::Rest
     }
 
+    /// What was seen when the condition of the goal was true, also if it was given up since.
+    pub(super) fn reacted(&self) -> Option<Reacted> {
+        match self.standing {
+            Standing::Reacted(reacted) => Some(reacted),
+            Standing::GivenUp { reacted, .. } => reacted,
+            Standing::InForce | Standing::TakenBack => None,
+        }
+    }
+
     /// Whether the goal ends otherwise since its condition was true.
     pub(super) fn has_reacted(&self) -> bool {
         matches!(self.standing, Standing::Reacted(_))

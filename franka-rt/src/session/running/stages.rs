@@ -85,7 +85,7 @@ impl RunningSession {
                 *event = Some(SessionEvent::Settled {
                     goal: self.goal.id,
                     settlement: match self.standing {
-                        Standing::GivenUp { action, cause } => {
+                        Standing::GivenUp { action, cause, .. } => {
                             if action == OnTimeout::Hold || cause == Lapse::Deadman {
                                 Settlement::Held(cause)
                             } else {
@@ -96,10 +96,7 @@ impl RunningSession {
                             settlement
                         }
                     },
-                    reacted: match self.standing {
-                        Standing::Reacted(reacted) => Some(reacted),
-                        _ => None,
-                    },
+                    reacted: self.reacted(),
                     duration_ms: (now - self.since).saturating_sub(held),
                     compensation,
                 });

@@ -72,7 +72,12 @@ impl RunningSession {
         if self.goal.on_arrival == OnArrival::Hold {
             self.goal.on_arrival = self.afterwards;
         }
-        self.standing = Standing::GivenUp { action, cause };
+        let reacted = self.reacted();
+        self.standing = Standing::GivenUp {
+            action,
+            cause,
+            reacted,
+        };
     }
 
     /// Gives up a goal whose arm is displaced. Returns whether it is.
