@@ -27,6 +27,7 @@ mod mishaps;
 mod moving;
 mod peer;
 mod raising;
+mod reacting;
 mod reading;
 mod scripts;
 mod stalls;

@@ -40,7 +40,12 @@ fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
         }
         let bound = &arm.bound;
         println!("{workload:?}: {bound:?}");
-        for guard in [Guard::Watchdog, Guard::Deadman, Guard::Clearance] {
+        for guard in [
+            Guard::Watchdog,
+            Guard::Deadman,
+            Guard::Clearance,
+            Guard::Reaction,
+        ] {
             let watched = workload != Workload::Guide || guard != Guard::Clearance;
             assert!(
                 !watched || bound.contains(&guard),

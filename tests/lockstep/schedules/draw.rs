@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use franka_model::READY;
 use franka_rt::law::{Gains, Law};
-use franka_rt::session::{Chunk, Leash, Target};
+use franka_rt::session::condition::{Axis, Quantity, contact, elapsed, force};
+use franka_rt::session::{Chunk, Leash, Reaction, Target};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::Rng;
 use rand::rngs::SmallRng;
@@ -58,6 +59,30 @@ pub(super) fn leash(random: &mut SmallRng) -> Option<Leash> {
         translation: length(least.translation, most.translation),
         rotation: length(least.rotation, most.rotation),
         joints: length(least.joints, most.joints),
+    })
+}
+
+/// A condition that becomes true sooner or later, or not, and where the arm goes then: to rest, or
+/// to a target. Some of the time.
+pub(super) fn reaction(
+    random: &mut SmallRng,
+    near: &Isometry3<f64>,
+    poses: bool,
+) -> Option<Reaction> {
+    if random.random_bool(0.7) {
+        return None;
+    }
+    let time = Duration::from_millis(random.random_range(0..500));
+    let condition = match random.random_range(0..5) {
+        0 | 1 => elapsed(time),
+        2 => Quantity::Speed.above(random.random_range(0.01..0.2)) & elapsed(time),
+        3 => Quantity::Position(Axis::Z).beyond(0.02).relative(),
+        _ => force(random.random_range(5.0..30.0)) | contact(),
+    };
+    Some(match random.random_range(0..4) {
+        0 | 1 => condition.into(),
+        2 if !poses => condition.then(joints(random, 0.3)),
+        _ => condition.then(pose(random, near, 0.1, 0.3)),
     })
 }
 

@@ -143,7 +143,9 @@ fn run(count: u64, mut play: impl FnMut(u64, &mut OutcomeCounts)) {
 
 fn kind(outcome: &Outcome) -> &'static str {
     match outcome {
+        Ok(report) if report.reacted.is_some() => "reacted",
         Ok(_) => "ok",
+        Err(MotionError::AfterReaction { .. }) => "failed after a reaction",
         Err(MotionError::Superseded) => "superseded",
         Err(MotionError::Stopped) => "stopped",
         Err(MotionError::TargetNotReached(_)) => "short",

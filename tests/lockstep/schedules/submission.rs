@@ -46,6 +46,8 @@ pub(super) struct Submission {
     pub(super) work: Work,
     pub(super) on_arrival: OnArrival,
     pub(super) watchdog: Option<Watchdog>,
+    /// Where it goes if its condition becomes true.
+    pub(super) reaction: Option<Target>,
     /// The times of its updates, `[ms]`.
     pub(super) heard: Vec<u64>,
     pub(super) superseded: bool,
@@ -74,6 +76,7 @@ impl Submission {
             work,
             on_arrival,
             watchdog: None,
+            reaction: None,
             heard: vec![now],
             superseded: false,
             cancelled: false,
@@ -100,7 +103,7 @@ impl Submission {
     /// If no event explains the outcome.
     pub(super) fn judge(&self, outcome: &Outcome, lockstep: &Lockstep, causes: &Causes) {
         let fits = match outcome {
-            Ok(report) => self.may_be_ok() && self.is_there(report, lockstep),
+            Ok(report) => self.may_be_ok(report) && self.is_there(report, lockstep),
             Err(error) => self.may_fail(error, lockstep.now(), causes),
         };
         assert!(
@@ -110,12 +113,16 @@ impl Submission {
         );
     }
 
-    fn may_be_ok(&self) -> bool {
+    fn may_be_ok(&self, report: &MotionReport) -> bool {
+        let reacted = report.reacted.is_some();
+        if reacted && self.reaction.is_none() {
+            return false;
+        }
         match self.work {
             // A goal whose motion is ending was reached, whatever comes after that.
             Work::Goal(_) if self.on_arrival == OnArrival::ReportAndFinish && self.stopped => true,
             Work::Goal(_) | Work::Chunks => {
-                self.on_arrival != OnArrival::Hold
+                (self.on_arrival != OnArrival::Hold || reacted)
                     && !self.cancelled
                     && !self.superseded
                     && !self.stopped
@@ -127,9 +134,14 @@ impl Submission {
 
     /// Whether the arm is where the report says, and that is the target.
     fn is_there(&self, report: &MotionReport, lockstep: &Lockstep) -> bool {
-        let target = match self.work {
-            Work::Goal(Target::Pose(pose)) => pose,
-            Work::Goal(Target::Joints(q)) => {
+        let target = match (self.work, self.reaction, report.reacted) {
+            (Work::Goal(_), Some(then), Some(_)) => then,
+            (Work::Goal(target), ..) => target,
+            _ => Target::Rest,
+        };
+        let target = match target {
+            Target::Pose(pose) => pose,
+            Target::Joints(q) => {
                 let tool = Tool::hand();
                 let ee = EndEffector {
                     f_t_ee: tool.f_t_ne,
@@ -169,8 +181,14 @@ impl Submission {
             MotionError::TargetNotReached(short) => {
                 let (off, most) = (short.error, Tolerance::default());
                 let far = off.translation > most.translation || off.rotation > most.rotation;
-                let may = causes.pushed || self.soft || self.hindered;
-                far && may && (goal || self.finishing)
+                let may = causes.pushed || self.hindered;
+                // Under gains that were drawn an arm may also swing about its target for ever.
+                (far && may || self.soft) && (goal || self.finishing)
+            }
+            // A session ends with the error of the goal that was to end it.
+            MotionError::AfterReaction { error, .. } => {
+                let reacts = self.reaction.is_some() || (!goal && self.finishing);
+                reacts && self.may_fail(error, now, causes)
             }
             MotionError::Braked(Lapse::Displaced) => causes.pushed,
             MotionError::Braked(Lapse::Blocked) => self.hindered,

@@ -1,6 +1,6 @@
 //! Endless target control with every guard on, for several workloads. Missing updates, deadman
-//! timeouts, pushes, regions in the way and targets far ahead make each of the guards bind from
-//! time to time.
+//! timeouts, pushes, conditions, regions in the way and targets far ahead make each of the guards
+//! bind from time to time.
 
 use std::collections::HashSet;
 use std::time::Duration;
@@ -11,9 +11,10 @@ use franka_model::{JointVector, Model, READY, Wrench};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::driver::{Activity, Program};
 use franka_rt::law::{Gains, Law};
+use franka_rt::session::condition::{Quantity, elapsed, force};
 use franka_rt::session::{
     Backend, Chunk, ChunkWriter, Deadman, Fate, ForceCap, Free, Goal, GoalId, Guard, KeepOut, Lead,
-    OnArrival, OnTimeout, Target, TargetSession, Watchdog, chunk_ring,
+    OnArrival, OnTimeout, Reaction, Target, TargetSession, Watchdog, chunk_ring,
 };
 use franka_rt::slot::{SlotWriter, slot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
@@ -269,6 +270,10 @@ impl Guarded {
             },
             false => goal,
         };
+        let goal = Goal {
+            reaction: self.reaction(),
+            ..goal
+        };
         self.goal = match (self.turns % 3, target) {
             (0, _) | (_, Target::Guide(_)) => goal,
             (1, _) => Goal {
@@ -291,6 +296,21 @@ impl Guarded {
             },
         };
         self.goals.write(&self.goal);
+    }
+
+    /// A condition that becomes true soon, sometimes, and rest or a target that follows.
+    fn reaction(&mut self) -> Option<Reaction> {
+        if self.random.random_bool(0.75) {
+            return None;
+        }
+        let time = Duration::from_millis(self.random.random_range(0..300));
+        let pushed = force(15.0).relative().held_for(Duration::from_millis(20));
+        let condition = pushed | (Quantity::Speed.above(0.1) & elapsed(time));
+        Some(match self.random.random_range(0..3) {
+            0 => condition.into(),
+            1 if !self.backend.is_cartesian() => condition.then(self.joints()),
+            _ => condition.then(self.pose()),
+        })
     }
 
     /// Sends a chunk of many points from the arm's position to a random target.

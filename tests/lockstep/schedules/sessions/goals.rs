@@ -95,6 +95,8 @@ impl Sessions<'_> {
         let Some(session) = &self.session else {
             return false;
         };
+        let poses = session.backend.is_cartesian();
+        goal.reaction = draw::reaction(&mut self.random, &self.home, poses);
         let taken = self.lockstep.submit_within(session.id, goal);
         self.note(goal, Work::Goal(target), soft, taken)
     }
@@ -132,6 +134,7 @@ impl Sessions<'_> {
                 }
                 let mut submission = Submission::new(id, work, goal.on_arrival, now);
                 submission.watchdog = goal.watchdog;
+                submission.reaction = goal.reaction.map(|reaction| reaction.then);
                 submission.soft = soft;
                 if let Backend::RobotController { controller, .. } = session.backend {
                     submission.tolerance = Tolerance::under(controller);
