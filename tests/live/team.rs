@@ -1,5 +1,5 @@
 //! Teams of two simulated robots, over sockets: outcomes in order, one stop, and joint motions
-//! dropped at every poll. tests/lockstep/team.rs has the cycles.
+//! dropped at every poll. tests/lockstep/team has the cycles.
 
 mod dropping;
 mod grasp;

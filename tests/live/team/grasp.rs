@@ -1,5 +1,5 @@
 //! An object that both arms of a team hold. Each arm has a world of its own here, without the
-//! object: tests/lockstep/carrying.rs has both in one.
+//! object: tests/lockstep/carrying has both in one.
 
 use franka_async::Motion;
 use franka_async::error::GoalError;

@@ -1,0 +1,178 @@
+//! Connections that are lost and made again, and those that are not.
+
+use std::future::IntoFuture;
+use std::sync::Arc;
+use std::time::Duration;
+
+use franka_async::error::{CloseReason, Unready};
+use franka_async::state::RobotMode;
+use franka_async::supervision::{Condition, EventKind};
+use franka_async::{Engage, MotionError, Pose, Realtime, Robot};
+use franka_sim::{Sim, Tool};
+use tokio::time::{sleep, timeout};
+
+use super::{condition, connected, policy, restart, small_motion, start, supervised, told};
+use crate::{SOON, alone, under_way};
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_robot_that_was_restarted_is_there_again_and_stands_still() {
+    let _alone = alone();
+    let sim = start(Sim::fr3()).await;
+    let address = sim.addr();
+    let robot = supervised(&sim, policy()).await;
+    let mut events = robot.events();
+    let mut states = robot.states();
+    let (model, stats) = (robot.model() as *const _, robot.stats());
+
+    let arm = robot.engage(Engage::default()).await.expect("it is ready");
+    let up = Pose::translation(0.0, 0.0, 0.1) * robot.pose();
+    let moving = tokio::spawn(arm.move_to(up).speed(0.05).into_future());
+    under_way(&robot).await;
+    sim.stop().await;
+    let outcome = timeout(SOON, moving).await.expect("no hang").unwrap();
+    assert!(
+        matches!(outcome, Err(MotionError::ConnectionClosed { .. })),
+        "{outcome:?}"
+    );
+    let lost = |kind: &EventKind| match kind {
+        EventKind::Lost { reason } => Some(reason.clone()),
+        _ => None,
+    };
+    assert_eq!(told(&mut events, lost).await, CloseReason::ClosedByPeer);
+    assert_ne!(robot.health().newest().condition, Condition::Ready);
+    // A command has no connection, and a motion does not wait.
+    let error = robot.recover().await.unwrap_err();
+    assert_eq!(error.to_string(), "libfranka: server closed connection");
+    let why = Unready::Disconnected;
+    let refused = robot.move_to(up).await.unwrap_err();
+    let waited = Duration::ZERO;
+    assert_eq!(refused, MotionError::NotReady { why, waited });
+
+    let sim = restart(address).await;
+    let after = told(&mut events, connected).await;
+    condition(&robot, Condition::Ready).await;
+    let health = robot.health().newest();
+    assert_eq!(health.last_reconnect, Some(after));
+    assert_eq!((health.reconnects, health.attempts), (1, 0));
+    assert_eq!(robot.model() as *const _, model, "goals are made for it");
+    assert!(!Arc::ptr_eq(&robot.stats(), &stats), "another thread");
+    let seen = timeout(SOON, states.changed()).await.expect("no hang");
+    seen.expect("the newest states go on");
+
+    // The session of before answers with its end, and nothing moves.
+    let ended = arm.set(up).await.unwrap_err();
+    assert!(
+        matches!(ended, MotionError::ConnectionClosed { .. }),
+        "{ended}"
+    );
+    assert!(arm.ended().await.is_err());
+    let before = sim.state().await.unwrap().q;
+    crate::robot_time(&robot, 500).await;
+    let state = sim.state().await.unwrap();
+    assert_eq!(state.robot_mode, RobotMode::Idle);
+    for (before, now) in before.iter().zip(state.q) {
+        assert!((before - now).abs() < 1e-6, "the arm has moved");
+    }
+    small_motion(&robot).await.expect("the next one works");
+    drop(arm);
+    let closed = tokio::spawn({
+        let robot = robot.clone();
+        async move { robot.closed().await }
+    });
+    robot.shutdown().await;
+    assert_eq!(closed.await.unwrap(), CloseReason::ClosedByUs);
+    let end = async { while states.changed().await.is_ok() {} };
+    timeout(SOON, end).await.expect("they end");
+    let closed = |kind: &EventKind| matches!(kind, EventKind::Closed { .. }).then_some(());
+    told(&mut events, closed).await;
+    assert!(events.next().await.is_none());
+    assert_eq!(robot.health().newest().condition, Condition::Closed);
+}
+
+/// While nothing is under way, so that the robot minds no missing command; longer than the link
+/// timeout, and than the supervisor bears with it.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_network_that_is_cut_is_told_and_the_connection_given_up_for_it() {
+    let _alone = alone();
+    let mut network = franka_sim::Network::perfect();
+    let cut = Duration::from_secs(2)..Duration::from_secs(4);
+    network.to_client.cut(cut);
+    let sim = Sim::fr3().ideal().tool(Tool::hand()).network(network);
+    let sim = sim.start().await.expect("it starts");
+    let builder = Robot::builder(sim.addr())
+        .realtime(Realtime::Ignore)
+        .link_timeout(Duration::from_millis(300))
+        .connect_timeout(Duration::from_millis(300));
+    let silence = Duration::from_millis(300);
+    let robot = builder.supervise(policy().silence(silence)).connect().await;
+    let robot = robot.expect("the network is there");
+    let mut events = robot.events();
+    let silent = |kind: &EventKind| matches!(kind, EventKind::Silent { .. }).then_some(());
+    told(&mut events, silent).await;
+    let lost = |kind: &EventKind| match kind {
+        EventKind::Lost { reason } => Some(reason.clone()),
+        _ => None,
+    };
+    let reason = told(&mut events, lost).await;
+    assert!(matches!(reason, CloseReason::Silent { .. }), "{reason}");
+    let after = told(&mut events, connected).await;
+    assert!(after > silence, "{after:?}");
+    condition(&robot, Condition::Ready).await;
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn another_robot_in_the_place_of_the_first_is_refused() {
+    let _alone = alone();
+    let sim = start(Sim::fr3()).await;
+    let address = sim.addr();
+    let robot = supervised(&sim, policy()).await;
+    sim.stop().await;
+    let other = timeout(SOON, async {
+        loop {
+            match Sim::fer().ideal().bind(address).start().await {
+                Ok(other) => return other,
+                Err(_) => sleep(Duration::from_millis(5)).await,
+            }
+        }
+    });
+    let _other = other.await.expect("the port is free again");
+    let reason = timeout(SOON, robot.closed()).await.expect("it gives up");
+    assert!(
+        matches!(reason, CloseReason::AnotherRobot { .. }),
+        "{reason}"
+    );
+    let error = robot.move_to(robot.pose()).await.unwrap_err();
+    assert!(matches!(error, MotionError::ConnectionClosed { .. }));
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn the_last_handle_ends_the_supervisor_also_without_a_connection() {
+    let _alone = alone();
+    let sim = start(Sim::fr3()).await;
+    let address = sim.addr();
+    let robot = supervised(&sim, policy()).await;
+    let mut events = robot.events();
+    drop(robot);
+    let closed = |kind: &EventKind| match kind {
+        EventKind::Closed { reason } => Some(reason.clone()),
+        _ => None,
+    };
+    assert_eq!(told(&mut events, closed).await, CloseReason::ClosedByUs);
+
+    let robot = supervised(&sim, policy()).await;
+    let mut events = robot.events();
+    sim.stop().await;
+    condition(&robot, Condition::Unready(Unready::Disconnected)).await;
+    drop(robot);
+    assert_eq!(told(&mut events, closed).await, CloseReason::ClosedByUs);
+    let sim = restart(address).await;
+    sleep(Duration::from_millis(300)).await;
+    assert!(!sim.with(|robot| robot.is_connected()).await.unwrap());
+
+    let robot = supervised(&sim, policy()).await;
+    sim.stop().await;
+    condition(&robot, Condition::Unready(Unready::Disconnected)).await;
+    timeout(SOON, robot.shutdown()).await.expect("no hang");
+    assert_eq!(robot.closed().await, CloseReason::ClosedByUs);
+}

@@ -1,0 +1,98 @@
+//! A supervised robot over real sockets: a simulator that is killed and started again at the same
+//! port, its user stop, a network that is cut, motions that wait and that are refused.
+//!
+//! What the supervisor decides is tested in lockstep: `tests/lockstep/supervised`. Here it is
+//! whether sockets, threads and futures follow.
+
+mod connections;
+mod leaks;
+mod recoveries;
+mod waiting;
+
+use std::future::IntoFuture;
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use franka_async::supervision::{Backoff, Condition, EventKind, Events, Notification, Policy};
+use franka_async::{MotionError, Pose, Realtime, Robot};
+use franka_sim::{Running, Sim, Tool};
+use franka_tests::PATIENCE;
+use tokio::time::{sleep, timeout};
+
+use crate::SOON;
+
+/// Soon again, and for ever.
+fn policy() -> Policy {
+    Policy::default()
+        .reconnect(Backoff {
+            first: Duration::from_millis(10),
+            most: Duration::from_millis(100),
+            ..Backoff::default()
+        })
+        .recover(1000, Duration::from_secs(1))
+}
+
+async fn start(sim: Sim) -> Running {
+    let sim = sim.ideal().tool(Tool::hand()).virtual_time(PATIENCE);
+    sim.start().await.expect("a simulator starts")
+}
+
+/// A simulator in the place of one that was stopped.
+async fn restart(address: SocketAddr) -> Running {
+    timeout(SOON, async {
+        loop {
+            let sim = Sim::fr3().ideal().tool(Tool::hand());
+            let sim = sim.virtual_time(PATIENCE).bind(address);
+            match sim.start().await {
+                Ok(sim) => return sim,
+                // The port is not free at once.
+                Err(_) => sleep(Duration::from_millis(5)).await,
+            }
+        }
+    })
+    .await
+    .expect("the port is free again")
+}
+
+async fn supervised(sim: &Running, policy: Policy) -> Robot {
+    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let robot = builder.supervise(policy).connect().await;
+    robot.expect("a simulator takes a client")
+}
+
+/// Waits for an event of which `is` finds something, and returns that.
+async fn told<T>(events: &mut Events, mut is: impl FnMut(&EventKind) -> Option<T>) -> T {
+    let found = async {
+        loop {
+            let Notification { event, missed, .. } = events.next().await.expect("it goes on");
+            assert_eq!(missed, 0);
+            if let Some(found) = is(&event.kind) {
+                return found;
+            }
+        }
+    };
+    timeout(SOON, found).await.expect("it is told")
+}
+
+async fn condition(robot: &Robot, condition: Condition) {
+    let mut health = robot.health();
+    let shown = health.wait_for(|health| health.condition == condition);
+    timeout(SOON, shown)
+        .await
+        .unwrap_or_else(|_| panic!("{:?} for {condition:?}", robot.health().newest()))
+        .expect("it goes on");
+}
+
+async fn small_motion(robot: &Robot) -> Result<(), MotionError> {
+    let up = Pose::translation(0.0, 0.0, 0.005) * robot.pose();
+    let moving = robot.move_to(up).into_future();
+    let outcome = timeout(SOON, moving).await.expect("it resolves");
+    outcome.map(drop)
+}
+
+fn connected(kind: &EventKind) -> Option<Duration> {
+    match kind {
+        EventKind::Connected { after, .. } => *after,
+        _ => None,
+    }
+}
