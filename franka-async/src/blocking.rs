@@ -1,4 +1,5 @@
-//! The same names for programs without async: [`Wait::wait`] in the place of `.await`.
+//! The same names for programs without async: [`Wait::wait`] in the place of `.await`, and
+//! [`WaitEach::wait_each`] for streams.
 //!
 //! ```no_run
 //! use franka_async::blocking::Wait;
@@ -21,6 +22,37 @@
 //! # }
 //! ```
 //!
+//! | with async | on a plain thread |
+//! |---|---|
+//! | a future, `.await` | `.wait()`, or `.wait_for(timeout)` |
+//! | a stream: states, events, health, of end effectors too | `for state in robot.states().wait_each()` |
+//! | [`Robot::records`](crate::Robot::records) | its `blocking_recv()` |
+//! | [`Robot::follow`](crate::Robot::follow) of a `watch` channel | of one of [`targets`] |
+//! | `set`, of an [`Arm`](crate::Arm) | `try_set`, which never waits |
+//! | `state`, `pose`, `target`, `reference`, `stats`; [`Deadman`](crate::goal::Deadman) | the same: none of them waits |
+//!
+//! Two motions at a time, or one and what sends its targets, take two threads, as they take two
+//! tasks with async:
+//!
+//! ```no_run
+//! use franka_async::blocking::{Wait, WaitEach, targets};
+//! use franka_async::{Pose, Robot};
+//!
+//! # fn run(robot: Robot) -> Result<(), Box<dyn std::error::Error>> {
+//! let start = robot.pose();
+//! let (sender, targets) = targets(start);
+//! let following = robot.follow(targets);
+//! let following = std::thread::spawn(move || following.wait());
+//! for (reading, step) in robot.state_stream().wait_each().zip(0..2000) {
+//!     println!("{:?}", reading.state.q);
+//!     sender.send(Pose::translation(0.0, 5e-5 * f64::from(step), 0.0) * start);
+//! }
+//! drop(sender); // the motion ends at the last target
+//! following.join().expect("no panic")?;
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! The tasks of a connection run on a thread in the background, one for all connections of the
 //! process. It is started by the first wait.
 
@@ -28,7 +60,9 @@ use std::future::IntoFuture;
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use futures::{Stream, StreamExt};
 use tokio::runtime::{Builder, Runtime};
+use tokio::sync::watch;
 
 /// Waits for a future on the calling thread. For everything in this crate that can be awaited.
 pub trait Wait: IntoFuture + Sized {
@@ -54,6 +88,53 @@ pub trait Wait: IntoFuture + Sized {
 }
 
 impl<F: IntoFuture> Wait for F {}
+
+/// Iterates over a stream on the calling thread. For every stream of this crate.
+pub trait WaitEach: Stream + Unpin + Sized {
+    /// Returns an iterator that waits, for each item, until the stream yields it; it ends where the
+    /// stream ends.
+    ///
+    /// # Panics
+    /// [`Iterator::next`] panics as [`Wait::wait`].
+    fn wait_each(self) -> Each<Self> {
+        Each(self)
+    }
+}
+
+impl<S: Stream + Unpin> WaitEach for S {}
+
+/// The items of a stream, on the calling thread: see [`WaitEach::wait_each`].
+#[derive(Debug)]
+pub struct Each<S>(S);
+
+impl<S: Stream + Unpin> Iterator for Each<S> {
+    type Item = S::Item;
+
+    fn next(&mut self) -> Option<S::Item> {
+        background().block_on(self.0.next())
+    }
+}
+
+/// Sends the newest target to the motion that follows it. Dropping it ends the motion at the last
+/// target.
+#[derive(Debug)]
+pub struct Targets<T>(watch::Sender<T>);
+
+impl<T> Targets<T> {
+    /// Replaces the target, also one that has not been taken yet. Never waits. Returns whether
+    /// there is a motion, or what will be one, to take it.
+    pub fn send(&self, target: T) -> bool {
+        self.0.send(target).is_ok()
+    }
+}
+
+/// Returns a sender of targets, of which `first` is there already, and what
+/// [`Robot::follow`](crate::Robot::follow) and [`Arm::follow`](crate::Arm::follow) take: a channel
+/// for the newest one.
+pub fn targets<T>(first: T) -> (Targets<T>, watch::Receiver<T>) {
+    let (sender, receiver) = watch::channel(first);
+    (Targets(sender), receiver)
+}
 
 fn background() -> &'static Runtime {
     static BACKGROUND: OnceLock<Runtime> = OnceLock::new();

@@ -1,13 +1,139 @@
 //! Programs without async.
 
+use std::thread;
 use std::time::Duration;
 
-use franka_async::blocking::Wait;
-use franka_async::error::{GoalError, PoseError};
+use franka_async::blocking::{Wait, WaitEach, targets};
+use franka_async::control::{Finish, Torques};
+use franka_async::error::{GoalError, Lapse, PoseError};
+use franka_async::goal::Deadman;
+use franka_async::gripper::Gripper;
 use franka_async::nalgebra::Translation3;
-use franka_async::{Engage, MotionError, Offset, Pose};
+use franka_async::supervision::EventKind;
+use franka_async::team::Team;
+use franka_async::{Engage, MotionError, Offset, Pose, Robot};
+use franka_sim::{Fingers, Running, Sim};
+use franka_tests::PATIENCE;
 
-use crate::{alone, long_way, simulated};
+use crate::{alone, at_the_clients_pace, long_way, simulated};
+
+/// An FR3 that sticks and lags as real arms do.
+fn realistic() -> (Robot, Running) {
+    at_the_clients_pace(Sim::fr3()).wait()
+}
+
+#[test]
+fn a_plain_thread_sends_targets_and_iterates_over_states() {
+    let _alone = alone();
+    let (robot, _sim) = realistic();
+    let start = robot.pose();
+    let (sender, targets) = targets(start);
+    let following = robot.follow(targets);
+    let following = thread::spawn(move || following.wait());
+    let at = |step: u32| Pose::translation(0.0, 5e-5 * f64::from(step), 0.0) * start;
+    let mut times = Vec::new();
+    for (reading, step) in robot.state_stream().wait_each().zip(1..=1000) {
+        times.push((reading.state.message_id, reading.missed));
+        assert!(sender.send(at(step)), "the motion goes on");
+    }
+    drop(sender);
+    following.join().unwrap().unwrap();
+    let error = PoseError::between(&robot.pose(), &at(1000));
+    assert!(error.translation < 2e-3, "{error:?}");
+    for pair in times.windows(2) {
+        assert_eq!(pair[1].0, pair[0].0 + 1 + pair[1].1, "each once, in order");
+    }
+    let mut states = robot.states().wait_each();
+    assert!(states.next().is_some());
+    robot.shutdown().wait();
+    // Ends with the connection.
+    states.for_each(drop);
+}
+
+#[test]
+fn a_sender_whose_motion_has_ended_says_so() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().wait();
+    let (sender, targets) = targets(robot.pose());
+    let late = robot.follow(targets).wait_for(Duration::from_millis(20));
+    assert_eq!(late, None, "dropped, and so braked");
+    assert!(!sender.send(robot.pose()));
+    robot.shutdown().wait();
+}
+
+#[test]
+fn a_plain_thread_hears_of_events_until_the_connection_ends() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().wait();
+    let events = robot.events();
+    let listening = thread::spawn(move || {
+        let kinds = events
+            .wait_each()
+            .map(|notification| notification.event.kind);
+        kinds.collect::<Vec<_>>()
+    });
+    robot
+        .move_by(Offset::base([0.0, 0.0, 0.02]))
+        .wait()
+        .unwrap();
+    robot.shutdown().wait();
+    drop(robot);
+    let kinds = listening.join().unwrap();
+    for wanted in ["MotionBegun", "MotionEnded", "Closed"] {
+        let heard = |kind: &EventKind| format!("{kind:?}").starts_with(wanted);
+        assert!(kinds.iter().any(heard), "{wanted} in {kinds:?}");
+    }
+}
+
+/// A deadman, a hand, a control function, a team: each from a plain thread.
+#[test]
+fn what_is_beside_motions_is_there_for_a_plain_thread() {
+    let _alone = alone();
+    let (left, _left) = realistic();
+    let (right, _right) = at_the_clients_pace(Sim::fer()).wait();
+
+    let (deadman, monitor) = Deadman::new(Duration::from_millis(300));
+    let arm = left
+        .engage(Engage::default().deadman(monitor))
+        .wait()
+        .unwrap();
+    deadman.keep_alive();
+    drop(deadman);
+    let held = arm.move_by(Offset::base([0.0, 0.0, 0.05])).wait();
+    assert_eq!(held, Err(MotionError::Held(Lapse::Deadman)));
+    arm.disengage().wait().unwrap();
+
+    let mut time = Duration::ZERO;
+    let report = left.control_torques(move |_, step| {
+        time += step;
+        let none = Torques([0.0; 7]);
+        if time < Duration::from_millis(200) {
+            none.into()
+        } else {
+            none.finish()
+        }
+    });
+    report.wait().unwrap();
+
+    let members = [(&left, Engage::default()), (&right, Engage::default())];
+    let team = Team::engage_tolerating(PATIENCE, members).wait().unwrap();
+    let up = |robot: &Robot| Pose::translation(0.0, 0.0, 0.02) * robot.pose();
+    for outcome in team.move_to([up(&left), up(&right)]).wait() {
+        outcome.unwrap();
+    }
+    drop(team);
+
+    let sim = Sim::fr3()
+        .hand(Fingers::new(), 0)
+        .wait_for_commands(PATIENCE);
+    let sim = sim.start().wait().unwrap();
+    let gripper = Gripper::connect(sim.hand().unwrap().addr()).wait().unwrap();
+    assert!(gripper.homing().wait().unwrap());
+    let mut widths = gripper.states().wait_each().map(|state| state.width);
+    assert!(widths.next().is_some_and(|width| width > 0.0));
+    left.shutdown().wait();
+    right.shutdown().wait();
+}
 
 #[test]
 fn a_plain_thread_waits_for_whatever_can_be_awaited() {
