@@ -7,12 +7,12 @@ use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::time::{Duration, Instant};
 
 use franka_async::control::{Finish, Torques};
-use franka_async::goal::Gains;
+use franka_async::goal::{Backend, ForceCap, Gains, Setpoints, Tuning};
 use franka_async::realtime::Phase;
 use franka_async::settings::CollisionBehavior;
 use franka_async::state::RobotError;
 use franka_async::supervision::{Condition, Policy};
-use franka_async::{MotionReport, Pose, Realtime, Robot};
+use franka_async::{Engage, MotionReport, Pose, Realtime, Robot};
 use franka_sim::{Sim, Tool};
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};
@@ -299,8 +299,52 @@ async fn thresholds_below_the_force_cap_are_warned_of() {
         robot.set_collision_behavior(behavior).await.expect("set");
         let moved = robot.move_joints(there).force_cap(force_cap).await;
         moved.expect("it is there");
-        let told = told("threshold_newtons");
-        assert_eq!(told.len(), warned, "{behavior:?}");
-        assert!(told.iter().all(|told| told.level == Level::WARN));
+        warns(warned);
     }
+}
+
+/// How often it is told that the robot stops itself before the arm gives way, since it was asked
+/// last.
+fn warns(times: usize) {
+    let told = told("threshold_newtons");
+    assert_eq!(told.len(), times);
+    assert!(told.iter().all(|told| told.level == Level::WARN));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn sessions_are_warned_of_thresholds_as_single_motions_are() {
+    let _alone = alone();
+    listen();
+    let (robot, _sim) = ahead_of_the_client(Sim::fr3().tool(Tool::hand())).await;
+    let careful = CollisionBehavior::careful();
+    robot.set_collision_behavior(careful).await.expect("set");
+    let there = robot.state().q;
+    let arm = robot.engage(Engage::default()).await.expect("it is free");
+    warns(1);
+    arm.move_joints(there).await.expect("it is there");
+    warns(1);
+    let cap = |newtons| Tuning {
+        force_cap: Some(ForceCap::Newtons(newtons)),
+        ..Tuning::default()
+    };
+    arm.tune(cap(20.0)).await.expect("within the bounds");
+    warns(1);
+    arm.disengage().await.expect("it ends as asked");
+
+    // The robot's controller does not give way: there is nothing to be told of.
+    let stiff = Engage::default().backend(Backend::joint_impedance(Setpoints::JointPositions));
+    let arm = robot.engage(stiff).await.expect("it is free");
+    arm.move_joints(there).await.expect("it is there");
+    arm.disengage().await.expect("it ends as asked");
+    warns(0);
+
+    let compliant = CollisionBehavior::compliant();
+    robot.set_collision_behavior(compliant).await.expect("set");
+    let arm = robot.engage(Engage::default()).await.expect("it is free");
+    arm.move_joints(there).await.expect("it is there");
+    arm.tune(cap(49.0)).await.expect("within the bounds");
+    warns(0);
+    arm.tune(cap(51.0)).await.expect("within the bounds");
+    warns(1);
+    arm.disengage().await.expect("it ends as asked");
 }

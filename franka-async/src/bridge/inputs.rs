@@ -22,7 +22,7 @@ impl Bridge {
         match input {
             Input::Begin { motion, replies } => {
                 let id = motion.motion.id();
-                let compliant = motion.motion.compliant_goal();
+                let compliant = self.lifecycle.compliant_goal(&motion.motion);
                 let gains = compliant.map(|goal| goal.gains);
                 let force_cap = compliant.map(|goal| goal.force_cap);
                 match self.begin(motion) {
@@ -74,6 +74,7 @@ impl Bridge {
                 let tuned = self.lifecycle.tune(id, *tuning, state);
                 if tuned.is_ok() {
                     self.warn_of_margin(id, tuning.gains, state);
+                    self.warn_of_thresholds(id, tuning.force_cap);
                 }
                 let _ = taken.send(tuned);
             }

@@ -50,7 +50,7 @@ use crate::driver::{ControlLog, MotionId, Order};
 use crate::identify::Identified;
 use crate::law::Gains;
 use crate::law::compensation::Learned;
-use crate::session::{Chunk, GoalId, KeepOut, Margin};
+use crate::session::{Backend, Chunk, Goal, GoalId, KeepOut, Margin};
 
 use current_motion::CurrentMotion;
 use ending::STILL_SHOWN;
@@ -181,6 +181,14 @@ impl Lifecycle {
     /// The model of the robot.
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// Returns the goal that `motion` would begin with under this host's law; `None` for a program,
+    /// and under the robot's controller.
+    pub fn compliant_goal<'a>(&self, motion: &'a NewMotion) -> Option<&'a Goal> {
+        let goals = self.goals().filter(|_| motion.is_within_a_session());
+        let compliant = goals.is_none_or(|goals| goals.backend == Backend::Torques);
+        motion.compliant_goal().filter(|_| compliant)
     }
 
     /// How far these gains are from the first oscillation of an arm in `state`: see [`Margin::of`].

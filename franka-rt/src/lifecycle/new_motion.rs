@@ -73,9 +73,9 @@ impl NewMotion {
         }
     }
 
-    /// Returns the goal that its own law begins with; `None` for a program, and under the robot's
-    /// controller.
-    pub fn compliant_goal(&self) -> Option<&Goal> {
+    /// Returns the goal that its own law begins with; `None` for a program, and for a session under
+    /// the robot's controller.
+    pub(super) fn compliant_goal(&self) -> Option<&Goal> {
         match self {
             Self::Session { engagement, .. } if engagement.backend != Backend::Torques => None,
             Self::Goal { goal, .. } | Self::Session { goal, .. } => Some(goal),
