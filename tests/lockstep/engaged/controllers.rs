@@ -3,16 +3,17 @@
 
 use std::time::Duration;
 
-use franka_model::{JointVector, READY, RobotKind};
-use franka_proto::RobotMode;
+use franka_model::{JointVector, Model, READY, RobotKind, Wrench};
+use franka_proto::{CollisionBehavior, Errors, Request, RobotError, RobotMode};
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport};
 use franka_rt::session::condition::elapsed;
 use franka_rt::session::{
-    Backend, Chunk, Goal, GoalId, OnArrival, Reaction, Target, Tolerance, Waypoint,
+    Backend, Chunk, Goal, GoalId, OnArrival, Reaction, Setpoints, Target, Tolerance, Waypoint,
 };
-use franka_sim::Config;
 use franka_sim::arm::{Arm, Family};
+use franka_sim::{Config, Touch};
 use franka_tests::lockstep::{Link, Lockstep};
+use franka_tests::push::{PUSH, STIFFNESS, hand};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// A session under each controller with each kind of setpoint, on a realistic arm of each robot.
@@ -229,4 +230,86 @@ fn it_reacts() {
         assert!(report.reacted.is_some(), "{report:?}");
         is_near(&report, backend);
     });
+}
+
+/// A session under the robot's joint or Cartesian impedance controller, on a realistic arm that has
+/// these thresholds.
+fn held(kind: RobotKind, backend: Backend, thresholds: CollisionBehavior) -> (Lockstep, GoalId) {
+    let mut lockstep = Lockstep::new(Config {
+        arm: Some(Arm::realistic(kind)),
+        ..Lockstep::config_of(kind)
+    });
+    lockstep.request(&Request::SetCollisionBehavior(thresholds));
+    lockstep.run(10);
+    let engaged = lockstep.engage_with(Engagement {
+        backend,
+        ..Engagement::default()
+    });
+    lockstep.run(1000);
+    (lockstep, engaged)
+}
+
+/// A hand moves on over 16 cm against the arm, on a spring of 5000 N/m, until the robot stops
+/// itself. Returns why it did, the force of the hand `[N]`, and the torques measured before, `[N
+/// m]`.
+fn push_on(lockstep: &mut Lockstep, engaged: GoalId, way: Vector3<f64>) -> (Errors, f64, [f64; 7]) {
+    let from = lockstep.arm_pose().translation.vector;
+    let path = move |t| from + way * hand(t);
+    let push = lockstep.robot.touch(Touch::carry(path, STIFFNESS));
+    let (mut force, mut torque) = (0.0, [0.0; 7]);
+    for _ in 0..PUSH {
+        lockstep.tick();
+        if lockstep.client.outcome(engaged).is_some() {
+            break;
+        }
+        torque = lockstep.client.state.tau_J;
+        let felt = lockstep.robot.felt(push).expect("it goes on");
+        force = felt.fixed_rows::<3>(0).norm();
+    }
+    (lockstep.client.state.reflex_reason, force, torque)
+}
+
+/// The robot's controllers do not give way further than their springs do: the force of a hand that
+/// goes on grows until the robot stops itself, by its thresholds or, without those, where a torque
+/// sensor of the wrist is out of its range.
+#[test]
+fn it_bears_a_push_and_stops_itself_where_a_hand_pushes_on() {
+    let without = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
+    for kind in RobotKind::ALL {
+        let range = 1.1 * Model::of(kind).joint_limits().torque[5];
+        for (backend, most) in [
+            (Backend::joint_impedance(Setpoints::JointPositions), 0.004),
+            (
+                Backend::cartesian_impedance(Setpoints::JointPositions),
+                0.015,
+            ),
+        ] {
+            let (mut lockstep, engaged) = held(kind, backend, without);
+            let home = lockstep.arm_pose().translation.vector;
+            let push = Wrench::new(0.0, 30.0, 0.0, 0.0, 0.0, 0.0);
+            lockstep.robot.push_end_effector(push, 3000);
+            lockstep.run(2900);
+            let yielded = (lockstep.arm_pose().translation.vector - home).norm();
+            println!("{kind:?}, {backend}: {:.1} mm at 30 N", yielded * 1e3);
+            assert!((0.0005..most).contains(&yielded), "{yielded} m");
+            assert_eq!(lockstep.client.outcome(engaged), None);
+
+            for way in [Vector3::x(), Vector3::y()] {
+                let compliant = CollisionBehavior::compliant();
+                let (mut lockstep, engaged) = held(kind, backend, compliant);
+                let (reason, force, _) = push_on(&mut lockstep, engaged, way);
+                println!("60 N: {reason} at {force:.0} N");
+                assert!(reason.contains(RobotError::CartesianReflex), "{reason}");
+                assert!((60.0..80.0).contains(&force), "{force} N");
+
+                let (mut lockstep, engaged) = held(kind, backend, without);
+                let (reason, force, torque) = push_on(&mut lockstep, engaged, way);
+                println!("without: {reason} at {force:.0} N, {torque:.1?}");
+                assert!(reason.contains(RobotError::TauJRangeViolation), "{reason}");
+                assert!((60.0..90.0).contains(&force), "{force} N");
+                let wrist = torque[4].abs().max(torque[5].abs());
+                assert!(wrist > range - 0.3, "{torque:?}");
+            }
+        }
+    }
 }

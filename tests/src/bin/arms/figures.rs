@@ -41,6 +41,8 @@ pub(crate) struct ArmFigures {
     pub(crate) released_mm: f64,
     /// Force of a pushing hand without the inertia's share, `[N]`.
     pub(crate) push_force_n: f64,
+    /// How far the robot's own controller gives way to a push of 30 N, `[mm]`.
+    pub(crate) push_yield_mm: f64,
     /// Force of a hand that guides the arm at up to 0.16 m/s, `[N]`.
     pub(crate) guide_force_n: f64,
     /// How far an arm that is let go swings beyond its target, `[mm]`.
@@ -131,6 +133,7 @@ impl Summary {
         put("handover_mm_max", most(|arm| arm.handover_mm));
         put("released_mm_max", most(|arm| arm.released_mm));
         put("push_force_n_max", most(|arm| arm.push_force_n));
+        put("push_yield_mm_max", most(|arm| arm.push_yield_mm));
         put(
             "release_overshoot_mm_max",
             most(|arm| arm.release_overshoot_mm),

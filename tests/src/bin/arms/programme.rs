@@ -1,6 +1,6 @@
 //! The programme that every arm goes through, in virtual time.
 
-use franka_model::{JointVector, Load, Model, RobotKind};
+use franka_model::{JointVector, Load, Model, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::Engagement;
 use franka_rt::session::{Backend, Free, Goal, GoalId, OnArrival, PoseError, Target};
@@ -115,10 +115,13 @@ impl Programme {
         self.hold()?;
         self.stream()?;
         self.circle()?;
-        self.push()?;
-        // Guiding takes torques.
+        // Guiding takes torques, and so does an arm that goes with a hand that pushes on: the
+        // robot's controllers resist until a torque sensor is out of its range.
         if self.law.backend() == Backend::Torques {
+            self.push()?;
             self.guide()?;
+        } else {
+            self.lean()?;
         }
         self.carry()
     }
@@ -330,7 +333,25 @@ impl Programme {
         self.step(self.home, false)
     }
 
-    /// Pushes the held arm along three axes and lets it go.
+    /// Pushes the held arm along three axes with [`BORNE`], for an arm that gives way no further
+    /// than its springs do, and lets it go.
+    fn lean(&mut self) -> Result<(), Ended> {
+        for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
+            self.step(self.home, false)?;
+            let from = self.lockstep.arm_pose().translation.vector;
+            let f = way * BORNE;
+            let push = Wrench::new(f.x, f.y, f.z, 0.0, 0.0, 0.0);
+            self.lockstep.robot.push_end_effector(push, PUSH);
+            for _ in 0..PUSH {
+                self.tick()?;
+                let yielded = (self.lockstep.arm_pose().translation.vector - from).norm();
+                self.figures.push_yield_mm = self.figures.push_yield_mm.max(yielded * 1e3);
+            }
+        }
+        self.step(self.home, false)
+    }
+
+    /// Pushes the held arm along three axes, however far it gives way, and lets it go.
     fn push(&mut self) -> Result<(), Ended> {
         for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
             self.head_for(self.home.into(), OnArrival::Hold);
@@ -363,6 +384,9 @@ impl Programme {
         Ok(())
     }
 }
+
+/// Force of a push that every controller bears, `[N]`.
+const BORNE: f64 = 30.0;
 
 /// Mass of the load that is gripped and not declared, `[kg]`.
 const GRIPPED: f64 = 0.3;
