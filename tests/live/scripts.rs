@@ -116,7 +116,10 @@ fn what_is_beside_motions_is_there_for_a_plain_thread() {
     report.wait().unwrap();
 
     let members = [(&left, Engage::default()), (&right, Engage::default())];
-    let team = Team::engage_tolerating(PATIENCE, members).wait().unwrap();
+    // A machine that is busy makes robots silent for longer than a team is to bear.
+    let team = Team::engage_tolerating(10 * PATIENCE, members)
+        .wait()
+        .unwrap();
     let up = |robot: &Robot| Pose::translation(0.0, 0.0, 0.02) * robot.pose();
     for outcome in team.move_to([up(&left), up(&right)]).wait() {
         outcome.unwrap();
