@@ -157,6 +157,25 @@ fn tuning_does_not_keep_a_silent_stream_alive() {
     });
 }
 
+/// Tuning writes once more what the arm is held at.
+#[test]
+fn a_stream_that_was_closed_is_watched_no_more() {
+    let mut lockstep = Lockstep::ready();
+    let engaged = lockstep.engage();
+    let stream = watched(&mut lockstep, turned(0.05), 3000, OnTimeout::Brake);
+    let stream = lockstep.submit_within(engaged, stream).unwrap();
+    lockstep.run(20);
+    lockstep.client.lifecycle.close(stream);
+    lockstep.until_resolved(stream, 3000).unwrap();
+    lockstep.tune(engaged, Tuning::default()).unwrap();
+    for _ in 0..5000 {
+        lockstep.tick();
+        let bindings = lockstep.client.record.bindings;
+        assert!(!bindings.contains(Guard::Watchdog), "{bindings:?}");
+    }
+    assert_stays(&mut lockstep, engaged);
+}
+
 #[test]
 fn tuning_does_not_resume_an_aborted_goal() {
     for_each_robot(|ready| {

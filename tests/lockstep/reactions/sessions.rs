@@ -267,47 +267,6 @@ fn a_deadman_that_falls_silent_on_the_way_to_the_other_target_brakes_the_arm() {
     });
 }
 
-/// The condition, which comes true while the arm brakes, would have it go on to another target.
-#[test]
-fn an_arm_that_brakes_for_its_deadman_does_not_react() {
-    for_each_robot(|ready| {
-        for cycle in [600, 602, 650] {
-            let mut lockstep = ready();
-            let (token, monitor) = Deadman::new(50 * MS);
-            let engaged = lockstep.engage_with(Engagement {
-                deadman: Some(monitor),
-                ..Engagement::default()
-            });
-            let back = lockstep.arm_pose();
-            let up = above(&lockstep, 0.1);
-            let due = elapsed(cycle * MS).then(back);
-            let goal = at(0.2, up, due, OnArrival::ReportAndHold, &mut lockstep);
-            let goal = lockstep.submit_within(engaged, goal).expect("within reach");
-            while lockstep.client.record.goal != goal.0 {
-                token.keep_alive();
-                lockstep.tick();
-            }
-            // Seen as dropped in the cycle after.
-            for _ in 0..598 {
-                token.keep_alive();
-                lockstep.tick();
-            }
-            drop(token);
-            lockstep.tick();
-            while goes_on(&lockstep, goal) {
-                lockstep.tick();
-                assert!(!says_so(&lockstep));
-            }
-            let outcome = lockstep.until_resolved(goal, 1);
-            assert_eq!(outcome, Err(MotionError::Held(Lapse::Deadman)));
-            let off = lockstep.arm_pose().translation.z - back.translation.z;
-            lockstep.run(2000);
-            let later = lockstep.arm_pose().translation.z - back.translation.z;
-            assert!((off - later).abs() < 1e-3 && off > 0.01, "{off}, {later}");
-        }
-    });
-}
-
 /// The gains of guiding would let it go.
 #[test]
 fn a_guided_arm_is_held_where_it_reacts() {

@@ -10,7 +10,7 @@ use franka_rt::session::condition::elapsed;
 use franka_rt::session::{
     ForceCap, Goal, GoalId, Lapse, OnArrival, OnTimeout, Reaction, Target, Watchdog,
 };
-use franka_rt::team::{MemberFault, TeamStop, team_tolerating};
+use franka_rt::team::{MemberFault, team_tolerating};
 use franka_sim::Touch;
 use franka_tests::lockstep::turned;
 use nalgebra::{Translation3, Vector3};
@@ -299,55 +299,6 @@ fn a_stream_of_one_that_falls_silent_brakes_the_other() {
 }
 
 #[test]
-fn no_target_that_comes_after_a_stop_sets_an_arm_in_motion() {
-    for after in [0, 1, 50, 1000] {
-        let mut pair = Pair::new(false);
-        let round = Some(pair.coordinator.begin());
-        let streams = [0, 1].map(|i| {
-            let goal = pair.robots[i].goal(turned(0.6), OnArrival::Hold);
-            pair.submit_goal(i, Goal { round, ..goal })
-        });
-        pair.run(700);
-        pair.coordinator.stop();
-        pair.run(after);
-        for ms in 0..1500 {
-            if ms % 10 == 0 {
-                for (robot, stream) in pair.robots.iter_mut().zip(streams) {
-                    let further = turned(0.6 + 1e-4 * f64::from(ms));
-                    robot.update(stream, further).expect("within reach");
-                }
-            }
-            pair.tick();
-        }
-        assert!(pair.moved(0) < 0.5 && pair.moved(1) < 0.5, "{after} ms");
-        let requested = Err(MotionError::Braked(Lapse::Team(TeamStop::Requested)));
-        let ended = pair.until_resolved(streams, 3000);
-        assert_eq!(ended, [requested.clone(), requested], "{after} ms");
-    }
-}
-
-/// It has arrived, and its spring is let go: nothing is left to brake.
-#[test]
-fn a_motion_that_is_about_to_finish_ends_as_it_was_when_the_team_stops() {
-    let mut pair = Pair::new(false);
-    let last = pair.robots[0].goal(turned(0.02), OnArrival::ReportAndFinish);
-    let last = pair.submit_goal(0, last);
-    let mut released = 0;
-    while pair.robots[0].client.outcome(last).is_none() {
-        pair.tick();
-        assert!(pair.ticks < 5000, "it never ends");
-        let record = &pair.robots[0].client.record;
-        released += u64::from(record.goal == last.0 && record.remaining.is_zero());
-        if released == 400 {
-            pair.coordinator.stop();
-        }
-    }
-    assert!(released > 400, "{released}");
-    let ended = pair.robots[0].until_resolved(last, 1);
-    assert_eq!(ended.map(drop), Ok(()));
-}
-
-#[test]
 fn an_arm_that_something_holds_brakes_the_other() {
     let mut pair = Pair::new(false);
     let hand = pair.robots[0].robot.true_pose();
@@ -376,25 +327,6 @@ fn an_arm_that_something_holds_brakes_the_other() {
         "{held:?}"
     );
     assert_eq!(braked, stopped_by(MemberFault::NotReached));
-}
-
-#[test]
-fn a_stop_from_outside_brakes_all_and_the_next_motion_begins() {
-    let mut pair = Pair::new(false);
-    let goals = pair.both([0.6, 0.6]);
-    pair.run(500);
-    pair.coordinator.stop();
-    let stopped = pair.ticks;
-    pair.run(2);
-    for braked in pair.braked {
-        let braked = braked.expect("each brakes");
-        assert!(braked <= stopped + 2, "{braked}, {stopped}");
-    }
-    let requested = Err(MotionError::Braked(Lapse::Team(TeamStop::Requested)));
-    let ended = pair.until_resolved(goals, 3000);
-    assert_eq!(ended, [requested.clone(), requested]);
-    let goals = pair.both([0.1, 0.1]);
-    assert_eq!(pair.until_resolved(goals, 20_000), [Ok(()), Ok(())]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 mod beginning;
 mod faults;
+mod stops;
 mod waiting;
 
 use std::time::Duration;

@@ -257,3 +257,34 @@ fn an_arm_that_is_near_its_target_has_arrived_if_it_carries_with_others() {
         assert_eq!(free, Ok(()));
     }
 }
+
+/// Its plan was one for the hand.
+#[test]
+fn an_arm_that_takes_an_object_on_its_way_goes_on_from_where_that_is() {
+    let mut robot = Lockstep::ready();
+    let session = robot.engage();
+    let home = robot.reference_pose();
+    let object = Isometry3::translation(0.0, 0.3, 0.0);
+    let up = |by: f64| Translation3::new(0.0, 0.0, by) * home;
+    let taken = robot.within(session, up(0.2).into(), OnArrival::ReportAndHold);
+    taken.expect("within reach");
+    robot.run(700);
+    let goal = robot.goal((up(0.15) * object).into(), OnArrival::ReportAndHold);
+    let goal = Goal {
+        grasp: Some(object),
+        ..goal
+    };
+    let goal = robot.submit_within(session, goal).expect("within reach");
+    let mut aside = 0.0_f64;
+    while robot.client.outcome(goal).is_none() {
+        robot.tick();
+        assert!(robot.now() < 20_000, "it never arrives");
+        let way = robot.reference_pose().translation.vector - home.translation.vector;
+        aside = aside.max(way.xy().norm());
+    }
+    println!("{aside:.5} m aside");
+    assert!(aside < 1e-3, "{aside} m");
+    robot.until_resolved(goal, 1).expect("it arrives");
+    let off = robot.arm_pose().translation.vector - up(0.15).translation.vector;
+    assert!(off.norm() < 2e-3, "{off}");
+}

@@ -96,7 +96,9 @@ impl Sessions<'_> {
             return false;
         };
         let poses = session.backend.is_cartesian();
-        goal.reaction = draw::reaction(&mut self.random, &self.home, poses);
+        let reaction = draw::reaction(&mut self.random, &self.home, poses);
+        // A paused goal that has reacted waits to be resumed, which nobody does here.
+        goal.reaction = reaction.filter(|_| !goal.paused);
         let taken = self.lockstep.submit_within(session.id, goal);
         self.note(goal, Work::Goal(target), soft, taken)
     }

@@ -26,8 +26,9 @@ use super::submission::{Submission, Work};
 /// Period in which a deadman is kept alive, `[ms]`.
 const BEAT: u64 = 10;
 
-/// The longest time that any work may take to end, `[ms]`.
-const TIME_MAX: u64 = 20_000;
+/// The longest time that any work may take to end, `[ms]`: a path at the slowest pace takes twenty
+/// seconds.
+const TIME_MAX: u64 = 30_000;
 
 /// One schedule.
 pub(super) struct Sessions<'a> {

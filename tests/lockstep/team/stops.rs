@@ -1,0 +1,113 @@
+//! The stop of a team, and what comes after it.
+
+use std::time::Duration;
+
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::condition::elapsed;
+use franka_rt::session::{Goal, Lapse, OnArrival};
+use franka_rt::team::TeamStop;
+use franka_tests::lockstep::turned;
+
+use super::Pair;
+
+#[test]
+fn a_stop_from_outside_brakes_all_and_the_next_motion_begins() {
+    let mut pair = Pair::new(false);
+    let goals = pair.both([0.6, 0.6]);
+    pair.run(500);
+    pair.coordinator.stop();
+    let stopped = pair.ticks;
+    pair.run(2);
+    for braked in pair.braked {
+        let braked = braked.expect("each brakes");
+        assert!(braked <= stopped + 2, "{braked}, {stopped}");
+    }
+    let requested = Err(MotionError::Braked(Lapse::Team(TeamStop::Requested)));
+    let ended = pair.until_resolved(goals, 3000);
+    assert_eq!(ended, [requested.clone(), requested]);
+    let goals = pair.both([0.1, 0.1]);
+    assert_eq!(pair.until_resolved(goals, 20_000), [Ok(()), Ok(())]);
+}
+
+#[test]
+fn no_target_that_comes_after_a_stop_sets_an_arm_in_motion() {
+    for after in [0, 1, 50, 1000] {
+        let mut pair = Pair::new(false);
+        let round = Some(pair.coordinator.begin());
+        let streams = [0, 1].map(|i| {
+            let goal = pair.robots[i].goal(turned(0.6), OnArrival::Hold);
+            pair.submit_goal(i, Goal { round, ..goal })
+        });
+        pair.run(700);
+        pair.coordinator.stop();
+        pair.run(after);
+        for ms in 0..1500 {
+            if ms % 10 == 0 {
+                for (robot, stream) in pair.robots.iter_mut().zip(streams) {
+                    let further = turned(0.6 + 1e-4 * f64::from(ms));
+                    robot.update(stream, further).expect("within reach");
+                }
+            }
+            pair.tick();
+        }
+        assert!(pair.moved(0) < 0.5 && pair.moved(1) < 0.5, "{after} ms");
+        let requested = Err(MotionError::Braked(Lapse::Team(TeamStop::Requested)));
+        let ended = pair.until_resolved(streams, 3000);
+        assert_eq!(ended, [requested.clone(), requested], "{after} ms");
+    }
+}
+
+/// Conditions that come true while the arms begin to brake, brake, and are at rest.
+#[test]
+fn no_condition_that_comes_true_after_a_stop_sets_an_arm_in_motion() {
+    for after in [3, 50, 150, 400] {
+        let mut pair = Pair::new(false);
+        let round = Some(pair.coordinator.begin());
+        let due = elapsed(Duration::from_millis(700 + after)).then(turned(-0.3));
+        let goals = [0, 1].map(|i| Goal {
+            round,
+            reaction: Some(due),
+            ..pair.robots[i].goal(turned(1.0), OnArrival::ReportAndHold)
+        });
+        let goals = [0, 1].map(|i| pair.submit_goal(i, goals[i]));
+        let goes = |pair: &Pair| {
+            let record = |i: usize| &pair.robots[i].client.record;
+            let begun = |i: usize| record(i).goal == goals[i].0;
+            let elapsed = record(0).elapsed.min(record(1).elapsed);
+            begun(0) && begun(1) && elapsed >= Duration::from_millis(700)
+        };
+        while !goes(&pair) {
+            pair.tick();
+            assert!(pair.ticks < 5000, "they begin");
+        }
+        pair.coordinator.stop();
+        pair.run(2000);
+        let requested = Err(MotionError::Braked(Lapse::Team(TeamStop::Requested)));
+        let ended = pair.until_resolved(goals, 1);
+        assert_eq!(ended, [requested.clone(), requested], "{after} ms");
+        for member in [0, 1] {
+            assert!(pair.moved(member) > 0.1, "{}", pair.moved(member));
+        }
+    }
+}
+
+/// It has arrived, and its spring is let go: nothing is left to brake.
+#[test]
+fn a_motion_that_is_about_to_finish_ends_as_it_was_when_the_team_stops() {
+    let mut pair = Pair::new(false);
+    let last = pair.robots[0].goal(turned(0.02), OnArrival::ReportAndFinish);
+    let last = pair.submit_goal(0, last);
+    let mut released = 0;
+    while pair.robots[0].client.outcome(last).is_none() {
+        pair.tick();
+        assert!(pair.ticks < 5000, "it never ends");
+        let record = &pair.robots[0].client.record;
+        released += u64::from(record.goal == last.0 && record.remaining.is_zero());
+        if released == 400 {
+            pair.coordinator.stop();
+        }
+    }
+    assert!(released > 400, "{released}");
+    let ended = pair.robots[0].until_resolved(last, 1);
+    assert_eq!(ended.map(drop), Ok(()));
+}
