@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use franka_async::error::{PathError, PoseError};
 use franka_async::goal::{Destination, Target, Waypoint};
+use franka_async::motion::{Progress, Reference};
 use franka_async::nalgebra::{Translation3, UnitQuaternion};
-use franka_async::{Engage, MotionError, Offset, Pose};
+use franka_async::{Engage, MotionError, Offset, Pose, Robot};
 use franka_sim::{Sim, Tool};
 
-use crate::{alone, at_the_clients_pace, robot_time, simulated, under_way};
+use crate::{SOON, alone, at_the_clients_pace, by_the_clock, shown};
 
 /// Half of what a wire of single precision rounds a position to, and some.
 const NEAR: f64 = 1e-6;
@@ -41,7 +42,7 @@ async fn offsets_add_up_from_target_to_target() {
     let dropped = tokio::time::timeout(Duration::ZERO, arm.at_rest()).await;
     assert!(dropped.is_err(), "under way");
     arm.at_rest().await.unwrap();
-    let reference = arm.reference().expect("a session under way");
+    let reference = shown(&robot, || arm.reference()).await;
     assert!(close(&reference.pose, &expected), "{reference:?}");
     assert!(
         reference.dq.iter().all(|dq| dq.abs() < 1e-9),
@@ -79,8 +80,8 @@ async fn offsets_add_up_from_target_to_target() {
 #[tokio::test(flavor = "multi_thread")]
 async fn an_arm_that_is_disengaged_has_no_target_and_does_not_rest() {
     let _alone = alone();
-    let (robot, _sim) = simulated().await;
-    let arm = robot.engage(Engage::default()).await.unwrap();
+    let (robot, _sim) = by_the_clock(ideal()).await;
+    let arm = robot.engage(Engage::default().speed(SLOW)).await.unwrap();
     let other = arm.clone();
     let resting = tokio::spawn({
         let arm = arm.clone();
@@ -90,7 +91,7 @@ async fn an_arm_that_is_disengaged_has_no_target_and_does_not_rest() {
             arm.at_rest().await
         }
     });
-    under_way(&robot).await;
+    shown(&robot, || arm.reference().filter(is_moving)).await;
     arm.disengage().await.unwrap();
     assert_eq!(resting.await.unwrap(), Err(MotionError::Disengaged));
     assert_eq!((other.target(), other.reference()), (None, None));
@@ -100,41 +101,40 @@ async fn an_arm_that_is_disengaged_has_no_target_and_does_not_rest() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_handle_tells_how_far_a_motion_is_and_pauses_it() {
     let _alone = alone();
-    let (robot, _sim) = simulated().await;
-    // Slowly: however late this task is, the motion is still under way.
-    let motion = robot.move_by(Offset::base(Translation3::new(0.0, 0.2, 0.0)));
-    let motion = motion.speed(0.25);
+    let (robot, _sim) = by_the_clock(ideal()).await;
+    let way = Offset::base(Translation3::new(0.0, 0.2, 0.0));
+    let motion = robot.move_by(way).speed(SLOW);
     let handle = motion.handle();
     assert_eq!(handle.progress(), None, "not begun");
     handle.pause();
     let moving = tokio::spawn(motion.into_future());
-    while handle.progress().is_none() {
-        robot_time(&robot, 5).await;
-    }
-    let begins = robot.reference().expect("held").pose;
-    robot_time(&robot, 300).await;
-    let held = handle.progress().expect("begun, and paused");
-    assert!(held.elapsed >= Duration::from_millis(250), "{held:?}");
-    let stands = robot.reference().expect("held").pose;
-    assert!((stands.translation.vector - begins.translation.vector).norm() < 1e-9);
+    shown(&robot, || handle.progress()).await;
+    stands(&robot).await;
+
     handle.resume();
-    under_way(&robot).await;
-    robot_time(&robot, 5).await;
-    let begun = handle.progress().expect("under way");
-    assert!(begun.remaining > Duration::from_millis(500), "{begun:?}");
-    robot_time(&robot, 200).await;
-    let later = handle.progress().expect("under way");
-    assert!(later.fraction() > begun.fraction(), "{begun:?}, {later:?}");
+    let under_way = |progress: &Progress| !progress.remaining.is_zero();
+    let begun = shown(&robot, || handle.progress().filter(under_way)).await;
+    assert!(begun.remaining > SOON, "{begun:?}");
+    let further = |progress: &Progress| progress.fraction() > begun.fraction();
+    shown(&robot, || handle.progress().filter(further)).await;
 
     handle.pause();
-    robot_time(&robot, 2500).await;
-    assert_eq!(handle.progress().expect("paused").remaining, Duration::ZERO);
-    let stands = robot.reference().expect("held").pose;
-    robot_time(&robot, 200).await;
-    let still = robot.reference().expect("held").pose;
-    assert!((still.translation.vector - stands.translation.vector).norm() < 1e-9);
+    let over = |progress: &Progress| progress.remaining.is_zero();
+    shown(&robot, || handle.progress().filter(over)).await;
+    stands(&robot).await;
     handle.resume();
-    moving.await.unwrap().unwrap();
+    shown(&robot, || robot.reference().filter(is_moving)).await;
+    handle.cancel();
+    assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
+    assert_eq!(handle.progress(), None, "over");
+
+    let motion = robot.move_by(Offset::base(Translation3::new(0.0, 0.02, 0.0)));
+    let handle = motion.handle();
+    handle.pause();
+    let moving = tokio::spawn(motion.into_future());
+    shown(&robot, || handle.progress()).await;
+    handle.resume();
+    moving.await.unwrap().expect("it arrives");
     assert_eq!(handle.progress(), None, "over");
     robot.shutdown().await;
 }
@@ -142,7 +142,7 @@ async fn a_handle_tells_how_far_a_motion_is_and_pauses_it() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_motion_goes_through_several_places_with_one_outcome() {
     let _alone = alone();
-    let (robot, _sim) = simulated().await;
+    let (robot, _sim) = by_the_clock(ideal()).await;
     let start = robot.pose();
     let over = |y: f64, z: f64| Translation3::new(0.0, y, z) * start;
     let corner = Waypoint::new(over(0.05, 0.0)).blend(0.02);
@@ -156,22 +156,42 @@ async fn a_motion_goes_through_several_places_with_one_outcome() {
     let MotionError::Path(PathError::Waypoint { waypoint: 2, .. }) = refused else {
         panic!("{refused:?}");
     };
-    let motion = arm.move_through([corner, near.into()]);
+    let motion = arm.move_through([corner, near.into()]).speed(SLOW);
     let handle = motion.handle();
     let moving = tokio::spawn(motion.into_future());
-    under_way(&robot).await;
-    let remaining = || handle.progress().map(|progress| progress.remaining);
-    while remaining().is_none_or(|left| left.is_zero()) {
-        robot_time(&robot, 5).await;
-    }
+    let under_way = |progress: &Progress| !progress.remaining.is_zero();
+    let begun = shown(&robot, || handle.progress().filter(under_way)).await;
+    assert!(begun.remaining > SOON, "{begun:?}");
     assert_eq!(arm.target(), Some(Target::Pose(near)));
-    moving.await.unwrap().unwrap();
+    handle.cancel();
+    assert_eq!(moving.await.unwrap(), Err(MotionError::Stopped));
     // Dropped on its way, it brakes, and the arm is held.
+    let dropped = arm.move_through([corner, over(0.05, 0.1).into()]);
     tokio::select! {
-        ended = arm.move_through([corner, over(0.05, 0.1).into()]).into_future() => {
-            panic!("{ended:?}")
-        }
-        _ = robot_time(&robot, 300) => {}
+        ended = dropped.speed(SLOW).into_future() => panic!("{ended:?}"),
+        _ = shown(&robot, || arm.reference().filter(is_moving)) => {}
     }
     arm.move_to(start).await.unwrap();
 }
+
+fn ideal() -> Sim {
+    Sim::fr3().ideal().tool(Tool::hand())
+}
+
+fn is_moving(reference: &Reference) -> bool {
+    reference.dq.iter().any(|dq| dq.abs() > 1e-6)
+}
+
+/// The reference stays where it is for 300 ms of the robot's time.
+async fn stands(robot: &Robot) {
+    let before = shown(robot, || robot.reference()).await;
+    let later = |reference: &Reference| reference.time >= before.time + 300;
+    let still = shown(robot, || robot.reference().filter(later)).await;
+    for (still, before) in still.q.iter().zip(before.q) {
+        assert!((still - before).abs() < 1e-9, "{still} rad after {before}");
+    }
+}
+
+/// Of a motion that takes longer than [`SOON`] by the clock: whatever is done to it
+/// meets it on its way.
+const SLOW: f64 = 0.002;

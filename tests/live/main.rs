@@ -116,6 +116,17 @@ async fn until(robot: &Robot, mut holds: impl FnMut(&RobotState) -> bool) {
     timeout(SOON, shown).await.expect("a state shows it");
 }
 
+/// Waits for what `look` finds with some state, and returns it.
+async fn shown<T>(robot: &Robot, mut look: impl FnMut() -> Option<T>) -> T {
+    let mut found = None;
+    until(robot, |_| {
+        found = look();
+        found.is_some()
+    })
+    .await;
+    found.expect("it was found")
+}
+
 /// Waits for so many milliseconds of the robot's time.
 async fn robot_time(robot: &Robot, milliseconds: u64) {
     let end = robot.state().message_id + milliseconds;

@@ -12,10 +12,9 @@ use franka_async::error::Lapse;
 use franka_async::team::{MemberFault, MemberMotion, NotEngaged, Team, TeamStop};
 use franka_async::{Engage, MotionError, Offset, Pose, Robot};
 use franka_sim::{Running, Sim};
-use franka_tests::PATIENCE;
 use tokio::sync::watch;
 
-use crate::{alone, at_the_clients_pace, robot_time, until};
+use crate::{SOON, alone, at_the_clients_pace, robot_time, until};
 
 struct Two {
     team: Team<2>,
@@ -32,7 +31,7 @@ async fn two_with([for_left, for_right]: [Engage; 2]) -> Two {
     let (left, left_sim) = at_the_clients_pace(Sim::fr3()).await;
     let (right, right_sim) = at_the_clients_pace(Sim::fer()).await;
     let members = [(&left, for_left), (&right, for_right)];
-    let team = Team::engage_tolerating(PATIENCE, members).await;
+    let team = Team::engage_tolerating(SOON, members).await;
     Two {
         team: team.expect("both are free"),
         robots: [left, right],

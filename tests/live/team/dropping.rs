@@ -38,7 +38,7 @@ async fn engaged(robots: &[Robot; 2]) -> Team<2> {
 fn engaging(robots: &[Robot; 2]) -> impl Future<Output = Result<Team<2>, NotEngaged>> {
     let [left, right] = robots;
     Team::engage_tolerating(
-        PATIENCE,
+        SOON,
         [(left, Engage::default()), (right, Engage::default())],
     )
 }
