@@ -1,14 +1,16 @@
 //! Motions that wait for their robot.
 
-use std::future::IntoFuture;
-use std::time::Duration;
+use std::future::{Future as _, IntoFuture as _, poll_fn};
+use std::pin::Pin;
+use std::task::Poll;
 
 use franka_async::error::Unready;
 use franka_async::state::RobotMode;
 use franka_async::supervision::Condition;
-use franka_async::{Engage, MotionError, Robot};
+use franka_async::{Engage, Motion, MotionError, MotionReport};
 use franka_sim::Sim;
-use tokio::time::{sleep, timeout};
+use tokio::task::JoinHandle;
+use tokio::time::timeout;
 
 use super::{condition, policy, restart, start, supervised};
 use crate::{SOON, alone};
@@ -27,22 +29,19 @@ async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
     };
     sim.stop().await;
     condition(&robot, Condition::Unready(Unready::Disconnected)).await;
-    let superseded = tokio::spawn(robot.move_joints(target(0)).into_future());
-    until_waiting(&robot, &superseded).await;
-    let stopped = tokio::spawn(robot.move_joints(target(1)).into_future());
+    let superseded = asked_for(robot.move_joints(target(0))).await;
+    let stopped = asked_for(robot.move_joints(target(1))).await;
     assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
     // Without a connection it is not known whether the arm rests.
     robot.stop().await.unwrap_err();
     assert_eq!(stopped.await.unwrap(), Err(MotionError::Stopped));
     // Dropped, detached, and cancelled.
-    let dropped = tokio::spawn(robot.move_joints(target(2)).into_future());
-    until_waiting(&robot, &dropped).await;
+    let dropped = asked_for(robot.move_joints(target(2))).await;
     dropped.abort();
     assert!(dropped.await.unwrap_err().is_cancelled());
     let motion = robot.move_joints(target(3));
     let handle = motion.handle();
-    let cancelled = tokio::spawn(motion.into_future());
-    until_waiting(&robot, &cancelled).await;
+    let cancelled = asked_for(motion).await;
     handle.cancel();
     assert_eq!(cancelled.await.unwrap(), Err(MotionError::Stopped));
     robot.move_joints(target(4)).detach();
@@ -58,8 +57,7 @@ async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
 
     sim.stop().await;
     condition(&robot, Condition::Unready(Unready::Disconnected)).await;
-    let waiting = tokio::spawn(robot.move_joints(target(5)).into_future());
-    until_waiting(&robot, &waiting).await;
+    let waiting = asked_for(robot.move_joints(target(5))).await;
     let sim = restart(address).await;
     let outcome = timeout(SOON, waiting).await.expect("no hang").unwrap();
     outcome.expect("it arrives");
@@ -81,11 +79,49 @@ async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
     sim.stop().await;
 }
 
-/// Gives a motion of another task the time to be asked for; it is there to stay.
-async fn until_waiting<T>(robot: &Robot, motion: &tokio::task::JoinHandle<T>) {
-    for _ in 0..50 {
-        tokio::task::yield_now().await;
-        sleep(Duration::from_millis(1)).await;
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_motion_that_waits_begins_paused_if_it_was_paused_last() {
+    let _alone = alone();
+    let sim = start(Sim::fr3()).await;
+    let (address, q) = (sim.addr(), sim.state().await.unwrap().q);
+    let robot = supervised(&sim, policy().motions_wait(SOON)).await;
+    let mut target = q;
+    target[6] += 0.05;
+    let mut sim = sim;
+    for resumed in [false, true] {
+        sim.stop().await;
+        condition(&robot, Condition::Unready(Unready::Disconnected)).await;
+        let motion = robot.move_joints(target);
+        let handle = motion.handle();
+        let moving = asked_for(motion).await;
+        handle.pause();
+        if resumed {
+            handle.resume();
+        }
+        sim = restart(address).await;
+        condition(&robot, Condition::Ready).await;
+        if !resumed {
+            crate::shown(&robot, || handle.progress()).await;
+            crate::robot_time(&robot, 2000).await;
+            let reference = crate::shown(&robot, || robot.reference()).await;
+            for (stands, q) in reference.q.iter().zip(q) {
+                assert!((stands - q).abs() < 1e-6, "{stands} rad, begun at {q}");
+            }
+            handle.resume();
+        }
+        let outcome = timeout(SOON, moving).await.expect("no hang").unwrap();
+        outcome.expect("it arrives");
+        let moved = sim.state().await.unwrap().q[6] - q[6];
+        assert!((moved - 0.05).abs() < 2e-3, "{moved}");
     }
-    assert!(!motion.is_finished(), "{:?}", robot.health().newest());
+    robot.shutdown().await;
+    sim.stop().await;
+}
+
+/// Has a motion asked for by its first poll, and awaits it in another task. It waits for its robot.
+async fn asked_for(motion: Motion) -> JoinHandle<Result<MotionReport, MotionError>> {
+    let mut moving = motion.into_future();
+    let first = poll_fn(|context| Poll::Ready(Pin::new(&mut moving).poll(context))).await;
+    assert!(first.is_pending(), "{first:?}");
+    tokio::spawn(moving)
 }
