@@ -47,9 +47,10 @@ impl Robot {
 
     /// A motion through several poses, or several joint positions, to the last of them: as fast as
     /// the limits allow, on straight lines between them, and without a stop where the corner is
-    /// [rounded](Waypoint::blend). It has one outcome. A waypoint that the arm cannot reach is
-    /// refused before anything moves, as [`MotionError::Path`]. Whatever holds the arm back holds
-    /// the path up: no waypoint is left out.
+    /// [rounded](Waypoint::blend). It has one outcome. A waypoint that the arm cannot reach, or a
+    /// way between two poses that it cannot follow, is refused before anything moves, as
+    /// [`MotionError::Path`]. Whatever holds the arm back holds the path up: no waypoint is left
+    /// out. Planning takes tens of milliseconds of the connection's task.
     ///
     /// ```no_run
     /// # use franka_async::{Error, Robot};

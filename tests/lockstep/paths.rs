@@ -2,13 +2,16 @@
 
 use std::time::Duration;
 
-use franka_model::{READY, Wrench};
+use franka_model::{READY, RobotKind, Wrench, rotation};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Chunk, GoalError, GoalId, PathError, Target, Waypoint};
+use franka_rt::session::{Chunk, GoalError, GoalId, Lapse, PathError, Target, Waypoint};
+use franka_sim::{Arm, Config};
 use franka_tests::bench::follow::realistic;
 use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
 
 /// Along three sides of a box, with turns, from `start`.
 fn corners(start: &Isometry3<f64>) -> [Isometry3<f64>; 3] {
@@ -324,4 +327,107 @@ fn a_chunk_supersedes_a_path_that_is_under_way() {
     lockstep.run(1500);
     let away = franka_model::JointVector::from(q) - lockstep.robot.q();
     assert!(away.amax() < 0.05, "{away}");
+}
+
+/// Robots of both kinds, with an ideal arm and with one like a real one.
+fn robots() -> Vec<(String, Lockstep)> {
+    let mut robots = Vec::new();
+    for kind in [RobotKind::Fr3, RobotKind::Fer] {
+        robots.push((format!("{kind:?}, ideal"), Lockstep::ready_of(kind)));
+        let arm = Some(Arm::realistic(kind));
+        let config = Lockstep::config_of(kind);
+        let realistic = Lockstep::new(Config { arm, ..config });
+        robots.push((format!("{kind:?}, realistic"), realistic));
+    }
+    robots
+}
+
+/// Tries a path that is to be refused for the way between two waypoints, and says why it was.
+fn refused_on_the_way(name: &str, lockstep: &mut Lockstep, waypoints: &[Waypoint]) -> String {
+    let before = *lockstep.robot.q();
+    let resolved = lockstep.client.resolved();
+    let error = lockstep
+        .through(None, waypoints)
+        .expect_err("it is refused");
+    let MotionError::Path(PathError::Way { from, to, .. }) = error else {
+        panic!("{name}: {error:?}");
+    };
+    assert_eq!(to, from + 1, "{name}");
+    lockstep.run(50);
+    assert!(lockstep.client.driver.is_watching(), "{name}");
+    assert_eq!(lockstep.client.resolved(), resolved, "{name}");
+    assert!((before - lockstep.robot.q()).amax() < 1e-3, "{name}");
+    error.to_string()
+}
+
+#[test]
+fn a_way_that_leaves_the_reach_between_two_poses_within_it_is_refused_and_nothing_moves() {
+    for (name, mut lockstep) in robots() {
+        let low = Translation3::new(0.0, 0.0, -0.25) * lockstep.arm_pose();
+        let down = lockstep.through(None, &[low.into()]).expect("within reach");
+        let outcome = lockstep.until_resolved(down, 20_000);
+        outcome.unwrap_or_else(|error| panic!("{name}: {error}"));
+        let near = Translation3::new(0.0, 0.05, 0.0) * low;
+        // On the other side of the base: joint 1 gets there, a straight line does not.
+        let turn = rotation::exp(&Vector3::new(0.0, 0.0, 2.4));
+        let across = Isometry3::from_parts(Translation3::identity(), turn) * low;
+        for (waypoints, from) in [
+            (vec![across], "the start"),
+            (vec![near, across], "waypoint 1"),
+        ] {
+            let waypoints: Vec<_> = waypoints.into_iter().map(Waypoint::new).collect();
+            let text = refused_on_the_way(&name, &mut lockstep, &waypoints);
+            println!("{name}: {text}");
+            assert!(
+                text.contains(&format!("on the way from {from} to")),
+                "{name}: {text}"
+            );
+        }
+        // Over the joints there is a way.
+        let mut q: [f64; 7] = READY.into();
+        q[0] += 2.4;
+        let id = lockstep.through(None, &[q.into()]).expect("in range");
+        let outcome = lockstep.until_resolved(id, 20_000);
+        outcome.unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}
+
+#[test]
+fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
+    let (seed, cases) = (29, if franka_tests::thorough() { 200 } else { 20 });
+    for (name, mut lockstep) in robots() {
+        let mut random = SmallRng::seed_from_u64(seed);
+        let down = UnitQuaternion::from_euler_angles(std::f64::consts::PI, 0.0, 0.0);
+        let (mut arrived, mut refused, mut blocked) = (0, 0, 0);
+        for case in 0..cases {
+            let mut vector = || Vector3::from_fn(|_, _| random.random_range(-1.0..1.0_f64));
+            let poses: Vec<_> = (0..3)
+                .map(|_| {
+                    let size = Vector3::new(0.2, 0.5, 0.25);
+                    let at = Vector3::new(0.4, 0.0, 0.4) + size.component_mul(&vector());
+                    let turn = rotation::exp(&(vector() * 0.4));
+                    Isometry3::from_parts(at.into(), turn * down)
+                })
+                .collect();
+            let case = format!("{name}, seed {seed}, case {case}");
+            let before = lockstep.client.resolved();
+            match lockstep.through(None, &rounded(&poses, random.random_range(0.0..0.08))) {
+                Ok(id) => match lockstep.until_resolved(id, 60_000) {
+                    Ok(_) => arrived += 1,
+                    // The way leads too near to the arm itself.
+                    Err(MotionError::Braked(Lapse::Blocked)) => blocked += 1,
+                    Err(error) => panic!("{case}: {error}"),
+                },
+                Err(MotionError::Path(PathError::Way { .. } | PathError::Waypoint { .. })) => {
+                    refused += 1;
+                    lockstep.run(20);
+                    assert!(lockstep.client.driver.is_watching(), "{case}");
+                    assert_eq!(lockstep.client.resolved(), before, "{case}");
+                }
+                Err(error) => panic!("{case}: {error}"),
+            }
+        }
+        println!("{name}: {arrived} arrived, {refused} refused, {blocked} blocked");
+        assert!(arrived > cases / 4 && blocked <= cases / 10, "{name}");
+    }
 }

@@ -115,7 +115,7 @@ impl Bridge {
         };
         let reference = self.course.reference();
         let q = reference.map_or(state.q, |reference| reference.q);
-        let path = Chunk::through(&path, &q, &goal.budget, self.lifecycle.model(), state)?;
+        let path = Chunk::through(&path, &q, goal, self.lifecycle.model(), state)?;
         self.lifecycle.begin_along(path, motion, state, now)
     }
 

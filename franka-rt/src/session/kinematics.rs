@@ -47,8 +47,34 @@ impl Posture {
         Self { q, asked: true }
     }
 
+    /// Whether a goal asks for it.
+    pub(super) fn is_asked(&self) -> bool {
+        self.asked
+    }
+
+    /// The velocity, `[rad/s]`, at which joints at `q` go to it, once they do so evenly, while the
+    /// end effector moves at `speed`, `[m/s]`.
+    pub(super) fn velocity(
+        &self,
+        q: &JointVector,
+        speed: f64,
+        jacobian: &Jacobian,
+        budget: &Budget,
+    ) -> JointVector {
+        if self.asked {
+            Self::there(&(self.q - q), jacobian, budget)
+        } else {
+            self.back(q, speed)
+        }
+    }
+
+    /// The velocity, `[rad/s]`, at which joints go back to one that is kept.
+    fn back(&self, q: &JointVector, speed: f64) -> JointVector {
+        (self.q - q) * (Self::KEPT * (speed / Self::SPEED).min(1.0))
+    }
+
     /// The velocity, `[rad/s]`, at which joints go to one that is asked for and `away` from them.
-    fn velocity(away: &JointVector, jacobian: &Jacobian, budget: &Budget) -> JointVector {
+    fn there(away: &JointVector, jacobian: &Jacobian, budget: &Budget) -> JointVector {
         let free = in_null_space(away, jacobian);
         let joints = free.iter().zip(&budget.joints);
         let longest = joints
@@ -134,10 +160,10 @@ impl Drift {
         jacobian: &Jacobian,
         budget: &Budget,
     ) -> JointVector {
-        let kept = (posture.q - q) * (Posture::KEPT * (speed / Posture::SPEED).min(1.0));
+        let kept = posture.back(q, speed);
         let there = if posture.asked || self.asked[1] > NEGLIGIBLE {
             let (away, asked) = self.ease(posture, q);
-            kept + (Posture::velocity(&away, jacobian, budget) - kept) * asked
+            kept + (Posture::there(&away, jacobian, budget) - kept) * asked
         } else {
             (self.away, self.asked) = Default::default();
             kept

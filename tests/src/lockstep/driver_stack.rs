@@ -265,7 +265,7 @@ impl DriverStack {
         } else {
             self.state.q
         };
-        let path = Chunk::through(waypoints, &q, &goal.budget, model, &self.state)?;
+        let path = Chunk::through(waypoints, &q, goal, model, &self.state)?;
         let begun = self
             .lifecycle
             .begin_along(path, motion, &self.state, self.now);

@@ -39,6 +39,8 @@ enum Play {
         player: Player<PoseState>,
         state: PoseState,
         drift: Drift,
+        /// Of a path, which was checked with it: where the joints were when it was taken up.
+        posture: Option<Posture>,
         translation: AxisLimits,
         rotation: AxisLimits,
     },
@@ -86,10 +88,13 @@ impl ChunkCourse {
             },
             Points::Poses(curve) => {
                 let limits = pose_limits(model, &pose, &budget);
+                let posture = pace.map(|_| Posture::kept(reference.q));
                 Play::Poses {
                     player: Player::new(curve, asked, &pose, now),
                     state: pose,
-                    drift,
+                    // The way to another posture fades.
+                    drift: posture.map_or(drift, |_| Drift::of(reference.dq)),
+                    posture,
                     translation: limits.translation,
                     rotation: limits.rotation,
                 }
@@ -172,9 +177,14 @@ impl ChunkCourse {
                 player,
                 state,
                 drift,
+                posture: own,
                 translation,
                 rotation,
             } => {
+                let posture = match own {
+                    Some(kept) if !posture.is_asked() => kept,
+                    _ => posture,
+                };
                 player.step(self.lag);
                 let there = player.at(now);
                 *state = follow_pose(translation, rotation, state, &there);

@@ -12,8 +12,8 @@
 //! * `ring`: across threads and back.
 //! * `player`: what is wanted at a time of the robot. Lost states need no more: the time jumps, and
 //!   the servo makes up for the distance.
-//! * `path`, `timing`, `pace`: places without times are timed outside the thread, and then followed
-//!   as a chunk whose time can wait.
+//! * `path`, `pace`: places without times are timed and checked outside the thread, and then
+//!   followed as a chunk whose time can wait.
 //! * `servo`: what the limits allow of it. `course`: both, for joints and for poses.
 
 mod course;
@@ -29,7 +29,6 @@ mod ring;
 mod servo;
 #[cfg(test)]
 mod tests;
-mod timing;
 mod value;
 
 pub(super) use course::{ChunkCourse, ChunkStart};

@@ -1,5 +1,6 @@
 //! The joints' bounds on the way to a pose: velocity cap, position envelope, acceleration and jerk.
 
+use franka_model::JointVector;
 use franka_model::limits::JointLimits;
 
 use crate::session::Budget;
@@ -110,6 +111,25 @@ impl OpenVelocities {
     }
 }
 
+/// How far each joint at `q` may turn down and up, `[rad]`, in whatever time: to the margin of its
+/// range, or not at all beyond that.
+pub(crate) fn room(limits: &JointLimits, q: &JointVector) -> (JointVector, JointVector) {
+    let lower = limits.lower.add_scalar(POSITION_MARGIN) - q;
+    let upper = limits.upper.add_scalar(-POSITION_MARGIN) - q;
+    (
+        lower.map(|room| room.min(0.0)),
+        upper.map(|room| room.max(0.0)),
+    )
+}
+
+/// The first joint, from 1, that `q` has at an end of its range, less the margin.
+pub(crate) fn at_end(limits: &JointLimits, q: &JointVector) -> Option<usize> {
+    let (lower, upper) = room(limits, q);
+    (0..7)
+        .find(|&i| lower[i] > -1e-6 || upper[i] < 1e-6)
+        .map(|i| i + 1)
+}
+
 /// The greatest acceleration of the next cycle, `[rad/s^2]`, after which a velocity that has `room`
 /// left, `[rad/s]`, does not exceed its bound, if the acceleration then falls by `ramp` a cycle.
 /// Without room, the one that brings it back.
@@ -134,7 +154,7 @@ fn towards_stop(room: f64, ramp: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_model::{JointVector, Model, READY};
+    use franka_model::{Model, READY};
 
     #[test]
     fn an_interval_is_never_beyond_one_cycle_of_acceleration_and_of_jerk() {

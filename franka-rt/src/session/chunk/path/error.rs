@@ -1,0 +1,92 @@
+//! Why waypoints are not a path.
+
+use super::Waypoint;
+use super::reach::{OFF_ROTATION, OFF_TRANSLATION};
+use crate::session::GoalError;
+
+/// Why a path is not accepted. Nothing has moved. Waypoints count from 1.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PathError {
+    /// There are no waypoints.
+    #[error("a path needs at least one waypoint")]
+    Empty,
+    /// There are more waypoints than a path may have.
+    #[error("more than {} waypoints", Waypoint::COUNT_MAX)]
+    TooMany,
+    /// A waypoint is neither a pose nor joint positions, or not what the first one is.
+    #[error(
+        "waypoint {waypoint} is not of the kind of the first: expected all poses, or all joint positions"
+    )]
+    Kind {
+        /// Which.
+        waypoint: usize,
+    },
+    /// The distance of a waypoint is not a number, or below zero.
+    #[error("waypoint {waypoint} is to be rounded within {got}, expected 0 or more")]
+    Blend {
+        /// Which.
+        waypoint: usize,
+        /// The distance given.
+        got: f64,
+    },
+    /// The arm cannot go there.
+    #[error("waypoint {waypoint}: {error}")]
+    Waypoint {
+        /// Which.
+        waypoint: usize,
+        /// Why.
+        #[source]
+        error: GoalError,
+    },
+    /// On the way to a waypoint the end effector turns so far that its direction is in doubt.
+    #[error("{degrees} degrees on the way to waypoint {waypoint}: expected less than 170")]
+    Turn {
+        /// Which.
+        waypoint: usize,
+        /// The angle.
+        degrees: u16,
+    },
+    /// The arm cannot follow the way between two waypoints.
+    #[error(
+        "on the way from {} to waypoint {to}, at ({x:.3}, {y:.3}, {z:.3}) m, the end effector stays \
+         {:.1} mm and {:.1} mrad off the way{}: expected at most {:.0} mm and {:.0} mrad",
+        begin_of(*from),
+        translation * 1e3,
+        rotation * 1e3,
+        reason_of(*joint),
+        OFF_TRANSLATION * 1e3,
+        OFF_ROTATION * 1e3
+    )]
+    Way {
+        /// The waypoint before; 0 is where the arm is when the path comes.
+        from: usize,
+        /// The waypoint after.
+        to: usize,
+        /// Where on the way, base frame, `[m]`.
+        x: f64,
+        /// See `x`.
+        y: f64,
+        /// See `x`.
+        z: f64,
+        /// How far off the way the arm stays there, `[m]`.
+        translation: f64,
+        /// The same of the orientation, `[rad]`.
+        rotation: f64,
+        /// The joint at the end of its range, from 1; `None` if it is the arm's reach that ends.
+        joint: Option<usize>,
+    },
+}
+
+fn begin_of(waypoint: usize) -> String {
+    match waypoint {
+        0 => "the start".to_owned(),
+        waypoint => format!("waypoint {waypoint}"),
+    }
+}
+
+fn reason_of(joint: Option<usize>) -> String {
+    joint.map_or(String::new(), |joint| {
+        format!(" with joint {joint} at the end of its range")
+    })
+}
