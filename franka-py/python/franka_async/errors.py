@@ -1,0 +1,85 @@
+"""What can go wrong, by who can act on it.
+
+Every exception of the package is a :class:`FrankaError`. Mistakes in arguments are ``ValueError`` or ``TypeError``, as everywhere
+in Python.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ._native import ControlLog
+
+__all__ = [
+    "ActionError",
+    "ActiveError",
+    "CommandError",
+    "ConnectError",
+    "ControlError",
+    "FrankaError",
+    "IdentifyError",
+    "MotionError",
+    "ReadError",
+]
+
+
+class FrankaError(Exception):
+    """Anything that can go wrong with a robot or its end effectors."""
+
+    kind: str
+    """What went wrong, as one word or more in snake case: ``superseded``, ``link_lost``, ``refused``."""
+
+    party: str
+    """Who can act on it: ``caller``, ``robot``, ``link``, ``host`` or ``peer``."""
+
+
+class ConnectError(FrankaError):
+    """There is no connection."""
+
+
+class CommandError(FrankaError):
+    """A command other than a motion was not carried out."""
+
+
+class ReadError(FrankaError):
+    """States could not be read any further."""
+
+
+class ActionError(FrankaError):
+    """An end effector did not do it."""
+
+
+class IdentifyError(FrankaError):
+    """An arm was not identified."""
+
+
+class MotionError(FrankaError):
+    """A motion ended short of its goal."""
+
+    is_ready_for_more: bool
+    """Whether the robot takes a new motion without help from outside."""
+
+
+class ActiveError(MotionError):
+    """Active control could not go on."""
+
+
+class ControlError(MotionError):
+    """The robot ended the motion: a reflex, a user stop, another client's stop."""
+
+    errors: list[str]
+    """The errors that stopped it, by the vendor's names."""
+
+    move_status: str
+    """The robot's last word on the motion: ``reflex_aborted``, ``preempted``, ..."""
+
+    log: ControlLog
+    """The last cycles of the motion."""
+
+    diagnosis: str
+    """Which limit was exceeded, by how much, since when, and what to change."""
+
+    def to_csv(self) -> str:
+        """Returns the log as comma-separated values, a line for each cycle."""
+        return self.log.to_csv()

@@ -1,0 +1,163 @@
+//! Numbers between Python and Rust: arguments from lists or arrays of any numeric type, results as
+//! new `float64` arrays.
+
+use franka_async::Pose;
+use franka_async::nalgebra::{Matrix4, SMatrix};
+use franka_async::pose;
+use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLikeDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The numbers of an argument, with its shape. Row-major, whatever the order in memory.
+pub(crate) struct Numbers {
+    pub(crate) shape: Vec<usize>,
+    pub(crate) values: Vec<f64>,
+}
+
+impl Numbers {
+    /// Reads a number, a list (of lists) or an array.
+    ///
+    /// # Errors
+    /// `TypeError` if there are no numbers in it.
+    pub(crate) fn read(argument: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = argument.extract()?;
+        let shape = array.shape().to_vec();
+        let values = array.as_array().iter().copied().collect();
+        Ok(Self { shape, values })
+    }
+}
+
+/// Reads `N` numbers from the argument called `name`.
+///
+/// # Errors
+/// `ValueError` for another shape or numbers that are not finite; `TypeError`.
+pub(crate) fn vector<const N: usize>(
+    name: &str,
+    argument: &Bound<'_, PyAny>,
+) -> PyResult<[f64; N]> {
+    let Numbers { shape, values } = Numbers::read(argument)?;
+    let vector: [f64; N] = match values.try_into() {
+        Ok(vector) if shape.len() == 1 => vector,
+        _ => return Err(unexpected_shape(name, &shape, &format!("({N},)"))),
+    };
+    check_finite(name, &vector)?;
+    Ok(vector)
+}
+
+/// Reads rows of `N` numbers each from the argument called `name`; one row may stand alone.
+///
+/// # Errors
+/// As [`vector`].
+pub(crate) fn rows<const N: usize>(
+    name: &str,
+    argument: &Bound<'_, PyAny>,
+) -> PyResult<Vec<[f64; N]>> {
+    let Numbers { shape, values } = Numbers::read(argument)?;
+    if !matches!(*shape, [width] | [_, width] if width == N) {
+        return Err(unexpected_shape(
+            name,
+            &shape,
+            &format!("({N},) or (n, {N})"),
+        ));
+    }
+    check_finite(name, &values)?;
+    Ok(values.as_chunks::<N>().0.to_vec())
+}
+
+/// Reads a pose, `(4, 4)` with the translation in the last column, or 3 + 4 numbers: position `[m]`
+/// and quaternion `x y z w`.
+///
+/// # Errors
+/// `ValueError` for another shape, numbers that are not finite, a matrix that is not rigid and a
+/// quaternion of no length; `TypeError`.
+pub(crate) fn pose(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Pose> {
+    let Numbers { shape, values } = Numbers::read(argument)?;
+    pose_of(name, &shape, &values)?.ok_or_else(|| {
+        unexpected_shape(
+            name,
+            &shape,
+            "(4, 4) or (7,): x y z and a quaternion x y z w",
+        )
+    })
+}
+
+/// The pose in these numbers; `None` for another shape.
+///
+/// # Errors
+/// As [`pose`].
+pub(crate) fn pose_of(name: &str, shape: &[usize], values: &[f64]) -> PyResult<Option<Pose>> {
+    check_finite(name, values)?;
+    match *shape {
+        [4, 4] => {
+            let matrix = Matrix4::from_row_slice(values);
+            let pose = pose::from_matrix(&matrix).ok_or_else(|| {
+                PyValueError::new_err(format!("{name} is not a rigid transformation: {matrix}"))
+            });
+            pose.map(Some)
+        }
+        [7] => {
+            let [x, y, z, quaternion @ ..] = <[f64; 7]>::try_from(values).expect("seven numbers");
+            let pose = pose::from_xyzw([x, y, z], quaternion).ok_or_else(|| {
+                let text =
+                    format!("{name} has the quaternion {quaternion:?}, which has no direction");
+                PyValueError::new_err(text)
+            });
+            pose.map(Some)
+        }
+        _ => Ok(None),
+    }
+}
+
+/// The error for an argument of the wrong shape.
+pub(crate) fn unexpected_shape(name: &str, got: &[usize], expected: &str) -> PyErr {
+    PyValueError::new_err(format!("{name} has the shape {got:?}, expected {expected}"))
+}
+
+fn check_finite(name: &str, values: &[f64]) -> PyResult<()> {
+    match values.iter().find(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(value) => Err(PyValueError::new_err(format!(
+            "{name} holds {value}, expected finite numbers"
+        ))),
+    }
+}
+
+/// A new array of these numbers.
+pub(crate) fn array<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
+    PyArray1::from_slice(py, values)
+}
+
+/// A new array of a matrix.
+pub(crate) fn matrix<'py, const R: usize, const C: usize>(
+    py: Python<'py>,
+    matrix: &SMatrix<f64, R, C>,
+) -> Bound<'py, PyArray2<f64>> {
+    // Row-major: the memory of the transposed.
+    table(py, matrix.transpose().as_slice(), C)
+}
+
+/// A new `(4, 4)` array of a pose, with the translation in the last column.
+pub(crate) fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> Bound<'py, PyArray2<f64>> {
+    matrix(py, &pose.to_homogeneous())
+}
+
+/// A new array of a matrix that the robot says column by column.
+pub(crate) fn columns<'py, const R: usize, const C: usize>(
+    py: Python<'py>,
+    values: &[f64],
+) -> Bound<'py, PyArray2<f64>> {
+    matrix(py, &SMatrix::<f64, R, C>::from_column_slice(values))
+}
+
+/// A new array with rows of `width` numbers each, from row-major `values`.
+pub(crate) fn table<'py>(
+    py: Python<'py>,
+    values: &[f64],
+    width: usize,
+) -> Bound<'py, PyArray2<f64>> {
+    use numpy::PyArrayMethods;
+    let rows = values.len() / width.max(1);
+    array(py, values)
+        .reshape([rows, width])
+        .expect("as many numbers as the shape has")
+}

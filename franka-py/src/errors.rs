@@ -1,0 +1,141 @@
+//! Errors of the driver as exceptions. Their classes are in `errors.py`.
+
+use franka_async::Error;
+use franka_async::MotionError;
+use franka_async::connection::Version;
+use franka_async::diagnosis::Diagnose;
+use franka_async::error::{
+    ActiveError, CommandError, ConnectError, ControlError, GripperError, IdentifyError, ReadError,
+    Status, VacuumGripperError,
+};
+use franka_async::model::RobotKind;
+use pyo3::prelude::*;
+
+use crate::log::ControlLog;
+use crate::state::names;
+
+/// Becomes an exception, where the interpreter is at hand.
+pub(crate) trait Raise: Send + 'static {
+    /// The exception.
+    fn raise(self, py: Python<'_>) -> PyErr;
+}
+
+impl Raise for PyErr {
+    fn raise(self, _: Python<'_>) -> PyErr {
+        self
+    }
+}
+
+macro_rules! raise {
+    ($($error:ty),*) => {$(
+        impl Raise for $error {
+            fn raise(self, py: Python<'_>) -> PyErr {
+                Error::from(self).raise(py)
+            }
+        }
+    )*};
+}
+
+raise!(
+    MotionError,
+    CommandError,
+    ConnectError,
+    ReadError,
+    ActiveError,
+    IdentifyError,
+    GripperError,
+    VacuumGripperError
+);
+
+impl Raise for Error {
+    fn raise(self, py: Python<'_>) -> PyErr {
+        exception(py, &self).unwrap_or_else(|broken| broken)
+    }
+}
+
+fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+    let class = match error {
+        Error::Connect(_) | Error::ConnectGripper(_) | Error::ConnectVacuumGripper(_) => {
+            "ConnectError"
+        }
+        Error::Command(_) => "CommandError",
+        Error::Control(_) => "ControlError",
+        Error::Motion(_) => "MotionError",
+        Error::Active(_) => "ActiveError",
+        Error::Identify(_) => "IdentifyError",
+        Error::Read(_) => "ReadError",
+        Error::Gripper(_) | Error::VacuumGripper(_) => "ActionError",
+        _ => "FrankaError",
+    };
+    let class = py.import("franka_async.errors")?.getattr(class)?;
+    let exception = class.call1((error.to_string(),))?;
+    exception.setattr("kind", kind(error))?;
+    exception.setattr("party", variant(&error.party()))?;
+    match error {
+        Error::Motion(motion) => {
+            exception.setattr("is_ready_for_more", motion.is_ready_for_more())?
+        }
+        Error::Control(control) => {
+            exception.setattr("is_ready_for_more", !control.is_reflex())?;
+            set_control(&exception, control)?;
+        }
+        Error::Active(_) => exception.setattr("is_ready_for_more", true)?,
+        _ => {}
+    }
+    Ok(PyErr::from_value(exception))
+}
+
+fn set_control(exception: &Bound<'_, PyAny>, control: &ControlError) -> PyResult<()> {
+    exception.setattr("errors", names(control.failure.reflex_reason))?;
+    exception.setattr("move_status", status(control.refusal().status()))?;
+    let version = match control.model.kind() {
+        RobotKind::Fer => Version::V5,
+        _ => Version::V10,
+    };
+    exception.setattr("log", ControlLog::new(control.log.clone(), version))?;
+    let diagnosis = control.diagnose().map(|diagnosis| diagnosis.to_string());
+    exception.setattr("diagnosis", diagnosis)
+}
+
+/// The name of what happened.
+fn kind(error: &Error) -> String {
+    match error {
+        Error::Connect(error) => variant(error),
+        Error::Command(error) => variant(error),
+        Error::Control(error) => status(error.refusal().status()),
+        Error::Motion(error) => variant(error),
+        Error::Active(error) => variant(error),
+        Error::Identify(error) => variant(error),
+        Error::Read(error) => variant(error),
+        Error::ConnectGripper(error) => variant(error),
+        Error::Gripper(error) => variant(error),
+        Error::ConnectVacuumGripper(error) => variant(error),
+        Error::VacuumGripper(error) => variant(error),
+        _ => variant(error),
+    }
+}
+
+/// The name of the robot's answer, without that of the command: `reflex_aborted`.
+fn status(status: Status) -> String {
+    let text = format!("{status:?}");
+    let name = text.rsplit('(').next().unwrap_or_default();
+    snake_case(name.trim_end_matches(')'))
+}
+
+/// The name of an enum's variant, which a derived `Debug` begins with: `link_lost`.
+pub(crate) fn variant(value: &impl std::fmt::Debug) -> String {
+    let text = format!("{value:?}");
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    snake_case(text.split(|c| !is_name(c)).next().unwrap_or_default())
+}
+
+fn snake_case(name: &str) -> String {
+    let mut snake = String::with_capacity(name.len() + 4);
+    for (i, letter) in name.char_indices() {
+        if letter.is_uppercase() && i > 0 {
+            snake.push('_');
+        }
+        snake.extend(letter.to_lowercase());
+    }
+    snake
+}

@@ -1,0 +1,225 @@
+//! What Python awaits or waits for: a Rust future that begins with the first step.
+
+use std::future::Future;
+use std::pin::Pin;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyAny;
+
+use crate::errors::Raise;
+use crate::runtime;
+
+/// A value on its way into Python: made into an object where the interpreter is at hand.
+struct Delivered(Deliver);
+
+type Deliver = Box<dyn FnOnce(Python<'_>) -> PyResult<Py<PyAny>> + Send>;
+
+impl<'py> IntoPyObject<'py> for Delivered {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok((self.0)(py)?.into_bound(py))
+    }
+}
+
+type Work = Pin<Box<dyn Future<Output = Delivered> + Send>>;
+
+/// Something that takes time: `await` it in a coroutine, or call `wait()` on a thread without an
+/// event loop. It begins then and not before. Where the waiting is cancelled, so is the operation; a
+/// motion brakes.
+///
+/// It is a coroutine in the sense of `collections.abc`, so `asyncio.create_task`, `TaskGroup`,
+/// `gather`, `wait_for` and `timeout` take it.
+#[pyclass(frozen, subclass, module = "franka_async")]
+pub(crate) struct Operation {
+    name: &'static str,
+    stage: Mutex<Stage>,
+}
+
+enum Stage {
+    Ready(Work),
+    /// The iterator of the asyncio future that stands for the work.
+    Awaited(Py<PyAny>),
+    Over,
+}
+
+impl Operation {
+    /// An operation called `name` that does `work`.
+    pub(crate) fn new<T, E>(
+        name: &'static str,
+        work: impl Future<Output = Result<T, E>> + Send + 'static,
+    ) -> Self
+    where
+        T: for<'py> IntoPyObject<'py> + Send + 'static,
+        E: Raise,
+    {
+        let work = async move {
+            // Tasks do not wait for the interpreter: objects are made by whoever awaits them.
+            let outcome = work.await;
+            Delivered(Box::new(move |py| match outcome {
+                Ok(value) => value.into_py_any(py),
+                Err(error) => Err(error.raise(py)),
+            }))
+        };
+        let stage = Mutex::new(Stage::Ready(Box::pin(work)));
+        Self { name, stage }
+    }
+
+    /// An operation called `name` that does `work`, which cannot fail.
+    pub(crate) fn infallible<T>(
+        name: &'static str,
+        work: impl Future<Output = T> + Send + 'static,
+    ) -> Self
+    where
+        T: for<'py> IntoPyObject<'py> + Send + 'static,
+    {
+        Self::new(name, async move { Ok::<T, PyErr>(work.await) })
+    }
+
+    fn stage(&self) -> MutexGuard<'_, Stage> {
+        self.stage.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes the work out, which begins now.
+    fn begin(&self) -> PyResult<Work> {
+        match std::mem::replace(&mut *self.stage(), Stage::Over) {
+            Stage::Ready(work) => Ok(work),
+            begun => {
+                *self.stage() = begun;
+                let name = self.name;
+                let message = format!("{name}() was awaited already: call it again for another");
+                Err(PyRuntimeError::new_err(message))
+            }
+        }
+    }
+
+    /// The iterator that is being awaited; begins the work if nothing has.
+    fn iterator<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if let Stage::Awaited(iterator) = &*self.stage() {
+            return Ok(iterator.bind(py).clone());
+        }
+        let work = self.begin()?;
+        runtime::runtime()?;
+        let future = pyo3_async_runtimes::tokio::future_into_py(py, async { Ok(work.await) })?;
+        let iterator = future.call_method0("__await__")?;
+        *self.stage() = Stage::Awaited(iterator.clone().unbind());
+        Ok(iterator)
+    }
+}
+
+#[pymethods]
+impl Operation {
+    /// Waits on this thread, with the interpreter released, and returns the result. After `timeout`
+    /// seconds the operation is cancelled (a motion brakes) and `TimeoutError` is raised; Ctrl-C
+    /// cancels it and raises `KeyboardInterrupt`.
+    #[pyo3(signature = (timeout = None))]
+    fn wait(&self, py: Python<'_>, timeout: Option<f64>) -> PyResult<Py<PyAny>> {
+        let timeout = timeout.map(seconds).transpose()?;
+        let delivered = runtime::wait(py, self.begin()?, timeout)?;
+        (delivered.0)(py)
+    }
+
+    fn __await__(this: Py<Self>) -> Py<Self> {
+        this
+    }
+
+    fn __iter__(this: Py<Self>) -> Py<Self> {
+        this
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.send(py, py.None())
+    }
+
+    /// Part of being a coroutine: goes on from the last `await`.
+    fn send(&self, py: Python<'_>, value: Py<PyAny>) -> PyResult<Py<PyAny>> {
+        let sent = self.iterator(py)?.call_method1("send", (value,));
+        Ok(sent?.unbind())
+    }
+
+    /// Part of being a coroutine: raises inside of it.
+    #[pyo3(signature = (kind, value = None, traceback = None))]
+    fn throw(
+        &self,
+        py: Python<'_>,
+        kind: Py<PyAny>,
+        value: Option<Py<PyAny>>,
+        traceback: Option<Py<PyAny>>,
+    ) -> PyResult<Py<PyAny>> {
+        let begun = match &*self.stage() {
+            Stage::Awaited(iterator) => Some(iterator.bind(py).clone()),
+            Stage::Ready(_) | Stage::Over => None,
+        };
+        let Some(iterator) = begun else {
+            *self.stage() = Stage::Over;
+            return Err(raised(py, kind.bind(py), value)?);
+        };
+        Ok(iterator
+            .call_method1("throw", (kind, value, traceback))?
+            .unbind())
+    }
+
+    /// Part of being a coroutine: gives the operation up. A motion brakes.
+    fn close(&self, py: Python<'_>) -> PyResult<()> {
+        let stage = std::mem::replace(&mut *self.stage(), Stage::Over);
+        if let Stage::Awaited(iterator) = stage {
+            iterator.bind(py).call_method0("close")?;
+        }
+        Ok(())
+    }
+
+    fn __repr__(&self) -> String {
+        let stage = match &*self.stage() {
+            Stage::Ready(_) => "not begun",
+            Stage::Awaited(_) => "under way",
+            Stage::Over => "over",
+        };
+        format!("<{} {stage}>", self.name)
+    }
+}
+
+/// The exception of `throw(kind, value)`.
+fn raised(py: Python<'_>, kind: &Bound<'_, PyAny>, value: Option<Py<PyAny>>) -> PyResult<PyErr> {
+    let is_instance = kind.is_instance_of::<pyo3::exceptions::PyBaseException>();
+    Ok(PyErr::from_value(match value {
+        _ if is_instance => kind.clone(),
+        Some(value) => kind.call1((value.bind(py),))?,
+        None => kind.call0()?,
+    }))
+}
+
+impl Drop for Operation {
+    fn drop(&mut self) {
+        let stage = self.stage.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if matches!(stage, Stage::Ready(_)) {
+            let name = self.name;
+            Python::attach(|py| {
+                let text = format!("{name}() was never awaited, and has done nothing");
+                let text = std::ffi::CString::new(text).expect("no zero in it");
+                let category = py.get_type::<PyRuntimeWarning>();
+                // A warning that is made an error cannot be raised while an object is freed.
+                if let Err(error) = PyErr::warn(py, &category, &text, 1) {
+                    error.write_unraisable(py, None);
+                }
+            });
+        }
+    }
+}
+
+/// A duration of so many seconds.
+///
+/// # Errors
+/// `ValueError` unless it is finite and not negative.
+pub(crate) fn seconds(seconds: f64) -> PyResult<Duration> {
+    Duration::try_from_secs_f64(seconds).map_err(|_| {
+        PyValueError::new_err(format!(
+            "got {seconds} seconds, expected a number from 0 on"
+        ))
+    })
+}

@@ -1,0 +1,103 @@
+//! The Tokio runtime of the module, and waiting for its futures on threads of Python.
+
+use std::future::Future;
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use pyo3::exceptions::{PyRuntimeError, PyTimeoutError};
+use pyo3::prelude::*;
+use tokio::runtime::{Builder, Runtime};
+use tokio::time::Instant;
+
+/// The runtime that all robots of the process share. The first call starts its threads.
+///
+/// # Errors
+/// `RuntimeError` in a process that was forked after the first call: the threads are not there.
+pub(crate) fn runtime() -> PyResult<&'static Runtime> {
+    static RUNTIME: OnceLock<(&'static Runtime, u32)> = OnceLock::new();
+    let (runtime, process) = RUNTIME.get_or_init(|| {
+        let runtime = Builder::new_multi_thread()
+            .worker_threads(2)
+            .thread_name("franka-async")
+            .enable_all()
+            .build()
+            .expect("threads for the background");
+        let runtime: &Runtime = Box::leak(Box::new(runtime));
+        // Fails where one is set already: nothing else in this module sets one.
+        let _ = pyo3_async_runtimes::tokio::init_with_runtime(runtime);
+        (runtime, std::process::id())
+    });
+    if *process != std::process::id() {
+        return Err(PyRuntimeError::new_err(
+            "this process was forked after franka_async had been used in its parent: use the start \
+             method 'spawn' or 'forkserver', or fork before the first call",
+        ));
+    }
+    Ok(runtime)
+}
+
+/// Waits for `work` on the calling thread, with the interpreter released. After `timeout`, and when
+/// a signal handler raises (Ctrl-C), `work` is dropped first: a motion brakes.
+///
+/// # Errors
+/// `TimeoutError`, what the signal handler raised, and `RuntimeError` on a thread that runs an event
+/// loop.
+pub(crate) fn wait<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl Future<Output = T> + Send + 'static,
+    timeout: Option<Duration>,
+) -> PyResult<T> {
+    let runtime = runtime()?;
+    refuse_in_event_loop(py)?;
+    py.detach(|| {
+        // A task: what it drives goes on while this thread waits for the interpreter.
+        let mut task = runtime.spawn(work);
+        let outcome = runtime.block_on(async {
+            let deadline = timeout.map(|timeout| Instant::now() + timeout);
+            loop {
+                let next = Instant::now() + SIGNALS_EVERY;
+                let until = deadline.map_or(next, |deadline| deadline.min(next));
+                match tokio::time::timeout_at(until, &mut task).await {
+                    Ok(outcome) => return Ok(outcome),
+                    Err(_) if deadline.is_some_and(|deadline| deadline <= Instant::now()) => {
+                        return Err(PyTimeoutError::new_err("not done in time"));
+                    }
+                    Err(_) => Python::attach(|py| py.check_signals())?,
+                }
+            }
+        });
+        match outcome {
+            Ok(Ok(value)) => Ok(value),
+            Ok(Err(panicked)) => Err(PyRuntimeError::new_err(panicked.to_string())),
+            Err(raised) => {
+                task.abort();
+                // Resolves once the work has been dropped.
+                let _ = runtime.block_on(task);
+                Err(raised)
+            }
+        }
+    })
+}
+
+/// An event loop that waits here serves nothing else, timeouts and cancellation included.
+fn refuse_in_event_loop(py: Python<'_>) -> PyResult<()> {
+    let running = py.import("asyncio")?.call_method0("_get_running_loop")?;
+    if running.is_none() {
+        return Ok(());
+    }
+    Err(PyRuntimeError::new_err(
+        "waiting would block the event loop of this thread: use 'await' here",
+    ))
+}
+
+/// How often a thread that waits looks for signals.
+const SIGNALS_EVERY: Duration = Duration::from_millis(50);
+
+/// Does what takes no time to speak of on the calling thread, with the interpreter released.
+pub(crate) fn blocking<T: Send>(
+    py: Python<'_>,
+    work: impl Future<Output = T> + Send,
+) -> PyResult<T> {
+    let runtime = runtime()?;
+    Ok(py.detach(|| runtime.block_on(work)))
+}
