@@ -53,6 +53,18 @@ impl Raise for Error {
     }
 }
 
+/// A `FrankaError` of this `kind` by the program itself, which this package raises before the driver is asked.
+pub(crate) fn misuse(py: Python<'_>, kind: &str, message: &str) -> PyErr {
+    let made = || {
+        let class = py.import("franka_async.errors")?.getattr("FrankaError")?;
+        let exception = class.call1((message,))?;
+        exception.setattr("kind", kind)?;
+        exception.setattr("party", "caller")?;
+        Ok(PyErr::from_value(exception))
+    };
+    made().unwrap_or_else(|broken| broken)
+}
+
 fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let class = match error {
         Error::Connect(_) | Error::ConnectGripper(_) | Error::ConnectVacuumGripper(_) => {

@@ -10,8 +10,11 @@
 //! results become Python objects where they are awaited.
 
 mod arrays;
+mod destination;
 mod errors;
+mod exit;
 mod log;
+mod motion;
 mod operation;
 mod robot;
 mod runtime;
@@ -27,6 +30,8 @@ mod _native {
     #[pymodule_export]
     use crate::log::ControlLog;
     #[pymodule_export]
+    use crate::motion::Motion;
+    #[pymodule_export]
     use crate::operation::Operation;
     #[pymodule_export]
     use crate::robot::Robot;
@@ -37,6 +42,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::exit::register(module.py())?;
         module.add("FLAT_LAYOUT", crate::state::FLAT_LAYOUT)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

@@ -1,5 +1,6 @@
 //! What Python awaits or waits for: a Rust future that begins with the first step.
 
+use std::any::TypeId;
 use std::future::Future;
 use std::pin::Pin;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -63,6 +64,7 @@ impl Operation {
             // Tasks do not wait for the interpreter: objects are made by whoever awaits them.
             let outcome = work.await;
             Delivered(Box::new(move |py| match outcome {
+                Ok(_) if TypeId::of::<T>() == TypeId::of::<()>() => Ok(py.None()),
                 Ok(value) => value.into_py_any(py),
                 Err(error) => Err(error.raise(py)),
             }))

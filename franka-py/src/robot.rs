@@ -1,57 +1,267 @@
-//! The robot.
+//! The robot: its connection, its state, stopping and recovering it.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use franka_async::Realtime;
+use franka_async::connection::{Builder, Version, VersionPolicy};
+use franka_async::supervision::Policy;
+use futures::FutureExt;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyAny;
 
-use crate::arrays::pose_array;
-use crate::operation::Operation;
+use crate::arrays::{pose_array, vector};
+use crate::destination::destination;
+use crate::errors::misuse;
+use crate::exit;
+use crate::motion::Motion;
+use crate::operation::{Operation, seconds};
+use crate::runtime::{self, Threaded};
 use crate::state::RobotState;
 
-/// A connected robot. Made by awaiting `Robot.connect(address)`.
+/// A robot at an address. `async with Robot(address) as robot:` connects, and shuts down at the end:
+/// what moves is braked. Its methods may be called from any thread.
+///
+/// When the last reference to a connected robot goes, it is braked and closed in the background; when
+/// the interpreter exits, it is waited for.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Robot {
-    robot: franka_async::Robot,
+    builder: Builder,
+    address: String,
+    connection: Threaded<Mutex<Option<franka_async::Robot>>>,
 }
 
 #[pymethods]
 impl Robot {
-    /// Connects to the robot at `address`, `host` or `host:port`. `realtime` is `enforce` (the
-    /// default) or `ignore`: whether a host without real-time scheduling is refused.
-    #[staticmethod]
-    #[pyo3(signature = (address, *, realtime = None))]
-    fn connect(address: &str, realtime: Option<&str>) -> PyResult<Operation> {
-        let builder = franka_async::Robot::builder(address).realtime(self::realtime(realtime)?);
-        Ok(Operation::new("Robot.connect", async move {
-            let robot = builder.connect().await?;
-            Ok::<_, franka_async::Error>(Self { robot })
-        }))
+    /// Describes a connection to `address`, `host` or `host:port`; nothing is sent yet.
+    ///
+    /// `realtime` is `enforce` or `ignore`: whether a host without real-time scheduling is refused.
+    /// `None` is the environment variable `FRANKA_REALTIME`, and `enforce` without one. `priority` (1 to
+    /// 99) and `cpu` are for the control thread; threads of Python keep theirs. `version` is the protocol
+    /// version, 5 or 10; negotiated if `None`. `connect_timeout` is for each step of connecting, and
+    /// `link_timeout` the silence of the robot after which a motion fails with `link_lost`, 0.02 to 1 s.
+    /// `log_size` is how many cycles an error carries, 10000 at most. `nominal_model` computes with the
+    /// vendor's constants whatever the robot says of itself. `known` is what an identification found before.
+    /// `supervise` is `True` or a policy: lost connections are made again.
+    ///
+    /// Raises `ValueError` for options that make no sense.
+    #[new]
+    #[pyo3(signature = (
+        address, *, realtime = None, priority = None, cpu = None, version = None, connect_timeout = None,
+        link_timeout = None, log_size = None, nominal_model = false, known = None, supervise = false,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
+    fn new(
+        address: String,
+        realtime: Option<&str>,
+        priority: Option<i32>,
+        cpu: Option<usize>,
+        version: Option<u16>,
+        connect_timeout: Option<f64>,
+        link_timeout: Option<f64>,
+        log_size: Option<usize>,
+        nominal_model: bool,
+        known: Option<&str>,
+        supervise: bool,
+    ) -> PyResult<Self> {
+        let mut builder = franka_async::Robot::builder(&address)
+            .realtime(self::realtime(realtime)?)
+            .nominal_model(nominal_model)
+            .cancellation(exit::cancellation());
+        if let Some(priority) = priority {
+            builder = builder.priority(priority);
+        }
+        if let Some(cpu) = cpu {
+            builder = builder.cpu(cpu);
+        }
+        if let Some(number) = version {
+            let version = Version::from_number(number).ok_or_else(|| {
+                PyValueError::new_err(format!("version is {number}, expected 5 or 10"))
+            })?;
+            builder = builder.version(VersionPolicy::Exact(version));
+        }
+        if let Some(timeout) = connect_timeout {
+            builder = builder.connect_timeout(seconds(timeout)?);
+        }
+        if let Some(timeout) = link_timeout {
+            builder = builder.link_timeout(seconds(timeout)?);
+        }
+        if let Some(cycles) = log_size {
+            builder = builder.log_size(cycles);
+        }
+        if let Some(json) = known {
+            let found = serde_json::from_str(json).map_err(|error| {
+                PyValueError::new_err(format!("known is no identification: {error}"))
+            })?;
+            builder = builder.known(found);
+        }
+        if supervise {
+            builder = builder.supervise(Policy::default());
+        }
+        Ok(Self {
+            builder,
+            address,
+            connection: Threaded::new(Mutex::new(None)),
+        })
+    }
+
+    /// Connects, and returns this robot; without effect while it is connected. Raises `ConnectError`.
+    /// Cancelling gives it up.
+    fn connect(this: &Bound<'_, Self>) -> Operation {
+        let (robot, builder) = (this.clone().unbind(), this.get().builder.clone());
+        Operation::new("Robot.connect", async move {
+            if robot.get().open().is_none() {
+                let connected = builder.connect().await?;
+                exit::wait_for(&connected);
+                *robot.get().connection() = Some(connected);
+            }
+            Ok::<_, franka_async::Error>(robot)
+        })
+    }
+
+    /// Brakes whatever moves, ends it and closes the connection; without effect if there is none. Once it
+    /// has begun, it goes on even if it is cancelled.
+    fn shutdown(this: &Bound<'_, Self>) -> Operation {
+        let robot = this.clone().unbind();
+        Operation::infallible("Robot.shutdown", async move {
+            let connected = robot.get().connection().take();
+            if let Some(connected) = connected {
+                connected.shutdown().await;
+            }
+        })
+    }
+
+    fn __aenter__(this: &Bound<'_, Self>) -> Operation {
+        Self::connect(this)
+    }
+
+    #[pyo3(signature = (*_exception))]
+    fn __aexit__(this: &Bound<'_, Self>, _exception: &Bound<'_, PyAny>) -> Operation {
+        Self::shutdown(this)
+    }
+
+    /// Where the robot is: as given, and resolved once it is connected.
+    #[getter]
+    fn address(&self) -> String {
+        match &*self.connection() {
+            Some(robot) => robot.address().to_string(),
+            None => self.address.clone(),
+        }
+    }
+
+    /// Whether there is a connection, or of a supervised robot will be one again.
+    #[getter]
+    fn is_connected(&self) -> bool {
+        self.open().is_some()
+    }
+
+    /// The protocol version that the robot speaks: 10 for a Franka Research 3, 5 for a Franka Emika Robot.
+    #[getter]
+    fn fci_version(&self) -> PyResult<u16> {
+        Ok(self.connected()?.version().number())
     }
 
     /// The newest state, without waiting.
-    fn state(&self) -> RobotState {
-        RobotState::new(self.robot.state(), self.robot.version())
+    fn state(&self) -> PyResult<RobotState> {
+        let robot = self.connected()?;
+        Ok(RobotState::new(robot.state(), robot.version()))
     }
 
     /// The measured pose of the end effector in the base frame, `(4, 4)`.
-    fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        pose_array(py, &self.robot.pose())
+    fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        Ok(pose_array(py, &self.connected()?.pose()))
     }
 
-    /// Brakes whatever moves, and closes the connection.
-    fn shutdown(&self) -> Operation {
-        let robot = self.robot.clone();
-        Operation::infallible("shutdown", async move { robot.shutdown().await })
+    /// The pose in the base frame, `(4, 4)`, that the end effector has at joint positions `q`, `(7,)` rad.
+    fn pose_at<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let q = vector("q", q)?;
+        Ok(pose_array(py, &self.connected()?.pose_at(q)))
+    }
+
+    /// A motion of the end effector to `target` in the base frame: `(4, 4)`; 3 numbers, a position that is
+    /// reached with the orientation kept; or 3 + 4 numbers, with a quaternion `x y z w`, which may be a pair.
+    fn move_to(&self, py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<Py<Motion>> {
+        let target = destination("target", target)?;
+        Motion::new(py, "Robot.move_to", self.connected()?.move_to(target))
+    }
+
+    /// Brakes whatever moves, and waits until the arm rests and the motion has ended; that one raises
+    /// `MotionError` of the kind `stopped`. Once it has begun, it goes on even if it is cancelled.
+    fn stop(&self) -> PyResult<Operation> {
+        let robot = self.connected()?;
+        Ok(Operation::new(
+            "Robot.stop",
+            async move { robot.stop().await },
+        ))
+    }
+
+    /// Recovers the robot from a reflex, and waits until it takes motions again; without effect if there is
+    /// nothing to recover from. Moves nothing. Raises `CommandError`.
+    fn recover(&self) -> PyResult<Operation> {
+        let robot = self.connected()?;
+        Ok(Operation::new("Robot.recover", async move {
+            robot.recover().await
+        }))
+    }
+
+    fn __repr__(&self) -> String {
+        match &*self.connection() {
+            Some(robot) => format!("<Robot at {}>", robot.address()),
+            None => format!("<Robot at {}, not connected>", self.address),
+        }
     }
 }
 
-fn realtime(choice: Option<&str>) -> PyResult<Realtime> {
+impl Robot {
+    /// The connected robot.
+    ///
+    /// # Errors
+    /// `FrankaError` of the kind `not_connected`; `RuntimeError` in a forked child.
+    pub(crate) fn connected(&self) -> PyResult<franka_async::Robot> {
+        runtime::runtime()?;
+        self.connection().clone().ok_or_else(|| {
+            let text = format!(
+                "not connected to the robot at {}: use 'async with', or await connect() before",
+                self.address
+            );
+            Python::attach(|py| misuse(py, "not_connected", &text))
+        })
+    }
+
+    /// The connected robot, unless its connection has ended for good.
+    fn open(&self) -> Option<franka_async::Robot> {
+        let robot = self.connection().clone()?;
+        let ended = robot.closed().now_or_never().is_some();
+        (!ended).then_some(robot)
+    }
+
+    fn connection(&self) -> MutexGuard<'_, Option<franka_async::Robot>> {
+        // Nothing can panic while it is held.
+        let connection = self.connection.lock();
+        connection.unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What `realtime` says, or else the environment.
+///
+/// # Errors
+/// `ValueError`.
+pub(crate) fn realtime(choice: Option<&str>) -> PyResult<Realtime> {
+    let environment = std::env::var("FRANKA_REALTIME").ok();
+    let (name, choice) = match choice {
+        Some(choice) => ("realtime", Some(choice)),
+        None => ("FRANKA_REALTIME", environment.as_deref()),
+    };
     match choice {
-        None | Some("enforce") => Ok(Realtime::Enforce),
+        None | Some("" | "enforce") => Ok(Realtime::Enforce),
         Some("ignore") => Ok(Realtime::Ignore),
         Some(other) => {
-            let text = format!("realtime is {other:?}, expected 'enforce' or 'ignore'");
+            let text = format!("{name} is {other:?}, expected 'enforce' or 'ignore'");
             Err(PyValueError::new_err(text))
         }
     }

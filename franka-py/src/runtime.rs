@@ -1,6 +1,7 @@
 //! The Tokio runtime of the module, and waiting for its futures on threads of Python.
 
 use std::future::Future;
+use std::ops::Deref;
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -9,12 +10,14 @@ use pyo3::prelude::*;
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::Instant;
 
+/// The runtime, and the process whose threads it has.
+static RUNTIME: OnceLock<(&'static Runtime, u32)> = OnceLock::new();
+
 /// The runtime that all robots of the process share. The first call starts its threads.
 ///
 /// # Errors
 /// `RuntimeError` in a process that was forked after the first call: the threads are not there.
 pub(crate) fn runtime() -> PyResult<&'static Runtime> {
-    static RUNTIME: OnceLock<(&'static Runtime, u32)> = OnceLock::new();
     let (runtime, process) = RUNTIME.get_or_init(|| {
         let runtime = Builder::new_multi_thread()
             .worker_threads(2)
@@ -34,6 +37,37 @@ pub(crate) fn runtime() -> PyResult<&'static Runtime> {
         ));
     }
     Ok(runtime)
+}
+
+/// The runtime, if it was started in this process.
+pub(crate) fn started() -> Option<&'static Runtime> {
+    RUNTIME.get()?;
+    runtime().ok()
+}
+
+/// A value with threads behind it. In a forked child, where nothing would answer it, it is not dropped.
+pub(crate) struct Threaded<T>(Option<T>);
+
+impl<T> Threaded<T> {
+    pub(crate) fn new(value: T) -> Self {
+        Self(Some(value))
+    }
+}
+
+impl<T> Deref for Threaded<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.0.as_ref().expect("taken by `drop` only")
+    }
+}
+
+impl<T> Drop for Threaded<T> {
+    fn drop(&mut self) {
+        if RUNTIME.get().is_some() && started().is_none() {
+            std::mem::forget(self.0.take());
+        }
+    }
 }
 
 /// Waits for `work` on the calling thread, with the interpreter released. After `timeout`, and when

@@ -1,6 +1,6 @@
 """Driver for Franka robots: motions are awaitables, states are numpy arrays, control stays on a real-time thread."""
 
-from ._native import ControlLog, Operation, Robot, RobotState, Sim
+from ._native import ControlLog, Motion, Operation, Robot, RobotState, Sim
 from .errors import (
     ActionError,
     ActiveError,
@@ -22,6 +22,7 @@ __all__ = [
     "ControlLog",
     "FrankaError",
     "IdentifyError",
+    "Motion",
     "MotionError",
     "Operation",
     "ReadError",

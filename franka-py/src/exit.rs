@@ -1,0 +1,67 @@
+//! What becomes of robots when the interpreter exits.
+
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use franka_async::Robot;
+use franka_async::connection::CancellationToken;
+use pyo3::prelude::*;
+use tokio_util::task::TaskTracker;
+
+use crate::runtime;
+
+struct Live {
+    /// Cancelled when the interpreter exits: each robot then brakes and closes.
+    exit: CancellationToken,
+    /// A task for each connected robot, which ends when the robot has closed.
+    robots: TaskTracker,
+}
+
+static LIVE: LazyLock<Live> = LazyLock::new(|| Live {
+    exit: CancellationToken::new(),
+    robots: TaskTracker::new(),
+});
+
+/// What every connection is to be given, so that it ends with the interpreter.
+pub(crate) fn cancellation() -> CancellationToken {
+    LIVE.exit.clone()
+}
+
+/// Has the exit of the interpreter wait for this robot. Called on the runtime.
+pub(crate) fn wait_for(robot: &Robot) {
+    // No handle: a robot that nobody holds any more closes.
+    let mut health = robot.health();
+    LIVE.robots
+        .spawn(async move { while health.changed().await.is_ok() {} });
+}
+
+/// Has `atexit` call [`shut_down`], before the interpreter is taken apart.
+pub(crate) fn register(py: Python<'_>) -> PyResult<()> {
+    let function = wrap_pyfunction!(shut_down, py)?;
+    py.import("atexit")?.call_method1("register", (function,))?;
+    Ok(())
+}
+
+/// Brakes every robot and closes its connection; waits for that for a bounded time. In a forked child it
+/// does nothing: the robots are the parent's.
+#[pyfunction]
+fn shut_down(py: Python<'_>) {
+    let Some(runtime) = runtime::started() else {
+        return;
+    };
+    py.detach(|| {
+        LIVE.exit.cancel();
+        LIVE.robots.close();
+        runtime.block_on(async {
+            if tokio::time::timeout(LONGEST, LIVE.robots.wait())
+                .await
+                .is_err()
+            {
+                eprintln!("franka_async: a robot did not close within {LONGEST:?}");
+            }
+        });
+    });
+}
+
+/// A motion brakes within a quarter of a second; a robot that does not answer is given up after two.
+const LONGEST: Duration = Duration::from_secs(4);
