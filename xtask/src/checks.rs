@@ -8,7 +8,7 @@ use clap::ValueEnum;
 
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
-use crate::{circles, mujoco, names, peers, realtime, tidy};
+use crate::{circles, mujoco, names, package, peers, realtime, tidy};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -27,12 +27,14 @@ pub(crate) enum Check {
     Doc,
     /// All tests and documentation examples.
     Test,
-    /// What the next two steps need.
+    /// What the next three steps need.
     Builds,
     /// What is there without features, and without the standard library.
     Bare,
     /// Other clients against the simulator.
     Peers,
+    /// The Python package: its tests and types.
+    Python,
 }
 
 /// Runs the chosen steps, or all if none is chosen, up to the first failure.
@@ -58,9 +60,10 @@ impl Check {
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
             Self::Test => ("test", "all tests and documentation examples"),
-            Self::Builds => ("builds", "what the next two steps need, side by side"),
+            Self::Builds => ("builds", "what the next three steps need, side by side"),
             Self::Bare => ("bare", "without features, and without the standard library"),
             Self::Peers => ("peers", "other clients against the simulator"),
+            Self::Python => ("python", "the Python package: its tests and types"),
         }
     }
 
@@ -103,6 +106,7 @@ impl Check {
                 return no_std(workspace);
             }
             Self::Peers => return peers::run(workspace),
+            Self::Python => return package::run(workspace),
         }
         Ok(Outcome::Passed)
     }
@@ -139,7 +143,7 @@ fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
     })
 }
 
-/// Builds what the next two steps use. One after the other, each build would leave processors idle.
+/// Builds what the next three steps use. One after the other, each build would leave processors idle.
 /// A step says itself what it lacks on this machine.
 fn builds(workspace: &Workspace) -> anyhow::Result<()> {
     thread::scope(|scope| {
@@ -147,6 +151,7 @@ fn builds(workspace: &Workspace) -> anyhow::Result<()> {
             scope.spawn(|| no_std(workspace).map(drop)),
             scope.spawn(|| without_features(workspace)),
             scope.spawn(|| peers::prepare(workspace)),
+            scope.spawn(|| package::prepare(workspace).map(drop)),
         ];
         let ended = builds.map(|build| build.join().expect("no panic"));
         ended.into_iter().collect()

@@ -9,6 +9,7 @@
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
 //! | [`names`] | the step that counts the names of the driver's root |
+//! | [`package`] | the step that builds and tests the Python package |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | virtual environments, for these two |
 //! | [`realtime`] | the right to real-time scheduling |
@@ -22,6 +23,7 @@ mod fuzz;
 mod live;
 mod mujoco;
 mod names;
+mod package;
 mod peers;
 mod python;
 mod realtime;

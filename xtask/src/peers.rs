@@ -243,7 +243,11 @@ fn spawn(mut command: Command) -> anyhow::Result<(Child, PipeReader)> {
 pub(crate) fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
     let requirements = directory(workspace).join("requirements.txt");
     match supported().and_then(|()| Python::find(PYTHON)) {
-        Ok(python) => Ok(Ok(python.environment(workspace, &requirements)?)),
+        Ok(python) => Ok(Ok(python.environment(
+            workspace,
+            "python",
+            &requirements,
+        )?)),
         Err(why) => Ok(Err(why)),
     }
 }

@@ -41,15 +41,15 @@ impl Python {
         ))
     }
 
-    /// Makes the virtual environment of the scripts, in the build directory, installs
-    /// `requirements` in it and returns its interpreter. Does nothing but the last if both are as
-    /// before.
+    /// Makes the virtual environment `name` in the build directory, installs `requirements` in it
+    /// and returns its interpreter. Does nothing but the last if both are as before.
     pub(crate) fn environment(
         &self,
         workspace: &Workspace,
+        name: &str,
         requirements: &Path,
     ) -> anyhow::Result<PathBuf> {
-        let directory = workspace.target().join("python");
+        let directory = workspace.target().join(name);
         let installed = directory.join("installed.txt");
         let wanted = format!(
             "{} {:?}\n{}",

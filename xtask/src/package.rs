@@ -1,0 +1,77 @@
+//! The Python package: builds its wheel, installs it into a virtual environment of its own, and runs
+//! its tests and the checks of its types.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread;
+
+use crate::python::{NEWEST, Python, Version};
+use crate::step::Outcome;
+use crate::workspace::Workspace;
+
+/// Builds and installs the package and what its tests need; returns the interpreter that has them,
+/// or why there is none.
+pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+    let python = match Python::find(OLDEST..=NEWEST) {
+        Ok(python) => python,
+        Err(why) => return Ok(Err(why)),
+    };
+    let requirements = directory(workspace).join("tests").join("requirements.txt");
+    let interpreter = python.environment(workspace, "python-package", &requirements)?;
+    let wheels = workspace.target().join("wheels");
+    let mut build = module(workspace, &interpreter, "maturin");
+    // The profile of the tests: what computes in a cycle is optimised in it.
+    build.args(["build", "--quiet", "--locked", "--profile", "dev"]);
+    build.args(["--manifest-path", "franka-py/Cargo.toml", "--out"]);
+    build.arg(&wheels).arg("--interpreter").arg(&interpreter);
+    build.env("CARGO_TARGET_DIR", workspace.target());
+    workspace.run(&mut build)?;
+    let mut install = module(workspace, &interpreter, "pip");
+    install.args(["install", "--quiet", "--force-reinstall"]);
+    install.args(["--disable-pip-version-check", "--no-deps", "--no-index"]);
+    install.arg("--find-links").arg(&wheels).arg("franka-async");
+    workspace.run(&mut install)?;
+    Ok(Ok(interpreter))
+}
+
+/// Runs the tests beside the checks of the types.
+pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let interpreter = match prepare(workspace)? {
+        Ok(interpreter) => interpreter,
+        Err(why) => return Outcome::without(why),
+    };
+    thread::scope(|scope| {
+        let types = scope.spawn(|| types(workspace, &interpreter));
+        let mut tests = module(workspace, &interpreter, "pytest");
+        tests.args(["--quiet", "franka-py/tests"]);
+        workspace.run(&mut tests)?;
+        types.join().expect("no panic")
+    })?;
+    Ok(Outcome::Passed)
+}
+
+/// Checks the tests and examples against the stubs, and the stubs against the package.
+fn types(workspace: &Workspace, interpreter: &Path) -> anyhow::Result<()> {
+    let mut check = module(workspace, interpreter, "mypy");
+    check.args(["--strict", "--config-file", "franka-py/pyproject.toml"]);
+    check.arg("franka-py/tests");
+    workspace.run(&mut check)?;
+    let mut stubs = module(workspace, interpreter, "mypy.stubtest");
+    stubs.args(["--mypy-config-file", "franka-py/pyproject.toml"]);
+    workspace.run(stubs.arg("franka_async"))
+}
+
+/// A module of the virtual environment as a program.
+fn module(workspace: &Workspace, interpreter: &Path, name: &str) -> Command {
+    let mut command = workspace.program(interpreter);
+    command.args(["-m", name]);
+    command
+}
+
+/// Where the package is.
+fn directory(workspace: &Workspace) -> PathBuf {
+    workspace.root().join("franka-py")
+}
+
+/// The oldest Python that the wheel is for.
+const OLDEST: Version = (3, 10);
