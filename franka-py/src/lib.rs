@@ -20,6 +20,7 @@ mod robot;
 mod runtime;
 mod simulator;
 mod state;
+mod state_views;
 
 use pyo3::prelude::*;
 
@@ -43,7 +44,7 @@ mod _native {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         crate::exit::register(module.py())?;
-        module.add("FLAT_LAYOUT", crate::state::FLAT_LAYOUT)?;
+        module.add("FLAT_LAYOUT", crate::state_views::FLAT_LAYOUT)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -1,8 +1,7 @@
-//! States as numpy arrays.
+//! States as numpy arrays. What is made of them, such as text, is in `state_views`.
 #![allow(non_snake_case)]
 
 use franka_async::connection::Version;
-use franka_async::pose;
 use franka_async::state::{Errors, TotalLoad};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
@@ -262,7 +261,7 @@ impl RobotState {
 
     /// Share of the last 100 commands that arrived in time, 0 to 1; 0 while no control runs.
     #[getter]
-    fn control_command_success_rate(&self) -> f64 {
+    pub(crate) fn control_command_success_rate(&self) -> f64 {
         self.state.control_command_success_rate
     }
 
@@ -298,7 +297,7 @@ impl RobotState {
 
     /// The robot's clock, s: a thousandth more with each cycle.
     #[getter]
-    fn time(&self) -> f64 {
+    pub(crate) fn time(&self) -> f64 {
         self.state.message_id as f64 / 1000.0
     }
 
@@ -311,50 +310,32 @@ impl RobotState {
     /// What the robot does: `other`, `idle`, `move`, `guiding`, `reflex`, `user_stopped` or
     /// `automatic_error_recovery`.
     #[getter]
-    fn robot_mode(&self) -> String {
+    pub(crate) fn robot_mode(&self) -> String {
         variant(&self.state.robot_mode)
     }
 
     /// The active motion generator.
     #[getter]
-    fn motion_generator_mode(&self) -> String {
+    pub(crate) fn motion_generator_mode(&self) -> String {
         variant(&self.state.motion_generator_mode)
     }
 
     /// The active controller.
     #[getter]
-    fn controller_mode(&self) -> String {
+    pub(crate) fn controller_mode(&self) -> String {
         variant(&self.state.controller_mode)
     }
 
     /// Errors that hold the robot now, by the vendor's names.
     #[getter]
-    fn current_errors(&self) -> Vec<String> {
+    pub(crate) fn current_errors(&self) -> Vec<String> {
         names(self.state.errors)
     }
 
     /// Errors that ended the last motion, by the vendor's names.
     #[getter]
-    fn last_motion_errors(&self) -> Vec<String> {
+    pub(crate) fn last_motion_errors(&self) -> Vec<String> {
         names(self.state.reflex_reason)
-    }
-
-    /// The numbers that a policy wants, as one array, `(69,)`: see `FLAT_LAYOUT`.
-    fn flat<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, &self.flattened())
-    }
-
-    fn __repr__(&self) -> String {
-        let state = &*self.state;
-        let place = |m: &[f64; 16]| format!("[{:.4} {:.4} {:.4}]", m[12], m[13], m[14]);
-        let joints: Vec<String> = state.q.iter().map(|q| format!("{q:.4}")).collect();
-        format!(
-            "<RobotState {:.3} s, {}, q [{}], O_T_EE at {}>",
-            self.time(),
-            self.robot_mode(),
-            joints.join(" "),
-            place(&state.O_T_EE),
-        )
     }
 
     fn __reduce__<'py>(
@@ -388,46 +369,7 @@ impl RobotState {
     fn total(&self) -> TotalLoad {
         self.state.total_load(self.version)
     }
-
-    fn flattened(&self) -> Vec<f64> {
-        let state = &*self.state;
-        let (position, quaternion) = place(&state.O_T_EE);
-        let (position_c, quaternion_c) = place(&state.O_T_EE_c);
-        let parts: [&[f64]; 13] = [
-            &state.q,
-            &state.dq,
-            &state.tau_J,
-            &state.tau_ext_hat_filtered,
-            &position,
-            &quaternion,
-            &state.O_F_ext_hat_K,
-            &state.q_d,
-            &position_c,
-            &quaternion_c,
-            &state.joint_contact,
-            &state.cartesian_contact,
-            &[self.time()],
-        ];
-        parts.concat()
-    }
 }
-
-/// Where each part of `RobotState.flat()` is: name, begin, end.
-pub(crate) const FLAT_LAYOUT: [(&str, usize, usize); 13] = [
-    ("q", 0, 7),
-    ("dq", 7, 14),
-    ("tau_J", 14, 21),
-    ("tau_ext_hat_filtered", 21, 28),
-    ("O_T_EE_position", 28, 31),
-    ("O_T_EE_quaternion", 31, 35),
-    ("O_F_ext_hat_K", 35, 41),
-    ("q_d", 41, 48),
-    ("O_T_EE_c_position", 48, 51),
-    ("O_T_EE_c_quaternion", 51, 55),
-    ("joint_contact", 55, 62),
-    ("cartesian_contact", 62, 68),
-    ("time", 68, 69),
-];
 
 /// The state that `pickle` wrote.
 #[pyfunction]
@@ -437,16 +379,6 @@ pub(crate) fn _state_of_json(json: &str, version: u16) -> PyResult<RobotState> {
     let state =
         serde_json::from_str(json).map_err(|error| PyValueError::new_err(error.to_string()))?;
     Ok(RobotState::new(state, version))
-}
-
-/// Position and quaternion `x y z w` with `w >= 0`; zeros for what is not a rigid transformation.
-fn place(matrix: &[f64; 16]) -> ([f64; 3], [f64; 4]) {
-    let Some(pose) = pose::from_array(matrix) else {
-        return ([0.0; 3], [0.0; 4]);
-    };
-    let (position, quaternion) = pose::to_xyzw(&pose);
-    let sign = if quaternion[3] < 0.0 { -1.0 } else { 1.0 };
-    (position, quaternion.map(|part| sign * part))
 }
 
 pub(crate) fn names(errors: Errors) -> Vec<String> {
