@@ -5,7 +5,7 @@ use franka_async::Pose;
 use franka_async::nalgebra::{Matrix4, SMatrix};
 use franka_async::pose;
 use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLikeDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 /// The numbers of an argument, with its shape. Row-major, whatever the order in memory.
@@ -15,14 +15,19 @@ pub(crate) struct Numbers {
 }
 
 impl Numbers {
-    /// Reads a number, a list (of lists) or an array.
+    /// Reads a number, a list (of lists) or an array, of the argument called `name`.
     ///
     /// # Errors
-    /// `TypeError` if there are no numbers in it.
-    pub(crate) fn read(argument: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = argument.extract()?;
+    /// `TypeError` if it is anything else.
+    pub(crate) fn read(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = argument
+            .extract()
+            .map_err(|cause| PyTypeError::new_err(format!("{name} holds no numbers: {cause}")))?;
         let shape = array.shape().to_vec();
-        let values = array.as_array().iter().copied().collect();
+        let values = match array.as_slice() {
+            Ok(values) if array.is_c_contiguous() => values.to_vec(),
+            _ => array.as_array().iter().copied().collect(),
+        };
         Ok(Self { shape, values })
     }
 }
@@ -35,7 +40,7 @@ pub(crate) fn vector<const N: usize>(
     name: &str,
     argument: &Bound<'_, PyAny>,
 ) -> PyResult<[f64; N]> {
-    let Numbers { shape, values } = Numbers::read(argument)?;
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
     let vector: [f64; N] = match values.try_into() {
         Ok(vector) if shape.len() == 1 => vector,
         _ => return Err(unexpected_shape(name, &shape, &format!("({N},)"))),
@@ -52,7 +57,7 @@ pub(crate) fn rows<const N: usize>(
     name: &str,
     argument: &Bound<'_, PyAny>,
 ) -> PyResult<Vec<[f64; N]>> {
-    let Numbers { shape, values } = Numbers::read(argument)?;
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
     if !matches!(*shape, [width] | [_, width] if width == N) {
         return Err(unexpected_shape(
             name,
@@ -71,7 +76,7 @@ pub(crate) fn rows<const N: usize>(
 /// `ValueError` for another shape, numbers that are not finite, a matrix that is not rigid and a
 /// quaternion of no length; `TypeError`.
 pub(crate) fn pose(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Pose> {
-    let Numbers { shape, values } = Numbers::read(argument)?;
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
     pose_of(name, &shape, &values)?.ok_or_else(|| {
         unexpected_shape(
             name,
@@ -113,7 +118,7 @@ pub(crate) fn unexpected_shape(name: &str, got: &[usize], expected: &str) -> PyE
     PyValueError::new_err(format!("{name} has the shape {got:?}, expected {expected}"))
 }
 
-fn check_finite(name: &str, values: &[f64]) -> PyResult<()> {
+pub(crate) fn check_finite(name: &str, values: &[f64]) -> PyResult<()> {
     match values.iter().find(|value| !value.is_finite()) {
         None => Ok(()),
         Some(value) => Err(PyValueError::new_err(format!(

@@ -18,7 +18,7 @@ pub(crate) fn destination(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<D
     if let Some((position, quaternion)) = pair(argument) {
         return Ok(placed(name, &position, &quaternion)?.into());
     }
-    let Numbers { shape, values } = Numbers::read(argument)?;
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
     if *shape == [3] {
         return Ok(Destination::position(vector::<3>(name, argument)?));
     }

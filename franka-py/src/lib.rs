@@ -10,12 +10,15 @@
 //! results become Python objects where they are awaited.
 
 mod arrays;
+mod batch;
 mod destination;
 mod errors;
 mod exit;
 mod log;
+mod model;
 mod motion;
 mod operation;
+mod otg;
 mod robot;
 mod runtime;
 mod simulator;
@@ -31,9 +34,13 @@ mod _native {
     #[pymodule_export]
     use crate::log::ControlLog;
     #[pymodule_export]
+    use crate::model::{CartesianLimits, Clearance, Dynamics, JointLimits, Model, MotionLimits};
+    #[pymodule_export]
     use crate::motion::Motion;
     #[pymodule_export]
     use crate::operation::Operation;
+    #[pymodule_export]
+    use crate::otg::{AxisLimits, Trajectory, plan_trajectory};
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

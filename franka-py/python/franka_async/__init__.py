@@ -1,6 +1,21 @@
 """Driver for Franka robots: motions are awaitables, states are numpy arrays, control stays on a real-time thread."""
 
-from ._native import ControlLog, Motion, Operation, Robot, RobotState, Sim
+from . import otg
+from ._native import (
+    FLAT_LAYOUT,
+    CartesianLimits,
+    Clearance,
+    ControlLog,
+    Dynamics,
+    JointLimits,
+    Model,
+    Motion,
+    MotionLimits,
+    Operation,
+    Robot,
+    RobotState,
+    Sim,
+)
 from .errors import (
     ActionError,
     ActiveError,
@@ -14,19 +29,27 @@ from .errors import (
 )
 
 __all__ = [
+    "FLAT_LAYOUT",
     "ActionError",
     "ActiveError",
+    "CartesianLimits",
+    "Clearance",
     "CommandError",
     "ConnectError",
     "ControlError",
     "ControlLog",
+    "Dynamics",
     "FrankaError",
     "IdentifyError",
+    "JointLimits",
+    "Model",
     "Motion",
     "MotionError",
+    "MotionLimits",
     "Operation",
     "ReadError",
     "Robot",
     "RobotState",
     "Sim",
+    "otg",
 ]

@@ -1,0 +1,209 @@
+//! The model of an arm: kinematics, dynamics, limits, inverse kinematics, distances.
+//!
+//! | module | content |
+//! |---|---|
+//! | this | the class, poses and Jacobians, and what it is pickled as |
+//! | `arguments` | frames, tools and loads |
+//! | `dynamics` | mass, Coriolis, gravity, inverse and forward dynamics |
+//! | `ik` | joint positions for a pose, joint velocities for a twist |
+//! | `limits` | limits of the joints and of Cartesian motions |
+//! | `clearance` | distances of the arm to itself |
+
+mod arguments;
+mod clearance;
+mod dynamics;
+mod ik;
+mod limits;
+
+pub(crate) use clearance::Clearance;
+pub(crate) use dynamics::Dynamics;
+pub(crate) use limits::{CartesianLimits, JointLimits, MotionLimits};
+
+use franka_model::{EndEffector, Frame, Model as Numbers, RobotKind};
+use numpy::PyArrayDyn;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyAny, PyTuple};
+
+use crate::batch::{Batch, Cost, output, write_matrix};
+use arguments::{end_effector, frame};
+
+/// An array of as many axes as the arguments call for.
+type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// Kinematics, dynamics and limits of one arm, without a connection: `Model.fr3()`, `Model.fer()`,
+/// `Model.from_urdf(text)`.
+///
+/// Joint positions `q` (rad), velocities `dq` (rad/s) and so on are one vector, `(7,)`, or a batch,
+/// `(n, 7)`: results of a batch have a leading axis of length n. Where a function takes several,
+/// a single one goes with a batch of the other. Batches leave the interpreter to other threads.
+///
+/// Frames are `joint1` to `joint7`, `flange`, `ee` (the end effector, `F_T_EE` from the flange) and
+/// `stiffness` (`EE_T_K` from the end effector); both poses are the identity unless given. The base
+/// frame is that of link 0, z upwards along the axis of joint 1. Wrong shapes and numbers that are
+/// not finite raise `ValueError`.
+#[pyclass(frozen, eq, module = "franka_async")]
+#[derive(PartialEq)]
+pub(crate) struct Model {
+    numbers: Numbers,
+    /// The description that it was read from.
+    urdf: Option<Box<str>>,
+}
+
+#[pymethods]
+impl Model {
+    /// The Franka Research 3, by the vendor's numbers.
+    #[staticmethod]
+    fn fr3() -> Self {
+        Self::of(Numbers::fr3())
+    }
+
+    /// The Franka Emika Robot (Panda), as its own model library computes it.
+    #[staticmethod]
+    fn fer() -> Self {
+        Self::of(Numbers::fer())
+    }
+
+    /// The model in the URDF `text` that a Franka Research 3 serves, with the masses and limits of
+    /// that arm. `ValueError` says what is wrong with another text.
+    #[staticmethod]
+    fn from_urdf(text: &str) -> PyResult<Self> {
+        let numbers = Numbers::from_urdf(text).map_err(|error| {
+            PyValueError::new_err(format!("text does not describe this arm: {error}"))
+        })?;
+        let urdf = Some(text.into());
+        Ok(Self { numbers, urdf })
+    }
+
+    /// Which robot it is: `fr3` or `fer`.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        match self.numbers.kind() {
+            RobotKind::Fer => "fer",
+            _ => "fr3",
+        }
+    }
+
+    /// The pose of `frame` in the base frame, `(4, 4)` or `(n, 4, 4)`.
+    #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
+    #[allow(non_snake_case)]
+    fn pose<'py>(
+        &self,
+        py: Python<'py>,
+        frame: &str,
+        q: &Bound<'py, PyAny>,
+        F_T_EE: Option<&Bound<'py, PyAny>>,
+        EE_T_K: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Array<'py>> {
+        let ee = end_effector(F_T_EE, EE_T_K)?;
+        let (frame, q) = (self::frame(frame)?, Batch::read("q", q)?);
+        Ok(self.poses(py, frame, &q, &ee))
+    }
+
+    /// Twist of `frame` per joint velocity, in base axes about the frame's origin, linear rows
+    /// first: `(6, 7)` or `(n, 6, 7)`.
+    #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
+    #[allow(non_snake_case)]
+    fn zero_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        frame: &str,
+        q: &Bound<'py, PyAny>,
+        F_T_EE: Option<&Bound<'py, PyAny>>,
+        EE_T_K: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Array<'py>> {
+        let ee = end_effector(F_T_EE, EE_T_K)?;
+        let (frame, q) = (self::frame(frame)?, Batch::read("q", q)?);
+        let model = &self.numbers;
+        Ok(output(py, q.count(), &[6, 7], Cost::Little, |i, row| {
+            write_matrix(&model.zero_jacobian(frame, &(*q.row(i)).into(), &ee), row);
+        }))
+    }
+
+    /// `zero_jacobian` in the frame's own axes.
+    #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
+    #[allow(non_snake_case)]
+    fn body_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        frame: &str,
+        q: &Bound<'py, PyAny>,
+        F_T_EE: Option<&Bound<'py, PyAny>>,
+        EE_T_K: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Array<'py>> {
+        let ee = end_effector(F_T_EE, EE_T_K)?;
+        let (frame, q) = (self::frame(frame)?, Batch::read("q", q)?);
+        let model = &self.numbers;
+        Ok(output(py, q.count(), &[6, 7], Cost::Little, |i, row| {
+            write_matrix(&model.body_jacobian(frame, &(*q.row(i)).into(), &ee), row);
+        }))
+    }
+
+    /// The poses of link 1 to link 7 and of the flange in the base frame, `(8, 4, 4)` or
+    /// `(n, 8, 4, 4)`: for drawing the arm.
+    fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        let q = Batch::read("q", q)?;
+        let (model, ee) = (&self.numbers, EndEffector::default());
+        Ok(output(py, q.count(), &[8, 4, 4], Cost::Little, |i, row| {
+            let q = (*q.row(i)).into();
+            for (frame, row) in Frame::ALL.iter().zip(row.as_chunks_mut::<16>().0) {
+                write_matrix(&model.pose(*frame, &q, &ee), row);
+            }
+        }))
+    }
+
+    /// How far an arm is from a singularity: `sqrt(det(J J'))`, 0 in one, 0.080 in the ready pose.
+    /// A number, or `(n,)`.
+    fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        let q = Batch::read("q", q)?;
+        let (model, ee) = (&self.numbers, EndEffector::default());
+        Ok(output(py, q.count(), &[], Cost::Little, |i, row| {
+            let jacobian = model.zero_jacobian(Frame::Flange, &(*q.row(i)).into(), &ee);
+            row[0] = franka_model::manipulability(&jacobian);
+        }))
+    }
+
+    fn __repr__(&self) -> String {
+        match &self.urdf {
+            Some(_) => format!("<Model of a {}, from its description>", self.kind()),
+            None => format!("Model.{}()", self.kind()),
+        }
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let class = py.get_type::<Self>();
+        if let Some(text) = &self.urdf {
+            return Ok((class.getattr("from_urdf")?, PyTuple::new(py, [&**text])?));
+        }
+        if self.numbers != *Numbers::of(self.numbers.kind()) {
+            let text = "a model with numbers of its own is pickled only if made by from_urdf";
+            return Err(PyTypeError::new_err(text));
+        }
+        Ok((class.getattr(self.kind())?, PyTuple::empty(py)))
+    }
+}
+
+impl Model {
+    /// The model with these numbers.
+    pub(crate) fn of(numbers: &Numbers) -> Self {
+        Self {
+            numbers: numbers.clone(),
+            urdf: None,
+        }
+    }
+
+    fn poses<'py>(
+        &self,
+        py: Python<'py>,
+        frame: Frame,
+        q: &Batch<7>,
+        ee: &EndEffector,
+    ) -> Array<'py> {
+        output(py, q.count(), &[4, 4], Cost::Little, |i, row| {
+            write_matrix(&self.numbers.pose(frame, &(*q.row(i)).into(), ee), row);
+        })
+    }
+}

@@ -1,0 +1,425 @@
+//! The trajectory generator: time-optimal motions of any number of axes inside limits of velocity,
+//! acceleration and jerk.
+
+use franka_model::RobotKind;
+use franka_otg::{Generator, Limits, PlanError, State, Synchronisation};
+use numpy::PyArrayDyn;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyAny;
+
+use crate::arrays::{Numbers, array, check_finite, unexpected_shape};
+use crate::batch::{Cost, outputs};
+
+type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// Greatest velocity, acceleration and jerk of each axis, in both directions. Units are the
+/// program's: rad or m, per second and its powers.
+///
+/// Each is one number for all axes or one for each, `(n,)`; all have to be positive and finite.
+#[pyclass(frozen, eq, module = "franka_async")]
+#[derive(Clone, PartialEq)]
+pub(crate) struct AxisLimits {
+    /// One number for all axes, or one for each.
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+    jerk: Vec<f64>,
+}
+
+#[pymethods]
+impl AxisLimits {
+    #[new]
+    fn new(
+        velocity: &Bound<'_, PyAny>,
+        acceleration: &Bound<'_, PyAny>,
+        jerk: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let limits = Self {
+            velocity: limit("velocity", velocity)?,
+            acceleration: limit("acceleration", acceleration)?,
+            jerk: limit("jerk", jerk)?,
+        };
+        limits.axes()?;
+        Ok(limits)
+    }
+
+    /// Those of the joints of a Franka Research 3. Near a position limit it allows less: see
+    /// `JointLimits.velocity_envelope`.
+    #[staticmethod]
+    fn fr3() -> Self {
+        Self::of(RobotKind::Fr3)
+    }
+
+    /// Those of the joints of a Franka Emika Robot (Panda).
+    #[staticmethod]
+    fn fer() -> Self {
+        Self::of(RobotKind::Fer)
+    }
+
+    /// The same limits times these factors.
+    #[pyo3(signature = (velocity = 1.0, acceleration = 1.0, jerk = 1.0))]
+    fn scaled(&self, velocity: f64, acceleration: f64, jerk: f64) -> PyResult<Self> {
+        for (name, factor) in [
+            ("velocity", velocity),
+            ("acceleration", acceleration),
+            ("jerk", jerk),
+        ] {
+            if !(factor.is_finite() && factor > 0.0) {
+                let text = format!("{name} is {factor}, expected a positive finite factor");
+                return Err(PyValueError::new_err(text));
+            }
+        }
+        let times = |limits: &[f64], factor| limits.iter().map(|limit| limit * factor).collect();
+        Ok(Self {
+            velocity: times(&self.velocity, velocity),
+            acceleration: times(&self.acceleration, acceleration),
+            jerk: times(&self.jerk, jerk),
+        })
+    }
+
+    /// Greatest velocities: `(n,)`, or `(1,)` for all axes alike.
+    #[getter]
+    fn velocity<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
+        array(py, &self.velocity)
+    }
+
+    /// Greatest accelerations: `(n,)`, or `(1,)` for all axes alike.
+    #[getter]
+    fn acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
+        array(py, &self.acceleration)
+    }
+
+    /// Greatest jerks: `(n,)`, or `(1,)` for all axes alike.
+    #[getter]
+    fn jerk<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
+        array(py, &self.jerk)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "AxisLimits(velocity={:?}, acceleration={:?}, jerk={:?})",
+            self.velocity, self.acceleration, self.jerk
+        )
+    }
+}
+
+impl AxisLimits {
+    fn of(kind: RobotKind) -> Self {
+        let limits = franka_model::limits::JointLimits::of(kind);
+        let list = |limits: &franka_model::JointVector| limits.iter().copied().collect();
+        Self {
+            velocity: list(&limits.velocity),
+            acceleration: list(&limits.acceleration),
+            jerk: list(&limits.jerk),
+        }
+    }
+
+    /// The number of axes; `None` if they go with any number.
+    ///
+    /// # Errors
+    /// `ValueError` if the quantities have different numbers.
+    fn axes(&self) -> PyResult<Option<usize>> {
+        let mut axes = None;
+        for (name, limits) in [
+            ("velocity", &self.velocity),
+            ("acceleration", &self.acceleration),
+            ("jerk", &self.jerk),
+        ] {
+            match axes {
+                _ if limits.len() == 1 => {}
+                Some(axes) if axes != limits.len() => {
+                    return Err(PyValueError::new_err(format!(
+                        "{name} has {} axes, expected {axes} as the limits before, or one number",
+                        limits.len()
+                    )));
+                }
+                _ => axes = Some(limits.len()),
+            }
+        }
+        Ok(axes)
+    }
+
+    fn axis(&self, axis: usize) -> franka_otg::AxisLimits {
+        let of = |limits: &[f64]| *limits.get(axis).unwrap_or(&limits[0]);
+        franka_otg::AxisLimits {
+            velocity: of(&self.velocity),
+            acceleration: of(&self.acceleration),
+            jerk: of(&self.jerk),
+        }
+    }
+}
+
+fn limit(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
+    if shape.len() > 1 || values.is_empty() {
+        return Err(unexpected_shape(name, &shape, "a number or (n,)"));
+    }
+    match values.iter().find(|x| !(x.is_finite() && **x > 0.0)) {
+        None => Ok(values),
+        Some(value) => Err(PyValueError::new_err(format!(
+            "{name} holds {value}, expected positive finite numbers"
+        ))),
+    }
+}
+
+/// A planned motion. It begins at time 0 in the state that it was planned from, and is at rest from
+/// `duration` on.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Trajectory {
+    motion: Box<dyn Motion>,
+    axes: usize,
+}
+
+/// A plan for a number of axes that the compiler knows, which may be more than those asked for.
+trait Motion: Send + Sync {
+    /// When all axes rest, and when the target is met, s.
+    fn times(&self) -> [f64; 2];
+
+    /// The position at which it comes to rest.
+    fn end(&self) -> &[f64];
+
+    /// Writes position, velocity and acceleration at time `t`.
+    fn sample(&self, t: f64, parts: [&mut [f64]; 3]);
+}
+
+impl<const N: usize> Motion for Generator<N> {
+    fn times(&self) -> [f64; 2] {
+        [self.remaining(), self.time_to_target()]
+    }
+
+    fn end(&self) -> &[f64] {
+        Generator::end(self)
+    }
+
+    fn sample(&self, t: f64, parts: [&mut [f64]; 3]) {
+        let state = Generator::sample(self, t);
+        let whole: [&[f64]; 3] = [&state.position, &state.velocity, &state.acceleration];
+        for (part, whole) in parts.into_iter().zip(whole) {
+            part.copy_from_slice(&whole[..part.len()]);
+        }
+    }
+}
+
+/// Plans the fastest motion from `start` to `target`, both `(n,)`, inside `limits`; of one axis to
+/// 64. Without a target, `None`, to rest as early as possible.
+///
+/// The motion may begin with `start_velocity` and `start_acceleration`, and pass the target with
+/// `target_velocity` and `target_acceleration`, `(n,)` each, zero unless given; past a target in
+/// motion it comes to rest. All axes are at the target at the same time: with `synchronisation`
+/// `straight` on a straight line wherever the state at the start allows one, with `time` each on its
+/// own.
+///
+/// `ValueError` for shapes that do not fit each other, numbers that are not finite, and a target
+/// that moves faster than the limits allow.
+#[pyfunction]
+#[pyo3(signature = (start, target, limits, *, start_velocity = None, start_acceleration = None, target_velocity = None, target_acceleration = None, synchronisation = "straight"))]
+#[allow(clippy::too_many_arguments)] // each is named by the caller
+pub(crate) fn plan_trajectory(
+    py: Python<'_>,
+    start: &Bound<'_, PyAny>,
+    target: Option<&Bound<'_, PyAny>>,
+    limits: &AxisLimits,
+    start_velocity: Option<&Bound<'_, PyAny>>,
+    start_acceleration: Option<&Bound<'_, PyAny>>,
+    target_velocity: Option<&Bound<'_, PyAny>>,
+    target_acceleration: Option<&Bound<'_, PyAny>>,
+    synchronisation: &str,
+) -> PyResult<Trajectory> {
+    let position = axes("start", start, None)?;
+    let n = position.len();
+    if let Some(axes) = limits.axes()?
+        && axes != n
+    {
+        let text = format!("limits have {axes} axes, expected {n} as start has");
+        return Err(PyValueError::new_err(text));
+    }
+    let part = |name: &str, argument: Option<&Bound<'_, PyAny>>| {
+        argument.map_or(Ok(vec![0.0; n]), |argument| axes(name, argument, Some(n)))
+    };
+    let start = [
+        position,
+        part("start_velocity", start_velocity)?,
+        part("start_acceleration", start_acceleration)?,
+    ];
+    let to = [
+        part("target", target)?,
+        part("target_velocity", target_velocity)?,
+        part("target_acceleration", target_acceleration)?,
+    ];
+    if target.is_none() && (target_velocity.is_some() || target_acceleration.is_some()) {
+        let text = "target is None, expected one, as its velocity or acceleration is given";
+        return Err(PyValueError::new_err(text));
+    }
+    let synchronisation = match synchronisation {
+        "straight" => Synchronisation::Straight,
+        "time" => Synchronisation::Time,
+        other => {
+            let text = format!("synchronisation is {other:?}, expected 'straight' or 'time'");
+            return Err(PyValueError::new_err(text));
+        }
+    };
+    let task = Task {
+        start,
+        target: target.is_some().then_some(to),
+        limits,
+        synchronisation,
+    };
+    let motion = py.detach(|| match n {
+        1 => task.plan::<1>(),
+        2 => task.plan::<2>(),
+        3 => task.plan::<3>(),
+        4..=6 => task.plan::<6>(),
+        7 => task.plan::<7>(),
+        8..=16 => task.plan::<16>(),
+        _ => task.plan::<AXES_MAX>(),
+    });
+    let motion = motion.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(Trajectory { motion, axes: n })
+}
+
+/// The greatest number of axes.
+const AXES_MAX: usize = 64;
+
+fn axes(name: &str, argument: &Bound<'_, PyAny>, expected: Option<usize>) -> PyResult<Vec<f64>> {
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
+    let fits = match (expected, &*shape) {
+        (None, [n]) => (1..=AXES_MAX).contains(n),
+        (Some(expected), [n]) => *n == expected,
+        _ => false,
+    };
+    if !fits {
+        let expected = match expected {
+            Some(n) => format!("({n},) as start has"),
+            None => format!("(n,) with n from 1 to {AXES_MAX}"),
+        };
+        return Err(unexpected_shape(name, &shape, &expected));
+    }
+    check_finite(name, &values)?;
+    Ok(values)
+}
+
+/// What to plan: position, velocity and acceleration of each axis.
+struct Task<'a> {
+    start: [Vec<f64>; 3],
+    target: Option<[Vec<f64>; 3]>,
+    limits: &'a AxisLimits,
+    synchronisation: Synchronisation,
+}
+
+impl Task<'_> {
+    /// Plans with `N` axes, of which those beyond the given ones stand still at zero: a plan takes
+    /// no account of them.
+    fn plan<const N: usize>(&self) -> Result<Box<dyn Motion>, PlanError> {
+        let limits = Limits::per_axis(std::array::from_fn(|axis| self.limits.axis(axis)))?;
+        let generator = Generator::<N>::new(state(&self.start), limits)?;
+        let mut generator = generator.with_synchronisation(self.synchronisation);
+        if let Some(target) = &self.target {
+            generator.set_moving_target(&state(target))?;
+        }
+        Ok(Box::new(generator))
+    }
+}
+
+fn state<const N: usize>([position, velocity, acceleration]: &[Vec<f64>; 3]) -> State<N> {
+    let whole = |part: &[f64]| std::array::from_fn(|axis| part.get(axis).copied().unwrap_or(0.0));
+    State {
+        position: whole(position),
+        velocity: whole(velocity),
+        acceleration: whole(acceleration),
+    }
+}
+
+#[pymethods]
+impl Trajectory {
+    /// The time until rest, s.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.motion.times()[0]
+    }
+
+    /// When the target is met, s: the duration, unless the target moves.
+    #[getter]
+    fn arrival(&self) -> f64 {
+        self.motion.times()[1]
+    }
+
+    /// The number of axes.
+    #[getter]
+    fn axes(&self) -> usize {
+        self.axes
+    }
+
+    /// Where it comes to rest, `(axes,)`.
+    #[getter]
+    fn end<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
+        array(py, &self.motion.end()[..self.axes])
+    }
+
+    /// Position, velocity and acceleration at the time `t` in s, `(axes,)` each, or at many times,
+    /// `(m,)`, `(m, axes)` each. Before the beginning it is at its beginning, after its end at rest.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        t: &Bound<'py, PyAny>,
+    ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
+        let Numbers { shape, values } = Numbers::read("t", t)?;
+        check_finite("t", &values)?;
+        match *shape {
+            [] => Ok(self.samples(py, None, |_| values[0])),
+            [m] => Ok(self.samples(py, Some(m), |i| values[i])),
+            _ => Err(unexpected_shape("t", &shape, "a number or (m,)")),
+        }
+    }
+
+    /// Times every `dt` seconds from the beginning to the first one at rest, `(m,)`, and position,
+    /// velocity and acceleration there, `(m, axes)` each.
+    #[pyo3(signature = (dt = 0.001))]
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        dt: f64,
+    ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>)> {
+        if !(dt.is_finite() && dt > 0.0) {
+            let text = format!("dt is {dt}, expected a positive finite number of seconds");
+            return Err(PyValueError::new_err(text));
+        }
+        let steps = (self.duration() / dt - 1e-9).ceil().max(0.0);
+        if steps > SAMPLES_MAX {
+            let text = format!("dt is {dt}, which makes {steps} samples, expected fewer");
+            return Err(PyValueError::new_err(text));
+        }
+        let count = Some(steps as usize + 1);
+        let [times] = outputs(py, count, [&[]], Cost::Little, |i, [time]| {
+            time[0] = i as f64 * dt;
+        });
+        let (position, velocity, acceleration) = self.samples(py, count, |i| i as f64 * dt);
+        Ok((times, position, velocity, acceleration))
+    }
+
+    fn __repr__(&self) -> String {
+        let axes = if self.axes == 1 { "axis" } else { "axes" };
+        format!(
+            "<Trajectory of {} {axes}, {:.4} s>",
+            self.axes,
+            self.duration()
+        )
+    }
+}
+
+impl Trajectory {
+    fn samples<'py>(
+        &self,
+        py: Python<'py>,
+        count: Option<usize>,
+        time: impl Fn(usize) -> f64 + Send + Sync,
+    ) -> (Array<'py>, Array<'py>, Array<'py>) {
+        let shape: &[usize] = &[self.axes];
+        let arrays = outputs(py, count, [shape; 3], Cost::Little, |i, parts| {
+            self.motion.sample(time(i), parts);
+        });
+        arrays.into()
+    }
+}
+
+/// More samples are taken for a mistake in the unit of `dt`.
+const SAMPLES_MAX: f64 = 1e8;
