@@ -12,10 +12,10 @@ use franka_rt::session::{Backend, Chunk, DeadmanMonitor, Free, Goal, OnArrival, 
 use franka_rt::team::Member;
 use nalgebra::Isometry3;
 use tokio::sync::{oneshot, watch};
-use tokio_stream::{Stream, StreamExt};
+use tokio_stream::Stream;
 
 use crate::destination::{Destination, Offset};
-use crate::follow::{Follow, Targets, watched};
+use crate::follow::{Follow, Targets, streamed, watched};
 use crate::input::{Beginning, EndReply, Input, Replies};
 use crate::move_to::Motion;
 use crate::options::{GoalOptions, goal_options};
@@ -322,7 +322,7 @@ impl Arm {
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
     ) -> Follow {
-        self.follow_targets(Box::pin(targets.map(Into::into).fuse()))
+        self.follow_targets(streamed(targets))
     }
 
     fn follow_targets(&self, targets: Targets) -> Follow {

@@ -48,6 +48,22 @@ impl Robot {
     ) -> Follow {
         Follow::new(self.clone(), None, watched(targets))
     }
+
+    /// Follows the newest of the targets that a stream yields; otherwise like [`Self::follow`], and
+    /// see [`Arm::follow_stream`](crate::Arm::follow_stream).
+    pub fn follow_stream<T: Into<Target> + 'static>(
+        &self,
+        targets: impl Stream<Item = T> + Send + 'static,
+    ) -> Follow {
+        Follow::new(self.clone(), None, streamed(targets))
+    }
+}
+
+/// The targets of a stream.
+pub(crate) fn streamed<T: Into<Target> + 'static>(
+    targets: impl Stream<Item = T> + Send + 'static,
+) -> Targets {
+    Box::pin(targets.map(Into::into).fuse())
 }
 
 /// The targets of a watch channel, beginning with the one that it holds.

@@ -49,6 +49,21 @@ pub(crate) fn vector<const N: usize>(
     Ok(vector)
 }
 
+/// A new array of `length` numbers from the argument called `name`.
+#[pyfunction]
+pub(crate) fn _row<'py>(
+    name: &str,
+    argument: &Bound<'py, PyAny>,
+    length: usize,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
+    if shape != [length] {
+        return Err(unexpected_shape(name, &shape, &format!("({length},)")));
+    }
+    check_finite(name, &values)?;
+    Ok(array(argument.py(), &values))
+}
+
 /// Reads rows of `N` numbers each from the argument called `name`; one row may stand alone.
 ///
 /// # Errors

@@ -1,35 +1,98 @@
 //! Where a motion is to lead: what Python says it with.
 
-use franka_async::Pose;
-use franka_async::goal::Destination;
-use franka_async::pose;
+use franka_async::goal::{Destination, Target, Waypoint};
+use franka_async::nalgebra::{Matrix4, Translation3, UnitQuaternion, Vector3};
+use franka_async::{Offset, Pose, pose};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PySequence};
 
-use crate::arrays::{Numbers, pose_of, unexpected_shape, vector};
+use crate::arrays::{Numbers, array, pose_array, pose_of, unexpected_shape, vector};
 
-/// Reads a destination of the end effector from the argument called `name`: a pose, `(4, 4)` or 3 + 4
-/// numbers; a pair of position and quaternion; or a position alone, which keeps the orientation.
+/// Reads a destination of the end effector or the joints from the argument called `name`: what
+/// `franka_async.goal.Destination` describes.
 ///
 /// # Errors
 /// `ValueError`, `TypeError`.
 pub(crate) fn destination(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Destination> {
-    if let Some((position, quaternion)) = pair(argument) {
-        return Ok(placed(name, &position, &quaternion)?.into());
+    if is(argument, "Offset")? {
+        let way = argument.getattr("way")?;
+        let frame: String = argument.getattr("frame")?.extract()?;
+        let from_arm = argument.getattr("from_arm")?.extract()?;
+        return Ok(offset(name, &way, &frame, from_arm)?.into());
     }
-    let Numbers { shape, values } = Numbers::read(name, argument)?;
-    if *shape == [3] {
-        return Ok(Destination::position(vector::<3>(name, argument)?));
+    if let Some(target) = composed(name, argument)? {
+        return Ok(target.into());
     }
-    match pose_of(name, &shape, &values)? {
-        Some(pose) => Ok(pose.into()),
-        None => Err(unexpected_shape(name, &shape, SHAPES)),
+    let numbers = Numbers::read(name, argument)?;
+    match *numbers.shape {
+        [3] => Ok(Destination::position(vector::<3>(name, argument)?)),
+        [4] | [3, 3] => Ok(Destination::orientation(orientation(name, &numbers)?)),
+        _ => match pose_of(name, &numbers.shape, &numbers.values)? {
+            Some(pose) => Ok(pose.into()),
+            None => {
+                let also = "a position (3,), a quaternion (4,) or a rotation matrix (3, 3)";
+                let expected = format!("{SHAPES}; {also}");
+                Err(unexpected_shape(name, &numbers.shape, &expected))
+            }
+        },
     }
 }
 
-const SHAPES: &str =
-    "(4, 4); (3,), a position; (7,), x y z and a quaternion x y z w; or a pair of the two";
+/// Reads a target, a whole pose or joint positions, from the argument called `name`: what
+/// `franka_async.goal.Target` describes.
+///
+/// # Errors
+/// `ValueError`, `TypeError`.
+pub(crate) fn target(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Target> {
+    match composed(name, argument)? {
+        Some(target) => Ok(target),
+        None => Ok(whole_pose(name, argument)?.into()),
+    }
+}
+
+const SHAPES: &str = "a pose (4, 4) or (7,), x y z and a quaternion x y z w";
+
+fn whole_pose(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Pose> {
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
+    let pose = pose_of(name, &shape, &values)?;
+    pose.ok_or_else(|| unexpected_shape(name, &shape, SHAPES))
+}
+
+/// A target that is `Joints` or a pair.
+fn composed(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Option<Target>> {
+    if is(argument, "Joints")? {
+        let q = vector::<7>(name, &argument.getattr("q")?)?;
+        let dq = argument.getattr("dq")?;
+        return Ok(Some(if dq.is_none() {
+            q.into()
+        } else {
+            (q, vector::<7>("dq", &dq)?).into()
+        }));
+    }
+    let Some((first, second)) = pair(argument) else {
+        return Ok(None);
+    };
+    let shape = Numbers::read(name, &second)?.shape;
+    Ok(Some(match *shape {
+        [4] => placed(name, &first, &second)?.into(),
+        [6] => {
+            let twist = vector::<6>(&format!("the twist of {name}"), &second)?;
+            (whole_pose(name, &first)?, twist.into()).into()
+        }
+        [7] => {
+            let q = vector::<7>(&format!("the joint positions of {name}"), &first)?;
+            let dq = vector::<7>(&format!("the joint velocities of {name}"), &second)?;
+            (q, dq).into()
+        }
+        _ => {
+            let expected = "(4,), a quaternion after a position; (6,), a twist after a pose; \
+                            or (7,), joint velocities after joint positions";
+            let name = format!("the second of the pair {name}");
+            return Err(unexpected_shape(&name, &shape, expected));
+        }
+    }))
+}
 
 /// The pose of this position and quaternion `x y z w`.
 fn placed(
@@ -43,6 +106,108 @@ fn placed(
         let text = format!("{name} has the quaternion {quaternion:?}, which has no direction");
         PyValueError::new_err(text)
     })
+}
+
+/// The orientation of a quaternion `x y z w` or a rotation matrix.
+fn orientation(name: &str, numbers: &Numbers) -> PyResult<UnitQuaternion<f64>> {
+    let values = &numbers.values;
+    let (shape, values) = match **values {
+        [x, y, z, w] => (vec![7], vec![0.0, 0.0, 0.0, x, y, z, w]),
+        _ => {
+            let matrix = Matrix4::from_fn(|i, j| match (i, j) {
+                (0..3, 0..3) => values[3 * i + j],
+                (3, 3) => 1.0,
+                _ => 0.0,
+            });
+            (vec![4, 4], matrix.transpose().as_slice().to_vec())
+        }
+    };
+    let pose = pose_of(name, &shape, &values)?.expect("one of its shapes");
+    Ok(pose.rotation)
+}
+
+/// The offset of a way: 3 numbers, 6 with a rotation vector, or a pose.
+///
+/// # Errors
+/// `ValueError`, `TypeError`.
+pub(crate) fn offset(
+    name: &str,
+    way: &Bound<'_, PyAny>,
+    frame: &str,
+    from_arm: bool,
+) -> PyResult<Offset> {
+    let Numbers { shape, values } = Numbers::read(name, way)?;
+    let way = match *shape {
+        [3] | [6] => {
+            let moved = |i: usize| Vector3::from_column_slice(&values[i..i + 3]);
+            let turn = if *shape == [6] {
+                moved(3)
+            } else {
+                Vector3::zeros()
+            };
+            if values.iter().any(|value| !value.is_finite()) {
+                let text = format!("{name} is {values:?}, expected finite numbers");
+                return Err(PyValueError::new_err(text));
+            }
+            Pose::from_parts(
+                Translation3::from(moved(0)),
+                UnitQuaternion::from_scaled_axis(turn),
+            )
+        }
+        _ => pose_of(name, &shape, &values)?.ok_or_else(|| {
+            let expected = "(3,), m; (6,), with a rotation vector, rad; or a pose (4, 4) or (7,)";
+            unexpected_shape(name, &shape, expected)
+        })?,
+    };
+    let offset = match frame {
+        "base" => Offset::base(way),
+        "tool" => Offset::tool(way),
+        _ => {
+            let text = format!("frame is {frame:?}, expected 'base' or 'tool'");
+            return Err(PyValueError::new_err(text));
+        }
+    };
+    Ok(if from_arm { offset.from_arm() } else { offset })
+}
+
+/// Reads waypoints: targets, which are rounded within `blend`, and `Waypoint`s, which say that themselves.
+///
+/// # Errors
+/// `ValueError`, `TypeError`.
+pub(crate) fn waypoints(argument: &Bound<'_, PyAny>, blend: f64) -> PyResult<Vec<Waypoint>> {
+    let waypoint = |(i, place): (usize, PyResult<Bound<'_, PyAny>>)| {
+        let (place, name) = (place?, format!("waypoint {}", i + 1));
+        if is(&place, "Waypoint")? {
+            let at = target(&name, &place.getattr("target")?)?;
+            return Ok(Waypoint::new(at).blend(place.getattr("blend")?.extract()?));
+        }
+        Ok(Waypoint::new(target(&name, &place)?).blend(blend))
+    };
+    argument.try_iter()?.enumerate().map(waypoint).collect()
+}
+
+/// What Python gets for a target: a pose `(4, 4)`, `Joints`, or a pair of a pose and its twist. `None` for
+/// rest and hand guiding, which are nowhere.
+pub(crate) fn target_object<'py>(
+    py: Python<'py>,
+    target: Target,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let joints = || py.import("franka_async.goal")?.getattr("Joints");
+    Ok(Some(match target {
+        Target::Pose(pose) => pose_array(py, &pose).into_any(),
+        Target::MovingPose { pose, twist } => (pose_array(py, &pose), array(py, twist.as_slice()))
+            .into_pyobject(py)?
+            .into_any(),
+        Target::Joints(q) => joints()?.call1((array(py, &q),))?,
+        Target::MovingJoints { q, dq } => joints()?.call1((array(py, &q), array(py, &dq)))?,
+        _ => return Ok(None),
+    }))
+}
+
+/// Whether the argument is an instance of this class of `franka_async.goal`.
+pub(crate) fn is(argument: &Bound<'_, PyAny>, class: &str) -> PyResult<bool> {
+    let module = argument.py().import("franka_async.goal")?;
+    argument.is_instance(&module.getattr(class)?)
 }
 
 /// The two parts of a pair, each of which has parts itself.

@@ -9,15 +9,22 @@
 //! No thread that a motion waits for takes the interpreter's lock: tasks run on the runtime, and
 //! results become Python objects where they are awaited.
 
+mod arm;
 mod arrays;
 mod batch;
+mod chunk;
+mod condition;
 mod destination;
 mod errors;
 mod exit;
+mod follow;
+mod gains;
+mod goals;
 mod log;
 mod model;
 mod motion;
 mod operation;
+mod options;
 mod otg;
 mod robot;
 mod runtime;
@@ -32,11 +39,25 @@ mod _native {
     use super::*;
 
     #[pymodule_export]
+    use crate::arm::{Arm, Deadman, Engagement};
+    #[pymodule_export]
+    use crate::arrays::_row;
+    #[pymodule_export]
+    use crate::condition::{
+        Condition, Quantity, Then, cartesian_contact, collision, contact, elapsed, force, force_x,
+        force_y, force_z, joint_contact, joint_position, joint_torque, joint_torques,
+        joint_velocity, torque,
+    };
+    #[pymodule_export]
+    use crate::follow::Latest;
+    #[pymodule_export]
+    use crate::gains::{_gains, _softened};
+    #[pymodule_export]
     use crate::log::ControlLog;
     #[pymodule_export]
     use crate::model::{CartesianLimits, Clearance, Dynamics, JointLimits, Model, MotionLimits};
     #[pymodule_export]
-    use crate::motion::Motion;
+    use crate::motion::{Motion, MotionHandle};
     #[pymodule_export]
     use crate::operation::Operation;
     #[pymodule_export]
@@ -50,6 +71,8 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::condition::add_quantities(module)?;
+        crate::gains::add_defaults(module)?;
         crate::exit::register(module.py())?;
         module.add("FLAT_LAYOUT", crate::state_views::FLAT_LAYOUT)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))

@@ -1,15 +1,22 @@
-//! Motions under way.
+//! Motions: awaitables with a handle, and what they report.
 
-use franka_async::motion::MotionHandle;
+use std::time::Duration;
+
+use franka_async::condition::Reacted;
+use franka_async::motion::{MotionHandle as Handle, Progress, Reference};
+use franka_async::realtime::{CycleTimes, Quantiles};
+use franka_async::{MotionError, MotionReport};
 use pyo3::prelude::*;
+use pyo3::types::PyAny;
 
+use crate::arrays::{array, pose_array};
 use crate::operation::Operation;
 
-/// A motion: it begins when it is awaited, and then arrives or raises what kept it from that. Cancelling
-/// it brakes the arm.
-#[pyclass(frozen, extends = Operation, module = "franka_async")]
+/// A motion: it begins when it is awaited, and then arrives, with a `MotionReport`, or raises `MotionError`.
+/// Cancelling it brakes the arm.
+#[pyclass(frozen, generic, extends = Operation, module = "franka_async")]
 pub(crate) struct Motion {
-    handle: MotionHandle,
+    handle: Handle,
 }
 
 impl Motion {
@@ -20,7 +27,8 @@ impl Motion {
         motion: franka_async::Motion,
     ) -> PyResult<Py<Self>> {
         let handle = motion.handle();
-        let operation = Operation::new(name, async move { motion.await.map(|_| ()) });
+        let work = async move { motion.await.map(Report) };
+        let operation = Operation::new::<Report, MotionError>(name, work);
         Py::new(
             py,
             PyClassInitializer::from(operation).add_subclass(Self { handle }),
@@ -30,8 +38,150 @@ impl Motion {
 
 #[pymethods]
 impl Motion {
-    /// Brakes the motion, from any thread; whoever awaits it gets `MotionError` of the kind `stopped`.
+    /// A handle that says from elsewhere how far the motion is, and pauses or brakes it.
+    fn handle(&self) -> MotionHandle {
+        MotionHandle(self.handle.clone())
+    }
+
+    /// How far the motion has come: a `Progress`; `None` before it has begun and after its end.
+    fn progress<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        progress(py, &self.handle)
+    }
+
+    /// Stops the motion on its way, until `resume()`; the arm is held there. Without effect before it has
+    /// begun and after its end.
+    fn pause(&self) {
+        self.handle.pause();
+    }
+
+    /// Lets the motion go on.
+    fn resume(&self) {
+        self.handle.resume();
+    }
+
+    /// Brakes the motion for good, from any thread; whoever awaits it gets `MotionError` of the kind
+    /// `stopped`. One that has not begun never begins.
     fn cancel(&self) {
         self.handle.cancel();
     }
+}
+
+/// A motion from elsewhere: how far it is, and pausing or braking it. It does not keep the motion going.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct MotionHandle(Handle);
+
+#[pymethods]
+impl MotionHandle {
+    /// As `Motion.progress`.
+    fn progress<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        progress(py, &self.0)
+    }
+
+    /// As `Motion.pause`.
+    fn pause(&self) {
+        self.0.pause();
+    }
+
+    /// As `Motion.resume`.
+    fn resume(&self) {
+        self.0.resume();
+    }
+
+    /// As `Motion.cancel`.
+    fn cancel(&self) {
+        self.0.cancel();
+    }
+}
+
+fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("franka_async.motion")?.getattr(name)
+}
+
+fn progress<'py>(py: Python<'py>, handle: &Handle) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let Some(Progress {
+        elapsed, remaining, ..
+    }) = handle.progress()
+    else {
+        return Ok(None);
+    };
+    let times = (elapsed.as_secs_f64(), remaining.as_secs_f64());
+    Ok(Some(class(py, "Progress")?.call1(times)?))
+}
+
+/// A `franka_async.motion.Reference`.
+pub(crate) fn reference<'py>(
+    py: Python<'py>,
+    reference: &Reference,
+) -> PyResult<Bound<'py, PyAny>> {
+    class(py, "Reference")?.call1((
+        reference.time,
+        array(py, &reference.q),
+        array(py, &reference.dq),
+        array(py, &reference.ddq),
+        pose_array(py, &reference.pose),
+    ))
+}
+
+/// A report, made into a `franka_async.motion.MotionReport`.
+pub(crate) struct Report(pub(crate) MotionReport);
+
+impl<'py> IntoPyObject<'py> for Report {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Self(report) = self;
+        let error = |error: franka_async::error::PoseError| {
+            class(py, "PoseError")?.call1((error.translation, error.rotation))
+        };
+        let quantiles = |times: Quantiles| {
+            let times = [times.p50, times.p99, times.max].map(|time| time.as_secs_f64());
+            class(py, "Quantiles")?.call1((times[0], times[1], times[2]))
+        };
+        let fields = (
+            report.duration.as_secs_f64(),
+            report.final_error.map(error).transpose()?,
+            report.released_error.map(error).transpose()?,
+            report.compensation.map(|torques| array(py, &torques)),
+            report.reacted.map(|seen| reacted(py, &seen)).transpose()?,
+            report.lost_states,
+            report.skipped_states,
+            report.success_rate_min,
+            report.success_rate_avg,
+            report.worst_turnaround.as_secs_f64(),
+            report.slack_min.map(|slack| slack.as_nanos() as f64 * 1e-9),
+        );
+        let timing = (
+            report.overruns,
+            report
+                .worst_cycle
+                .map(|times| cycle(py, &times))
+                .transpose()?,
+            report.interval.map(quantiles).transpose()?,
+            report.turnaround.map(quantiles).transpose()?,
+        );
+        // Tuples are converted up to twelve long.
+        let fields = fields.into_pyobject(py)?.add(timing.into_pyobject(py)?)?;
+        class(py, "MotionReport")?.call1(fields.cast_into::<pyo3::types::PyTuple>()?)
+    }
+}
+
+fn reacted<'py>(py: Python<'py>, seen: &Reacted) -> PyResult<Bound<'py, PyAny>> {
+    class(py, "Reacted")?.call1((
+        seen.after.as_secs_f64(),
+        seen.time,
+        array(py, &seen.wrench),
+        pose_array(py, &seen.pose),
+    ))
+}
+
+fn cycle<'py>(py: Python<'py>, times: &CycleTimes) -> PyResult<Bound<'py, PyAny>> {
+    let seconds = |time: Duration| time.as_secs_f64();
+    class(py, "CycleTimes")?.call1((
+        times.time,
+        seconds(times.late),
+        seconds(times.turnaround),
+        times.slack.as_nanos() as f64 * 1e-9,
+    ))
 }

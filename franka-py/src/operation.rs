@@ -1,6 +1,7 @@
 //! What Python awaits or waits for: a Rust future that begins with the first step.
 
 use std::any::TypeId;
+use std::convert::Infallible;
 use std::future::Future;
 use std::pin::Pin;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -10,9 +11,12 @@ use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
+use tokio::sync::oneshot;
 
 use crate::errors::Raise;
-use crate::runtime;
+use crate::runtime::{self, Threaded};
+
+pyo3::import_exception!(asyncio, CancelledError);
 
 /// A value on its way into Python: made into an object where the interpreter is at hand.
 struct Delivered(Deliver);
@@ -37,17 +41,31 @@ type Work = Pin<Box<dyn Future<Output = Delivered> + Send>>;
 ///
 /// It is a coroutine in the sense of `collections.abc`, so `asyncio.create_task`, `TaskGroup`,
 /// `gather`, `wait_for` and `timeout` take it.
-#[pyclass(frozen, subclass, module = "franka_async")]
+#[pyclass(frozen, subclass, generic, module = "franka_async")]
 pub(crate) struct Operation {
     name: &'static str,
     stage: Mutex<Stage>,
 }
 
 enum Stage {
-    Ready(Work),
-    /// The iterator of the asyncio future that stands for the work.
-    Awaited(Py<PyAny>),
+    Ready(Threaded<Work>),
+    /// A coroutine of Python that does the work, which has not begun.
+    Coroutine(Py<PyAny>),
+    Awaited(Awaited),
     Over,
+}
+
+/// What is stepped by whoever awaits.
+struct Awaited {
+    iterator: Py<PyAny>,
+    /// The asyncio future that stands for the work; `None` for a coroutine.
+    future: Option<Pending>,
+}
+
+struct Pending {
+    future: Py<PyAny>,
+    /// Dropped with this, and the work with it.
+    _keep: oneshot::Sender<Infallible>,
 }
 
 impl Operation {
@@ -69,7 +87,17 @@ impl Operation {
                 Err(error) => Err(error.raise(py)),
             }))
         };
-        let stage = Mutex::new(Stage::Ready(Box::pin(work)));
+        let stage = Stage::Ready(Threaded::new(Box::pin(work)));
+        Self::in_stage(name, stage)
+    }
+
+    /// An operation called `name` that a coroutine of Python does.
+    pub(crate) fn of_coroutine(name: &'static str, coroutine: Py<PyAny>) -> Self {
+        Self::in_stage(name, Stage::Coroutine(coroutine))
+    }
+
+    fn in_stage(name: &'static str, stage: Stage) -> Self {
+        let stage = Mutex::new(stage);
         Self { name, stage }
     }
 
@@ -88,30 +116,68 @@ impl Operation {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    fn replace(&self, stage: Stage) -> Stage {
+        std::mem::replace(&mut *self.stage(), stage)
+    }
+
     /// Takes the work out, which begins now.
     fn begin(&self) -> PyResult<Work> {
-        match std::mem::replace(&mut *self.stage(), Stage::Over) {
-            Stage::Ready(work) => Ok(work),
-            begun => {
-                *self.stage() = begun;
-                let name = self.name;
-                let message = format!("{name}() was awaited already: call it again for another");
-                Err(PyRuntimeError::new_err(message))
-            }
-        }
+        let begun = match self.replace(Stage::Over) {
+            Stage::Ready(work) => return Ok(work.into_inner()),
+            begun => begun,
+        };
+        let problem = match &begun {
+            Stage::Coroutine(_) => "needs an event loop, which its targets come from",
+            _ => "was awaited already: call it again for another",
+        };
+        self.replace(begun);
+        Err(PyRuntimeError::new_err(format!(
+            "{}() {problem}",
+            self.name
+        )))
     }
 
     /// The iterator that is being awaited; begins the work if nothing has.
     fn iterator<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        if let Stage::Awaited(iterator) = &*self.stage() {
-            return Ok(iterator.bind(py).clone());
-        }
-        let work = self.begin()?;
-        runtime::runtime()?;
-        let future = pyo3_async_runtimes::tokio::future_into_py(py, async { Ok(work.await) })?;
-        let iterator = future.call_method0("__await__")?;
-        *self.stage() = Stage::Awaited(iterator.clone().unbind());
+        let awaited = match self.replace(Stage::Over) {
+            Stage::Awaited(awaited) => awaited,
+            Stage::Coroutine(iterator) => Awaited {
+                iterator,
+                future: None,
+            },
+            stage => {
+                self.replace(stage);
+                runtime::runtime()?;
+                let work = self.begin()?;
+                let (keep, given_up) = oneshot::channel::<Infallible>();
+                let work = async move {
+                    tokio::select! {
+                        biased;
+                        _ = given_up => Err(CancelledError::new_err(())),
+                        delivered = work => Ok(delivered),
+                    }
+                };
+                let future = pyo3_async_runtimes::tokio::future_into_py(py, work)?;
+                Awaited {
+                    iterator: future.call_method0("__await__")?.unbind(),
+                    future: Some(Pending {
+                        future: future.unbind(),
+                        _keep: keep,
+                    }),
+                }
+            }
+        };
+        let iterator = awaited.iterator.bind(py).clone();
+        self.replace(Stage::Awaited(awaited));
         Ok(iterator)
+    }
+}
+
+impl Pending {
+    /// Drops the work, whether the event loop runs on or not.
+    fn give_up(self, py: Python<'_>) {
+        // Of a loop that is closed it fails, once the future is cancelled.
+        let _ = self.future.bind(py).call_method0("cancel");
     }
 }
 
@@ -154,31 +220,38 @@ impl Operation {
         value: Option<Py<PyAny>>,
         traceback: Option<Py<PyAny>>,
     ) -> PyResult<Py<PyAny>> {
-        let begun = match &*self.stage() {
-            Stage::Awaited(iterator) => Some(iterator.bind(py).clone()),
-            Stage::Ready(_) | Stage::Over => None,
-        };
-        let Some(iterator) = begun else {
-            *self.stage() = Stage::Over;
-            return Err(raised(py, kind.bind(py), value)?);
-        };
-        Ok(iterator
-            .call_method1("throw", (kind, value, traceback))?
-            .unbind())
+        let error = raised(py, kind.bind(py), value)?;
+        if matches!(*self.stage(), Stage::Ready(_) | Stage::Over) {
+            self.replace(Stage::Over);
+            return Err(error);
+        }
+        if let Some(traceback) = traceback {
+            error.value(py).setattr("__traceback__", traceback)?;
+        }
+        let thrown = self.iterator(py)?.call_method1("throw", (error.value(py),));
+        Ok(thrown?.unbind())
     }
 
     /// Part of being a coroutine: gives the operation up. A motion brakes.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
-        let stage = std::mem::replace(&mut *self.stage(), Stage::Over);
-        if let Stage::Awaited(iterator) = stage {
-            iterator.bind(py).call_method0("close")?;
-        }
+        let stage = self.replace(Stage::Over);
+        let iterator = match stage {
+            Stage::Awaited(Awaited { iterator, future }) => {
+                if let Some(future) = future {
+                    future.give_up(py);
+                }
+                iterator
+            }
+            Stage::Coroutine(iterator) => iterator,
+            Stage::Ready(_) | Stage::Over => return Ok(()),
+        };
+        iterator.bind(py).call_method0("close")?;
         Ok(())
     }
 
     fn __repr__(&self) -> String {
         let stage = match &*self.stage() {
-            Stage::Ready(_) => "not begun",
+            Stage::Ready(_) | Stage::Coroutine(_) => "not begun",
             Stage::Awaited(_) => "under way",
             Stage::Over => "over",
         };
@@ -188,9 +261,11 @@ impl Operation {
 
 /// The exception of `throw(kind, value)`.
 fn raised(py: Python<'_>, kind: &Bound<'_, PyAny>, value: Option<Py<PyAny>>) -> PyResult<PyErr> {
-    let is_instance = kind.is_instance_of::<pyo3::exceptions::PyBaseException>();
+    let is_exception =
+        |value: &Bound<'_, PyAny>| value.is_instance_of::<pyo3::exceptions::PyBaseException>();
     Ok(PyErr::from_value(match value {
-        _ if is_instance => kind.clone(),
+        _ if is_exception(kind) => kind.clone(),
+        Some(value) if is_exception(value.bind(py)) => value.into_bound(py),
         Some(value) => kind.call1((value.bind(py),))?,
         None => kind.call0()?,
     }))
@@ -199,18 +274,35 @@ fn raised(py: Python<'_>, kind: &Bound<'_, PyAny>, value: Option<Py<PyAny>>) -> 
 impl Drop for Operation {
     fn drop(&mut self) {
         let stage = self.stage.get_mut().unwrap_or_else(PoisonError::into_inner);
-        if matches!(stage, Stage::Ready(_)) {
-            let name = self.name;
-            Python::attach(|py| {
-                let text = format!("{name}() was never awaited, and has done nothing");
-                let text = std::ffi::CString::new(text).expect("no zero in it");
-                let category = py.get_type::<PyRuntimeWarning>();
-                // A warning that is made an error cannot be raised while an object is freed.
-                if let Err(error) = PyErr::warn(py, &category, &text, 1) {
-                    error.write_unraisable(py, None);
-                }
-            });
+        let stage = std::mem::replace(stage, Stage::Over);
+        if matches!(stage, Stage::Over) {
+            return;
         }
+        Python::attach(|py| {
+            // An exception that is on its way while this object is freed goes on afterwards.
+            let raised = PyErr::take(py);
+            match stage {
+                Stage::Ready(_) => warn_of_unawaited(py, self.name),
+                Stage::Awaited(Awaited {
+                    future: Some(future),
+                    ..
+                }) => future.give_up(py),
+                Stage::Awaited(_) | Stage::Coroutine(_) | Stage::Over => {}
+            }
+            if let Some(raised) = raised {
+                raised.restore(py);
+            }
+        });
+    }
+}
+
+fn warn_of_unawaited(py: Python<'_>, name: &str) {
+    let text = format!("{name}() was never awaited, and has done nothing");
+    let text = std::ffi::CString::new(text).expect("no zero in it");
+    let category = py.get_type::<PyRuntimeWarning>();
+    // A warning that is made an error cannot be raised while an object is freed.
+    if let Err(error) = PyErr::warn(py, &category, &text, 1) {
+        error.write_unraisable(py, None);
     }
 }
 

@@ -12,10 +12,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyAny;
 
 use crate::arrays::{pose_array, vector};
-use crate::destination::destination;
 use crate::errors::misuse;
 use crate::exit;
-use crate::motion::Motion;
 use crate::operation::{Operation, seconds};
 use crate::runtime::{self, Threaded};
 use crate::state::RobotState;
@@ -181,13 +179,6 @@ impl Robot {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let q = vector("q", q)?;
         Ok(pose_array(py, &self.connected()?.pose_at(q)))
-    }
-
-    /// A motion of the end effector to `target` in the base frame: `(4, 4)`; 3 numbers, a position that is
-    /// reached with the orientation kept; or 3 + 4 numbers, with a quaternion `x y z w`, which may be a pair.
-    fn move_to(&self, py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<Py<Motion>> {
-        let target = destination("target", target)?;
-        Motion::new(py, "Robot.move_to", self.connected()?.move_to(target))
     }
 
     /// Brakes whatever moves, and waits until the arm rests and the motion has ended; that one raises

@@ -52,6 +52,10 @@ impl<T> Threaded<T> {
     pub(crate) fn new(value: T) -> Self {
         Self(Some(value))
     }
+
+    pub(crate) fn into_inner(mut self) -> T {
+        self.0.take().expect("taken by `drop` only")
+    }
 }
 
 impl<T> Deref for Threaded<T> {

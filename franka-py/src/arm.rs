@@ -1,0 +1,462 @@
+//! An engaged arm: one session, many goals.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use franka_async::goal::{Backend, Controller, Deadman as Token, DeadmanMonitor, Free, Setpoints};
+use franka_async::model::collision::Obstacle;
+use franka_async::nalgebra::{UnitVector3, Vector3};
+use franka_async::{Engage, MotionError};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyAny, PyDict};
+
+use crate::arrays::{pose, vector};
+use crate::chunk::chunk;
+use crate::destination::{destination, is, offset, target_object, waypoints};
+use crate::follow::{self, Leader};
+use crate::goals::motion;
+use crate::motion::{Motion, Report, reference};
+use crate::operation::{Operation, seconds};
+use crate::options::{Keywords, Options, tuning, with_options};
+use crate::runtime::{self, Threaded};
+
+/// A session of target control: the arm is held, and goes from goal to goal without a stop in between,
+/// whatever their kinds. Made by `Robot.engage`.
+///
+/// When the last reference to it goes, the arm brakes and the session ends, in the background;
+/// `disengage()` does the same and can be awaited. `Robot.stop` ends it from outside, as does the robot by a
+/// reflex: whatever is asked of the session afterwards raises the reason. While it lasts, motions of the
+/// `Robot` itself are refused as `busy`.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Arm {
+    arm: Threaded<franka_async::Arm>,
+}
+
+impl Arm {
+    fn new(arm: franka_async::Arm) -> Self {
+        let arm = Threaded::new(arm);
+        Self { arm }
+    }
+
+    /// The session.
+    ///
+    /// # Errors
+    /// `RuntimeError` in a forked child.
+    pub(crate) fn session(&self) -> PyResult<franka_async::Arm> {
+        runtime::runtime()?;
+        Ok(self.arm.clone())
+    }
+
+    fn motion(
+        &self,
+        py: Python<'_>,
+        name: &'static str,
+        options: Option<&Bound<'_, PyDict>>,
+        begun: franka_async::Motion,
+    ) -> PyResult<Py<Motion>> {
+        motion(py, name, self.arm.robot(), options, begun)
+    }
+}
+
+#[pymethods]
+impl Arm {
+    /// As `Robot.move_to`; the arm is then held at the target. Cancelling it brakes the arm and holds it.
+    #[pyo3(signature = (target, **options))]
+    fn move_to(
+        &self,
+        py: Python<'_>,
+        target: &Bound<'_, PyAny>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<Motion>> {
+        let target = destination("target", target)?;
+        self.motion(py, "Arm.move_to", options, self.session()?.move_to(target))
+    }
+
+    /// As `Robot.move_joints`; the arm is then held.
+    #[pyo3(signature = (q, **options))]
+    fn move_joints(
+        &self,
+        py: Python<'_>,
+        q: &Bound<'_, PyAny>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<Motion>> {
+        let q = vector("q", q)?;
+        self.motion(
+            py,
+            "Arm.move_joints",
+            options,
+            self.session()?.move_joints(q),
+        )
+    }
+
+    /// As `Robot.move_by`, from the target that the arm is held at; the arm is then held.
+    #[pyo3(signature = (way, frame = "base", from_arm = false, **options))]
+    fn move_by(
+        &self,
+        py: Python<'_>,
+        way: &Bound<'_, PyAny>,
+        frame: &str,
+        from_arm: bool,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<Motion>> {
+        let offset = offset("way", way, frame, from_arm)?;
+        self.motion(py, "Arm.move_by", options, self.session()?.move_by(offset))
+    }
+
+    /// As `Robot.move_through`; the arm is then held.
+    #[pyo3(signature = (waypoints, blend = 0.0, **options))]
+    fn move_through(
+        &self,
+        py: Python<'_>,
+        waypoints: &Bound<'_, PyAny>,
+        blend: f64,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<Motion>> {
+        let path = self::waypoints(waypoints, blend)?;
+        let through = self.session()?.move_through(path);
+        self.motion(py, "Arm.move_through", options, through)
+    }
+
+    /// Brakes, whatever the arm is doing, and is over when it rests; it is then held there.
+    #[pyo3(signature = (**options))]
+    fn hold(&self, py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Py<Motion>> {
+        self.motion(py, "Arm.hold", options, self.session()?.hold())
+    }
+
+    /// Heads for `target` from now on, in the place of whatever came before, and holds it; what `move_to`
+    /// takes, and targets with velocities. Over as soon as the goal is taken. Cancelling takes nothing back.
+    fn set(&self, target: &Bound<'_, PyAny>) -> PyResult<Operation> {
+        let (arm, target) = (self.session()?, destination("target", target)?);
+        Ok(Operation::new(
+            "Arm.set",
+            async move { arm.set(target).await },
+        ))
+    }
+
+    /// As `set`, without waiting for an answer: for loops at a rate of their own, on any thread. The newest
+    /// of goals that come faster than they are taken counts. Raises `MotionError` for a goal that is not
+    /// accepted, and for what ended the session.
+    fn try_set(&self, py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<()> {
+        use crate::errors::Raise;
+        let (arm, target) = (self.session()?, destination("target", target)?);
+        py.detach(|| arm.try_set(target))
+            .map_err(|error| error.raise(py))
+    }
+
+    /// What the arm is held at or heads for: a pose, `(4, 4)`, `Joints`, or a pair with the twist. `None`
+    /// along a chunk, at the beginning, where a goal was given up, and once the session has ended.
+    fn target<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        match self.session()?.target() {
+            Some(target) => target_object(py, target),
+            None => Ok(None),
+        }
+    }
+
+    /// Where the arm is to be in this millisecond: a `Reference`; `None` once the session has ended.
+    fn reference<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let newest = self.session()?.reference();
+        newest.map(|newest| reference(py, &newest)).transpose()
+    }
+
+    /// Waits until the arm rests at the target that was taken last, or where that has been given up.
+    /// Cancelling has no effect on the arm.
+    fn at_rest(&self) -> PyResult<Operation> {
+        let arm = self.session()?;
+        Ok(Operation::new(
+            "Arm.at_rest",
+            async move { arm.at_rest().await },
+        ))
+    }
+
+    /// Follows points with times, as a policy predicts them, from now on; over as soon as they are taken. See
+    /// `Chunk`, which may be given in the place of the points; the other arguments are its fields.
+    #[pyo3(signature = (points, dt = None, times = None, *, velocities = None, joints = false, observed_at = None, blend = None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
+    fn chunk(
+        &self,
+        points: &Bound<'_, PyAny>,
+        dt: Option<f64>,
+        times: Option<&Bound<'_, PyAny>>,
+        velocities: Option<&Bound<'_, PyAny>>,
+        joints: bool,
+        observed_at: Option<&Bound<'_, PyAny>>,
+        blend: Option<f64>,
+    ) -> PyResult<Operation> {
+        let arm = self.session()?;
+        let made = if is(points, "Chunk")? {
+            points.clone()
+        } else {
+            let class = points.py().import("franka_async.goal")?.getattr("Chunk")?;
+            class.call1((points, dt, times, velocities, joints, observed_at, blend))?
+        };
+        let chunk = chunk(&made, &arm)?;
+        Ok(Operation::new("Arm.chunk", async move {
+            arm.chunk(chunk).await
+        }))
+    }
+
+    /// Lets a hand guide the arm, once it rests, until the next goal; `hold()` ends it. `axes` are free: x y z
+    /// and about x y z of the base frame, six truth values; the others stay where they are. Over as soon as
+    /// it is taken. The load has to be declared, or it pulls the arm down.
+    #[pyo3(signature = (axes = [true; 6], elbow = true))]
+    fn guide(&self, axes: [bool; 6], elbow: bool) -> PyResult<Operation> {
+        let arm = self.session()?;
+        let free = Free { axes, elbow };
+        Ok(Operation::new(
+            "Arm.guide",
+            async move { arm.guide(free).await },
+        ))
+    }
+
+    /// As `Robot.follow`; the arm is then held at the last target.
+    #[pyo3(signature = (targets, **options))]
+    fn follow(
+        this: &Bound<'_, Self>,
+        targets: &Bound<'_, PyAny>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Operation> {
+        let arm = Leader::Arm(this.get().session()?);
+        follow::operation(this, "Arm.follow", arm, targets, options)
+    }
+
+    /// Changes `gains`, `limits`, `force_cap`, `leash`, `deviation` and `posture`, as far as they are given,
+    /// of the goal under way and of those to come. Gains fade over 0.3 s.
+    #[pyo3(signature = (**options))]
+    fn tune(&self, options: Option<&Bound<'_, PyDict>>) -> PyResult<Operation> {
+        let arm = self.session()?;
+        let mut keywords = Keywords::new("Arm.tune", options)?;
+        let tuning = tuning(&mut keywords, arm.robot().model())?;
+        keywords.end()?;
+        Ok(Operation::new(
+            "Arm.tune",
+            async move { arm.tune(tuning).await },
+        ))
+    }
+
+    /// Brakes, lets the arm go and ends the session, with a `MotionReport`; a goal under way raises
+    /// `stopped`. Raises how the session ended if it ended otherwise.
+    fn disengage(&self) -> PyResult<Operation> {
+        let arm = self.session()?;
+        Ok(Operation::new("Arm.disengage", async move {
+            arm.disengage().await.map(Report)
+        }))
+    }
+
+    /// Waits until the session has ended, and returns or raises how. Cancelling has no effect on the arm.
+    fn ended(&self) -> PyResult<Operation> {
+        let ended = self.session()?.ended();
+        Ok(Operation::new("Arm.ended", async move {
+            ended.await.map(Report)
+        }))
+    }
+
+    fn __aenter__(this: Py<Self>) -> Operation {
+        Operation::infallible("Arm", async move { this })
+    }
+
+    #[pyo3(signature = (kind = None, *_rest))]
+    fn __aexit__(
+        &self,
+        kind: Option<&Bound<'_, PyAny>>,
+        _rest: &Bound<'_, PyAny>,
+    ) -> PyResult<Operation> {
+        Ok(leave(self.session()?, kind))
+    }
+}
+
+/// Ends the session at the end of a `with` block. What the block raised is not replaced.
+fn leave(arm: franka_async::Arm, raised: Option<&Bound<'_, PyAny>>) -> Operation {
+    let raised = raised.is_some_and(|kind| !kind.is_none());
+    Operation::new("Arm.disengage", async move {
+        match arm.disengage().await {
+            Err(error) if !raised => Err(error),
+            _ => Ok(()),
+        }
+    })
+}
+
+/// A session that begins when it is awaited, or entered by `async with`, and is then an `Arm`.
+#[pyclass(frozen, generic, extends = Operation, module = "franka_async")]
+pub(crate) struct Engagement {
+    entered: Arc<Entered>,
+}
+
+/// The session of a `with` block.
+#[derive(Default)]
+struct Entered {
+    is_entered: AtomicBool,
+    arm: OnceLock<franka_async::Arm>,
+}
+
+impl Engagement {
+    pub(crate) fn new(
+        py: Python<'_>,
+        robot: franka_async::Robot,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<Self>> {
+        let mut keywords = Keywords::new("Robot.engage", options)?;
+        let common = Options::of_session(&mut keywords, robot.model())?;
+        let mut engage = with_options!(Engage::default(), common, session);
+        if let Some(regions) = keywords.take("keep_out")? {
+            let regions: PyResult<Vec<_>> = regions.try_iter()?.map(|it| region(&it?)).collect();
+            engage = engage.keep_out(regions?);
+        }
+        if let Some(chosen) = keywords.take("backend")? {
+            engage = engage.backend(backend(&chosen)?);
+        }
+        if let Some(deadman) = keywords.take("deadman")? {
+            engage = engage.deadman(deadman.cast::<Deadman>()?.get().bind()?);
+        }
+        keywords.end()?;
+        let entered = Arc::new(Entered::default());
+        let shared = entered.clone();
+        let begin = Operation::new("Robot.engage", async move {
+            let arm = robot.engage(engage).await?;
+            if shared.is_entered.load(Ordering::Relaxed) {
+                // Set once: the operation runs once.
+                let _ = shared.arm.set(arm.clone());
+            }
+            Ok::<_, MotionError>(Arm::new(arm))
+        });
+        Py::new(
+            py,
+            PyClassInitializer::from(begin).add_subclass(Self { entered }),
+        )
+    }
+}
+
+#[pymethods]
+impl Engagement {
+    fn __aenter__(this: Py<Self>) -> Py<Self> {
+        this.get().entered.is_entered.store(true, Ordering::Relaxed);
+        this
+    }
+
+    #[pyo3(signature = (kind = None, *_rest))]
+    fn __aexit__(
+        &self,
+        kind: Option<&Bound<'_, PyAny>>,
+        _rest: &Bound<'_, PyAny>,
+    ) -> PyResult<Operation> {
+        let arm = self.entered.arm.get();
+        let arm = arm.ok_or_else(|| PyTypeError::new_err("the session was not entered"))?;
+        Ok(leave(arm.clone(), kind))
+    }
+}
+
+/// A token that has to be kept alive: while it is silent for longer than `silence` seconds, and once it is
+/// released or gone, the arm that it was given to by `Robot.engage` brakes and holds, and every goal raises
+/// `held`. The control thread watches it, whatever Python is busy with.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Deadman {
+    token: Mutex<Option<Token>>,
+    monitor: Mutex<Option<DeadmanMonitor>>,
+    silence: f64,
+}
+
+impl Deadman {
+    /// The other end of the token, for one session.
+    fn bind(&self) -> PyResult<DeadmanMonitor> {
+        let monitor = self
+            .monitor
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take();
+        monitor.ok_or_else(|| PyValueError::new_err("deadman is bound to a session already"))
+    }
+}
+
+#[pymethods]
+impl Deadman {
+    #[new]
+    fn new(silence: f64) -> PyResult<Self> {
+        let (token, monitor) = Token::new(seconds(silence)?);
+        Ok(Self {
+            token: Mutex::new(Some(token)),
+            monitor: Mutex::new(Some(monitor)),
+            silence,
+        })
+    }
+
+    /// How long it may be silent, s.
+    #[getter]
+    fn silence(&self) -> f64 {
+        self.silence
+    }
+
+    /// Restarts the time of silence; from any thread. Without effect once it was released.
+    fn keep_alive(&self) {
+        let token = self.token.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(token) = &*token {
+            token.keep_alive();
+        }
+    }
+
+    /// Gives the token up: the arm brakes, and holds from then on.
+    fn release(&self) {
+        self.token
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take();
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Deadman({})", self.silence)
+    }
+}
+
+/// Reads a region that the arm keeps out of.
+fn region(region: &Bound<'_, PyAny>) -> PyResult<Obstacle> {
+    if is(region, "Plane")? {
+        let normal = Vector3::from(vector::<3>("normal", &region.getattr("normal")?)?);
+        let normal = UnitVector3::try_new(normal, 1e-9)
+            .ok_or_else(|| PyValueError::new_err("the normal of a plane has no length"))?;
+        let offset = region.getattr("offset")?.extract()?;
+        return Ok(Obstacle::Plane { normal, offset });
+    }
+    if is(region, "Box")? {
+        let sides = Vector3::from(vector::<3>("sides", &region.getattr("sides")?)?);
+        let pose = pose("pose", &region.getattr("pose")?)?;
+        let half = 0.5 * sides;
+        return Ok(Obstacle::Box { pose, half });
+    }
+    let text = format!("keep_out has {}, expected a Plane or a Box", region.repr()?);
+    Err(PyTypeError::new_err(text))
+}
+
+/// Reads `torques`, or a pair of a controller and its setpoints.
+fn backend(backend: &Bound<'_, PyAny>) -> PyResult<Backend> {
+    let unknown = || {
+        let text = format!(
+            "backend is {backend}, expected 'torques' or a pair of 'joint_impedance' or \
+             'cartesian_impedance' and 'joint_positions', 'joint_velocities', 'cartesian_poses' or \
+             'cartesian_velocities'"
+        );
+        PyValueError::new_err(text)
+    };
+    if let Ok(name) = backend.extract::<String>() {
+        return (name == "torques")
+            .then_some(Backend::Torques)
+            .ok_or_else(unknown);
+    }
+    let (controller, setpoints) = backend
+        .extract::<(String, String)>()
+        .map_err(|_| unknown())?;
+    let setpoints = match setpoints.as_str() {
+        "joint_positions" => Setpoints::JointPositions,
+        "joint_velocities" => Setpoints::JointVelocities,
+        "cartesian_poses" => Setpoints::CartesianPoses,
+        "cartesian_velocities" => Setpoints::CartesianVelocities,
+        _ => return Err(unknown()),
+    };
+    let controller = match controller.as_str() {
+        "joint_impedance" => Controller::JointImpedance,
+        "cartesian_impedance" => Controller::CartesianImpedance,
+        _ => return Err(unknown()),
+    };
+    Ok(match controller {
+        Controller::JointImpedance => Backend::joint_impedance(setpoints),
+        _ => Backend::cartesian_impedance(setpoints),
+    })
+}
