@@ -246,7 +246,8 @@ joint_quantities! {
 pub(crate) fn add_quantities(module: &Bound<'_, PyModule>) -> PyResult<()> {
     use condition::Quantity as Q;
     let axes = [("X", Axis::X), ("Y", Axis::Y), ("Z", Axis::Z)];
-    let along: [(&str, fn(Axis) -> Q); 5] = [
+    type OfAxis = fn(Axis) -> Q;
+    let along: [(&str, OfAxis); 5] = [
         ("FORCE", Q::Force),
         ("TORQUE", Q::Torque),
         ("POSITION", Q::Position),

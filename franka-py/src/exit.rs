@@ -1,6 +1,6 @@
 //! What becomes of robots when the interpreter exits.
 
-use std::sync::LazyLock;
+use std::sync::{LazyLock, PoisonError, RwLock};
 use std::time::Duration;
 
 use franka_async::Robot;
@@ -15,11 +15,14 @@ struct Live {
     exit: CancellationToken,
     /// A task for each connected robot, which ends when the robot has closed.
     robots: TaskTracker,
+    /// Whether threads of this module may take the interpreter. Held while one does.
+    interpreter: RwLock<bool>,
 }
 
 static LIVE: LazyLock<Live> = LazyLock::new(|| Live {
     exit: CancellationToken::new(),
     robots: TaskTracker::new(),
+    interpreter: RwLock::new(true),
 });
 
 /// What every connection is to be given, so that it ends with the interpreter.
@@ -33,6 +36,16 @@ pub(crate) fn wait_for(robot: &Robot) {
     let mut health = robot.health();
     LIVE.robots
         .spawn(async move { while health.changed().await.is_ok() {} });
+}
+
+/// Does what takes the interpreter on a thread that Python does not know. `None` once it exits: threads
+/// that it takes by surprise would be torn out of the middle of what they do.
+pub(crate) fn in_python<T>(work: impl FnOnce(Python<'_>) -> T) -> Option<T> {
+    let is_open = LIVE
+        .interpreter
+        .read()
+        .unwrap_or_else(PoisonError::into_inner);
+    is_open.then(|| Python::attach(work))
 }
 
 /// Has `atexit` call [`shut_down`], before the interpreter is taken apart.
@@ -52,14 +65,21 @@ fn shut_down(py: Python<'_>) {
     py.detach(|| {
         LIVE.exit.cancel();
         LIVE.robots.close();
-        runtime.block_on(async {
-            if tokio::time::timeout(LONGEST, LIVE.robots.wait())
-                .await
-                .is_err()
-            {
-                eprintln!("franka_async: a robot did not close within {LONGEST:?}");
-            }
-        });
+        let close = tokio::task::spawn_blocking;
+        let closed = runtime.block_on(tokio::time::timeout(LONGEST, async {
+            LIVE.robots.wait().await;
+            // Whoever has the interpreter now gives it back first.
+            let closed = close(|| {
+                *LIVE
+                    .interpreter
+                    .write()
+                    .unwrap_or_else(PoisonError::into_inner) = false
+            });
+            closed.await
+        }));
+        if closed.is_err() {
+            eprintln!("franka_async: a robot or a thread did not end within {LONGEST:?}");
+        }
     });
 }
 

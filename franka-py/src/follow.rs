@@ -13,6 +13,7 @@ use tokio::sync::{oneshot, watch};
 
 use crate::destination::target;
 use crate::errors::Raise;
+use crate::exit;
 use crate::motion::Report;
 use crate::operation::Operation;
 use crate::options::{Bounds, Keywords, Options, watchdog, with_options};
@@ -160,7 +161,7 @@ fn stepped(
 ) -> impl Stream<Item = Target> + Send + 'static {
     stream::unfold((iterator, failed), async |(iterator, failed)| {
         let step = move || {
-            Python::attach(|py| {
+            exit::in_python(|py| {
                 let next = iterator.bind(py).call_method0("__next__");
                 let next = next.and_then(|next| target("a target", &next));
                 match next {
@@ -171,6 +172,7 @@ fn stepped(
                     Err(error) => Err(error),
                 }
             })
+            .unwrap_or(Ok(None))
         };
         let stepped = tokio::task::spawn_blocking(step).await;
         match stepped.expect("it is neither cancelled nor does it panic") {

@@ -59,7 +59,7 @@ mod _native {
     #[pymodule_export]
     use crate::motion::{Motion, MotionHandle};
     #[pymodule_export]
-    use crate::operation::Operation;
+    use crate::operation::{_complete, Operation};
     #[pymodule_export]
     use crate::otg::{AxisLimits, Trajectory, plan_trajectory};
     #[pymodule_export]

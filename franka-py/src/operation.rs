@@ -3,10 +3,12 @@
 use std::any::TypeId;
 use std::convert::Infallible;
 use std::future::Future;
+use std::panic::AssertUnwindSafe;
 use std::pin::Pin;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use futures::FutureExt;
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
@@ -14,24 +16,13 @@ use pyo3::types::PyAny;
 use tokio::sync::oneshot;
 
 use crate::errors::Raise;
+use crate::exit;
 use crate::runtime::{self, Threaded};
-
-pyo3::import_exception!(asyncio, CancelledError);
 
 /// A value on its way into Python: made into an object where the interpreter is at hand.
 struct Delivered(Deliver);
 
 type Deliver = Box<dyn FnOnce(Python<'_>) -> PyResult<Py<PyAny>> + Send>;
-
-impl<'py> IntoPyObject<'py> for Delivered {
-    type Target = PyAny;
-    type Output = Bound<'py, PyAny>;
-    type Error = PyErr;
-
-    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok((self.0)(py)?.into_bound(py))
-    }
-}
 
 type Work = Pin<Box<dyn Future<Output = Delivered> + Send>>;
 
@@ -116,6 +107,20 @@ impl Operation {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Drops the work. Returns the iterator that stood for it.
+    fn give_up(&self, py: Python<'_>) -> Option<Py<PyAny>> {
+        match self.replace(Stage::Over) {
+            Stage::Awaited(Awaited { iterator, future }) => {
+                if let Some(future) = future {
+                    future.give_up(py);
+                }
+                Some(iterator)
+            }
+            Stage::Coroutine(iterator) => Some(iterator),
+            Stage::Ready(_) | Stage::Over => None,
+        }
+    }
+
     fn replace(&self, stage: Stage) -> Stage {
         std::mem::replace(&mut *self.stage(), stage)
     }
@@ -147,19 +152,16 @@ impl Operation {
             },
             stage => {
                 self.replace(stage);
-                runtime::runtime()?;
+                let runtime = runtime::runtime()?;
+                let event_loop = py.import("asyncio")?.call_method0("get_running_loop")?;
+                let future = event_loop.call_method0("create_future")?;
+                let iterator = future.call_method0("__await__")?.unbind();
                 let work = self.begin()?;
-                let (keep, given_up) = oneshot::channel::<Infallible>();
-                let work = async move {
-                    tokio::select! {
-                        biased;
-                        _ = given_up => Err(CancelledError::new_err(())),
-                        delivered = work => Ok(delivered),
-                    }
-                };
-                let future = pyo3_async_runtimes::tokio::future_into_py(py, work)?;
+                let (keep, given_up) = oneshot::channel();
+                let waiting = (event_loop.unbind(), future.clone().unbind());
+                runtime.spawn(begun(work, given_up, waiting));
                 Awaited {
-                    iterator: future.call_method0("__await__")?.unbind(),
+                    iterator,
                     future: Some(Pending {
                         future: future.unbind(),
                         _keep: keep,
@@ -171,6 +173,55 @@ impl Operation {
         self.replace(Stage::Awaited(awaited));
         Ok(iterator)
     }
+}
+
+/// Does the work unless it is given up, and completes the future of the event loop.
+async fn begun(
+    work: Work,
+    given_up: oneshot::Receiver<Infallible>,
+    (event_loop, future): (Py<PyAny>, Py<PyAny>),
+) {
+    let delivered = tokio::select! {
+        biased;
+        _ = given_up => return,
+        delivered = AssertUnwindSafe(work).catch_unwind() => delivered,
+    };
+    let delivered = delivered.unwrap_or_else(|_| {
+        let bug = || {
+            Err(PyRuntimeError::new_err(
+                "a bug in franka_async: see its panic",
+            ))
+        };
+        Delivered(Box::new(move |_| bug()))
+    });
+    // The interpreter may be held by a program that computes: that keeps none of the tasks waiting.
+    let complete = move |py: Python<'_>| {
+        let (method, value) = match (delivered.0)(py) {
+            Ok(value) => ("set_result", value),
+            Err(error) => ("set_exception", error.into_value(py).into_any()),
+        };
+        let complete = py.import("franka_async._native")?.getattr("_complete")?;
+        let arguments = (complete, future, method, value);
+        event_loop
+            .bind(py)
+            .call_method1("call_soon_threadsafe", arguments)?;
+        PyResult::Ok(())
+    };
+    // An event loop that is closed awaits nothing.
+    tokio::task::spawn_blocking(move || exit::in_python(complete).map(Result::ok));
+}
+
+/// Completes a future, in its event loop, unless it is done.
+#[pyfunction]
+pub(crate) fn _complete(
+    future: &Bound<'_, PyAny>,
+    method: &str,
+    value: &Bound<'_, PyAny>,
+) -> PyResult<()> {
+    if !future.call_method0("done")?.is_truthy()? {
+        future.call_method1(method, (value,))?;
+    }
+    Ok(())
 }
 
 impl Pending {
@@ -229,24 +280,18 @@ impl Operation {
             error.value(py).setattr("__traceback__", traceback)?;
         }
         let thrown = self.iterator(py)?.call_method1("throw", (error.value(py),));
+        if thrown.is_err() {
+            self.give_up(py);
+        }
         Ok(thrown?.unbind())
     }
 
     /// Part of being a coroutine: gives the operation up. A motion brakes.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
-        let stage = self.replace(Stage::Over);
-        let iterator = match stage {
-            Stage::Awaited(Awaited { iterator, future }) => {
-                if let Some(future) = future {
-                    future.give_up(py);
-                }
-                iterator
-            }
-            Stage::Coroutine(iterator) => iterator,
-            Stage::Ready(_) | Stage::Over => return Ok(()),
-        };
-        iterator.bind(py).call_method0("close")?;
-        Ok(())
+        match self.give_up(py) {
+            Some(iterator) => iterator.bind(py).call_method0("close").map(drop),
+            None => Ok(()),
+        }
     }
 
     fn __repr__(&self) -> String {

@@ -26,8 +26,6 @@ pub(crate) fn runtime() -> PyResult<&'static Runtime> {
             .build()
             .expect("threads for the background");
         let runtime: &Runtime = Box::leak(Box::new(runtime));
-        // Fails where one is set already: nothing else in this module sets one.
-        let _ = pyo3_async_runtimes::tokio::init_with_runtime(runtime);
         (runtime, std::process::id())
     });
     if *process != std::process::id() {
