@@ -31,6 +31,7 @@ mod runtime;
 mod simulator;
 mod state;
 mod state_views;
+mod virtual_robots;
 
 use pyo3::prelude::*;
 
@@ -68,6 +69,8 @@ mod _native {
     use crate::simulator::Sim;
     #[pymodule_export]
     use crate::state::{_state_of_json, RobotState};
+    #[pymodule_export]
+    use crate::virtual_robots::VirtualRobots;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -206,8 +206,8 @@ impl<const N: usize> Motion for Generator<N> {
 /// The motion may begin with `start_velocity` and `start_acceleration`, and pass the target with
 /// `target_velocity` and `target_acceleration`, `(n,)` each, zero unless given; past a target in
 /// motion it comes to rest. All axes are at the target at the same time: with `synchronisation`
-/// `straight` on a straight line wherever the state at the start allows one, with `time` each on its
-/// own.
+/// `straight` on a straight line wherever the state at the start allows one, with `time` each on
+/// its own.
 ///
 /// `ValueError` for shapes that do not fit each other, numbers that are not finite, and a target
 /// that moves faster than the limits allow.
@@ -356,7 +356,8 @@ impl Trajectory {
     }
 
     /// Position, velocity and acceleration at the time `t` in s, `(axes,)` each, or at many times,
-    /// `(m,)`, `(m, axes)` each. Before the beginning it is at its beginning, after its end at rest.
+    /// `(m,)`, `(m, axes)` each. Before the beginning it is at its beginning, after its end at
+    /// rest.
     fn at<'py>(
         &self,
         py: Python<'py>,

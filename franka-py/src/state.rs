@@ -12,8 +12,8 @@ use crate::arrays::{array, columns, table};
 use crate::errors::variant;
 
 /// Everything that the robot says in one millisecond, by the vendor's names: O base, F flange, NE
-/// nominal end effector, EE end effector, K stiffness frame; `X_T_Y` is the pose of Y in X, with the
-/// translation in the last column.
+/// nominal end effector, EE end effector, K stiffness frame; `X_T_Y` is the pose of Y in X, with
+/// the translation in the last column.
 ///
 /// It does not change. Each array is a new one, which the program may change.
 #[pyclass(frozen, eq, module = "franka_async")]
@@ -115,13 +115,15 @@ impl RobotState {
         array(py, &self.state.cartesian_collision)
     }
 
-    /// Estimated external wrench on the stiffness frame in the base frame, `(6,)` N and N m, positive when the robot pushes.
+    /// Estimated external wrench on the stiffness frame in the base frame, `(6,)` N and N m,
+    /// positive when the robot pushes.
     #[getter]
     fn O_F_ext_hat_K<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.state.O_F_ext_hat_K)
     }
 
-    /// Estimated external wrench on the stiffness frame in the stiffness frame, `(6,)` N and N m, positive when the robot pushes.
+    /// Estimated external wrench on the stiffness frame in the stiffness frame, `(6,)` N and N m,
+    /// positive when the robot pushes.
     #[getter]
     fn K_F_ext_hat_K<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.state.K_F_ext_hat_K)

@@ -144,7 +144,7 @@ impl RobotState {
 impl RobotState {
     fn title(&self) -> String {
         format!(
-            "RobotState at {:.3} s: {}, motion generator {}, controller {}, success rate {:.2}",
+            "RobotState at {:.3} s: {} ({}, {}), success rate {:.2}",
             self.time(),
             self.robot_mode(),
             self.motion_generator_mode(),

@@ -20,6 +20,7 @@ from ._native import (
     Robot,
     RobotState,
     Sim,
+    VirtualRobots,
 )
 from .errors import (
     ActionError,
@@ -104,6 +105,7 @@ __all__ = [
     "Settling",
     "Sim",
     "Tolerance",
+    "VirtualRobots",
     "Waypoint",
     "condition",
     "otg",

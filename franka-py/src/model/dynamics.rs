@@ -163,8 +163,8 @@ impl Model {
     }
 
     /// Accelerations under the joint torques `tau`, gravity included: `(7,)` or `(n, 7)` rad/s^2.
-    /// `armature` is the inertia of the rotors felt at the joints, `(7,)` kg m^2, none unless given.
-    /// Where mass and armature make no physical arm, the result is NaN.
+    /// `armature` is the inertia of the rotors felt at the joints, `(7,)` kg m^2, none unless
+    /// given. Where mass and armature make no physical arm, the result is NaN.
     #[pyo3(signature = (q, dq, tau, *, I_total = None, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None, armature = None))]
     #[allow(clippy::too_many_arguments)] // each is named by the caller
     fn forward_dynamics<'py>(

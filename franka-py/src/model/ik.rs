@@ -23,8 +23,8 @@ type Step<'py> = (Array<'py>, Array<'py>);
 impl Model {
     /// Every posture within the joint limits that brings the end effector to `pose`, `(k, 7)` rad,
     /// for one more number that picks from the arm's self-motion: the angle of `joint7`, of
-    /// `joint4`, or the `swivel` angle of the elbow about the line from shoulder to wrist, rad, zero
-    /// with the elbow on top. k is 0 if there is none; with joint 7 or 4 it is 8 at most.
+    /// `joint4`, or the `swivel` angle of the elbow about the line from shoulder to wrist, rad,
+    /// zero with the elbow on top. k is 0 if there is none; with joint 7 or 4 it is 8 at most.
     #[pyo3(signature = (pose, *, joint7 = None, joint4 = None, swivel = None, F_T_EE = None))]
     fn ik<'py>(
         &self,
@@ -120,13 +120,13 @@ impl Model {
         self.within_reach(count, found, &poses, &ee)
     }
 
-    /// Joint velocities that give the end effector the `twist` `[linear; angular]`, m/s and rad/s in
-    /// base axes, as far as they can, and what is missing of it: `(7,)` rad/s and `(6,)`, or of many
-    /// `q` or twists with a leading axis. It also works on displacements, in m and rad.
+    /// Joint velocities that give the end effector the `twist` `[linear; angular]`, m/s and rad/s
+    /// in base axes, as far as they can, and what is missing of it: `(7,)` rad/s and `(6,)`, or of
+    /// many `q` or twists with a leading axis. It also works on displacements, in m and rad.
     ///
     /// The velocities are exactly within `lower` and `upper`, `(7,)` or `(n, 7)`, by default what
-    /// the arm may do at `q`. Where the twist leaves freedom they follow `posture`, by default zero.
-    /// Near singularities and at bounds the position comes first; with `smooth` position and
+    /// the arm may do at `q`. Where the twist leaves freedom they follow `posture`, by default
+    /// zero. Near singularities and at bounds the position comes first; with `smooth` position and
     /// orientation give way alike.
     #[pyo3(signature = (q, twist, *, posture = None, lower = None, upper = None, smooth = false, F_T_EE = None))]
     #[allow(clippy::too_many_arguments)] // each is named by the caller

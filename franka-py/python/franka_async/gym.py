@@ -1,0 +1,314 @@
+"""Gymnasium environments over simulated robots in virtual time: no sockets, no clock, no process beside.
+
+::
+
+    from franka_async import gym
+
+    def reward(observation, action):  # of one robot, (69,), or of many, (n, 69)
+        tip = gym.part(observation, "O_T_EE_position")
+        return -np.linalg.norm(tip - [0.5, 0.2, 0.4], axis=-1)
+
+    env = gym.FrankaEnv("fr3", action="cartesian_delta", reward=reward, max_steps=200)
+    many = gym.FrankaVectorEnv(64, "fr3", action="cartesian_delta", reward=reward, max_steps=200)
+
+Observations are ``RobotState.flat()``, ``(69,)``, laid out as ``FLAT_LAYOUT`` says. Actions are within -1 and 1, in units of
+``action_scale``; their meaning is that of ``VirtualRobots``. Where a robot stops itself the episode terminates, with ``reason``
+(``reflex``) and ``errors`` (the vendor's names) in ``info``. The extra ``gym`` installs what this module needs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._native import FLAT_LAYOUT, RobotState, VirtualRobots
+
+try:
+    import gymnasium
+    from gymnasium.vector import AutoresetMode, VectorEnv
+    from gymnasium.vector.utils import batch_space
+except ImportError as cause:
+    raise ImportError("franka_async.gym needs Gymnasium: pip install 'franka-async[gym]'") from cause
+
+__all__ = ["ActionKind", "FrankaEnv", "FrankaVectorEnv", "Reward", "Start", "Terminate", "part"]
+
+Array: TypeAlias = NDArray[np.float64]
+
+ActionKind: TypeAlias = Literal["joint_velocity", "joint_delta", "cartesian_delta", "torque"]
+
+Reward: TypeAlias = Callable[[Array, Array], ArrayLike]
+"""The reward of an observation, ``(69,)``, and the action that led there; of many robots, ``(n, 69)``, one for each."""
+
+Terminate: TypeAlias = Callable[[Array], ArrayLike]
+"""Whether an episode ends at an observation, ``(69,)``; of many robots, ``(n, 69)``, one for each."""
+
+Start: TypeAlias = Callable[[np.random.Generator], ArrayLike]
+"""Joint positions, ``(7,)`` rad, at which an episode begins."""
+
+
+def part(observation: Array, name: str) -> Array:
+    """Returns the part of an observation, or of many, that ``FLAT_LAYOUT`` calls ``name``: a view."""
+    for known, begin, end in FLAT_LAYOUT:
+        if known == name:
+            return observation[..., begin:end]
+    raise ValueError(f"name is {name!r}, expected one of {', '.join(known for known, _, _ in FLAT_LAYOUT)}")
+
+
+class _Episodes:
+    """What the two environments have in common: robots, hooks, and the count of steps."""
+
+    def __init__(
+        self,
+        count: int,
+        robot: Literal["fr3", "fer"],
+        *,
+        action: ActionKind,
+        cycles: int,
+        action_scale: ArrayLike | None,
+        arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"],
+        hand: bool,
+        speed: float,
+        threads: int,
+        start: Start | None,
+        reward: Reward | None,
+        terminate: Terminate | None,
+        max_steps: int | None,
+    ) -> None:
+        if cycles < 1:
+            raise ValueError(f"cycles is {cycles}, expected 1 or more")
+        if max_steps is not None and max_steps < 1:
+            raise ValueError(f"max_steps is {max_steps}, expected 1 or more, or None")
+        self.robots = VirtualRobots(robot, count, control=action, arm=arm, hand=hand, speed=speed, threads=threads)
+        self.cycles = cycles
+        self.scale = _scale(self.robots.action_bound(cycles), action, action_scale)
+        self.start, self.reward, self.terminate, self.max_steps = start, reward, terminate, max_steps
+        self.steps = np.zeros(count, np.int64)
+        size = self.robots.action_size
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (size,), np.float64)
+        self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (RobotState.FLAT_LEN,), np.float64)
+
+    def begin(self, index: int, random: np.random.Generator, options: dict[str, Any] | None) -> Array:
+        """Begins an episode of one robot; returns its observation, ``(69,)``."""
+        q = (options or {}).get("q")
+        if q is None and self.start is not None:
+            q = self.start(random)
+        self.robots.reset(index, seed=int(random.integers(2**63)), q=q)
+        self.steps[index] = 0
+        return self.robots.state(index).flat()
+
+    def advance(self, actions: Array) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+        """Returns observations, rewards, and for each robot: terminated, truncated, stopped by the robot itself."""
+        count = len(self.robots)
+        observations, running = self.robots.step(np.clip(actions, -1.0, 1.0) * self.scale, self.cycles)
+        self.steps += 1
+        rewards = np.zeros(count)
+        if self.reward is not None:
+            rewards[:] = _per_robot("reward", self.reward(observations, actions), count)
+        terminated = ~running
+        if self.terminate is not None:
+            terminated |= _per_robot("terminate", self.terminate(observations), count).astype(bool)
+        truncated = np.zeros(count, bool)
+        if self.max_steps is not None:
+            truncated = ~terminated & (self.steps >= self.max_steps)
+        return observations, rewards, terminated, truncated, ~running
+
+    def why(self, index: int, terminated: bool, truncated: bool, stopped: bool) -> dict[str, Any]:
+        """What ``info`` says of a robot after a step."""
+        if stopped:
+            return {"reason": "reflex", "errors": self.robots.errors(index)}
+        if terminated:
+            return {"reason": "terminated"}
+        return {"reason": "max_steps"} if truncated else {}
+
+
+def _scale(bound: Array, action: ActionKind, scale: ArrayLike | None) -> Array:
+    if scale is None:
+        # A tenth of the greatest torque moves an arm that carries itself fast enough.
+        return bound * 0.1 if action == "torque" else bound
+    scale = np.asarray(scale, np.float64)
+    if scale.shape not in ((), bound.shape):
+        raise ValueError(f"action_scale has the shape {scale.shape}, expected () or {bound.shape}")
+    if not (np.isfinite(scale) & (scale > 0.0)).all():
+        raise ValueError("action_scale holds numbers that are not positive and finite")
+    return np.broadcast_to(scale, bound.shape).copy()
+
+
+def _per_robot(name: str, returned: ArrayLike, count: int) -> NDArray[Any]:
+    values = np.asarray(returned)
+    if values.shape not in ((count,), ()) or (values.shape == () and count > 1):
+        raise ValueError(f"{name} returned the shape {values.shape}, expected ({count},): one for each robot")
+    return values
+
+
+class FrankaEnv(gymnasium.Env[Array, Array]):
+    """One simulated robot.
+
+    ``robot`` is ``fr3`` or ``fer``; ``action`` says what an action means, and ``action_scale``, a number or one for each axis,
+    what an action of 1 is: by default as far as the robot comes in one step at ``speed``, the share of its greatest velocity, and
+    a tenth of the greatest torque. A step takes ``cycles`` milliseconds of the robot's time. ``arm`` is ``realistic``, ``ideal``,
+    ``nominal``, ``bad``, or ``sampled``: another realistic one in each episode.
+
+    ``start`` draws the joint positions of an episode's beginning (the ready pose unless given, or ``options={"q": ...}`` of
+    ``reset``); ``reward`` and ``terminate`` are called after each step, the latter also for observations of a robot that has
+    stopped itself; ``max_steps`` truncates.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": []}
+
+    def __init__(
+        self,
+        robot: Literal["fr3", "fer"] = "fr3",
+        *,
+        action: ActionKind = "joint_velocity",
+        cycles: int = 20,
+        action_scale: ArrayLike | None = None,
+        arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"] = "realistic",
+        hand: bool = True,
+        speed: float = 0.5,
+        start: Start | None = None,
+        reward: Reward | None = None,
+        terminate: Terminate | None = None,
+        max_steps: int | None = None,
+    ) -> None:
+        self._episodes = _Episodes(
+            1,
+            robot,
+            action=action,
+            cycles=cycles,
+            action_scale=action_scale,
+            arm=arm,
+            hand=hand,
+            speed=speed,
+            threads=1,
+            start=start,
+            reward=reward,
+            terminate=terminate,
+            max_steps=max_steps,
+        )
+        self.action_space = self._episodes.action_space
+        self.observation_space = self._episodes.observation_space
+
+    @property
+    def robots(self) -> VirtualRobots:
+        """The robot, as number 0 of one: to push it, and to read whole states."""
+        return self._episodes.robots
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Begins an episode, at the joint positions ``options["q"]`` if given."""
+        super().reset(seed=seed)
+        return self._episodes.begin(0, self.np_random, options), {}
+
+    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+        """Takes an action for ``cycles`` milliseconds of the robot's time."""
+        actions = np.asarray(action, np.float64)[None]
+        results = self._episodes.advance(actions)
+        observation, reward, terminated, truncated, stopped = (result[0] for result in results)
+        info = self._episodes.why(0, terminated, truncated, stopped)
+        return observation, float(reward), bool(terminated), bool(truncated), info
+
+
+class FrankaVectorEnv(VectorEnv[Array, Array, NDArray[Any]]):
+    """Many simulated robots in one process, all stepped by one call while the interpreter is free for other threads.
+
+    Arguments as ``FrankaEnv``; ``reward`` and ``terminate`` get all robots at once, ``(n, 69)``. ``threads`` share the work of a
+    step. An episode that has ended begins anew with the next step, which ignores the action (``AutoresetMode.NEXT_STEP``).
+    Robot i acts as a ``FrankaEnv`` that is reset with ``seed + i``.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
+
+    def __init__(
+        self,
+        num_envs: int,
+        robot: Literal["fr3", "fer"] = "fr3",
+        *,
+        action: ActionKind = "joint_velocity",
+        cycles: int = 20,
+        action_scale: ArrayLike | None = None,
+        arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"] = "realistic",
+        hand: bool = True,
+        speed: float = 0.5,
+        threads: int = 1,
+        start: Start | None = None,
+        reward: Reward | None = None,
+        terminate: Terminate | None = None,
+        max_steps: int | None = None,
+    ) -> None:
+        self._episodes = _Episodes(
+            num_envs,
+            robot,
+            action=action,
+            cycles=cycles,
+            action_scale=action_scale,
+            arm=arm,
+            hand=hand,
+            speed=speed,
+            threads=threads,
+            start=start,
+            reward=reward,
+            terminate=terminate,
+            max_steps=max_steps,
+        )
+        self.num_envs = num_envs
+        self.single_action_space = self._episodes.action_space
+        self.single_observation_space = self._episodes.observation_space
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self._random = [np.random.default_rng() for _ in range(num_envs)]
+        self._ended = np.zeros(num_envs, bool)
+
+    @property
+    def robots(self) -> VirtualRobots:
+        """The robots: to push them, and to read whole states."""
+        return self._episodes.robots
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """Begins an episode of every robot, or of those in the array ``options["reset_mask"]``, ``(n,)``."""
+        options = dict(options or {})
+        mask = np.asarray(options.pop("reset_mask", np.ones(self.num_envs, bool)))
+        if mask.shape != (self.num_envs,) or mask.dtype != bool:
+            raise ValueError(f"reset_mask has the shape {mask.shape} of {mask.dtype}, expected ({self.num_envs},) of bool")
+        seeds: list[int | None]
+        if seed is None or isinstance(seed, (int, np.integer)):
+            seeds = [None if seed is None else int(seed) + i for i in range(self.num_envs)]
+        else:
+            seeds = list(seed)
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed has {len(seeds)} numbers, expected {self.num_envs}")
+        for i in np.flatnonzero(mask):
+            if seeds[i] is not None:
+                self._random[i], _ = gymnasium.utils.seeding.np_random(seeds[i])
+            self._episodes.begin(int(i), self._random[i], options)
+        self._ended[mask] = False
+        return self._episodes.robots.observations(), {}
+
+    def step(self, actions: Array) -> tuple[Array, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
+        """Gives every robot an action for ``cycles`` milliseconds of its time; begins the episodes that have ended."""
+        begun = self._ended.copy()
+        results = self._episodes.advance(np.asarray(actions, np.float64))
+        observations, rewards, terminated, truncated, stopped = results
+        for i in np.flatnonzero(begun):
+            observations[i] = self._episodes.begin(int(i), self._random[i], None)
+        for values in (terminated, truncated):
+            values[begun] = False
+        rewards[begun] = 0.0
+        infos: dict[str, Any] = {}
+        for i in np.flatnonzero(terminated | truncated):
+            info = self._episodes.why(int(i), terminated[i], truncated[i], stopped[i])
+            infos = self._add_info(infos, info, int(i))
+        self._ended = terminated | truncated
+        return observations, rewards, terminated, truncated, infos
+
+
+for _robot in ("fr3", "fer"):
+    gymnasium.register(
+        f"franka_async/{_robot.upper()}-v0",
+        entry_point="franka_async.gym:FrankaEnv",
+        vector_entry_point="franka_async.gym:FrankaVectorEnv",
+        kwargs={"robot": _robot},
+    )

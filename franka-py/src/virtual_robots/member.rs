@@ -1,0 +1,159 @@
+//! One simulated robot and the client that moves it, in one thread.
+
+use franka_model::{JointVector, Model, READY, RobotKind, Wrench};
+use franka_proto::client::Session;
+use franka_proto::framing::next_message;
+use franka_proto::{
+    MoveControllerMode, MoveGeneratorMode, MoveRequest, Request, RobotCommand, RobotMode,
+    RobotState, Version,
+};
+use franka_sim::arm::Arm;
+use franka_sim::{Config, Robot, Tool};
+
+use super::control::{Control, Kind};
+
+/// What robots have in common.
+pub(super) struct Settings {
+    pub(super) kind: RobotKind,
+    pub(super) control: Kind,
+    pub(super) tool: Tool,
+    /// Share of the greatest velocity that motions use.
+    pub(super) speed: f64,
+}
+
+impl Settings {
+    pub(super) fn model(&self) -> &'static Model {
+        Model::of(self.kind)
+    }
+}
+
+/// A robot in motion, or one that has stopped itself.
+pub(super) struct Member {
+    robot: Robot,
+    control: Control,
+    command: [u8; RobotCommand::MAX_SIZE],
+}
+
+impl Member {
+    /// A robot at rest at `q`, the ready pose unless given, with a motion begun.
+    ///
+    /// # Errors
+    /// Why the robot did not begin it.
+    pub(super) fn new(
+        settings: &Settings,
+        arm: Arm,
+        seed: u64,
+        q: Option<JointVector>,
+    ) -> Result<Self, String> {
+        let mut robot = Robot::new(Config {
+            kind: settings.kind,
+            q: q.unwrap_or(READY),
+            tool: settings.tool,
+            arm: Some(arm),
+            seed,
+            ..Config::default()
+        });
+        begin(&mut robot, settings.control)?;
+        let control = Control::new(settings, &JointVector::from(robot.state().q_d));
+        let command = [0; RobotCommand::MAX_SIZE];
+        Ok(Self {
+            robot,
+            control,
+            command,
+        })
+    }
+
+    /// Takes an action and lets `cycles` milliseconds pass. A robot that has stopped stands still.
+    pub(super) fn run(&mut self, action: &[f64], cycles: u32) {
+        if !self.is_running() {
+            return;
+        }
+        self.control.act(action);
+        for _ in 0..cycles {
+            let command = RobotCommand {
+                message_id: self.robot.state().message_id,
+                ..self.control.command()
+            };
+            let version = self.robot.version();
+            let length = command
+                .encode(version, &mut self.command)
+                .expect("every version has what is said here, and the buffer room for it");
+            self.robot.command(&self.command[..length]);
+            self.robot.tick();
+            if !self.is_running() {
+                break;
+            }
+        }
+    }
+
+    /// Whether the motion goes on.
+    pub(super) fn is_running(&self) -> bool {
+        self.robot.state().robot_mode == RobotMode::Move
+    }
+
+    pub(super) fn state(&self) -> &RobotState {
+        self.robot.state()
+    }
+
+    pub(super) fn version(&self) -> Version {
+        self.robot.version()
+    }
+
+    pub(super) fn push(&mut self, wrench: Wrench, duration: u64) {
+        self.robot.push_end_effector(wrench, duration);
+    }
+}
+
+/// Connects to a robot and begins a motion, as a client does.
+///
+/// # Errors
+/// Why it is not in motion then.
+fn begin(robot: &mut Robot, control: Kind) -> Result<(), String> {
+    let version = robot.version();
+    let (controller, generator) = match control {
+        Kind::Torque => (
+            MoveControllerMode::ExternalController,
+            version.torque_generator(),
+        ),
+        _ => (
+            MoveControllerMode::JointImpedance,
+            MoveGeneratorMode::JointPosition,
+        ),
+    };
+    let mut session = Session::new(version);
+    robot.connect();
+    let hello = session.connect(UDP_PORT);
+    exchange(robot, &mut session, hello.as_bytes())?;
+    let request = Request::Move(MoveRequest::new(controller, generator));
+    let request = session.request(&request);
+    let request = request.map_err(|error| error.to_string())?;
+    exchange(robot, &mut session, request.as_bytes())?;
+    robot.tick();
+    match robot.state().robot_mode {
+        RobotMode::Move => Ok(()),
+        mode => Err(format!("the simulated robot is in the mode {mode:?}")),
+    }
+}
+
+/// Sends a message to the robot and reads what it answers at once.
+fn exchange(
+    robot: &mut Robot,
+    session: &mut Session<Version>,
+    message: &[u8],
+) -> Result<(), String> {
+    robot.receive(message).map_err(|error| error.to_string())?;
+    let mut answers = Vec::new();
+    while let Some(bytes) = robot.take_reply() {
+        answers.extend_from_slice(&bytes);
+    }
+    let mut rest = &answers[..];
+    while let Some(message) = next_message(rest).map_err(|error| error.to_string())? {
+        rest = &rest[message.size()..];
+        let event = session.on_message(message);
+        event.map_err(|error| error.to_string())?;
+    }
+    Ok(())
+}
+
+/// Where states would go: nothing is sent.
+const UDP_PORT: u16 = 5000;
